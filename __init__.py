@@ -1,0 +1,19 @@
+"""Möbius Flow: relax and untangle knotted curves without ever letting them pass through themselves.
+
+The same tree is a Blender extension and a Python package. Nothing is imported here before Blender
+asks for it, so the library works where there is no Blender.
+"""
+
+
+def register() -> None:
+    """Register the Blender extension (called by Blender)."""
+    from . import addon
+
+    addon.register()
+
+
+def unregister() -> None:
+    """Unregister the Blender extension (called by Blender)."""
+    from . import addon
+
+    addon.unregister()

@@ -1,0 +1,95 @@
+"""Closed polygons in R^m: the one value that everything else takes and gives."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import CurveError
+from ..types import FloatArray, frozen
+from .mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One or more closed polygons: an immutable array of vertices and its connectivity.
+
+    Parameters
+    ----------
+    vertices
+        Positions P, shape (n, m) with m ≥ 2, in the user's units; copied and made read-only.
+    mesh
+        Connectivity; by default all vertices form one closed component.
+
+    Raises
+    ------
+    CurveError
+        If the shape is wrong or a coordinate is not finite; the message names the vertex.
+    """
+
+    vertices: FloatArray
+    mesh: Mesh
+
+    def __init__(self, vertices: npt.ArrayLike, mesh: Mesh | None = None) -> None:
+        points = frozen(np.array(vertices, dtype=np.float64))
+        if points.ndim != 2 or points.shape[1] < 2:
+            raise CurveError(f"vertices have shape {points.shape}; they must be an array (n, m) with m at least 2")
+        mesh = Mesh((len(points),)) if mesh is None else mesh
+        if mesh.size != len(points):
+            raise CurveError(f"the components have {mesh.size} vertices together but {len(points)} are given")
+        bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+        if bad.size:
+            raise CurveError(f"vertex {bad[0] + 1} is not finite: {points[bad[0]].tolist()}; remove or repair it")
+        object.__setattr__(self, "vertices", points)
+        object.__setattr__(self, "mesh", mesh)
+
+    @classmethod
+    def from_components(cls, components: Sequence[npt.ArrayLike]) -> "Curve":
+        """Join closed polygons, arrays (n_k, m) of one common m, into one curve (a link)."""
+        arrays = [np.asarray(component, dtype=np.float64) for component in components]
+        for k, array in enumerate(arrays):
+            if array.ndim != 2 or array.shape[1] != arrays[0].shape[-1]:
+                raise CurveError(
+                    f"component {k + 1} has shape {array.shape}; every component must be an array (n, m) with the same m"
+                )
+        mesh = Mesh(tuple(len(array) for array in arrays))
+        return cls(np.concatenate(arrays), mesh)
+
+    @property
+    def components(self) -> tuple[FloatArray, ...]:
+        """The vertices of each component, as read-only views."""
+        return tuple(self.vertices[s] for s in self.mesh.slices)
+
+    @property
+    def dimension(self) -> int:
+        """Dimension m of the ambient space."""
+        return int(self.vertices.shape[1])
+
+    def __len__(self) -> int:
+        return self.mesh.size
+
+    def with_vertices(self, vertices: npt.ArrayLike) -> "Curve":
+        """Return the same polygon with other vertices; shape (n, m)."""
+        return Curve(vertices, self.mesh)
+
+    @cached_property
+    def edge_vectors(self) -> FloatArray:
+        """Edge vectors e_I = P(I↑) − P(I↓); shape (n, m)."""
+        return frozen(self.vertices[self.mesh.heads] - self.vertices[self.mesh.tails])
+
+    @cached_property
+    def edge_lengths(self) -> FloatArray:
+        """Edge lengths ℓ_I = |e_I|; shape (n,)."""
+        return frozen(np.sqrt(np.einsum("ij,ij->i", self.edge_vectors, self.edge_vectors)))
+
+    @cached_property
+    def midpoints(self) -> FloatArray:
+        """Edge midpoints m_I; shape (n, m)."""
+        return frozen(0.5 * (self.vertices[self.mesh.heads] + self.vertices[self.mesh.tails]))
+
+    @property
+    def length(self) -> float:
+        """Total length of all components."""
+        return float(self.edge_lengths.sum())
