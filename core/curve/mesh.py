@@ -68,6 +68,13 @@ class Mesh:
         return frozen(heads)
 
     @cached_property
+    def previous(self) -> IntArray:
+        """The edge before each edge (whose head is this edge's tail); shape (n,)."""
+        previous = np.empty(self.size, dtype=np.intp)
+        previous[self.heads] = np.arange(self.size)
+        return frozen(previous)
+
+    @cached_property
     def component(self) -> IntArray:
         """Component of each vertex (and edge); shape (n,)."""
         return frozen(np.repeat(np.arange(len(self.component_sizes)), self.component_sizes))
@@ -110,7 +117,7 @@ class Mesh:
         return np.asarray(self.index_distance(i, j) > 1)
 
     def scatter(self, at_tails: FloatArray, at_heads: FloatArray) -> FloatArray:
-        """Add values given at the tail and the head of each edge up at the vertices; shapes (n, m)."""
+        """Add values given at the tail and the head of each edge up at the vertices; shapes (n,) or (n, m)."""
         total = np.zeros_like(at_tails)
         np.add.at(total, self.tails, at_tails)
         np.add.at(total, self.heads, at_heads)

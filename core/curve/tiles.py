@@ -37,8 +37,7 @@ def _excluded(mesh: Mesh, first: int, last: int) -> BoolArray:
     rows = np.arange(first, last)
     columns = np.arange(first, mesh.size)
     excluded: BoolArray = columns[None, :] <= rows[:, None]
-    next_edge, last_edge = mesh.heads[rows], np.argsort(mesh.heads)[rows]
-    for neighbour in (next_edge, last_edge):
+    for neighbour in (mesh.heads[rows], mesh.previous[rows]):
         inside = neighbour >= first
         excluded[rows[inside] - first, neighbour[inside] - first] = True
     return excluded
