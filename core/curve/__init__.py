@@ -2,5 +2,6 @@
 
 from .curve import Curve
 from .mesh import Mesh
+from .refine import refine
 
-__all__ = ["Curve", "Mesh"]
+__all__ = ["Curve", "Mesh", "refine"]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .curve import Curve
 
 
@@ -38,3 +38,13 @@ def arc_distances(curve: Curve, t_i: float, t_j: float, rows: slice) -> FloatArr
     if len(lengths) > 1:
         distance[component[rows, None] != component[None, :]] = np.inf
     return np.asarray(distance)
+
+
+def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
+    """ϱ between vertices ``i`` and ``j``, elementwise; inf across components."""
+    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
+    component = curve.mesh.component
+    position = arc_positions(curve, 0.0)
+    gap = np.abs(position[i] - position[j])
+    distance = np.minimum(gap, lengths[component[i]] - gap)
+    return np.where(component[i] == component[j], distance, np.inf)

@@ -98,8 +98,13 @@ def _inner_moments(z: FloatArray, tau: FloatArray, length: FloatArray) -> tuple[
     outside = a * b > h2  # the foot is well outside the edge: h may vanish, so no division by h
     safe_h = np.where(outside, 1.0, h)
     # arctan(h/a) − arctan(h/b) over h, without cancellation
-    i0 = np.where(outside, _arctan_ratio(length[:, None] * h / np.where(outside, h2 + a * b, 1.0))
-                  * length[:, None] / np.where(outside, h2 + a * b, 1.0), angle / safe_h)
+    i0 = np.where(
+        outside,
+        _arctan_ratio(length[:, None] * h / np.where(outside, h2 + a * b, 1.0))
+        * length[:, None]
+        / np.where(outside, h2 + a * b, 1.0),
+        angle / safe_h,
+    )
     m1 = 0.5 * (1.0 / ra2 - 1.0 / rb2)
     edge_term = b / rb2 - a / ra2
     m2 = 0.5 * (i0 - edge_term)

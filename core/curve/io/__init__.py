@@ -1,0 +1,9 @@
+"""Curve files: read and write closed polygons as .txt/.xyz, .obj, .vect and .json.
+
+To add a format, write one module with ``read(source) -> list[Polygon]`` and ``write(curve, stream)`` and
+give it a line in :data:`FORMATS`; reading, error messages and the atomic replacement are shared.
+"""
+
+from .formats import FORMATS, Format, read_curve, write_curve
+
+__all__ = ["FORMATS", "Format", "read_curve", "write_curve"]

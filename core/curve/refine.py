@@ -1,0 +1,91 @@
+"""Refinement: new vertices on the edges, so that neighbours are nearer to each other than to other strands.
+
+Section 6.1.3 of [RS21]: "the distance between two neighboring vertices of a polygon should be strictly
+smaller than the distance between any other pairs of vertices".  The polygon as a set of points does not
+change; equal edge lengths are left to the flow.
+"""
+
+import heapq
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..errors import OptionError
+from ..types import FloatArray, IntArray
+from .curve import Curve
+from .distances import arc_distance_of_pairs
+from .mesh import Mesh
+
+DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
+STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
+SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
+
+
+def refine(curve: Curve, vertices: int | None = None) -> Curve:
+    """Subdivide edges until neighbours are nearer than strands, or to a given number of vertices.
+
+    Parameters
+    ----------
+    curve
+        An embedded polygon.
+    vertices
+        Total number of vertices asked for; None leaves it to the rule.
+
+    Raises
+    ------
+    OptionError
+        If fewer vertices are asked for than the curve has: corners are never cut.
+    """
+    if vertices is not None and vertices < len(curve):
+        raise OptionError(f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more")
+    wanted = curve.edge_lengths / target_spacing(curve)
+    if vertices is None:
+        # a little slack, so that a curve that already has the spacing asked for stays as it is
+        pieces = np.maximum(1, np.ceil(wanted - 0.1)).astype(np.intp)
+    else:
+        pieces = _apportion(wanted, vertices)
+    return subdivide(curve, pieces)
+
+
+def subdivide(curve: Curve, pieces: IntArray) -> Curve:
+    """Cut every edge I into ``pieces[I]`` equal parts; the original vertices stay as they are."""
+    edge = np.repeat(np.arange(len(curve)), pieces)
+    first = np.concatenate([[0], np.cumsum(pieces)[:-1]])
+    t = (np.arange(len(edge)) - first[edge]) / pieces[edge]
+    vertices = curve.vertices[curve.mesh.tails[edge]] + t[:, None] * curve.edge_vectors[edge]
+    return Curve(vertices, Mesh(tuple(int(pieces[s].sum()) for s in curve.mesh.slices)))
+
+
+def target_spacing(curve: Curve) -> FloatArray:
+    """Largest edge length wanted on every edge, shape (n,): that of the default count, or the gap to other strands."""
+    base = curve.length / (DEFAULT_VERTICES * len(curve.mesh.component_sizes))
+    pieces = np.ceil(SAMPLES_PER_SPACING * curve.edge_lengths / base).astype(np.intp)
+    samples = subdivide(curve, pieces)
+    spacing = np.full(len(curve), base)
+    np.minimum.at(spacing, np.repeat(np.arange(len(curve)), pieces), _strand_gaps(samples, base))
+    return spacing
+
+
+def _strand_gaps(curve: Curve, radius: float) -> FloatArray:
+    """Distance from each vertex to the nearest one on another strand, at most ``radius``; shape (n,)."""
+    tree = cKDTree(curve.vertices)
+    pairs = tree.query_pairs(radius, output_type="ndarray")
+    i, j = pairs[:, 0], pairs[:, 1]
+    distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
+    other = arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance
+    gaps = np.full(len(curve), radius)
+    for end in (i, j):
+        np.minimum.at(gaps, end[other], distance[other])
+    return gaps
+
+
+def _apportion(wanted: FloatArray, total: int) -> IntArray:
+    """Pieces per edge, at least 1 each and ``total`` together, as proportional to ``wanted`` as whole numbers can be."""
+    pieces = np.maximum(1, np.floor(wanted * (total - len(wanted)) / wanted.sum())).astype(np.intp)
+    queue = [(-w / p, k) for k, (w, p) in enumerate(zip(wanted, pieces, strict=True))]
+    heapq.heapify(queue)
+    for _ in range(total - int(pieces.sum())):
+        _, k = heapq.heappop(queue)
+        pieces[k] += 1
+        heapq.heappush(queue, (-float(wanted[k]) / float(pieces[k]), k))
+    return pieces

@@ -1,0 +1,33 @@
+"""The modified Newton method (42) of [RS21] that leads back to the constraints after a step."""
+
+import numpy as np
+
+from ..types import FloatArray
+from .problem import Point
+
+TOLERANCE = 1e-9  # of the constraints' residual: relative error of edge lengths
+MAX_ITERATIONS = 15
+CONTRACTION = 0.6  # slower than that, a shorter step is cheaper than more iterations
+
+
+def restore(base: Point, vertices: FloatArray, level: FloatArray) -> Point | None:
+    """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point.
+
+    Returns None if the residual does not contract: the step was too long.
+    """
+    last = np.inf
+    for _ in range(MAX_ITERATIONS):
+        if not np.isfinite(vertices).all():
+            return None
+        point = base.problem.at(vertices)
+        if not point.curve.edge_lengths.min() > 0.0:
+            return None
+        residual = point.residual - level
+        error = float(np.max(np.abs(residual)))
+        if error <= TOLERANCE:
+            return point
+        if not error <= CONTRACTION * last:
+            return None
+        last = error
+        vertices = vertices - base.saddle.pseudo_inverse(residual)
+    return None

@@ -1,0 +1,64 @@
+"""L-BFGS on the constraint manifold, with the current metric as initial inverse Hessian.
+
+The two-loop recursion of Nocedal and Wright (Numerical Optimization, Section 7.2) in covectors: gradients of the
+Lagrangian in, directions out, and in the middle the saddle-point solve (41) of [RS21] where the textbook has a
+multiple of the identity.  The result is projected onto the tangent space.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..types import FloatArray
+from .problem import Point
+
+
+@dataclass(frozen=True, eq=False)
+class Memory:
+    """The last point and the pairs (s, y) of displacements and Lagrangian-gradient differences, oldest first."""
+
+    point: Point
+    pairs: tuple[tuple[FloatArray, FloatArray], ...]
+
+
+@dataclass(frozen=True)
+class LimitedMemoryBFGS:
+    """Quasi-Newton direction from the last ``history`` steps."""
+
+    history: int = 30
+    natural_step: float = 1.0
+
+    def propose(self, point: Point, memory: Memory | None) -> tuple[FloatArray, Memory]:
+        """The quasi-Newton direction, or steepest descent where that is no direction of descent."""
+        pairs = () if memory is None else self._updated(memory, point)
+        direction = -_two_loops(point, pairs)
+        slope = float(np.sum(point.derivative * direction))
+        if not slope < -1e-3 * point.gradient_norm * point.saddle.norm(direction):
+            direction, pairs = -point.gradient, ()
+        return direction, Memory(point, pairs)
+
+    def _updated(self, memory: Memory, point: Point) -> tuple[tuple[FloatArray, FloatArray], ...]:
+        """The pairs with the one of the last step; it is left out if it carries no positive curvature."""
+        last = memory.point
+        s = point.vertices - last.vertices
+        multipliers = point.multipliers
+        y = point.derivative - point.saddle.constraints.apply_transpose(multipliers)
+        y -= last.derivative - last.saddle.constraints.apply_transpose(multipliers)
+        if not np.sum(s * y) > 1e-8 * np.sum(s * point.saddle.apply_metric(s)):
+            return memory.pairs
+        return (*memory.pairs, (s, y))[-self.history :]
+
+
+def _two_loops(point: Point, pairs: tuple[tuple[FloatArray, FloatArray], ...]) -> FloatArray:
+    """H DE for the inverse Hessian H that the pairs make of the inverse metric."""
+    q = point.derivative.copy()
+    weights = []
+    for s, y in reversed(pairs):
+        rho = 1.0 / np.sum(s * y)
+        alpha = rho * np.sum(s * q)
+        q -= alpha * y
+        weights.append((alpha, rho))
+    r = point.saddle.gradient(q)[0] if pairs else point.gradient.copy()
+    for (s, y), (alpha, rho) in zip(pairs, reversed(weights), strict=True):
+        r += (alpha - rho * np.sum(y * r)) * s
+    return point.saddle.project(r) if pairs else r

@@ -1,0 +1,189 @@
+"""The one driver: `relax` yields the iterates of a relaxation, `minimize` runs it to its end."""
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .collision import check_embedded
+from .constraints import Constraints, weighted_barycenter
+from .curve import Curve, refine
+from .descent import METHODS, Method, NoStep, Point, Problem, State
+from .energies import MoebiusEnergy, Objective
+from .errors import OptionError
+from .iterate import Iterate, Status
+from .options import RelaxOptions
+from .units import Units
+
+LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """How a relaxation ended.
+
+    Attributes
+    ----------
+    curve
+        The last curve, in the user's units.
+    status, message
+        Why it ended, and the same in a sentence.
+    energies
+        The objective at every iterate, the start first.
+    seconds
+        Wall-clock time.
+    certified
+        Whether every motion from the (refined) start to the result was proved free of contact.
+    edge_length_error
+        max |log ℓ/ℓ⁰| over the edges.
+    method
+        Name of the method.
+    """
+
+    curve: Curve
+    status: Status
+    message: str
+    energies: tuple[float, ...]
+    seconds: float
+    certified: bool
+    edge_length_error: float
+    method: str
+
+    def report(self) -> dict[str, object]:
+        """The result as the plain values that ``--report`` writes."""
+        return {
+            "status": self.status.value,
+            "message": self.message,
+            "iterations": len(self.energies) - 1,
+            "seconds": self.seconds,
+            "energy": list(self.energies),
+            "final_energy": MoebiusEnergy().value(self.curve),
+            "vertices": len(self.curve),
+            "components": len(self.curve.mesh.component_sizes),
+            "max_edge_length_error": self.edge_length_error,
+            "certified": self.certified,
+            "method": self.method,
+        }
+
+
+def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate]:
+    """Relax a curve: yield it refined, then every accepted step, the last with its final status.
+
+    A run that cannot go on yields its last iterate once more, with status STALLED and an empty path.
+
+    Parameters
+    ----------
+    curve
+        An embedded polygon, in any units and place.
+    options
+        What is asked for.
+
+    Raises
+    ------
+    CurveError
+        If the curve touches itself or is degenerate; the message says where.
+    OptionError
+        If an option does not fit.
+    """
+    options = RelaxOptions() if options is None else options
+    method = method_named(options.method)
+    check_embedded(curve)
+    refined = refine(curve, options.vertices)
+    return _iterates(start_problem(refined, method), refined, method, options)
+
+
+def minimize(
+    curve: Curve, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
+) -> Result:
+    """Relax a curve to the end and return the result; a keyboard interrupt keeps the curve reached so far.
+
+    ``callback`` gets every iterate.  Raises as `relax` does.
+    """
+    options = RelaxOptions() if options is None else options
+    started = time.perf_counter()
+    energies: list[float] = []
+    last: Iterate | None = None
+    try:
+        for iterate in relax(curve, options):
+            if last is None or iterate.index > last.index:
+                energies.append(iterate.energy)
+            last = iterate
+            if callback is not None:
+                callback(iterate)
+    except KeyboardInterrupt:
+        if last is None:
+            raise
+        last = replace(last, status=Status.INTERRUPTED, message="interrupted: the curve reached so far is kept")
+    assert last is not None, "relax yields at least its start"
+    return Result(
+        curve=last.curve,
+        status=last.status,
+        message=last.message,
+        energies=tuple(energies),
+        seconds=time.perf_counter() - started,
+        certified=last.certified,
+        edge_length_error=last.edge_length_error,
+        method=options.method,
+    )
+
+
+def method_named(name: str) -> Method:
+    """Look a method up; an OptionError lists the known ones."""
+    if name not in METHODS:
+        raise OptionError(f"method {name!r} is unknown; choose one of {', '.join(METHODS)}")
+    return METHODS[name]
+
+
+def start_problem(curve: Curve, method: Method) -> Problem:
+    """The problem of relaxing a curve at equal edge lengths within each component, its length and barycenter kept."""
+    units = Units.of(curve)
+    start = curve.with_vertices(units.from_user(curve.vertices))
+    lengths = np.concatenate([np.full(len(c), start.edge_lengths[s].mean()) for c, s in _components(start)])
+    constraints = Constraints(lengths, weighted_barycenter(start))
+    return Problem(curve.mesh, Objective(), method.metric(), constraints, units)
+
+
+def _components(curve: Curve) -> Iterator[tuple[np.ndarray, slice]]:
+    return zip(curve.components, curve.mesh.slices, strict=True)
+
+
+def _iterates(problem: Problem, start: Curve, method: Method, options: RelaxOptions) -> Iterator[Iterate]:
+    point = problem.at(problem.units.from_user(start.vertices))
+    iterate = _iterate(problem, point, start, 0, 0.0)
+    state = State()
+    while True:
+        status, message = _status(point, iterate, options)
+        iterate = replace(iterate, status=status, message=message)
+        yield iterate
+        if status is not Status.RUNNING:
+            return
+        step, state = method.step(point, state)
+        if isinstance(step, NoStep):
+            yield replace(iterate, status=Status.STALLED, message=f"stalled: {step.reason}", path=())
+            return
+        point = step.point
+        curve = start.with_vertices(problem.units.to_user(point.vertices))
+        iterate = _iterate(problem, point, curve, iterate.index + 1, step.size)
+
+
+def _iterate(problem: Problem, point: Point, curve: Curve, index: int, step_size: float) -> Iterate:
+    return Iterate(
+        index=index,
+        curve=curve,
+        energy=point.energy,
+        gradient_norm=point.gradient_norm,
+        step_size=step_size,
+        path=(curve.vertices,) if index else (),
+        certified=problem.certifiable,
+        edge_length_error=problem.constraints.length_error(point.curve),
+    )
+
+
+def _status(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Status, str]:
+    bound = options.tolerance * np.sqrt(abs(point.energy))
+    if iterate.gradient_norm <= bound and iterate.edge_length_error <= LENGTHS_REACHED:
+        return Status.CONVERGED, f"converged: projected gradient {iterate.gradient_norm:.3g} ≤ {bound:.3g}"
+    if iterate.index >= options.max_iterations:
+        return Status.ITERATION_LIMIT, f"stopped after {iterate.index} iterations, as asked for"
+    return Status.RUNNING, ""
