@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TextIO
 
-from ...errors import CurveFileError
+from ...errors import CurveError, CurveFileError
 from ...files import atomic_write
 from ..curve import Curve
 from . import json_lists, obj, vect, xyz
@@ -92,8 +92,12 @@ def write_curve(path: str | os.PathLike[str], curve: Curve) -> None:
     try:
         with atomic_write(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as stream:
             form.write(curve, stream)
+    except CurveError as error:
+        raise CurveFileError(path, str(error)) from error
     except OSError as error:
         raise CurveFileError(path, f"cannot be written: {error.strerror or error}") from error
+    except ValueError as error:  # a path with a null character
+        raise CurveFileError(path, f"cannot be written: {error}") from error
 
 
 def _format_of(path: Path) -> Format:

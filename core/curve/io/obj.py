@@ -1,0 +1,122 @@
+"""Wavefront OBJ (.obj): vertices ``v`` joined by polylines ``l``.
+
+A polyline may run over many indices, also negative ones (counted back from the last vertex read), and
+pieces in any order are joined where they share a vertex. Vertices on no line are dropped. A file with
+vertices alone is one closed polygon. Faces and everything else that OBJ knows are ignored.
+"""
+
+import logging
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TextIO
+
+from ...errors import CurveError
+from ..curve import Curve
+from .chains import Link, closed_chains
+from .polygons import Polygon
+from .source import Source, shown
+
+_log = logging.getLogger(__name__)
+
+_NAMES = "vt vn vp p o g s mg usemtl mtllib usemap maplib cstype deg bmat step parm trim hole scrv sp end con bevel"
+_RARE_NAMES = "c_interp d_interp lod shadow_obj trace_obj ctech stech surf curv2 call csh"
+_IGNORED = frozenset(f"{_NAMES} {_RARE_NAMES}".split())
+
+
+@dataclass
+class _Content:
+    """What an OBJ file says about curves; indices count from 0."""
+
+    points: list[tuple[float, ...]] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
+    faces: int = 0
+
+
+def read(source: Source) -> list[Polygon]:
+    """Read the polygons; raises CurveFileError naming the line, also where a polyline is open."""
+    content = _Content()
+    for line, words in _statements(source):
+        _take(source, content, words, line)
+    for link in content.links:
+        if max(link.tail, link.head) >= len(content.points):
+            reason = f"vertex {max(link.tail, link.head) + 1} does not exist; there are {len(content.points)}"
+            raise source.error(reason, link.line)
+    if content.faces:
+        _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, content.faces)
+    chains = _chains(source, content)
+    return [
+        Polygon([content.points[i] for i in chain], lambda i, chain=chain: content.lines[chain[i]])  # type: ignore[misc]
+        for chain in chains
+    ]
+
+
+def _chains(source: Source, content: _Content) -> list[list[int]]:
+    if content.links:
+        return closed_chains(source, content.links, content.points)
+    if content.faces:
+        raise source.error("there are faces (f) but no polylines (l); export the curve as edges")
+    if not content.points:
+        raise source.error("no vertex (v) and no polyline (l) found")
+    _log.warning(
+        "%s: no polyline (l); all %d vertices are taken as one closed polygon", source.path, len(content.points)
+    )
+    return [list(range(len(content.points)))]
+
+
+def _statements(source: Source) -> Iterator[tuple[int, list[str]]]:
+    """Give the words of each statement and the number of its first line; a backslash continues a line."""
+    words: list[str] = []
+    first = 1
+    for number, line in enumerate(source.lines, start=1):
+        body = line.partition("#")[0].rstrip()
+        first = first if words else number
+        words += body.removesuffix("\\").split()
+        if not body.endswith("\\"):
+            if words:
+                yield first, words
+            words = []
+    if words:
+        yield first, words
+
+
+def _take(source: Source, content: _Content, words: list[str], line: int) -> None:
+    keyword, arguments = words[0], words[1:]
+    if keyword == "v":
+        if len(arguments) < 3:
+            raise source.error(f"a vertex needs x y z, found {len(arguments)} numbers", line)
+        content.points.append(tuple(source.number(word, line) for word in arguments[:3]))
+        content.lines.append(line)
+    elif keyword == "l":
+        content.links += _links(source, arguments, line, len(content.points))
+    elif keyword == "f":
+        content.faces += 1
+    elif keyword == "curv":
+        raise source.error("free-form curves (curv) are not read; convert the curve to a polyline before export", line)
+    elif keyword not in _IGNORED:
+        raise source.error(f"{shown(keyword)} is no statement of the OBJ format", line)
+
+
+def _links(source: Source, arguments: list[str], line: int, known: int) -> Iterator[Link]:
+    """Turn ``l i j k ...`` into its edges; each argument may be ``vertex/texture``."""
+    if len(arguments) < 2:
+        raise source.error("a polyline (l) needs at least two vertices", line)
+    indices = []
+    for argument in arguments:
+        index = source.integer(argument.partition("/")[0], line)
+        if index == 0 or index < -known:
+            raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)
+        indices.append(index - 1 if index > 0 else known + index)
+    return (Link(tail, head, line) for tail, head in pairwise(indices))
+
+
+def write(curve: Curve, stream: TextIO) -> None:
+    """Write one ``l`` per component; a plane curve gets z = 0. Raises CurveError beyond three dimensions."""
+    if curve.dimension > 3:
+        raise CurveError(f"OBJ holds curves of dimension 3, not {curve.dimension}; use .json")
+    padding = [0.0] * (3 - curve.dimension)
+    stream.writelines(f"v {' '.join(map(repr, point + padding))}\n" for point in curve.vertices.tolist())
+    for part in curve.mesh.slices:
+        indices = [*range(part.start + 1, part.stop + 1), part.start + 1]
+        stream.write(f"l {' '.join(map(str, indices))}\n")

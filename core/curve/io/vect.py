@@ -1,0 +1,115 @@
+"""Geomview VECT (.vect), as ridgerunner and KnotPlot use it: polylines with their numbers of vertices ahead.
+
+``VECT``, then the numbers of polylines, vertices and colours; the vertices of each polyline, negative where
+it is closed; the colours of each polyline; the points; the colours (which are read over). ``#`` comments.
+Source: the Geomview manual, section "VECT".
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TextIO
+
+from ...errors import CurveError, CurveFileError
+from ..curve import Curve
+from .polygons import Polygon
+from .source import Source, shown
+
+
+@dataclass
+class _Words:
+    """The words of a VECT file with their lines, taken one after the other."""
+
+    source: Source
+    words: list[tuple[str, int]]
+    position: int = 0
+
+    @property
+    def left(self) -> int:
+        """How many words are left; a header that claims more is refused before anything is reserved."""
+        return len(self.words) - self.position
+
+    def error(self, reason: str) -> CurveFileError:
+        """Make the error that names the line of the word read last."""
+        return self.source.error(reason, self.words[max(self.position, 1) - 1][1])
+
+    def demand(self, count: int, what: str) -> None:
+        """Refuse a file that ends before ``count`` more words."""
+        if self.left < count:
+            last = self.words[-1][1]
+            raise self.source.error(f"the file is truncated: {count} {what} announced, {self.left} found", last)
+
+    def integers(self, count: int, what: str) -> list[int]:
+        """Take ``count`` whole numbers."""
+        self.demand(count, what)
+        return [self.source.integer(*word) for word in self._take(count)]
+
+    def numbers(self, count: int) -> list[float]:
+        """Take ``count`` numbers."""
+        return [self.source.number(*word) for word in self._take(count)]
+
+    def _take(self, count: int) -> Iterator[tuple[str, int]]:
+        for _ in range(count):
+            self.position += 1
+            yield self.words[self.position - 1]
+
+
+def read(source: Source) -> list[Polygon]:
+    """Read the polygons; raises CurveFileError naming the line, also where a polyline is open."""
+    words = _Words(source, _split(source))
+    _check_magic(words)
+    polylines, vertices, colours = words.integers(3, "numbers of polylines, vertices and colours")
+    if min(polylines, vertices, colours) < 0:
+        raise words.error("the header has a negative number")
+    sizes = words.integers(polylines, "vertex counts")
+    colour_sizes = words.integers(polylines, "colour counts")
+    if sum(map(abs, sizes)) != vertices:
+        raise words.error(f"the polylines have {sum(map(abs, sizes))} vertices together, the header says {vertices}")
+    if min(colour_sizes, default=0) < 0 or sum(colour_sizes) != colours:
+        raise words.error(f"the polylines have {sum(colour_sizes)} colours together, the header says {colours}")
+    for k, size in enumerate(sizes, start=1):
+        if size >= 0:
+            raise words.error(f"polyline {k} is open ({size}); only closed ones, such as {-size or -3}, can be used")
+    words.demand(3 * vertices, "coordinates")
+    polygons = [_polygon(words, -size) for size in sizes]
+    words.demand(4 * colours, "colour values")
+    words.numbers(4 * colours)
+    if words.left:
+        raise source.error(f"{words.left} more words than the header announces", words.words[words.position][1])
+    return polygons
+
+
+def _split(source: Source) -> list[tuple[str, int]]:
+    lines = enumerate(source.lines, start=1)
+    words = [(word, number) for number, line in lines for word in line.partition("#")[0].split()]
+    if not words:
+        raise source.error("the file has comments only")
+    return words
+
+
+def _check_magic(words: _Words) -> None:
+    magic = words.words[0][0]
+    words.position = 1
+    if magic == "4VECT":
+        raise words.error("VECT with four coordinates (4VECT) is not read; write three")
+    if magic != "VECT":
+        raise words.error(f"a VECT file starts with the word VECT, not {shown(magic)}")
+    if words.left and words.words[1][0] == "BINARY":
+        raise words.error("binary VECT is not read; write it as text")
+
+
+def _polygon(words: _Words, size: int) -> Polygon:
+    first = words.position
+    values = words.numbers(3 * size)
+    points = list(zip(values[::3], values[1::3], values[2::3], strict=True))
+    return Polygon(points, lambda i: words.words[first + 3 * i][1])
+
+
+def write(curve: Curve, stream: TextIO) -> None:
+    """Write closed polylines without colours; a plane curve gets z = 0. Raises CurveError beyond three dimensions."""
+    if curve.dimension > 3:
+        raise CurveError(f"VECT holds curves of dimension 3, not {curve.dimension}; use .json")
+    sizes = curve.mesh.component_sizes
+    stream.write(f"VECT\n{len(sizes)} {len(curve)} 0\n")
+    stream.write(" ".join(str(-size) for size in sizes) + "\n" + " ".join("0" for _ in sizes) + "\n")
+    padding = [0.0] * (3 - curve.dimension)
+    stream.writelines(" ".join(map(repr, point + padding)) + "\n" for point in curve.vertices.tolist())
