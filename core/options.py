@@ -28,7 +28,7 @@ class RelaxOptions:
         If a value is outside its range.
     """
 
-    method: str = "flow-moebius"
+    method: str = "lbfgs"
     max_iterations: int = 2000
     tolerance: float = 1e-4
     vertices: int | None = None

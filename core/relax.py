@@ -141,7 +141,7 @@ def start_problem(curve: Curve, method: Method) -> Problem:
     start = curve.with_vertices(units.from_user(curve.vertices))
     lengths = np.concatenate([np.full(len(c), start.edge_lengths[s].mean()) for c, s in _components(start)])
     constraints = Constraints(lengths, weighted_barycenter(start))
-    return Problem(curve.mesh, Objective(), method.metric(), constraints, units)
+    return Problem(curve.mesh, Objective(), method.metric, constraints, units)
 
 
 def _components(curve: Curve) -> Iterator[tuple[np.ndarray, slice]]:

@@ -1,13 +1,13 @@
 """A descent method: a direction, found in a metric, and a step search.  Adding one is a file and a registry line."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 
+from ..metrics import Metric
 from ..types import FloatArray
-from .problem import Metric, Point
+from .problem import Point
 from .search import GROWTH, NoStep, Step, armijo_step
 
 
@@ -38,14 +38,14 @@ class Method:
     name, description
         As shown to users.
     metric
-        Makes the inner product.
+        The inner product.
     direction
         The rule for descent directions.
     """
 
     name: str
     description: str
-    metric: Callable[[], Metric]
+    metric: Metric
     direction: Direction
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
@@ -10,19 +9,10 @@ from ..collision import FreeMotion, free_motion
 from ..constraints import ConstraintDerivative, Constraints
 from ..curve import Curve, Mesh
 from ..energies import Objective
+from ..metrics import Metric
 from ..saddle import SaddleSolver
 from ..types import FloatArray
 from ..units import Units
-
-
-class Metric(Protocol):
-    """An inner product on functions along the curve."""
-
-    name: str
-    description: str
-
-    def matrix(self, curve: Curve) -> FloatArray:
-        """Gram matrix A, symmetric positive definite, shape (n, n)."""
 
 
 @dataclass(frozen=True, eq=False)

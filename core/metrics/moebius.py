@@ -12,14 +12,13 @@ and of 3. |∫ u ds|².  The Gram matrix is A ⊗ Id_m (footnote 6): only A, of 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
-from ..curve import Curve, Mesh
+from ..curve import Curve
 from ..curve.distances import arc_distances, points_at, squared_distances
 from ..errors import OptionError
 from ..types import FloatArray
-
-ROWS_TIMES_COLUMNS = 48_000  # entries of one block of rows, to stay in the processor's cache
+from .local import lumped_mass
+from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
 
 @dataclass(frozen=True)
@@ -58,11 +57,11 @@ class MoebiusMetric:
                 inverse *= omega[i] * omega[j]
                 density *= omega[i] * omega[j]
                 seminorm += inverse
-                matrix += _difference_form(density, mesh.interpolation(float(t_i)), mesh.interpolation(float(t_j)))
-        slope = sp.csr_array(mesh.difference.multiply(1.0 / curve.edge_lengths[:, None]))
-        matrix += _difference_form(seminorm, slope, slope)
-        mass = 0.5 * mesh.scatter(curve.edge_lengths, curve.edge_lengths)
-        matrix += np.multiply.outer(mass, mass)
+                matrix += difference_form(density, mesh.interpolation(float(t_i)), mesh.interpolation(float(t_j)))
+        slope = slopes(curve)
+        matrix += difference_form(seminorm, slope, slope)
+        weight = lumped_mass(curve)
+        matrix += np.multiply.outer(weight, weight)
         return 0.5 * (matrix + matrix.T)
 
 
@@ -72,35 +71,10 @@ def _weights(curve: Curve, t_i: float, t_j: float) -> tuple[FloatArray, FloatArr
     n = mesh.size
     inverse, density = np.empty((n, n)), np.empty((n, n))
     x, y = points_at(curve, t_i), points_at(curve, t_j)
-    block = max(1, ROWS_TIMES_COLUMNS // n)
-    for first in range(0, n, block):
-        rows = slice(first, min(n, first + block))
-        r2 = squared_distances(x[rows], y)
-        _exclude_neighbours(r2, mesh, rows)
-        s = 1.0 / r2
-        rho = arc_distances(curve, t_i, t_j, rows)
-        _exclude_neighbours(rho, mesh, rows)
+    for rows in row_blocks(mesh):
+        s = 1.0 / excluding_neighbours(squared_distances(x[rows], y), mesh, rows)
+        rho = excluding_neighbours(arc_distances(curve, t_i, t_j, rows), mesh, rows)
         np.multiply(s, ell[rows, None] * ell[None, :], out=inverse[rows])
         s -= 1.0 / (rho * rho)
         np.multiply(s, inverse[rows], out=density[rows])
     return inverse, density
-
-
-def _exclude_neighbours(distance: FloatArray, mesh: Mesh, rows: slice) -> None:
-    """Set distances of edges that share a vertex to inf, in place."""
-    edges = np.arange(rows.start, rows.stop)
-    for partner in (edges, mesh.heads[edges], mesh.previous[edges]):
-        distance[edges - rows.start, partner] = np.inf
-
-
-def _difference_form(weights: FloatArray, left: sp.csr_array, right: sp.csr_array) -> FloatArray:
-    """Matrix of U ↦ Σ_IJ w_IJ ((left U)_I − (right U)_J)², up to its antisymmetric part."""
-    # Q = leftᵀ diag(Σ_J w) left + rightᵀ diag(Σ_I w) right − 2 leftᵀ w right
-    diagonal = left.T @ sp.diags_array(weights.sum(axis=1)) @ left
-    diagonal = diagonal + right.T @ sp.diags_array(weights.sum(axis=0)) @ right
-    mixed = left.T @ weights
-    mixed = (right.T @ mixed.T).T
-    mixed *= -2.0
-    coo = sp.coo_array(diagonal)
-    np.add.at(mixed, (coo.coords[0], coo.coords[1]), coo.data)
-    return np.asarray(mixed)

@@ -1,0 +1,72 @@
+"""What `relax` can write, by suffix: curve files, and keyframed or rendered scenes where Blender's module is there."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+from ..core import Iterate, MobiusFlowError, Result, write_curve
+from ..core.curve.io import FORMATS
+
+Writer = Callable[[str, Result, Sequence[Iterate]], None]
+
+
+@dataclass(frozen=True)
+class Output:
+    """One kind of output: how it is written and what it needs."""
+
+    write: Writer
+    needs_iterates: bool = False
+    check: Callable[[], None] = lambda: None
+
+
+def _write_curve(path: str, result: Result, iterates: Sequence[Iterate]) -> None:
+    write_curve(path, result.curve)
+
+
+def _need_blender() -> None:
+    try:
+        import bpy  # noqa: F401
+    except ImportError as error:
+        raise MobiusFlowError(
+            "this output needs Blender's Python module, which is not installed; try pip install bpy"
+        ) from error
+
+
+def _blender_writer(function: str) -> Writer:
+    def write(path: str, result: Result, iterates: Sequence[Iterate]) -> None:
+        from ..addon import export
+
+        getattr(export, function)(path, iterates)
+
+    return write
+
+
+OUTPUTS: Mapping[str, Output] = MappingProxyType(
+    {suffix: Output(_write_curve) for suffix in FORMATS}
+    | {
+        ".blend": Output(_blender_writer("write_blend"), needs_iterates=True, check=_need_blender),
+        ".mp4": Output(_blender_writer("write_movie"), needs_iterates=True, check=_need_blender),
+        ".png": Output(_blender_writer("write_still"), needs_iterates=True, check=_need_blender),
+    }
+)
+
+
+def output_for(path: str) -> Output:
+    """The kind of output a path asks for, after what can be checked before the work begins.
+
+    Raises
+    ------
+    MobiusFlowError
+        If the suffix is unknown, the directory does not exist, or Blender's module is needed and missing.
+    """
+    target = Path(path)
+    if target.suffix.lower() not in OUTPUTS:
+        raise MobiusFlowError(f"{path}: unknown suffix {target.suffix!r}; outputs end in {', '.join(OUTPUTS)}")
+    if not target.parent.is_dir():
+        raise MobiusFlowError(f"{path}: the directory {target.parent} does not exist")
+    if target.is_dir():
+        raise MobiusFlowError(f"{path}: is a directory; name a file")
+    output = OUTPUTS[target.suffix.lower()]
+    output.check()
+    return output

@@ -1,0 +1,91 @@
+"""``mobius-flow relax``: a tangled curve in, a relaxed one out."""
+
+import argparse
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from ..core import METHODS, Iterate, RelaxOptions, Result, Status, Trajectory, minimize, read_curve
+from ..core.errors import MobiusFlowError
+from ..core.files import atomic_write
+from .outputs import OUTPUTS, Output, output_for
+from .progress import Progress
+
+if TYPE_CHECKING:
+    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1, Status.INTERRUPTED: 130}
+
+
+def add_to(subparsers: "Subparsers") -> None:
+    """Add the subcommand."""
+    defaults = RelaxOptions()
+    parser = subparsers.add_parser("relax", help="relax a curve", description=__doc__)
+    parser.add_argument("input", metavar="IN", help="closed polygons: .txt/.xyz, .obj, .vect or .json")
+    parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(OUTPUTS)}")
+    parser.add_argument("--method", default=defaults.method, metavar="M", help=f"one of {', '.join(METHODS)}")
+    parser.add_argument("--max-iterations", type=int, default=defaults.max_iterations, metavar="K")
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        default=defaults.tolerance,
+        metavar="T",
+        help="stop at |projected gradient| ≤ T √E in the method's metric (default: %(default)s)",
+    )
+    parser.add_argument("--vertices", type=int, metavar="N", help="refine to N vertices (default: by strand distance)")
+    parser.add_argument("--report", metavar="R.json", help="write what happened as JSON")
+    parser.add_argument("--trajectory", metavar="T.npz", help="write the certified path, for mobius-flow verify")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Relax, write everything asked for, and return the exit status."""
+    relax_options = RelaxOptions(
+        method=options.method,
+        max_iterations=options.max_iterations,
+        tolerance=options.tolerance,
+        vertices=options.vertices,
+    )
+    output = output_for(options.output)
+    curve = read_curve(options.input)
+    result, iterates, trajectory = _relax(curve, relax_options, output, options)
+    output.write(options.output, result, iterates)
+    if options.report is not None:
+        _write_report(options.report, result)
+    if options.trajectory is not None:
+        trajectory.save(options.trajectory)
+    if not options.quiet:
+        print(_summary(result), file=sys.stderr)
+    return EXIT_STATUS[result.status]
+
+
+def _relax(curve, relax_options: RelaxOptions, output: Output, options: argparse.Namespace):  # type: ignore[no-untyped-def]
+    iterates: list[Iterate] = []
+    trajectory = Trajectory()
+    with Progress(relax_options, shown=not options.quiet and sys.stderr.isatty()) as progress:
+
+        def on_iterate(iterate: Iterate) -> None:
+            progress.update(iterate)
+            if output.needs_iterates:
+                iterates.append(iterate)
+            if options.trajectory is not None:
+                trajectory.add(iterate)
+
+        return minimize(curve, relax_options, on_iterate), iterates, trajectory
+
+
+def _write_report(path: str, result: Result) -> None:
+    try:
+        with atomic_write(path) as temporary:
+            temporary.write_text(json.dumps(result.report(), indent=1) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise MobiusFlowError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+def _summary(result: Result) -> str:
+    certified = "certified free of contact" if result.certified else "NOT certified"
+    return (
+        f"{result.message}; energy {result.energies[0]:.6g} → {result.energies[-1]:.9g} in "
+        f"{len(result.energies) - 1} iterations, {result.seconds:.1f} s, {certified}"
+    )

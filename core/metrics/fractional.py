@@ -1,0 +1,29 @@
+"""W^{3/2,2}, the intrinsic fractional metric: the energy's order, but blind to other strands."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..curve import Curve
+from ..curve.distances import arc_distances
+from ..types import FloatArray
+from .local import mass
+from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
+
+
+@dataclass(frozen=True)
+class FractionalMetric:
+    """Σ ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/ϱ² + ∫ u v, midpoint rule, ϱ the distance along the curve."""
+
+    name = "h3-2"
+    description = "W^{3/2,2}, intrinsic"
+
+    def matrix(self, curve: Curve) -> FloatArray:
+        """Gram matrix, shape (n, n)."""
+        ell = curve.edge_lengths
+        weights = np.empty((len(curve), len(curve)))
+        for rows in row_blocks(curve.mesh):
+            rho = excluding_neighbours(arc_distances(curve, 0.5, 0.5, rows), curve.mesh, rows)
+            weights[rows] = ell[rows, None] * ell[None, :] / rho**2
+        slope = slopes(curve)
+        return np.asarray(difference_form(weights, slope, slope) + mass(curve).toarray())

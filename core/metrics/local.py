@@ -1,0 +1,70 @@
+"""The local Sobolev metrics that J_C is compared with: L², W^{1,2} and W^{2,2}.
+
+Each is a mass term plus ∫⟨u⁽ˢ⁾, v⁽ˢ⁾⟩ for piecewise linear functions; lengths are in the program's units, in
+which a component is 4 to 8 long, so that the two terms weigh alike.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..curve import Curve
+from ..types import FloatArray
+
+
+def mass(curve: Curve) -> sp.csr_array:
+    """Matrix of ∫ u v for piecewise linear u, v; shape (n, n)."""
+    average, difference = curve.mesh.average, curve.mesh.difference
+    ell = sp.diags_array(curve.edge_lengths)
+    # on one edge ∫ u² = ℓ (ū² + (Δu)²/12)
+    return sp.csr_array(average.T @ ell @ average + difference.T @ (ell / 12.0) @ difference)
+
+
+def stiffness(curve: Curve) -> sp.csr_array:
+    """Matrix of ∫ u' v' for piecewise linear u, v; shape (n, n)."""
+    difference = curve.mesh.difference
+    return sp.csr_array(difference.T @ sp.diags_array(1.0 / curve.edge_lengths) @ difference)
+
+
+def lumped_mass(curve: Curve) -> FloatArray:
+    """∫ of each hat function; shape (n,)."""
+    return 0.5 * curve.mesh.scatter(curve.edge_lengths, curve.edge_lengths)
+
+
+@dataclass(frozen=True)
+class L2Metric:
+    """∫ u v."""
+
+    name = "l2"
+    description = "L²"
+
+    def matrix(self, curve: Curve) -> FloatArray:
+        """Gram matrix, shape (n, n)."""
+        return np.asarray(mass(curve).toarray())
+
+
+@dataclass(frozen=True)
+class H1Metric:
+    """∫ u' v' + ∫ u v."""
+
+    name = "h1"
+    description = "W^{1,2}"
+
+    def matrix(self, curve: Curve) -> FloatArray:
+        """Gram matrix, shape (n, n)."""
+        return np.asarray((stiffness(curve) + mass(curve)).toarray())
+
+
+@dataclass(frozen=True)
+class H2Metric:
+    """∫ u'' v'' + ∫ u v, the second derivative by the lumped mass: K M⁻¹ K."""
+
+    name = "h2"
+    description = "W^{2,2}"
+
+    def matrix(self, curve: Curve) -> FloatArray:
+        """Gram matrix, shape (n, n)."""
+        k = stiffness(curve)
+        bending = k @ sp.diags_array(1.0 / lumped_mass(curve)) @ k
+        return np.asarray((bending + mass(curve)).toarray())

@@ -1,0 +1,47 @@
+"""The certified path of a relaxation as a file that others can check."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from .errors import MobiusFlowError
+from .files import atomic_write
+from .iterate import Iterate
+from .types import FloatArray
+
+
+class Trajectory:
+    """Frames between which all vertices move on straight lines, collected from iterates.
+
+    Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, …; a new stage begins
+    where the number of vertices changes.  Coordinates are the user's, in double: what was proved is about exactly
+    these numbers.
+    """
+
+    def __init__(self) -> None:
+        self._stages: list[tuple[tuple[int, ...], list[FloatArray]]] = []
+
+    def add(self, iterate: Iterate) -> None:
+        """Append the motion that led to an iterate (for the first one: the start)."""
+        sizes = iterate.curve.mesh.component_sizes
+        if not self._stages or self._stages[-1][0] != sizes:
+            self._stages.append((sizes, [iterate.curve.vertices]))
+        else:
+            self._stages[-1][1].extend(iterate.path)
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """The arrays of the file, by name."""
+        named: dict[str, np.ndarray] = {}
+        for k, (sizes, frames) in enumerate(self._stages):
+            named[f"stage_{k:03d}"] = np.stack(frames)
+            named[f"component_sizes_{k:03d}"] = np.array(sizes, dtype=np.int64)
+        return named
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the trajectory as .npz, whole or not at all; a MobiusFlowError says why it cannot be."""
+        try:
+            with atomic_write(path) as temporary, temporary.open("wb") as stream:
+                np.savez_compressed(stream, **self.arrays())  # type: ignore[arg-type]
+        except OSError as error:
+            raise MobiusFlowError(f"{Path(path)}: cannot be written: {error.strerror or error}") from error
