@@ -1,0 +1,101 @@
+"""Check derivatives by the order at which Taylor remainders vanish.
+
+The remainder of a Taylor polynomial of degree d is O(t^(d+1)): on logarithmic axes its slope is 2 for a correct
+first derivative and 3 for a correct second one.  A wrong derivative shows a slope of 1 or 2.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .curve import Curve
+from .energies.energy import Energy, TwiceDifferentiable
+from .errors import OptionError
+from .types import FloatArray
+
+WINDOW = 5  # consecutive steps that make one fit
+
+
+def taylor_slope(
+    function: Callable[[float], npt.ArrayLike],
+    terms: Sequence[npt.ArrayLike],
+    largest: float = 0.1,
+    halvings: int = 20,
+) -> float:
+    """Fit the order at which the Taylor remainder of a function of one real variable vanishes at 0.
+
+    The remainder |f(t) − Σ terms[k] tᵏ/k!| is taken at t = largest/2ᵏ; of all windows of five consecutive steps
+    the straightest (on logarithmic axes) gives the slope, which leaves out steps that are too large for the
+    asymptotics and those where rounding rules.
+
+    Parameters
+    ----------
+    function
+        f, scalar or array valued.
+    terms
+        f(0), f'(0), f''(0), ... as far as they are to be checked, each of the shape of f's values.
+    largest
+        The largest step.
+    halvings
+        How often it is halved; at least 4.
+
+    Returns
+    -------
+    float
+        The slope; ``len(terms)`` if the terms are right, inf if the remainder vanishes altogether.
+
+    Raises
+    ------
+    OptionError
+        If there are too few steps for a fit, or the largest is not positive.
+    """
+    if halvings < WINDOW - 1:
+        raise OptionError(f"halvings is {halvings}; it must be {WINDOW - 1} or more")
+    if not (math.isfinite(largest) and largest > 0.0):
+        raise OptionError(f"largest is {largest}; it must be a finite number above 0")
+    steps = largest * 0.5 ** np.arange(halvings + 1)
+    remainders = np.array([_remainder(function, terms, float(t)) for t in steps])
+    if np.count_nonzero(remainders) < WINDOW:
+        return math.inf
+    fits = [
+        _line(np.log(steps[first : first + WINDOW]), np.log(remainders[first : first + WINDOW]))
+        for first in range(len(steps) - WINDOW + 1)
+        if remainders[first : first + WINDOW].all()
+    ]
+    return min(fits)[1] if fits else math.nan
+
+
+def derivative_slope(energy: Energy, curve: Curve, direction: FloatArray, largest: float = 0.1) -> float:
+    """Taylor slope of an energy's first derivative along ``direction``, shape (n, m); 2 if it is right."""
+    value, derivative = energy.value_and_derivative(curve)
+    return taylor_slope(_along(curve, direction, energy.value), [value, np.sum(derivative * direction)], largest)
+
+
+def hessian_slope(energy: TwiceDifferentiable, curve: Curve, direction: FloatArray, largest: float = 0.1) -> float:
+    """Taylor slope of an energy's second derivative along ``direction``, shape (n, m); 3 if it is right."""
+    value, derivative = energy.value_and_derivative(curve)
+    curvature = np.sum(direction * energy.hessian_product(curve, direction))
+    terms = [value, np.sum(derivative * direction), curvature]
+    return taylor_slope(_along(curve, direction, energy.value), terms, largest)
+
+
+def _along(
+    curve: Curve, direction: FloatArray, function: Callable[[Curve], npt.ArrayLike]
+) -> Callable[[float], npt.ArrayLike]:
+    return lambda t: function(curve.with_vertices(curve.vertices + t * direction))
+
+
+def _remainder(function: Callable[[float], npt.ArrayLike], terms: Sequence[npt.ArrayLike], t: float) -> float:
+    remainder = np.asarray(function(t), dtype=np.float64)
+    for k, term in enumerate(terms):
+        remainder = remainder - np.asarray(term) * (t**k / math.factorial(k))
+    return float(np.linalg.norm(remainder))
+
+
+def _line(x: FloatArray, y: FloatArray) -> tuple[float, float]:
+    """Residual and slope of the least-squares line."""
+    x, y = x - x.mean(), y - y.mean()
+    slope = float(x @ y / (x @ x))
+    return float(np.linalg.norm(y - slope * x)), slope
