@@ -5,7 +5,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from ..core import METHODS, Iterate, RelaxOptions, Result, Status, Trajectory, minimize, read_curve
+from ..core import METHODS, Curve, Iterate, RelaxOptions, Result, Status, Trajectory, minimize, read_curve
 from ..core.errors import MobiusFlowError
 from ..core.files import atomic_write
 from .outputs import OUTPUTS, Output, output_for
@@ -60,7 +60,9 @@ def run(options: argparse.Namespace) -> int:
     return EXIT_STATUS[result.status]
 
 
-def _relax(curve, relax_options: RelaxOptions, output: Output, options: argparse.Namespace):  # type: ignore[no-untyped-def]
+def _relax(
+    curve: Curve, relax_options: RelaxOptions, output: Output, options: argparse.Namespace
+) -> tuple[Result, list[Iterate], Trajectory]:
     iterates: list[Iterate] = []
     trajectory = Trajectory()
     with Progress(relax_options, shown=not options.quiet and sys.stderr.isatty()) as progress:

@@ -82,4 +82,5 @@ class ConstraintDerivative:
         """DΦᵀ λ; shape (n, m) from (n + m,)."""
         n = self.mesh.size
         pull = multipliers[:n, None] * self.tangents
-        return self.mesh.scatter(-pull, pull) + np.einsum("kvl,k->vl", self.barycenter, multipliers[n:])
+        pinned: FloatArray = np.einsum("kvl,k->vl", self.barycenter, multipliers[n:])
+        return self.mesh.scatter(-pull, pull) + pinned

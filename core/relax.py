@@ -139,13 +139,9 @@ def start_problem(curve: Curve, method: Method) -> Problem:
     """The problem of relaxing a curve at equal edge lengths within each component, its length and barycenter kept."""
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
-    lengths = np.concatenate([np.full(len(c), start.edge_lengths[s].mean()) for c, s in _components(start)])
-    constraints = Constraints(lengths, weighted_barycenter(start))
+    lengths = [np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices]
+    constraints = Constraints(np.concatenate(lengths), weighted_barycenter(start))
     return Problem(curve.mesh, Objective(), method.metric, constraints, units)
-
-
-def _components(curve: Curve) -> Iterator[tuple[np.ndarray, slice]]:
-    return zip(curve.components, curve.mesh.slices, strict=True)
 
 
 def _iterates(problem: Problem, start: Curve, method: Method, options: RelaxOptions) -> Iterator[Iterate]:

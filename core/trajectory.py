@@ -8,7 +8,7 @@ import numpy as np
 from .errors import MobiusFlowError
 from .files import atomic_write
 from .iterate import Iterate
-from .types import FloatArray
+from .types import FloatArray, IntArray
 
 
 class Trajectory:
@@ -30,18 +30,18 @@ class Trajectory:
         else:
             self._stages[-1][1].extend(iterate.path)
 
-    def arrays(self) -> dict[str, np.ndarray]:
+    def arrays(self) -> dict[str, FloatArray | IntArray]:
         """The arrays of the file, by name."""
-        named: dict[str, np.ndarray] = {}
+        named: dict[str, FloatArray | IntArray] = {}
         for k, (sizes, frames) in enumerate(self._stages):
             named[f"stage_{k:03d}"] = np.stack(frames)
-            named[f"component_sizes_{k:03d}"] = np.array(sizes, dtype=np.int64)
+            named[f"component_sizes_{k:03d}"] = np.array(sizes, dtype=np.intp)
         return named
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the trajectory as .npz, whole or not at all; a MobiusFlowError says why it cannot be."""
         try:
             with atomic_write(path) as temporary, temporary.open("wb") as stream:
-                np.savez_compressed(stream, **self.arrays())  # type: ignore[arg-type]
+                np.savez_compressed(stream, **self.arrays())
         except OSError as error:
             raise MobiusFlowError(f"{Path(path)}: cannot be written: {error.strerror or error}") from error

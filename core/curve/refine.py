@@ -88,4 +88,4 @@ def _apportion(wanted: FloatArray, total: int) -> IntArray:
         _, k = heapq.heappop(queue)
         pieces[k] += 1
         heapq.heappush(queue, (-float(wanted[k]) / float(pieces[k]), k))
-    return pieces
+    return np.asarray(pieces)

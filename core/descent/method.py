@@ -14,8 +14,9 @@ from .search import GROWTH, NoStep, Step, armijo_step
 class Direction(Protocol):
     """A rule for descent directions; what it remembers from step to step is a value passed in and out."""
 
-    natural_step: float
-    """The step size to try first; inf if the direction has no scale of its own."""
+    @property
+    def natural_step(self) -> float:
+        """The step size to try first; inf if the direction has no scale of its own."""
 
     def propose(self, point: Point, memory: Any) -> tuple[FloatArray, Any]:
         """Tangent direction at the point, shape (n, m), and the memory for the next call; None is no memory."""

@@ -1,4 +1,4 @@
-"""The step: collision-limited first trial, feasibility, Armijo's rule, and the proof that the motion is free of contact."""
+"""The step: collision-limited first trial, feasibility, Armijo's rule, proof that the motion is free of contact."""
 
 import math
 from dataclasses import dataclass

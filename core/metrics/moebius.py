@@ -16,6 +16,7 @@ import numpy as np
 from ..curve import Curve
 from ..curve.distances import arc_distances, points_at, squared_distances
 from ..errors import OptionError
+from ..quadrature import gauss_legendre
 from ..types import FloatArray
 from .local import lumped_mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
@@ -47,8 +48,7 @@ class MoebiusMetric:
     def matrix(self, curve: Curve) -> FloatArray:
         """Gram matrix A, symmetric positive definite, shape (n, n)."""
         mesh = curve.mesh
-        t, omega = np.polynomial.legendre.leggauss(self.points)
-        t, omega = 0.5 * (t + 1.0), 0.5 * omega
+        t, omega = gauss_legendre(self.points)
         seminorm = np.zeros((len(curve), len(curve)))  # weights of term 1
         matrix = np.zeros_like(seminorm)
         for i, t_i in enumerate(t):

@@ -1,0 +1,64 @@
+"""Polygons and their connectivity."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, CurveError, Mesh
+from shapes import hopf_link, regular_polygon
+
+
+def test_links_index_edges_by_tail_and_head():
+    mesh = Mesh((3, 4))
+    assert list(mesh.tails) == [0, 1, 2, 3, 4, 5, 6]
+    assert list(mesh.heads) == [1, 2, 0, 4, 5, 6, 3]
+    assert list(mesh.previous) == [2, 0, 1, 6, 3, 4, 5]
+    assert list(mesh.component) == [0, 0, 0, 1, 1, 1, 1]
+
+
+def test_index_distance_goes_the_short_way():
+    mesh = Mesh((6, 5))
+    i, j = np.array([0, 0, 0, 0, 6]), np.array([5, 3, 4, 7, 10])
+    assert list(mesh.index_distance(i, j)) == [1, 3, 2, 11, 1]
+    assert list(mesh.disjoint(i, j)) == [False, True, True, True, False]
+
+
+def test_values_are_read_only():
+    curve = regular_polygon(5)
+    for array in (curve.vertices, curve.edge_lengths, curve.midpoints, curve.mesh.heads):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1
+
+
+def test_the_input_is_copied():
+    points = np.array(regular_polygon(5).vertices)
+    curve = Curve(points)
+    points[0] = 9
+    assert curve.vertices[0, 0] == 1
+
+
+def test_components_round_trip():
+    link = hopf_link(10)
+    again = Curve.from_components(link.components)
+    np.testing.assert_array_equal(again.vertices, link.vertices)
+    assert again.mesh.component_sizes == (10, 10)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "message"),
+    [
+        ([[0, 0, 0], [1, 0, 0]], "component 1 has 2 vertices"),
+        ([[0, 0, 0], [1, 0, 0], [np.nan, 1, 0]], "vertex 3 is not finite"),
+        ([[0, 0, 0], [1, 0, np.inf], [0, 1, 0]], "vertex 2 is not finite"),
+        ([0, 1, 2], "shape"),
+        ([[0], [1], [2]], "at least 2"),
+    ],
+)
+def test_bad_vertices(vertices, message):
+    with pytest.raises(CurveError, match=message):
+        Curve(vertices)
+
+
+def test_bad_components():
+    with pytest.raises(CurveError, match="component 2 has shape"):
+        Curve.from_components([np.zeros((3, 3)), np.zeros((3, 2))])
+    with pytest.raises(CurveError, match="it has no component"):
+        Mesh(())

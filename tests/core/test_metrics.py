@@ -1,0 +1,99 @@
+"""Metrics on the unit circle, where they have closed forms, and what every metric must be."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import OptionError
+from mobius_flow.core.metrics import METRICS, MoebiusMetric
+from scipy.special import sici
+from shapes import hopf_link, regular_polygon, torus_trefoil
+
+TERM_2 = {1: 2.0, 2: 3.53291855, 3: 5.22945608, 5: 8.50871176}  # MATHS: term 2 of J_C for u = cos kx
+
+
+def closed_form(name: str, k: int) -> float:
+    """⟨u, u⟩ of u = cos kx on the unit circle."""
+    pi = np.pi
+    # ∬ |u'(x) − u'(y)|²/ϱ² = 4π k² ∫_0^π (1 − cos kt)/t² dt
+    fractional = 4 * pi * k**3 * (sici(k * pi)[0] - (1 - np.cos(k * pi)) / (k * pi))
+    return {
+        "l2": pi,
+        "h1": pi + pi * k**2,
+        "h2": pi + pi * k**4,
+        "h3-2": pi + fractional,
+        "moebius": 2 * pi**2 * k**3 + TERM_2[k],
+    }[name]
+
+
+@pytest.mark.parametrize("k", TERM_2)
+@pytest.mark.parametrize("name", METRICS)
+def test_circle(name, k):
+    counts = np.array([100, 200, 400])
+    values = []
+    for n in counts:
+        u = np.cos(2 * np.pi * k * np.arange(n) / n)
+        values.append(u @ METRICS[name].matrix(regular_polygon(int(n))) @ u)
+    errors = np.abs(np.array(values) - closed_form(name, k))
+    order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    assert order > (0.85 if name in ("h3-2", "moebius") else 1.9)
+    assert errors[-1] < (0.045 if name in ("h3-2", "moebius") else 0.002) * closed_form(name, k)
+
+
+@pytest.mark.parametrize("points", [1, 2, 3])
+def test_quadrature_rules_agree_in_the_limit(points):
+    counts = np.array([50, 100, 200])
+    errors = []
+    for n in counts:
+        u = np.cos(2 * np.pi * np.arange(n) / n)
+        errors.append(abs(u @ MoebiusMetric(points).matrix(regular_polygon(int(n))) @ u - closed_form("moebius", 1)))
+    assert -np.polyfit(np.log(counts), np.log(errors), 1)[0] > 0.9
+
+
+@pytest.mark.parametrize("metric", METRICS.values(), ids=list(METRICS))
+@pytest.mark.parametrize("curve", [torus_trefoil(80), hopf_link(40)], ids=["trefoil", "link"])
+def test_symmetric_positive_definite(metric, curve):
+    matrix = metric.matrix(curve)
+    np.testing.assert_allclose(matrix, matrix.T, atol=1e-12 * np.abs(matrix).max())
+    assert np.linalg.eigvalsh(matrix)[0] > 0
+
+
+@pytest.mark.parametrize("points", [1, 2])
+def test_moebius_metric_against_its_definition(points):
+    """The three terms summed pair by pair, on an uneven link."""
+    rng = np.random.default_rng(17)
+    curve = hopf_link(9)
+    curve = curve.with_vertices(curve.vertices + 0.1 * rng.normal(size=curve.vertices.shape))
+    u = rng.normal(size=len(curve))
+    assert u @ MoebiusMetric(points).matrix(curve) @ u == pytest.approx(_by_definition(curve, u, points), rel=1e-12)
+
+
+def _by_definition(curve, u, points):
+    mesh, ell = curve.mesh, curve.edge_lengths
+    t, omega = np.polynomial.legendre.leggauss(points)
+    t, omega = (t + 1) / 2, omega / 2
+    at = np.concatenate([np.cumsum(ell[s]) - ell[s] for s in mesh.slices])
+    total = float(np.sum(ell * (u[mesh.tails] + u[mesh.heads]) / 2)) ** 2
+    for i in range(len(curve)):
+        for j in range(len(curve)):
+            if {mesh.tails[i], mesh.heads[i]} & {mesh.tails[j], mesh.heads[j]}:
+                continue
+            slope = (u[mesh.heads[i]] - u[mesh.tails[i]]) / ell[i] - (u[mesh.heads[j]] - u[mesh.tails[j]]) / ell[j]
+            for a in range(points):
+                for b in range(points):
+                    x = (1 - t[a]) * curve.vertices[mesh.tails[i]] + t[a] * curve.vertices[mesh.heads[i]]
+                    y = (1 - t[b]) * curve.vertices[mesh.tails[j]] + t[b] * curve.vertices[mesh.heads[j]]
+                    ui = (1 - t[a]) * u[mesh.tails[i]] + t[a] * u[mesh.heads[i]]
+                    uj = (1 - t[b]) * u[mesh.tails[j]] + t[b] * u[mesh.heads[j]]
+                    s = 1 / np.sum((x - y) ** 2)
+                    density = s
+                    if mesh.component[i] == mesh.component[j]:
+                        length = ell[mesh.slices[mesh.component[i]]].sum()
+                        gap = abs(at[i] + t[a] * ell[i] - at[j] - t[b] * ell[j])
+                        density -= 1 / min(gap, length - gap) ** 2
+                    weight = ell[i] * ell[j] * omega[a] * omega[b]
+                    total += weight * s * (slope**2 + (ui - uj) ** 2 * density)
+    return total
+
+
+def test_bad_rule():
+    with pytest.raises(OptionError, match="points is 0"):
+        MoebiusMetric(0)

@@ -1,0 +1,70 @@
+"""Refinement changes the mesh and not the curve."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, OptionError
+from mobius_flow.core.curve.refine import DEFAULT_VERTICES, refine, subdivide
+from shapes import hopf_link, regular_polygon, shared_knot
+
+
+def contains(curve: Curve, refined: Curve) -> bool:
+    """Whether the refined vertices include the curve's, in order, and the others lie on its edges."""
+    position = 0
+    for k, vertex in enumerate(curve.vertices):
+        matches = np.flatnonzero((refined.vertices == vertex).all(axis=1))
+        if len(matches) != 1 or matches[0] < position:
+            return False
+        position = matches[0]
+        head = curve.vertices[curve.mesh.heads[k]]
+        if abs(np.linalg.norm(head - vertex) - curve.edge_lengths[k]) > 1e-12:
+            return False
+    return abs(refined.length - curve.length) < 1e-12 * curve.length
+
+
+@pytest.mark.parametrize("count", [60, 61, 100, 333])
+def test_count_asked_for(count):
+    curve = hopf_link(30)
+    refined = refine(curve, count)
+    assert len(refined) == count
+    assert len(refined.mesh.component_sizes) == 2
+    assert contains(curve, refined)
+
+
+def test_never_fewer():
+    with pytest.raises(OptionError, match="vertices is 20, but the curve has 30 already"):
+        refine(regular_polygon(30), 20)
+
+
+def test_default_count_and_evenness():
+    rectangle = Curve([[0, 0, 0], [3, 0, 0], [3, 1, 0], [0, 1, 0]])
+    refined = refine(rectangle)
+    assert DEFAULT_VERTICES <= len(refined) <= 1.1 * DEFAULT_VERTICES
+    assert refined.edge_lengths.max() < 1.1 * refined.edge_lengths.min()
+    assert contains(rectangle, refined)
+
+
+def test_a_fine_curve_stays_as_it_is():
+    curve = regular_polygon(600)
+    np.testing.assert_array_equal(refine(curve).vertices, curve.vertices)
+
+
+def test_neighbours_become_nearer_than_strands():
+    """Two long parallel strands 1/50 of their length apart."""
+    curve = Curve([[0, 0, 0], [10, 0, 0], [10, 0.2, 0], [0, 0.2, 0.0]])
+    refined = refine(curve)
+    along = refined.vertices[(refined.vertices[:, 1] == 0) & (refined.vertices[:, 0] > 1) & (refined.vertices[:, 0] < 9)]
+    assert np.diff(np.sort(along[:, 0])).max() < 0.2
+
+
+@pytest.mark.parametrize("name", ["unknot_thistlethwaite.txt", "3_1.txt", "unknot_ochiai1.txt"])
+def test_lattice_polygons(name):
+    curve = shared_knot(name)
+    refined = refine(curve)
+    assert contains(curve, refined)
+    assert refined.edge_lengths.max() <= 1.0
+
+
+def test_subdivide_places_equal_parts():
+    curve = regular_polygon(4)
+    fine = subdivide(curve, np.array([1, 2, 3, 1]))
+    np.testing.assert_allclose(fine.edge_lengths, np.sqrt(2) / np.array([1, 2, 2, 3, 3, 3, 1]))

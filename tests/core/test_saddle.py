@@ -1,0 +1,110 @@
+"""The structured solver against the paper's dense LU of (41)."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, Objective
+from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.metrics import METRICS
+from mobius_flow.core.saddle import SaddleSolver
+from shapes import hopf_link, regular_polygon, torus_trefoil
+
+
+def rough(curve: Curve, seed: int = 7) -> Curve:
+    rng = np.random.default_rng(seed)
+    return curve.with_vertices(curve.vertices + 0.02 * rng.normal(size=curve.vertices.shape))
+
+
+CURVES = {
+    "trefoil": rough(torus_trefoil(60)),
+    "link": rough(hopf_link(40)),
+    "plane": rough(regular_polygon(30, dimension=2)),
+    "4-space": rough(regular_polygon(30, dimension=4)),
+    "triangle": rough(regular_polygon(3)),
+}
+
+
+def dense(curve: Curve, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    n, m = curve.vertices.shape
+    derivative = ConstraintDerivative.at(curve)
+    columns = [derivative.apply(unit.reshape(n, m)) for unit in np.eye(n * m)]
+    c = np.stack(columns, axis=1)
+    return np.block([[np.kron(matrix, np.eye(m)), c.T], [c, np.zeros((n + m, n + m))]]), c
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("metric", METRICS.values(), ids=list(METRICS))
+def test_agrees_with_dense_lu(name, metric):
+    curve = CURVES[name]
+    n, m = curve.vertices.shape
+    matrix = metric.matrix(curve)
+    if name == "triangle":  # no pairs of disjoint edges: J_C needs its local part
+        matrix = matrix + np.eye(n)
+    full, c = dense(curve, matrix)
+    solver = SaddleSolver(matrix, ConstraintDerivative.at(curve))
+    rng = np.random.default_rng(3)
+    eta, xi, v = rng.normal(size=(n, m)), rng.normal(size=n + m), rng.normal(size=(n, m))
+    for right, (u, multipliers) in [
+        ((eta, np.zeros(n + m)), solver.gradient(eta)),
+        ((np.zeros((n, m)), xi), solver.solve(None, xi)),
+        ((eta, xi), solver.solve(eta, xi)),
+        (((matrix @ v), np.zeros(n + m)), (solver.project(v), None)),
+    ]:
+        expected = np.linalg.solve(full, np.concatenate([right[0].ravel(), right[1]]))
+        np.testing.assert_allclose(u.ravel(), expected[: n * m], atol=1e-9 * np.abs(expected).max(), rtol=0)
+        if multipliers is not None:
+            np.testing.assert_allclose(multipliers, expected[n * m :], atol=1e-9 * np.abs(expected).max(), rtol=0)
+    np.testing.assert_allclose(c @ solver.project(v).ravel(), 0, atol=1e-10 * np.abs(v).max() * np.abs(c).max())
+
+
+def test_projection_is_idempotent_and_orthogonal():
+    curve = CURVES["trefoil"]
+    solver = SaddleSolver(METRICS["moebius"].matrix(curve), ConstraintDerivative.at(curve))
+    v = np.random.default_rng(5).normal(size=curve.vertices.shape)
+    p = solver.project(v)
+    np.testing.assert_allclose(solver.project(p), p, atol=1e-10)
+    assert abs(np.sum(p * solver.apply_metric(v - p))) < 1e-9 * solver.norm(v) ** 2
+
+
+def test_indefinite_matrix_is_refused():
+    curve = CURVES["trefoil"]
+    with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
+        SaddleSolver(-np.eye(len(curve)), ConstraintDerivative.at(curve))
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_constraint_derivative_has_slope_two(name):
+    curve = CURVES[name]
+    constraints = Constraints(np.full(len(curve), 0.1), np.zeros(curve.dimension))
+    u = np.random.default_rng(11).normal(size=curve.vertices.shape) * 0.01
+    linear = ConstraintDerivative.at(curve).apply(u)
+    start = constraints.residual(curve)
+    steps = 2.0 ** -np.arange(2, 8)
+    errors = [
+        np.linalg.norm(constraints.residual(curve.with_vertices(curve.vertices + t * u)) - start - t * linear)
+        for t in steps
+    ]
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert abs(slope - 2) < 0.1
+
+
+def test_transpose_is_adjoint():
+    curve = CURVES["link"]
+    derivative = ConstraintDerivative.at(curve)
+    rng = np.random.default_rng(13)
+    u, multipliers = rng.normal(size=curve.vertices.shape), rng.normal(size=len(curve) + 3)
+    assert derivative.apply(u) @ multipliers == pytest.approx(np.sum(u * derivative.apply_transpose(multipliers)))
+
+
+def test_targets_vanish_at_the_start():
+    curve = CURVES["trefoil"]
+    constraints = Constraints(curve.edge_lengths, weighted_barycenter(curve))
+    np.testing.assert_allclose(constraints.residual(curve), 0, atol=1e-14)
+
+
+def test_gradient_is_a_direction_of_descent_along_the_constraints():
+    curve = CURVES["trefoil"]
+    solver = SaddleSolver(METRICS["moebius"].matrix(curve), ConstraintDerivative.at(curve))
+    _, derivative = Objective().value_and_derivative(curve)
+    u, _ = solver.gradient(derivative)
+    assert np.sum(u * derivative) == pytest.approx(solver.norm(u) ** 2)
+    assert np.sum(u * derivative) > 0

@@ -1,0 +1,38 @@
+"""Curves that several tests need."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, read_curve
+
+SHARED_KNOTS = Path(__file__).resolve().parents[2] / "shared" / "knots"
+
+
+def regular_polygon(n: int, dimension: int = 3) -> Curve:
+    t = 2 * np.pi * np.arange(n) / n
+    vertices = np.zeros((n, dimension))
+    vertices[:, 0], vertices[:, 1] = np.cos(t), np.sin(t)
+    return Curve(vertices)
+
+
+def torus_trefoil(n: int) -> Curve:
+    t = 2 * np.pi * np.arange(n) / n
+    radius = 2 + np.cos(3 * t)
+    return Curve(np.stack([radius * np.cos(2 * t), radius * np.sin(2 * t), np.sin(3 * t)], axis=1))
+
+
+def hopf_link(n: int) -> Curve:
+    t = 2 * np.pi * np.arange(n) / n
+    zero = np.zeros(n)
+    first = np.stack([np.cos(t), np.sin(t), zero], axis=1)
+    second = np.stack([1 + np.cos(t), zero, np.sin(t)], axis=1)
+    return Curve.from_components([first, second])
+
+
+def shared_knot(name: str) -> Curve:
+    """A curve of the shared data, or the test is skipped."""
+    path = SHARED_KNOTS / name
+    if not path.exists():
+        pytest.skip(f"{name} is not here")
+    return read_curve(path)
