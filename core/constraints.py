@@ -53,12 +53,18 @@ class ConstraintDerivative:
         τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (n, m).
     barycenter
         Rows of the barycenter, entry (k, v, l) the derivative of coordinate k by coordinate l of vertex v;
-        shape (m, n, m).
+        shape (m, n, m), or (0, n, m) without barycenter.
     """
 
     mesh: Mesh
     tangents: FloatArray
     barycenter: FloatArray
+
+    @classmethod
+    def of_lengths(cls, curve: Curve) -> "ConstraintDerivative":
+        """The length rows alone."""
+        tangents = curve.edge_vectors / curve.edge_lengths[:, None] ** 2
+        return cls(curve.mesh, tangents, np.zeros((0, *curve.vertices.shape)))
 
     @classmethod
     def at(cls, curve: Curve) -> "ConstraintDerivative":

@@ -14,6 +14,7 @@ from .energies import MoebiusEnergy, Objective
 from .errors import OptionError
 from .iterate import Iterate, Status
 from .options import RelaxOptions
+from .types import FloatArray
 from .units import Units
 
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
@@ -141,12 +142,14 @@ def start_problem(curve: Curve, method: Method) -> Problem:
     start = curve.with_vertices(units.from_user(curve.vertices))
     lengths = [np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices]
     constraints = Constraints(np.concatenate(lengths), weighted_barycenter(start))
-    return Problem(curve.mesh, Objective(), method.metric, constraints, units)
+    return Problem(
+        curve.mesh, Objective(), method.metric, constraints, units, method.penalty, extended=method.metric.name != "l2"
+    )
 
 
 def _iterates(problem: Problem, start: Curve, method: Method, options: RelaxOptions) -> Iterator[Iterate]:
     point = problem.at(problem.units.from_user(start.vertices))
-    iterate = _iterate(problem, point, start, 0, 0.0)
+    iterate = _iterate(problem, point, start, 0, 0.0, ())
     state = State()
     while True:
         status, message = _status(point, iterate, options)
@@ -159,18 +162,20 @@ def _iterates(problem: Problem, start: Curve, method: Method, options: RelaxOpti
             yield replace(iterate, status=Status.STALLED, message=f"stalled: {step.reason}", path=())
             return
         point = step.point
-        curve = start.with_vertices(problem.units.to_user(point.vertices))
-        iterate = _iterate(problem, point, curve, iterate.index + 1, step.size)
+        path = tuple(problem.units.to_user(vertices) for vertices in step.path)
+        iterate = _iterate(problem, point, start.with_vertices(path[-1]), iterate.index + 1, step.size, path)
 
 
-def _iterate(problem: Problem, point: Point, curve: Curve, index: int, step_size: float) -> Iterate:
+def _iterate(
+    problem: Problem, point: Point, curve: Curve, index: int, step_size: float, path: tuple[FloatArray, ...]
+) -> Iterate:
     return Iterate(
         index=index,
         curve=curve,
         energy=point.energy,
         gradient_norm=point.gradient_norm,
         step_size=step_size,
-        path=(curve.vertices,) if index else (),
+        path=path,
         certified=problem.certifiable,
         edge_length_error=problem.constraints.length_error(point.curve),
     )
@@ -178,7 +183,8 @@ def _iterate(problem: Problem, point: Point, curve: Curve, index: int, step_size
 
 def _status(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Status, str]:
     bound = options.tolerance * np.sqrt(abs(point.energy))
-    if iterate.gradient_norm <= bound and iterate.edge_length_error <= LENGTHS_REACHED:
+    feasible = point.problem.penalty is not None or iterate.edge_length_error <= LENGTHS_REACHED
+    if iterate.gradient_norm <= bound and feasible:
         return Status.CONVERGED, f"converged: projected gradient {iterate.gradient_norm:.3g} ≤ {bound:.3g}"
     if iterate.index >= options.max_iterations:
         return Status.ITERATION_LIMIT, f"stopped after {iterate.index} iterations, as asked for"

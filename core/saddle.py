@@ -25,6 +25,9 @@ class SaddleSolver:
         Gram matrix A of the metric, symmetric positive definite, shape (n, n).
     constraints
         DΦ at the curve, of full rank.
+    compliance
+        Diagonal subtracted from the zero block, shape (n + m,) or None for none.  With 1/w it turns the constraints
+        into the part DΦᵀ w DΦ of the metric, which is how the penalised problems of Section 6.4 use it.
 
     Raises
     ------
@@ -32,11 +35,17 @@ class SaddleSolver:
         If A or the Schur complement is not positive definite to working precision.
     """
 
-    def __init__(self, matrix: FloatArray, constraints: ConstraintDerivative) -> None:
+    def __init__(
+        self, matrix: FloatArray, constraints: ConstraintDerivative, compliance: FloatArray | None = None
+    ) -> None:
         self.matrix = np.asfortranarray(matrix)
         self.constraints = constraints
+        self._weights = None if compliance is None else 1.0 / compliance
         self._inverse = _inverse(self.matrix)
-        self._schur = _cholesky(self._schur_complement())
+        schur = self._schur_complement()
+        if compliance is not None:
+            schur[np.diag_indices_from(schur)] += compliance
+        self._schur = _cholesky(schur)
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve for u, shape (n, m), and λ, shape (n + m,); None stands for a zero right side.
@@ -53,7 +62,10 @@ class SaddleSolver:
         return u, multipliers
 
     def gradient(self, derivative: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Projected gradient u and multipliers λ of a derivative, shape (n, m)."""
+        """Projected gradient u and multipliers λ of a derivative, shape (n, m).
+
+        With compliant constraints u is the gradient in the extended metric.
+        """
         return self.solve(derivative, None)
 
     def pseudo_inverse(self, xi: FloatArray) -> FloatArray:
@@ -65,8 +77,11 @@ class SaddleSolver:
         return self.solve(self.apply_metric(u), None)[0]
 
     def apply_metric(self, u: FloatArray) -> FloatArray:
-        """J u; shape (n, m)."""
-        return np.ascontiguousarray(blas.dsymm(1.0, self.matrix, np.asfortranarray(u), lower=1))
+        """J u, with the constraints' part DΦᵀ w DΦ u if they are compliant; shape (n, m)."""
+        image = np.ascontiguousarray(blas.dsymm(1.0, self.matrix, np.asfortranarray(u), lower=1))
+        if self._weights is not None:
+            image += self.constraints.apply_transpose(self._weights * self.constraints.apply(u))
+        return image
 
     def norm(self, u: FloatArray) -> float:
         """Length of u in the metric."""
@@ -77,13 +92,14 @@ class SaddleSolver:
 
     def _schur_complement(self) -> FloatArray:
         c = self.constraints
-        n, m = c.tangents.shape
+        n = len(c.tangents)
         difference = c.mesh.difference
         half = difference @ self._inverse
-        schur = np.empty((n + m, n + m), order="F")
+        rows = len(c.barycenter)
+        schur = np.empty((n + rows, n + rows), order="F")
         # symmetric, so D (D A⁻¹)ᵀ is the product in either storage order
         np.multiply(difference @ half.T, c.tangents @ c.tangents.T, out=schur[:n, :n])
-        for k in range(m):
+        for k in range(rows):
             response = self._apply_inverse(c.barycenter[k])
             schur[n + k, :] = c.apply(response)
         schur[:n, n:] = schur[n:, :n].T

@@ -41,9 +41,7 @@ class LimitedMemoryBFGS:
         """The pairs with the one of the last step; it is left out if it carries no positive curvature."""
         last = memory.point
         s = point.vertices - last.vertices
-        multipliers = point.multipliers
-        y = point.derivative - point.saddle.constraints.apply_transpose(multipliers)
-        y -= last.derivative - last.saddle.constraints.apply_transpose(multipliers)
+        y = point.lagrangian_derivative(point.multipliers) - last.lagrangian_derivative(point.multipliers)
         if not np.sum(s * y) > 1e-8 * np.sum(s * point.saddle.apply_metric(s)):
             return memory.pairs
         return (*memory.pairs, (s, y))[-self.history :]
@@ -61,4 +59,4 @@ def _two_loops(point: Point, pairs: tuple[tuple[FloatArray, FloatArray], ...]) -
     r = point.saddle.gradient(q)[0] if pairs else point.gradient.copy()
     for (s, y), (alpha, rho) in zip(pairs, reversed(weights), strict=True):
         r += (alpha - rho * np.sum(y * r)) * s
-    return point.saddle.project(r) if pairs else r
+    return point.saddle.project(r) if pairs and point.problem.penalty is None else r

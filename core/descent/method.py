@@ -5,10 +5,46 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..errors import OptionError
 from ..metrics import Metric
 from ..types import FloatArray
 from .problem import Point
-from .search import GROWTH, NoStep, Step, armijo_step
+from .search import NoStep, Step, armijo_step
+from .wolfe import wolfe_step
+
+GROWTH = 4.0  # a first trial is at most this many times the last accepted step
+DEFAULT_PENALTY = 1000.0  # α of the infeasible methods
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Where a method stands: its own memory (None at the start) and the last accepted step size."""
+
+    memory: Any = None
+    last_step: float = np.inf
+
+
+class Method(Protocol):
+    """A way to go from point to point."""
+
+    @property
+    def name(self) -> str:
+        """Name in the registry."""
+
+    @property
+    def description(self) -> str:
+        """One line for users."""
+
+    @property
+    def metric(self) -> Metric:
+        """The inner product that gradients are taken in."""
+
+    @property
+    def penalty(self) -> float | None:
+        """α if the method minimises the penalised energy, None if it keeps the constraints."""
+
+    def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
+        """Take one certified step."""
 
 
 class Direction(Protocol):
@@ -22,40 +58,36 @@ class Direction(Protocol):
         """Tangent direction at the point, shape (n, m), and the memory for the next call; None is no memory."""
 
 
-@dataclass(frozen=True, eq=False)
-class State:
-    """Where a method stands: its direction's memory and the last accepted step size."""
-
-    memory: Any = None
-    last_step: float = np.inf
-
-
 @dataclass(frozen=True)
-class Method:
-    """A feasible descent method.
-
-    Attributes
-    ----------
-    name, description
-        As shown to users.
-    metric
-        The inner product.
-    direction
-        The rule for descent directions.
-    """
+class LineSearchMethod:
+    """A direction followed by a line search: Armijo on the constraints, Wolfe–Powell on the penalised energy."""
 
     name: str
     description: str
     metric: Metric
     direction: Direction
+    penalty: float | None = None
+
+    def __post_init__(self) -> None:
+        check_penalty(self.penalty)
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Take one step; a remembering direction that fails is tried again without its memory."""
         direction, memory = self.direction.propose(point, state.memory)
-        longest = min(self.direction.natural_step, GROWTH * state.last_step)
-        step = armijo_step(point, direction, longest)
+        longest = GROWTH * state.last_step
+        if self.penalty is None:
+            step = armijo_step(point, direction, min(self.direction.natural_step, longest))
+        else:
+            natural = min(self.direction.natural_step, 1.0 if np.isinf(longest) else longest)
+            step = wolfe_step(point, direction, natural, np.inf)
         if isinstance(step, NoStep) and state.memory is not None:
             return self.step(point, replace(state, memory=None))
         if isinstance(step, Step):
             state = State(memory, step.size)
         return step, state
+
+
+def check_penalty(penalty: float | None) -> None:
+    """Raise an OptionError unless α is None or a finite positive number."""
+    if penalty is not None and not (np.isfinite(penalty) and penalty > 0.0):
+        raise OptionError(f"penalty is {penalty}; it must be a finite number above 0")

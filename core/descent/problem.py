@@ -17,13 +17,26 @@ from ..units import Units
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """One minimisation: the objective, the metric, the constraints and the units it is solved in."""
+    """One minimisation: the objective, the metric, the constraints and the units it is solved in.
+
+    Attributes
+    ----------
+    constraints
+        Prescribed lengths and barycenter.
+    penalty
+        None for the constrained problem.  Otherwise α of Section 6.4 of [RS21]: lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)² instead
+        of being prescribed, and the metric is J + α DΦᵀ I_{L²} DΦ.
+    extended
+        Whether a penalised problem extends its metric so (footnote 8: not on L²).
+    """
 
     mesh: Mesh
     objective: Objective
     metric: Metric
     constraints: Constraints
     units: Units
+    penalty: float | None = None
+    extended: bool = True
 
     def at(self, vertices: FloatArray) -> "Point":
         """The point with these vertices, in the program's units."""
@@ -40,6 +53,25 @@ class Problem:
             return FreeMotion(1.0, None)
         return free_motion(self.mesh, self.units.to_user(start), self.units.to_user(end))
 
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        """The objective, with the penalty if there is one, and its derivative, shape (n, m)."""
+        energy, derivative = self.objective.value_and_derivative(curve)
+        if self.penalty is None:
+            return energy, derivative
+        stretch = np.log(curve.edge_lengths / self.constraints.lengths)
+        weights = self.penalty * self.constraints.lengths
+        pull = ConstraintDerivative.of_lengths(curve).apply_transpose(2.0 * weights * stretch)
+        return energy + float(weights @ stretch**2), derivative + pull
+
+    def saddle(self, curve: Curve) -> SaddleSolver:
+        """The factorised system (41) of [RS21] at a curve."""
+        matrix = self.metric.matrix(curve)
+        if self.penalty is None:
+            return SaddleSolver(matrix, ConstraintDerivative.at(curve))
+        # without extension the constraints' part must vanish: infinitely compliant
+        weight = self.penalty if self.extended else np.finfo(np.float64).tiny
+        return SaddleSolver(matrix, ConstraintDerivative.of_lengths(curve), 1.0 / (weight * self.constraints.lengths))
+
 
 class Point:
     """A polygon with the values that methods ask for, each computed at most once."""
@@ -55,7 +87,7 @@ class Point:
 
     @cached_property
     def _energy_and_derivative(self) -> tuple[float, FloatArray]:
-        return self.problem.objective.value_and_derivative(self.curve)
+        return self.problem.value_and_derivative(self.curve)
 
     @property
     def energy(self) -> float:
@@ -75,7 +107,7 @@ class Point:
     @cached_property
     def saddle(self) -> SaddleSolver:
         """The factorised system (41) of [RS21]."""
-        return SaddleSolver(self.problem.metric.matrix(self.curve), ConstraintDerivative.at(self.curve))
+        return self.problem.saddle(self.curve)
 
     @cached_property
     def _gradient_and_multipliers(self) -> tuple[FloatArray, FloatArray]:
@@ -83,15 +115,21 @@ class Point:
 
     @property
     def gradient(self) -> FloatArray:
-        """Projected gradient u, shape (n, m)."""
+        """Projected gradient u (penalised problems: gradient), shape (n, m)."""
         return self._gradient_and_multipliers[0]
 
     @property
     def multipliers(self) -> FloatArray:
-        """Lagrange multipliers λ, shape (n + m,)."""
+        """Lagrange multipliers λ, shape (n + m,); 0 where lengths are penalised."""
+        if self.problem.penalty is not None:
+            return np.zeros(len(self.vertices))
         return self._gradient_and_multipliers[1]
 
     @cached_property
     def gradient_norm(self) -> float:
         """Metric norm of the projected gradient: ⟨u, u⟩ = DE·u, because C u = 0."""
         return float(np.sqrt(max(0.0, np.sum(self.gradient * self.derivative))))
+
+    def lagrangian_derivative(self, multipliers: FloatArray) -> FloatArray:
+        """DE − DΦᵀ λ for given multipliers, shape (n, m): the covector whose zeros are critical points."""
+        return self.derivative - self.saddle.constraints.apply_transpose(multipliers)

@@ -1,4 +1,4 @@
-"""The step: collision-limited first trial, feasibility, Armijo's rule, proof that the motion is free of contact."""
+"""The feasible step: collision-limited first trial, feasibility, Armijo's rule, proof that no contact happens."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,6 @@ from .feasibility import restore
 from .problem import Point
 
 COLLISION_FRACTION = 2.0 / 3.0  # of the first step with a contact, the first trial of [RS21], Section 6.3
-GROWTH = 4.0  # a first trial is at most this many times the last accepted step
 MAX_DISPLACEMENT = 0.5  # of any vertex in one step, in the program's units (a component is 4 to 8 long)
 MAX_TRIALS = 40
 LENGTH_CHANGE = 0.25  # largest logarithmic change of an edge length in one step, on the way to the targets
@@ -19,10 +18,23 @@ FEASIBLE = 1e-7  # residual below which the curve counts as being on the constra
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """An accepted step: where it ends, its size τ, and the pair of edges that limited it, if any."""
+    """An accepted step.
+
+    Attributes
+    ----------
+    point
+        Where it ends.
+    size
+        Its τ.
+    path
+        Vertices at the ends of the straight legs that lead there, the last those of ``point``; all proved.
+    limited_by
+        The pair of edges whose contact limited τ, if any.
+    """
 
     point: Point
     size: float
+    path: tuple[FloatArray, ...]
     limited_by: tuple[int, int] | None
 
 
@@ -31,6 +43,14 @@ class NoStep:
     """Why no step was found."""
 
     reason: str
+
+    @classmethod
+    def because(cls, limited_by: tuple[int, int] | None) -> "NoStep":
+        """The usual two reasons: contact, or an energy that does not go down any more."""
+        if limited_by is None:
+            return cls("no step along the direction lowers the energy by a measurable amount")
+        i, j = limited_by
+        return cls(f"edges {i + 1} and {j + 1} are so near to each other that no step is free of contact")
 
 
 def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | NoStep:
@@ -47,12 +67,7 @@ def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | N
     longest
         Upper bound of τ.
     """
-    speed = float(np.max(np.linalg.norm(direction, axis=1)))
-    tau = min(longest, MAX_DISPLACEMENT / speed) if speed > 0.0 else 0.0
-    free = point.problem.free_motion(point.vertices, point.vertices + tau * direction)
-    if free.time < 1.0:
-        tau *= COLLISION_FRACTION * free.time
-    limited_by = free.pair
+    tau, limited_by = free_step(point, direction, longest)
     towards_targets, share = _normal_step(point, tau * direction)
     shrink = 1.0
     for _ in range(MAX_TRIALS):
@@ -73,11 +88,23 @@ def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | N
             limited_by = proof.pair
             shrink *= max(0.1, COLLISION_FRACTION * proof.time)
             continue
-        return Step(trial, shrink * tau, limited_by)
-    if limited_by is not None:
-        i, j = limited_by
-        return NoStep(f"edges {i + 1} and {j + 1} are so near to each other that no step is free of contact")
-    return NoStep("no step along the direction lowers the energy by a measurable amount")
+        return Step(trial, shrink * tau, (trial.vertices,), limited_by)
+    return NoStep.because(limited_by)
+
+
+def free_step(point: Point, direction: FloatArray, longest: float) -> tuple[float, tuple[int, int] | None]:
+    """The longest step worth trying: bounded displacement, and 2/3 of the first step with a contact.
+
+    Returns it with the pair of edges that limits it, if any; the motion up to it is proved free of contact.
+    """
+    speed = float(np.max(np.linalg.norm(direction, axis=1)))
+    if speed == 0.0:
+        return 0.0, None
+    tau = min(longest, MAX_DISPLACEMENT / speed)
+    free = point.problem.free_motion(point.vertices, point.vertices + tau * direction)
+    if free.time < 1.0:
+        tau *= COLLISION_FRACTION * free.time
+    return tau, free.pair
 
 
 def _normal_step(point: Point, tangential: FloatArray) -> tuple[FloatArray, float]:
