@@ -1,0 +1,89 @@
+"""Projected gradient flows, implicit in time: backward Euler with Armijo backtracking (Section 6.4 of [RS21]).
+
+With S_P the projected-gradient operator of (41) at P, one step of size τ is the tangent vector w with
+
+    w + τ S_P DE(Q(w)) = 0,   Q(w) the feasible point that P + w leads to by (42),
+
+constraint forces being those of P (as in the SHAKE scheme of mechanics).  Newton's method solves it, projected
+conjugate gradients its linear systems, preconditioned by A/τ + J_C.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..constraints import ConstraintDerivative
+from ..metrics import Metric, MoebiusMetric
+from ..saddle import SaddleSolver
+from .feasibility import restore
+from .method import State
+from .newton import energy_hessian, projected_conjugate_gradient
+from .problem import Point
+from .search import FEASIBLE, MAX_TRIALS, NoStep, Step, armijo_step
+
+FIRST_STEP = 0.1
+STEP_GROWTH = 2.0
+NEWTON_ITERATIONS = 8
+NEWTON_TOLERANCE = 1e-3  # of the first residual: the step need not be more exact than the time discretisation
+KRYLOV_TOLERANCE = 0.05
+KRYLOV_ITERATIONS = 60
+
+
+@dataclass(frozen=True)
+class ImplicitFlow:
+    """Backward Euler for the gradient flow in a metric."""
+
+    name: str
+    description: str
+    metric: Metric
+    penalty: None = None
+    preconditioner: MoebiusMetric = field(default_factory=MoebiusMetric)
+
+    def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
+        """Halve τ until the equations are solved, Armijo's rule holds and the motion is free of contact."""
+        if np.max(np.abs(point.residual)) > FEASIBLE:
+            step = armijo_step(point, -point.gradient, 4.0 * state.last_step)
+            return step, (State(None, step.size) if isinstance(step, Step) else state)
+        tau = FIRST_STEP if state.memory is None else STEP_GROWTH * state.memory
+        limited_by = None
+        for _ in range(MAX_TRIALS):
+            trial = self._backward_euler(point, tau)
+            slope = -math.inf if trial is None else float(np.sum(point.derivative * (trial.vertices - point.vertices)))
+            if trial is not None and slope < 0.0 and trial.energy <= point.energy + 0.25 * slope:
+                proof = point.problem.free_motion(point.vertices, trial.vertices)
+                if proof.time == 1.0:
+                    return Step(trial, tau, (trial.vertices,), limited_by), State(tau, tau)
+                limited_by = proof.pair
+            tau *= 0.5
+        return NoStep.because(limited_by), state
+
+    def _backward_euler(self, point: Point, tau: float) -> Point | None:
+        """Solve for the next point; None if Newton's method does not get there."""
+        matrix = point.saddle.matrix / tau + self.preconditioner.matrix(point.curve)
+        solver = SaddleSolver(matrix, ConstraintDerivative.at(point.curve))
+        feasible = np.zeros_like(point.residual)
+        w = np.zeros_like(point.vertices)
+        trial, first, last = point, 0.0, math.inf
+        for _ in range(NEWTON_ITERATIONS):
+            right = -(trial.derivative + point.saddle.apply_metric(w) / tau)
+            size = math.sqrt(max(0.0, float(np.sum(right * solver.gradient(right)[0]))))
+            first = first or size
+            if size <= NEWTON_TOLERANCE * first:
+                return trial
+            if not size < 2.0 * last:
+                return None
+            last = size
+            of_energy = energy_hessian(trial)
+            w = w + projected_conjugate_gradient(
+                lambda v, h=of_energy: h(v) + point.saddle.apply_metric(v) / tau,  # type: ignore[misc]
+                right,
+                solver,
+                KRYLOV_TOLERANCE,
+                KRYLOV_ITERATIONS,
+            )
+            restored = restore(point, point.vertices + w, feasible)
+            if restored is None or not math.isfinite(restored.energy):
+                return None
+            trial = restored
+        return None

@@ -1,0 +1,86 @@
+"""Second-order information on the constraint manifold: the Lagrangian's Hessian and the Newton direction."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..saddle import SaddleSolver
+from ..types import FloatArray
+from .problem import Point
+
+LinearMap = Callable[[FloatArray], FloatArray]
+ASSEMBLED_SIZE = 3000  # up to so many unknowns one assembled matrix beats products that go through all pairs
+
+
+def energy_hessian(point: Point) -> LinearMap:
+    """v ↦ D²E v, (n, m) to (n, m)."""
+    objective, curve = point.problem.objective, point.curve
+    if curve.vertices.size > ASSEMBLED_SIZE:
+        return lambda v: objective.hessian_product(curve, v)
+    matrix = objective.hessian(curve)
+    return lambda v: np.asarray((matrix @ v.ravel()).reshape(v.shape))
+
+
+def lagrangian_hessian(point: Point) -> LinearMap:
+    """v ↦ (D²E − Σ λ_I D²Φ_I) v, with λ from (41).
+
+    The barycenter's multipliers vanish, because the energy does not change under translations.
+    """
+    of_energy = energy_hessian(point)
+    ell, mesh = point.curve.edge_lengths, point.problem.mesh
+    tau = point.curve.edge_vectors / ell[:, None]
+    weight = (point.multipliers[: len(ell)] / ell**2)[:, None]
+
+    def apply(v: FloatArray) -> FloatArray:
+        # D² log ℓ (v, ·) = (Δv − 2 ⟨τ, Δv⟩ τ)/ℓ²
+        dv = v[mesh.heads] - v[mesh.tails]
+        bend = weight * (dv - 2.0 * np.einsum("ij,ij->i", tau, dv)[:, None] * tau)
+        return of_energy(v) - mesh.scatter(-bend, bend)
+
+    return apply
+
+
+def projected_conjugate_gradient(
+    operator: LinearMap, right: FloatArray, solver: SaddleSolver, tolerance: float, max_iterations: int
+) -> FloatArray:
+    """Solve ⟨operator w − right, v⟩ = 0 for all tangent v, for tangent w, preconditioned by the metric.
+
+    Steihaug's rule: on a direction of negative curvature the iteration ends with what it has (the first time with
+    that direction's steepest-descent step), so the result is a direction of descent of the quadratic model.
+
+    Parameters
+    ----------
+    operator
+        Symmetric, (n, m) to (n, m).
+    right
+        Covector, shape (n, m).
+    solver
+        Projects and preconditions; its norm measures the residual.
+    tolerance
+        Relative residual at which to stop.
+    """
+    w = np.zeros_like(right)
+    residual = right.copy()
+    z = solver.gradient(residual)[0]
+    square = float(np.sum(residual * z))
+    bound = tolerance**2 * square
+    direction = z
+    for _ in range(max_iterations):
+        if not square > bound:
+            break
+        image = operator(direction)
+        curvature = float(np.sum(direction * image))
+        if curvature <= 0.0:
+            return w if np.any(w) else direction
+        step = square / curvature
+        w = w + step * direction
+        residual = residual - step * image
+        z = solver.gradient(residual)[0]
+        square, last = float(np.sum(residual * z)), square
+        direction = z + (square / last) * direction
+    return w
+
+
+def newton_direction(point: Point, hessian: LinearMap, tolerance: float, max_iterations: int = 200) -> FloatArray:
+    """Tangent w with (D²L w + DE) orthogonal to the tangent space, by projected conjugate gradients."""
+    return projected_conjugate_gradient(hessian, -point.derivative, point.saddle, tolerance, max_iterations)

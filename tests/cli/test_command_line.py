@@ -1,0 +1,147 @@
+"""The command line's contract: names, formats, exit statuses, one line for every error."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.core import METHODS, read_curve, write_curve
+from shapes import regular_polygon, torus_trefoil
+
+
+@pytest.fixture
+def trefoil(tmp_path):
+    path = tmp_path / "trefoil.txt"
+    write_curve(path, torus_trefoil(60))
+    return path
+
+
+def run(*arguments):
+    return main([str(argument) for argument in arguments])
+
+
+def test_relax_writes_curve_report_and_trajectory(trefoil, tmp_path, capsys):
+    out, report, trajectory = tmp_path / "out.obj", tmp_path / "r.json", tmp_path / "t.npz"
+    assert run("relax", trefoil, out, "--report", report, "--trajectory", trajectory, "--vertices", 80) == 0
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.count("\n") == 1
+    assert "converged" in captured.err
+    values = json.loads(report.read_text())
+    assert values["status"] == "converged"
+    assert values["vertices"] == 80 == len(read_curve(out))
+    assert run("verify", trajectory) == 0
+
+
+def test_quiet(trefoil, tmp_path, capsys):
+    assert run("relax", trefoil, tmp_path / "o.txt", "--quiet", "--max-iterations", 1) == 0
+    captured = capsys.readouterr()
+    assert captured.out + captured.err == ""
+
+
+def test_energy(tmp_path, capsys):
+    path = tmp_path / "circle.xyz"
+    write_curve(path, regular_polygon(50))
+    assert run("energy", path) == 0
+    assert float(capsys.readouterr().out) == pytest.approx(4)
+    assert run("energy", path, "--json", "--energy", "moebius") == 0
+    assert json.loads(capsys.readouterr().out) == {"name": "moebius", "energy": pytest.approx(4)}
+
+
+def test_methods_are_names_and_descriptions(capsys):
+    assert run("methods") == 0
+    lines = [line.split("\t") for line in capsys.readouterr().out.splitlines()]
+    assert [name for name, _ in lines] == list(METHODS)
+    assert all(description for _, description in lines)
+
+
+def test_knot(tmp_path):
+    assert run("knot", "3_1", tmp_path / "k.vect") == 0
+    assert len(read_curve(tmp_path / "k.vect")) > 10
+
+
+def test_module_is_the_same_program():
+    done = subprocess.run([sys.executable, "-m", "mobius_flow", "methods"], capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("lbfgs\t")
+
+
+def test_interrupt_writes_the_best_curve(trefoil, tmp_path):
+    out, report = tmp_path / "o.txt", tmp_path / "r.json"
+    command = [sys.executable, "-m", "mobius_flow", "relax", trefoil, out, "--report", report]
+    process = subprocess.Popen([*command, "--tolerance", "1e-30", "--vertices", "300", "--method", "flow-l2"])
+    time.sleep(4)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(30) == 130
+    assert json.loads(report.read_text())["status"] == "interrupted"
+    assert len(read_curve(out)) == 300
+
+
+BAD = {
+    "two points": ("0 0 0\n1 0 0\n", "2 vertices"),
+    "not a number": ("0 0 0\n1 x 0\n0 1 0\n", "line 2"),
+    "nan": ("0 0 0\n1 nan 0\n0 1 0\n", "line 2"),
+    "repeated point": ("0 0 0\n1 0 0\n1 0 0\n0 1 0\n", "same"),
+    "doubled back": ("0 0 0\n2 0 0\n1 0 0\n1 1 0\n", "back"),
+    "touching": ("0 0 0\n2 0 0\n2 1 0\n1 0 0\n1 -1 0\n", "edge"),
+    "empty": ("", "empty"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_curves_are_one_line_and_leave_nothing(name, tmp_path, capsys):
+    text, expected = BAD[name]
+    path = tmp_path / "bad.txt"
+    path.write_text(text)
+    assert run("relax", path, tmp_path / "o.txt", "--report", tmp_path / "r.json") == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert expected in error
+    assert sorted(os.listdir(tmp_path)) == ["bad.txt"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["--method", "magic"], "lbfgs"),
+        (["--tolerance", "-1"], "tolerance"),
+        (["--tolerance", "x"], "--tolerance"),
+        (["--max-iterations", "-3"], "max_iterations"),
+        (["--vertices", "5"], "vertices"),
+        (["--nonsense"], "nonsense"),
+    ],
+)
+def test_bad_options_are_one_line(arguments, expected, trefoil, tmp_path, capsys):
+    assert run("relax", trefoil, tmp_path / "o.txt", *arguments) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert expected in error
+    assert not (tmp_path / "o.txt").exists()
+
+
+@pytest.mark.parametrize("out", ["o.gif", "no/such/o.txt", "."])
+def test_bad_outputs_are_refused_before_the_work(out, trefoil, tmp_path, capsys):
+    assert run("relax", trefoil, tmp_path / out) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_missing_input(tmp_path, capsys):
+    assert run("energy", tmp_path / "none.txt") == 2
+    assert "none.txt" in capsys.readouterr().err
+
+
+def test_unknown_energy_lists_the_known(trefoil, capsys):
+    assert run("energy", trefoil, "--energy", "gravity") == 2
+    assert "moebius" in capsys.readouterr().err
+
+
+def test_reading_a_wrong_suffix(tmp_path, capsys):
+    path = tmp_path / "a.obj"
+    np.save(tmp_path / "a.npy", np.zeros(3))
+    (tmp_path / "a.npy").rename(path)
+    assert run("energy", path) == 2
+    assert capsys.readouterr().err.count("\n") == 1

@@ -1,0 +1,173 @@
+"""The driver: what it yields, how it ends, and that it does not care for units or place."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import (
+    METHODS,
+    Curve,
+    CurveError,
+    Objective,
+    OptionError,
+    RelaxOptions,
+    Status,
+    Trajectory,
+    minimize,
+    relax,
+)
+from mobius_flow.core.collision import is_free
+from shapes import hopf_link, regular_polygon, shared_knot, torus_trefoil
+
+SHORT = RelaxOptions(max_iterations=5)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("curve", [torus_trefoil(70), hopf_link(40)], ids=["trefoil", "link"])
+def test_every_method_goes_down_feasibly_and_certified(method, curve):
+    options = RelaxOptions(method=method, max_iterations=8, vertices=len(curve))
+    iterates = list(relax(curve, options))
+    energies = [iterate.energy for iterate in iterates]
+    assert all(b < a for a, b in zip(energies, energies[1:], strict=False))
+    assert iterates[-1].edge_length_error < 1e-6
+    for before, after in zip(iterates, iterates[1:], strict=False):
+        frames = (before.curve.vertices, *after.path)
+        assert np.array_equal(frames[-1], after.curve.vertices)
+        assert all(is_free(curve.mesh, a, b) for a, b in zip(frames, frames[1:], strict=False))
+        assert after.certified
+
+
+def test_trefoil_to_its_minimum():
+    result = minimize(torus_trefoil(200), RelaxOptions())
+    assert result.status is Status.CONVERGED
+    # MATHS: a trefoil polygon with 200 equal edges ends at 74.4662; the Möbius modes are soft
+    assert result.energies[-1] == pytest.approx(74.4662, abs=2e-3)
+    assert result.certified
+    assert result.edge_length_error < 1e-7
+
+
+def test_hopf_link_to_round_circles():
+    result = minimize(hopf_link(100))
+    assert result.status is Status.CONVERGED
+    assert result.energies[-1] == pytest.approx(8 + 4 * np.pi**2, rel=1e-3)
+
+
+def test_lattice_unknot_to_the_circle():
+    result = minimize(shared_knot("unknot_thistlethwaite.txt"))
+    assert result.status is Status.CONVERGED
+    assert result.energies[-1] < 4.01
+    assert result.certified
+
+
+def test_plane_curve_to_the_circle():
+    t = 2 * np.pi * np.arange(80) / 80
+    radius = 1 + 0.5 * np.cos(3 * t)
+    result = minimize(Curve(np.stack([radius * np.cos(t), radius * np.sin(t)], axis=1)))
+    assert result.status is Status.CONVERGED
+    assert result.certified
+    assert result.energies[-1] == pytest.approx(4, abs=1e-3)
+
+
+def test_four_dimensions_are_not_certified():
+    t = 2 * np.pi * np.arange(60) / 60
+    curve = Curve(np.stack([np.cos(t), np.sin(t), 0.4 * np.cos(2 * t), 0.4 * np.sin(3 * t)], axis=1))
+    result = minimize(curve)
+    assert not result.certified
+    assert result.energies[-1] == pytest.approx(4, abs=1e-3)
+
+
+@pytest.mark.parametrize(("scale", "shift"), [(1e-6, 0.0), (1e6, 0.0), (3.0, 1e3)])
+def test_units_and_place_do_not_matter(scale, shift):
+    curve = torus_trefoil(60)
+    moved = curve.with_vertices(scale * curve.vertices + shift * scale)
+    here, there = minimize(curve, SHORT), minimize(moved, SHORT)
+    np.testing.assert_allclose(there.energies, here.energies, rtol=1e-6)
+    back = (there.curve.vertices - shift * scale) / scale
+    np.testing.assert_allclose(back, here.curve.vertices, atol=1e-4)
+
+
+def test_length_and_barycenter_are_kept():
+    curve = torus_trefoil(60)
+    result = minimize(curve, RelaxOptions(max_iterations=20, vertices=60))
+    assert result.curve.length == pytest.approx(curve.length, rel=1e-9)
+    np.testing.assert_allclose(
+        result.curve.edge_lengths @ result.curve.midpoints, curve.edge_lengths @ curve.midpoints, atol=1e-6
+    )
+
+
+def test_energies_are_those_of_the_iterates():
+    iterates = list(relax(torus_trefoil(60), SHORT))
+    assert [iterate.index for iterate in iterates] == list(range(6))
+    for iterate in iterates:
+        assert Objective().value(iterate.curve) == pytest.approx(iterate.energy, rel=1e-12)
+    assert iterates[-1].status is Status.ITERATION_LIMIT
+    assert "5 iterations" in iterates[-1].message
+
+
+def test_the_first_iterate_of_a_relaxed_curve_is_the_last():
+    iterates = list(relax(regular_polygon(200)))
+    assert len(iterates) == 1
+    assert iterates[0].status is Status.CONVERGED
+
+
+def test_zero_iterations():
+    result = minimize(torus_trefoil(60), RelaxOptions(max_iterations=0))
+    assert result.status is Status.ITERATION_LIMIT
+    assert len(result.energies) == 1
+
+
+def test_interrupt_keeps_the_curve_reached():
+    seen = []
+
+    def interrupt(iterate):
+        seen.append(iterate)
+        if iterate.index == 3:
+            raise KeyboardInterrupt
+
+    result = minimize(torus_trefoil(60), callback=interrupt)
+    assert result.status is Status.INTERRUPTED
+    assert result.curve is seen[-1].curve
+    assert len(result.energies) == 4
+
+
+def test_report_has_the_contract():
+    report = minimize(torus_trefoil(60), SHORT).report()
+    assert report["status"] == "iteration_limit"
+    assert report["iterations"] == 5
+    assert len(report["energy"]) == 6
+    assert report["vertices"] == len(minimize(torus_trefoil(60), SHORT).curve)
+    assert report["components"] == 1
+    assert report["certified"] is True
+    assert report["method"] == "lbfgs"
+    assert report["final_energy"] == pytest.approx(report["energy"][-1], rel=0.2)
+
+
+def test_trajectory_starts_at_the_input_and_ends_at_the_output(tmp_path):
+    trajectory = Trajectory()
+    result = minimize(torus_trefoil(60), SHORT, trajectory.add)
+    trajectory.save(tmp_path / "t.npz")
+    with np.load(tmp_path / "t.npz", allow_pickle=False) as arrays:
+        assert set(arrays) == {"stage_000", "component_sizes_000"}
+        assert arrays["stage_000"].shape == (6, len(result.curve), 3)
+        np.testing.assert_array_equal(arrays["stage_000"][-1], result.curve.vertices)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"method": "magic"}, "method 'magic' is unknown; choose one of lbfgs"),
+        ({"max_iterations": -1}, "max_iterations is -1"),
+        ({"tolerance": 0.0}, "tolerance is 0"),
+        ({"tolerance": float("nan")}, "tolerance is nan"),
+        ({"vertices": 2}, "vertices is 2"),
+        ({"vertices": 10}, "vertices is 10, but the curve has 60 already"),
+    ],
+)
+def test_bad_options(options, message):
+    with pytest.raises(OptionError, match=message):
+        relax(torus_trefoil(60), RelaxOptions(**options))
+
+
+def test_curves_that_touch_are_refused_with_the_place():
+    t = 2 * np.pi * np.arange(40) / 40
+    eight = np.stack([np.sin(t), np.sin(2 * t), 0 * t], axis=1)
+    with pytest.raises(CurveError, match="edge"):
+        relax(Curve(eight))
