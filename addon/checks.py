@@ -1,0 +1,85 @@
+"""What cannot be relaxed, and why: one sentence for people, naming what to do about it."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import bpy
+
+_FLATTEST = 1e-6  # smallest ratio of an object's scales that 32-bit matrices can be inverted with
+
+
+def refusal(context: "bpy.types.Context") -> str | None:
+    """Say why the active object cannot be relaxed, or return None if it can.
+
+    Cheap enough for every redraw: only the coordinates of points are left for `exchange.read_curve` to check.
+    """
+    obj = context.active_object
+    if obj is None or not obj.select_get():
+        return "Select a curve object first"
+    return next((reason for check in _CHECKS for reason in check(obj)), None)
+
+
+def _object(obj: "bpy.types.Object") -> Iterator[str]:
+    if obj.type != "CURVE":
+        kind = obj.type.replace("_", " ").lower()
+        yield f"'{obj.name}' is a {kind}; select a curve object, or convert it with Object > Convert > Curve"
+    elif obj.mode != "OBJECT":
+        yield f"'{obj.name}' is being edited; go back to Object Mode first"
+    elif not obj.visible_get():
+        yield f"'{obj.name}' is hidden; show it first"
+
+
+def _ownership(obj: "bpy.types.Object") -> Iterator[str]:
+    data = obj.data
+    if obj.library or data.library:
+        yield f"'{obj.name}' is linked from another file; make it local first (Object > Relations > Make Local)"
+    elif obj.override_library or data.override_library:
+        yield f"'{obj.name}' is a library override; make it local first (Object > Relations > Make Local)"
+    elif data.users - data.use_fake_user > 1:
+        yield (
+            f"The curve data '{data.name}' is shared by several objects; make it single-user first "
+            "(Object > Relations > Make Single User)"
+        )
+
+
+def _splines(obj: "bpy.types.Object") -> Iterator[str]:
+    data = obj.data
+    if data.dimensions != "3D":
+        yield f"'{obj.name}' is a 2D curve; set its Shape to 3D first (Object Data properties)"
+    if not data.splines:
+        yield f"'{obj.name}' has no splines; give it at least one closed poly spline"
+    for k, spline in enumerate(data.splines, 1):
+        if spline.type != "POLY":
+            kind = {"BEZIER": "Bézier", "NURBS": "NURBS"}.get(spline.type, spline.type)
+            yield (
+                f"Spline {k} of '{obj.name}' is a {kind} spline; convert it to Poly first "
+                "(Edit Mode, Curve > Set Spline Type > Poly)"
+            )
+        elif not spline.use_cyclic_u:
+            yield f"Spline {k} of '{obj.name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)"
+        elif len(spline.points) < 3:
+            yield f"Spline {k} of '{obj.name}' has fewer than 3 points; a closed curve needs at least 3"
+
+
+def _animation(obj: "bpy.types.Object") -> Iterator[str]:
+    data = obj.data
+    if data.shape_keys:
+        yield f"'{obj.name}' has shape keys; remove them or relax a copy without them"
+    animation = data.animation_data
+    if animation and (animation.action or animation.nla_tracks):
+        yield f"The curve data '{data.name}' is animated; remove the animation or relax a copy without it"
+    elif animation and any(driver.data_path.startswith("splines") for driver in animation.drivers):
+        yield f"Points of '{data.name}' are driven; remove the drivers or relax a copy without them"
+
+
+def _transform(obj: "bpy.types.Object") -> Iterator[str]:
+    matrix = np.array(obj.matrix_world, dtype=np.float64)
+    scales = np.linalg.svd(matrix[:3, :3], compute_uv=False) if np.isfinite(matrix).all() else np.zeros(3)
+    if not scales[2] > _FLATTEST * scales[0]:
+        yield f"'{obj.name}' is scaled to nothing in some direction; give it a scale other than 0"
+
+
+_CHECKS = (_object, _ownership, _splines, _animation, _transform)

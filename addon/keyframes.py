@@ -1,0 +1,142 @@
+"""Motion written into curve data: absolute shape keys with one F-curve, or an F-curve for every coordinate."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..core.types import FloatArray
+from .exchange import write_points
+from .motion import Keys
+
+if TYPE_CHECKING:
+    import bpy
+
+_LINEAR = 1  # 'LINEAR' among the interpolations of a keyframe, as arrays of them are written in one call
+
+
+class Output(Enum):
+    """What is left on the object in the end; the values name it for people."""
+
+    SHAPE_KEYS = "Shape Keys"
+    FCURVES = "F-Curves"
+    RESULT = "Result Only"
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeyOptions:
+    """How a relaxation becomes an animation.
+
+    Parameters
+    ----------
+    output
+        What is left on the object.
+    start_frame
+        Scene frame of the start.
+    frames_per_iterate
+        Scene frames from one iterate to the next.
+    max_keys
+        Wanted number of keys, see `Motion.keys`.
+    """
+
+    output: Output = Output.SHAPE_KEYS
+    start_frame: float = 1.0
+    frames_per_iterate: float = 1.0
+    max_keys: int | None = None
+
+    def scene_frames(self, keys: Keys) -> FloatArray:
+        """Scene frame of each key; shape (keys,)."""
+        return self.start_frame + self.frames_per_iterate * np.array([key.time for key in keys.keys])
+
+
+def write(obj: "bpy.types.Object", keys: Keys, options: KeyOptions) -> None:
+    """Write keys to a curve object that has as many points as they have vertices, and neither keys nor animation."""
+    _WRITERS[options.output](obj, keys, options.scene_frames(keys))
+
+
+def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> None:
+    """Write keys as absolute shape keys and an F-curve that runs through them.
+
+    The curve itself keeps the last key, so that removing the shape keys leaves the relaxed curve.
+
+    Parameters
+    ----------
+    obj
+        A curve object without shape keys, with as many points as the keys have vertices.
+    keys
+        What to write.
+    frames
+        Scene frame of each key, ascending.
+    """
+    data = obj.data
+    write_points(data, keys.keys[-1].points)
+    for k, key in enumerate(keys.keys):
+        if k == 1:
+            data.shape_keys.use_relative = False
+        if k:
+            # An absolute key is put where the evaluation time is. In steps of 1 it is read back exactly; Blender's own
+            # steps of 10 add up rounding errors, and the animation would pass beside its keys.
+            data.shape_keys.eval_time = k
+        block = obj.shape_key_add(name=f"Iterate {key.time:g}", from_mix=False)
+        block.interpolation = "KEY_LINEAR"
+        block.data.foreach_set("co", key.points.ravel())
+    data.shape_keys.use_relative = False
+    data.shape_keys.eval_time = 0
+    curves = _FCurves(data.shape_keys, f"{obj.name} Relaxation")
+    curves.add("eval_time", 0, frames, np.arange(len(frames), dtype=np.float64))
+
+
+def write_fcurves(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> None:
+    """Write keys as one F-curve for every coordinate of every point, for exporters that know no shape keys.
+
+    Parameters are those of `write_shape_keys`.
+    """
+    write_points(obj.data, keys.keys[-1].points)
+    curves = _FCurves(obj.data, f"{obj.name} Relaxation")
+    values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
+    sizes = [len(spline.points) for spline in obj.data.splines]
+    paths = [f"splines[{s}].points[{p}].co" for s, size in enumerate(sizes) for p in range(size)]
+    for path, point in zip(paths, values, strict=True):
+        for axis in range(3):
+            curves.add(path, axis, frames, point[axis])
+
+
+def write_result(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> None:
+    """Write the last key alone, without animation."""
+    write_points(obj.data, keys.keys[-1].points)
+
+
+_WRITERS: dict[Output, Callable[["bpy.types.Object", Keys, FloatArray], None]] = {
+    Output.SHAPE_KEYS: write_shape_keys,
+    Output.FCURVES: write_fcurves,
+    Output.RESULT: write_result,
+}
+
+
+class _FCurves:
+    """The F-curves of a new action on a datablock, in all versions of Blender."""
+
+    def __init__(self, block: "bpy.types.ID", name: str) -> None:
+        import bpy
+
+        animation = block.animation_data_create()
+        action = bpy.data.actions.new(name)
+        animation.action = action
+        if not hasattr(action, "slots"):  # Blender 4.3 and before
+            self._fcurves: Any = action.fcurves
+            return
+        slot = action.slots.new(id_type=block.id_type, name=block.name)
+        animation.action_slot = slot
+        strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
+        self._fcurves = strip.channelbag(slot, ensure=True).fcurves
+
+    def add(self, path: str, axis: int, frames: FloatArray, values: FloatArray) -> None:
+        """Add a piecewise linear F-curve."""
+        curve = self._fcurves.new(path, index=axis)
+        points = curve.keyframe_points
+        points.add(len(frames))
+        points.foreach_set("co", np.column_stack([frames, values]).astype(np.float32).ravel())
+        points.foreach_set("interpolation", np.full(len(frames), _LINEAR, dtype=np.int32))
+        curve.update()

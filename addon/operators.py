@@ -1,0 +1,108 @@
+"""The operators: they check, start a session, and say what happened."""
+
+from typing import Any
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy_extras.object_utils import AddObjectHelper, object_data_add
+
+from ..core import MobiusFlowError
+from .checks import refusal
+from .exchange import new_curve_data, write_points
+from .properties import SETTINGS, key_options, relax_options, settings
+from .session import Session
+
+
+class CURVE_OT_mobius_flow_relax(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+    """Relax the active curve without letting it pass through itself, and keep the motion as keyframes"""
+
+    bl_idname = "curve.mobius_flow_relax"
+    bl_label = "Relax"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
+    # For scripts; what is not given comes from the scene's settings, and nothing is remembered from run to run.
+    __annotations__ = settings({"SKIP_SAVE", "HIDDEN"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether the active object can be relaxed; the tooltip says why not."""
+        reason = refusal(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return reason is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Do the whole job."""
+        context.view_layer.update()  # a script may have moved the object just before
+        values = self._values(context)
+        try:
+            if reason := refusal(context):
+                raise MobiusFlowError(reason)
+            report = Session(context.active_object, relax_options(values), key_options(values)).run()
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"} if report.clean else {"WARNING"}, report.sentence)
+        return {"FINISHED"}
+
+    def _values(self, context: bpy.types.Context) -> dict[str, Any]:
+        scene = context.scene.mobius_flow
+        given = self.properties.is_property_set
+        return {name: getattr(self if given(name) else scene, name) for name in SETTINGS}
+
+
+class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noqa: N801
+    """Add a knot or link as closed poly splines"""
+
+    bl_idname = "curve.mobius_flow_add_knot"
+    bl_label = "Knot"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    kind: EnumProperty(
+        name="Kind",
+        items=[
+            ("TABLE", "Name", "A knot or link of the table"),
+            ("TORUS", "Torus", "The torus knot or link T(p, q)"),
+        ],
+        default="TABLE",
+    )
+    knot: StringProperty(name="Knot", description="Name in the table, such as 3_1 or T(2,5)", default="3_1")
+    p: IntProperty(name="p", description="How often the curve goes round the torus", default=2, soft_min=2)
+    q: IntProperty(name="q", description="How often the curve goes through the torus", default=3, soft_min=2)
+    size: FloatProperty(name="Size", description="Half of the knot's width", default=1.0, min=1e-4, unit="LENGTH")
+    thickness: FloatProperty(
+        name="Thickness", description="Radius of the tube; 0 for none", default=0.0, min=0.0, unit="LENGTH"
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether an object can be added."""
+        cls.poll_message_set("Go back to Object Mode first")
+        return context.mode == "OBJECT"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add the object at the 3D cursor."""
+        from ..core.knots import knot
+
+        name = self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})"
+        try:
+            curve = knot(name)
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        low, high = curve.vertices.min(axis=0), curve.vertices.max(axis=0)
+        scale = 2 * self.size / (high - low).max()
+        data = new_curve_data(name, curve.mesh.component_sizes)
+        data.bevel_depth = self.thickness
+        write_points(data, (scale * (curve.vertices - 0.5 * (low + high))).astype("f4"))
+        object_data_add(context, data, operator=self)
+        return {"FINISHED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Show the name or the torus parameters, not both."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "kind")
+        for name in ("knot",) if self.kind == "TABLE" else ("p", "q"):
+            layout.prop(self, name)
+        for name in ("size", "thickness", "align", "location", "rotation"):
+            layout.prop(self, name)

@@ -1,0 +1,38 @@
+"""What Blender is told about at registration, and forgets at unregistration."""
+
+import bpy
+from bpy.props import PointerProperty
+
+from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
+from .panel import VIEW3D_PT_mobius_flow, add_menu_entry
+from .properties import MobiusFlowSettings
+
+_CLASSES = (
+    MobiusFlowSettings,
+    CURVE_OT_mobius_flow_relax,
+    CURVE_OT_mobius_flow_add_knot,
+    VIEW3D_PT_mobius_flow,
+)
+
+
+def register() -> None:
+    """Add the classes, the settings and the menu entry; an error leaves nothing half done."""
+    done = []
+    try:
+        for cls in _CLASSES:
+            bpy.utils.register_class(cls)
+            done.append(cls)
+    except Exception:
+        for cls in reversed(done):
+            bpy.utils.unregister_class(cls)
+        raise
+    bpy.types.Scene.mobius_flow = PointerProperty(type=MobiusFlowSettings)
+    bpy.types.VIEW3D_MT_curve_add.append(add_menu_entry)
+
+
+def unregister() -> None:
+    """Remove all of it."""
+    bpy.types.VIEW3D_MT_curve_add.remove(add_menu_entry)
+    del bpy.types.Scene.mobius_flow
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)
