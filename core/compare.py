@@ -1,0 +1,62 @@
+"""Run several methods from the same start and keep what each did: the data behind Figure 3 of [RS21]."""
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from .curve import Curve, refine
+from .iterate import Status
+from .options import RelaxOptions
+from .relax import relax
+
+
+@dataclass(frozen=True)
+class Run:
+    """One method's history.
+
+    Attributes
+    ----------
+    method
+        Its name.
+    status
+        "converged", "iteration_limit", "stalled", or "time_limit".
+    seconds, energy, gradient_norm
+        At every iterate, the start first; seconds since the method began, set-up left out.
+    """
+
+    method: str
+    status: str
+    seconds: tuple[float, ...]
+    energy: tuple[float, ...]
+    gradient_norm: tuple[float, ...]
+
+
+def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_limit: float) -> Iterator[Run]:
+    """Yield one run per method, all from the same refined curve, each ended at ``time_limit`` seconds.
+
+    Raises as `relax` does.
+    """
+    start = refine(curve, options.vertices)
+    for method in methods:
+        yield _run(start, replace(options, method=method, vertices=len(start)), time_limit)
+
+
+def _run(start: Curve, options: RelaxOptions, time_limit: float) -> Run:
+    seconds: list[float] = []
+    energy: list[float] = []
+    norm: list[float] = []
+    status = "time_limit"
+    began = time.perf_counter()
+    for iterate in relax(start, options):
+        now = time.perf_counter()
+        if not seconds:
+            began = now
+        if iterate.index == len(seconds):  # a stalled run yields its last iterate twice
+            seconds.append(now - began)
+            energy.append(iterate.energy)
+            norm.append(iterate.gradient_norm)
+        if iterate.status is not Status.RUNNING:
+            status = iterate.status.value
+        elif now - began > time_limit:
+            break
+    return Run(options.method, status, tuple(seconds), tuple(energy), tuple(norm))
