@@ -1,0 +1,109 @@
+"""Refuse curves that touch themselves, and say where."""
+
+import numpy as np
+
+from ..curve import Curve, Mesh
+from ..errors import CurveError
+from ..types import BoolArray, FloatArray, IntArray
+from .boxes import BoxTree, Level
+from .exact import first_contact
+from .planes import ROUNDING, Separation, closest_chord, relative_motion
+
+
+def check_embedded(curve: Curve) -> None:
+    """Raise unless the curve is embedded: no repeated points, no doubled-back edges, no edges that touch or cross.
+
+    In four and more dimensions, where crossings don't matter, only neighbouring points and edges are looked at.
+
+    Raises
+    ------
+    CurveError
+        One sentence that names the component and its edges and vertices, counted from 1, and the place.
+    """
+    _check_repeated(curve)
+    unit = int(np.frexp(np.abs(curve.vertices).max())[1])
+    points = np.ldexp(curve.vertices.T, -unit, order="C")
+    _check_doubled_back(curve, points)
+    if curve.dimension <= 3:
+        _check_crossings(curve, points)
+
+
+def _check_repeated(curve: Curve) -> None:
+    heads = curve.mesh.heads
+    same = np.flatnonzero((curve.vertices == curve.vertices[heads]).all(axis=1))
+    if same.size:
+        component, k, n = _place(curve.mesh, int(same[0]))
+        raise CurveError(
+            f"component {component}: vertices {k} and {k % n + 1} are the same point "
+            f"{_point(curve.vertices[same[0]])}; remove one of them"
+        )
+
+
+def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
+    """Find vertices where the curve turns by 180°, up to rounding."""
+    heads = curve.mesh.heads
+    first = points[:, heads] - points
+    second = first[:, heads]
+    p, q = np.triu_indices(len(points), 1)
+    left, right = first[p] * second[q], first[q] * second[p]
+    parallel = (np.abs(left - right) <= ROUNDING * (np.abs(left) + np.abs(right))).all(axis=0)
+    bad = np.flatnonzero(parallel & (np.einsum("mn,mn->n", first, second) < 0))
+    if bad.size:
+        vertex = int(heads[bad[0]])
+        component, k, n = _place(curve.mesh, vertex)
+        raise CurveError(
+            f"component {component}: edge {k} doubles back on edge {(k - 2) % n + 1} at vertex {k}, "
+            f"{_point(curve.vertices[vertex])}; move or remove that vertex"
+        )
+
+
+def _check_crossings(curve: Curve, points: FloatArray) -> None:
+    heads = curve.mesh.heads
+    for i, j in _doubtful_pairs(curve.mesh, points):
+        vertices = np.array([i, heads[i], j, heads[j]])
+        if first_contact(points[:, vertices].T, points[:, vertices].T) is not None:
+            where = _meeting_point(curve.vertices[vertices])
+            raise CurveError(f"{_names(curve.mesh, i, j)} touch or cross near {_point(where)}; move the strands apart")
+
+
+def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> list[tuple[int, int]]:
+    """Pairs of edges that no plane separates certainly in floating-point numbers, sorted."""
+    tree = BoxTree.build(mesh, points, points)
+
+    def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
+        return np.asarray((level.gaps(a, b)[0] <= 0).all(axis=0))
+
+    pairs = []
+    for a, b in tree.pairs(near):
+        i, j = np.sort(tree.order[np.stack([a, b])], axis=0)
+        motion = relative_motion(points, points, np.stack([i, mesh.heads[i], j, mesh.heads[j]]))
+        planes = Separation(motion, np.abs(motion).sum(axis=1), closest_chord(motion[0]))
+        doubtful = ~planes.proves(np.zeros(len(i)))
+        pairs += list(zip(i[doubtful].tolist(), j[doubtful].tolist(), strict=True))
+    return sorted(pairs)
+
+
+def _meeting_point(corners: FloatArray) -> FloatArray:
+    """Return a point of the first edge near the second, for people to look at; ``corners`` has shape (4, m)."""
+    x0, x1, y0, y1 = corners
+    x = x0 + np.linspace(0.0, 1.0, 257)[:, None] * (x1 - x0)
+    f = y1 - y0
+    r = ((x - y0) @ f / (f @ f)).clip(0.0, 1.0)
+    return np.asarray(x[np.linalg.norm(x - y0 - r[:, None] * f, axis=1).argmin()])
+
+
+def _place(mesh: Mesh, edge: int) -> tuple[int, int, int]:
+    """Component of an edge or vertex, its number there, both from 1, and the component's size."""
+    c = int(mesh.component[edge])
+    return c + 1, edge - int(mesh.offsets[c]) + 1, mesh.component_sizes[c]
+
+
+def _names(mesh: Mesh, i: int, j: int) -> str:
+    (c, p, _), (d, q, _) = _place(mesh, i), _place(mesh, j)
+    if c == d:
+        return f"component {c}: edges {p} and {q}"
+    return f"edge {p} of component {c} and edge {q} of component {d}"
+
+
+def _point(position: FloatArray) -> str:
+    return "(" + ", ".join(f"{x:.6g}" for x in position) + ")"
