@@ -1,0 +1,106 @@
+"""Braid words: tuples of signed letters; letter i is the crossing σ_i of strands i and i+1, −i its inverse.
+
+A positive letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the right-handed
+trefoil.
+"""
+
+from collections.abc import Sequence
+
+from ..errors import CurveError
+
+Word = tuple[int, ...]
+
+MOST_STRANDS = 500
+MOST_LETTERS = 20_000
+
+
+def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word, int]:
+    """Check a braid word and its number of strands, by default as few as the letters need.
+
+    Raises
+    ------
+    CurveError
+        If a letter is 0 or no whole number, the strands are too few, or the braid is beyond all use.
+    """
+    letters = tuple(word)
+    for position, letter in enumerate(letters, start=1):
+        if int(letter) != letter or letter == 0:
+            raise CurveError(f"letter {position} of the braid word is {letter!r}; letters are whole numbers, not 0")
+    letters = tuple(map(int, letters))
+    needed = max(map(abs, letters), default=0) + 1
+    strands = needed if strands is None else strands
+    if strands < needed:
+        raise CurveError(f"the braid has {strands} strands, but its letters need {needed}")
+    if strands > MOST_STRANDS or len(letters) > MOST_LETTERS:
+        raise CurveError(
+            f"the braid has {strands} strands and {len(letters)} letters; "
+            f"at most {MOST_STRANDS} and {MOST_LETTERS} are allowed"
+        )
+    return letters, strands
+
+
+def permutation(word: Sequence[int], strands: int) -> list[int]:
+    """Where the strand that starts at each place ends; places count from 0."""
+    at = list(range(strands))
+    for letter in word:
+        i = abs(letter) - 1
+        at[i], at[i + 1] = at[i + 1], at[i]
+    ends = [0] * strands
+    for place, strand in enumerate(at):
+        ends[strand] = place
+    return ends
+
+
+def cycles(ends: Sequence[int]) -> list[list[int]]:
+    """Split a permutation into cycles, each from its smallest place on; one per component of the closure."""
+    found: list[list[int]] = []
+    seen: set[int] = set()
+    for start in range(len(ends)):
+        if start not in seen:
+            cycle = [start]
+            while ends[cycle[-1]] != start:
+                cycle.append(ends[cycle[-1]])
+            seen.update(cycle)
+            found.append(cycle)
+    return found
+
+
+def columns(word: Sequence[int]) -> tuple[list[int], int]:
+    """Place each letter in the first column where its strands are free, and give the number of columns.
+
+    Letters that share no strand commute, so those of one column happen side by side.
+    """
+    free: dict[int, int] = {}
+    places = []
+    for letter in word:
+        i = abs(letter)
+        place = max(free.get(i, 0), free.get(i + 1, 0))
+        free[i] = free[i + 1] = place + 1
+        places.append(place)
+    return places, max(free.values(), default=0)
+
+
+def mirror(word: Sequence[int]) -> Word:
+    """Mirror image: every crossing changed."""
+    return tuple(-letter for letter in word)
+
+
+def connected_sum(first: Sequence[int], second: Sequence[int]) -> Word:
+    """Word whose closure is the connected sum, the second braid hung on the first one's last strand."""
+    shift = max(map(abs, first), default=0)
+    return (*first, *(letter + shift if letter > 0 else letter - shift for letter in second))
+
+
+def cancels(word: Sequence[int], place: int) -> bool:
+    """Whether the letter at ``place`` meets its inverse further on, round the end too, past letters it commutes with."""
+    letter = word[place]
+    for step in range(1, len(word)):
+        other = word[(place + step) % len(word)]
+        if abs(abs(other) - abs(letter)) < 2:
+            return other == -letter
+    return False
+
+
+def is_reduced(word: Sequence[int]) -> bool:
+    """Whether no two letters of the closed braid cancel as they stand."""
+    return not any(cancels(word, place) for place in range(len(word)))

@@ -1,0 +1,130 @@
+"""Unknots that don't look it: closures of long braid words that stand for the trivial knot."""
+
+import math
+
+import numpy as np
+
+from ..curve import Curve
+from ..errors import CurveError
+from .braids import MOST_LETTERS, Word, is_reduced
+from .closures import braid_closure
+
+_MOVES_PER_LETTER = 4
+_MOST_TRIALS = 500  # insertions tried per letter
+_NEARBY = 6  # letters around a new pair that it is braided with
+
+
+def hard_unknot(crossings: int, seed: int, vertices: int | None = None, *, strands: int | None = None) -> Curve:
+    """Make an unknot as the closure of a braid with a given number of crossings, no two of which cancel as they stand.
+
+    Parameters
+    ----------
+    crossings
+        Number of letters of the braid word.
+    seed
+        The same seed gives the same curve.
+    vertices
+        Total number of vertices; by default so many that edges are shorter than strands are apart.
+    strands
+        Number of strands; one more than ``crossings`` must differ from it by an even number.
+
+    Raises
+    ------
+    CurveError
+        If no such braid exists.
+
+    Examples
+    --------
+    >>> len(hard_unknot(20, seed=7).mesh.component_sizes)
+    1
+    """
+    return braid_closure(unknot_word(crossings, seed, strands=strands), vertices)
+
+
+def unknot_word(crossings: int, seed: int, *, strands: int | None = None) -> Word:
+    """Give a braid word of ``crossings`` letters whose closure is the unknot, though no two letters cancel.
+
+    It comes from the trivial braid on one strand by Markov's moves alone: stabilisations, insertions of σ σ⁻¹,
+    braid relations and conjugations, all of which keep the closure (Markov 1935; Birman, *Braids, Links, and
+    Mapping Class Groups*, 1974). See :func:`hard_unknot` for the parameters.
+    """
+    strands = _strand_count(crossings) if strands is None else strands
+    _check(crossings, strands)
+    rng = np.random.default_rng(seed)
+    word: list[int] = []
+    for new in range(1, strands):
+        word.insert(int(rng.integers(len(word) + 1)), _signed(new, rng))
+        # Every stabilisation needs one letter; the rest is shared out in pairs as strands come.
+        length = crossings if new == strands - 1 else crossings * new // (strands - 1)
+        word = _grown(word, length, new, rng)
+        _mix(word, rng)
+    return tuple(word)
+
+
+def _strand_count(crossings: int) -> int:
+    """A number of strands that fits: 3 and a few more for many crossings, of the right parity."""
+    strands = min(3 + max(crossings, 0) // 40, crossings + 1)
+    return strands if (crossings - strands) % 2 else strands + 1
+
+
+def _check(crossings: int, strands: int) -> None:
+    if not 0 <= crossings <= MOST_LETTERS // 10:
+        raise CurveError(f"crossings is {crossings}; it must be between 0 and {MOST_LETTERS // 10}")
+    if not 1 <= strands <= crossings + 1 or (crossings - strands) % 2 == 0:
+        raise CurveError(
+            f"no unknot is the closure of a braid of {strands} strands and {crossings} crossings; "
+            "strands must be at most one more than crossings, and differ from that by an even number"
+        )
+    if strands <= 2 and crossings != strands - 1:
+        raise CurveError(f"on {strands} strands every trivial word cancels; {crossings} crossings need 3 or more")
+
+
+def _signed(letter: int, rng: np.random.Generator) -> int:
+    return letter if rng.random() < 0.5 else -letter
+
+
+def _grown(word: list[int], length: int, largest: int, rng: np.random.Generator) -> list[int]:
+    """Insert pairs σ σ⁻¹ and braid them in until the word has ``length`` letters, or one less."""
+    for _ in range(_MOST_TRIALS * length):
+        if len(word) + 2 > length or largest < 2:
+            return word
+        place = int(rng.integers(len(word) + 1))
+        letter = _signed(int(rng.integers(1, largest + 1)), rng)
+        trial = [*word[:place], letter, -letter, *word[place:]]
+        for start in (place + rng.integers(-_NEARBY, _NEARBY, size=2 * _NEARBY)).tolist():
+            _relate(trial, start)
+        if is_reduced(trial):
+            word = trial
+    raise CurveError(f"no braid of {length} crossings was found with this seed and these strands; change one of them")
+
+
+def _mix(word: list[int], rng: np.random.Generator) -> None:
+    """Apply braid relations all over the word, round the end too, which is conjugation; take back what cancels."""
+    for start in rng.integers(len(word), size=_MOVES_PER_LETTER * len(word)).tolist():
+        old = list(word)
+        _relate(word, start)
+        if word != old and not is_reduced(word):
+            word[:] = old
+
+
+def _relate(word: list[int], start: int) -> None:
+    """Apply a braid relation to the three letters from ``start`` on, if there is one."""
+    if len(word) >= 3:
+        places = [(start + k) % len(word) for k in range(3)]
+        for place, letter in zip(places, _related(*(word[place] for place in places)), strict=True):
+            word[place] = letter
+
+
+def _related(a: int, b: int, c: int) -> tuple[int, int, int]:
+    """An equal word of three letters by one braid relation, or the same one if none applies."""
+    if abs(abs(a) - abs(b)) >= 2:
+        return b, a, c
+    if abs(a) != abs(c) or abs(a) == abs(b):
+        return a, b, c
+    i, j = abs(a), abs(b)
+    if a == -c:  # σᵢᵉ σⱼᶠ σᵢ⁻ᵉ = σⱼ⁻ᵉ σᵢᶠ σⱼᵉ
+        e, f = a // i, b // j
+        return -e * j, f * i, e * j
+    if a * b > 0:  # σᵢ σⱼ σᵢ = σⱼ σᵢ σⱼ
+        return (j, i, j) if a > 0 else (-j, -i, -j)
+    return a, b, c
