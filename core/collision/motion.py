@@ -160,7 +160,7 @@ class _Search:
 
     def _decide(self, vertices: IntArray, reached: float) -> float:
         """The time up to which one pair is free by exact arithmetic, infinite if it never meets."""
-        contact = first_contact(self.start[:, vertices].T, self.end[:, vertices].T)
+        contact = first_contact(self.start[:, vertices].T, self.end[:, vertices].T, reached)
         if contact is None:
             return np.inf
         self.contact = min(self.contact, contact)
