@@ -6,17 +6,23 @@ over ordered pairs of different components or at index distance 4 or more.  χ i
 q = 1 and 0 from q = 9/4, so B is one C² function of the vertices and vanishes on well-resolved curves.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy.sparse as sp
 
 from ..curve import Curve
-from ..types import FloatArray, IntArray
-from .segments import EdgePairs, exact_contributions
+from ..types import FloatArray
+from .contributions import Contributions
+from .edge_pairs import EdgePairs, scatter_first, scatter_second
+from .jets import Jet
+from .near_pairs import FAR, near_pairs
 
-NEAR, FAR = 1.0, 2.25  # of q, where the cutoff leaves 1 and reaches 0
-MIN_INDEX_DISTANCE = 4
+NEAR = 1.0  # of q, where the cutoff leaves 1; it reaches 0 at FAR
+BLOCK = 192  # pairs whose 3m × 3m matrices are handled at once, to stay in the processor's cache
 
 
+@dataclass(frozen=True)
 class Barrier:
     """B, the difference between exact and midpoint energy over near pairs of edges."""
 
@@ -29,83 +35,43 @@ class Barrier:
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """B and its derivative with respect to the vertices, shape (n, m)."""
-        derivative = np.zeros_like(curve.vertices)
         i, j = near_pairs(curve)
-        if not len(i):
-            return 0.0, derivative
-        mesh = curve.mesh
-        corners = (mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j])
-        pairs = EdgePairs(*(curve.vertices[c] for c in corners))
-        exact, by_exact = exact_contributions(pairs)
-        midpoint, by_midpoint = midpoint_contributions(pairs)
-        q, by_q = _closeness(pairs)
-        chi, chi_slope = _cutoff(q)
-        excess = exact - midpoint
-        for corner, de, dm, dq in zip(corners, by_exact, by_midpoint, by_q, strict=True):
-            # unordered pairs are listed, the sum is over ordered ones
-            np.add.at(derivative, corner, 2.0 * (chi[:, None] * (de - dm) + (chi_slope * excess)[:, None] * dq))
-        return 2.0 * float(chi @ excess), derivative
+        jet = _contributions(EdgePairs.of(curve, i, j))
+        # unordered pairs are listed, the sum is over ordered ones
+        return 2.0 * float(jet.value.sum()), 2.0 * scatter_first(curve.mesh, i, j, jet.first)
+
+    def hessian(self, curve: Curve) -> FloatArray:
+        """Second derivative D²B, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
+        return np.asarray(self.sparse_hessian(curve).toarray())
+
+    def sparse_hessian(self, curve: Curve) -> sp.csr_array:
+        """D²B as a sparse matrix: it couples near edges only."""
+        i, j = near_pairs(curve)
+        size = 3 * curve.dimension
+        second = np.empty((len(i), size, size))
+        for first in range(0, len(i), BLOCK):
+            part = slice(first, first + BLOCK)
+            second[part] = _contributions(EdgePairs.of(curve, i[part], j[part]).with_coordinates()).second
+        return 2.0 * scatter_second(curve.mesh, i, j, second)
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        """D²B v for ``v`` of shape (n, m); shape (n, m)."""
+        i, j = near_pairs(curve)
+        jet = _contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v))
+        return 2.0 * scatter_first(curve.mesh, i, j, jet.second[:, :, 0])
 
 
-def near_pairs(curve: Curve) -> tuple[IntArray, IntArray]:
-    """Unordered pairs of edges with q < 9/4 that the barrier counts, as two index arrays.
-
-    A k-d tree per octave of edge lengths keeps the candidates few when lengths differ a lot: a near pair
-    has |Δ| < 3 max(ℓ_I, ℓ_J), so each edge is searched within 3 lengths among edges no longer than its octave.
-    """
-    ell, midpoints = curve.edge_lengths, curve.midpoints
-    octave = np.frexp(ell)[1]
-    found: list[FloatArray] = []
-    for level in np.unique(octave):
-        long = np.flatnonzero(octave == level)
-        short = np.flatnonzero(octave <= level)
-        reach = 2.0 * np.sqrt(FAR) * float(ell[long].max())
-        tree = cKDTree(midpoints[long])
-        near = tree.sparse_distance_matrix(cKDTree(midpoints[short]), reach, output_type="ndarray")
-        found.append(np.stack([long[near["i"]], short[near["j"]], near["v"]]))
-    table = np.concatenate(found, axis=1)
-    i, j, distance = table[0].astype(np.intp), table[1].astype(np.intp), table[2]
-    # within one octave every pair is found twice
-    kept = (distance**2 < FAR * (ell[i] + ell[j]) ** 2) & ((octave[i] != octave[j]) | (i < j))
-    i, j = i[kept], j[kept]
-    kept = curve.mesh.index_distance(i, j) >= MIN_INDEX_DISTANCE
-    return i[kept], j[kept]
+def _contributions(pairs: EdgePairs) -> Jet:
+    """χ (W_exact − W_mid) of pairs of edges."""
+    w = Contributions(pairs)
+    q = w.closeness()
+    return q.compose(*_cutoff(q.value)) * (w.exact() - w.midpoint())
 
 
-def midpoint_contributions(pairs: EdgePairs) -> tuple[FloatArray, EdgePairs]:
-    """W_mid of each pair, shape (k,), and its derivative with respect to the end points."""
-    x0, x1, y0, y1 = pairs
-    e, f, delta = x1 - x0, y1 - y0, 0.5 * (x0 + x1) - 0.5 * (y0 + y1)
-    le, lf = np.linalg.norm(e, axis=1), np.linalg.norm(f, axis=1)
-    s = 1.0 / _dot(delta, delta)
-    p, q = _dot(delta, e) * s, _dot(delta, f) * s
-    g = le * lf + _dot(e, f)
-    by_e = s[:, None] * (f + (lf / le)[:, None] * e - 2.0 * q[:, None] * delta)
-    by_f = s[:, None] * (e + (le / lf)[:, None] * f - 2.0 * p[:, None] * delta)
-    a = 8.0 * p * q * s - 2.0 * g * s * s
-    by_delta = a[:, None] * delta - 2.0 * s[:, None] * (q[:, None] * e + p[:, None] * f)
-    half = 0.5 * by_delta
-    return g * s - 2.0 * p * q, EdgePairs(half - by_e, half + by_e, -half - by_f, -half + by_f)
-
-
-def _closeness(pairs: EdgePairs) -> tuple[FloatArray, EdgePairs]:
-    """q = |Δ|²/(ℓ_I + ℓ_J)² of each pair and its derivative with respect to the end points."""
-    x0, x1, y0, y1 = pairs
-    e, f, delta = x1 - x0, y1 - y0, 0.5 * (x0 + x1) - 0.5 * (y0 + y1)
-    le, lf = np.linalg.norm(e, axis=1), np.linalg.norm(f, axis=1)
-    total = le + lf
-    q = _dot(delta, delta) / total**2
-    by_e = (-2.0 * q / (total * le))[:, None] * e
-    by_f = (-2.0 * q / (total * lf))[:, None] * f
-    half = (1.0 / total**2)[:, None] * delta
-    return q, EdgePairs(half - by_e, half + by_e, -half - by_f, -half + by_f)
-
-
-def _cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """χ(q), the quintic smoothstep from 1 (q ≤ 1) to 0 (q ≥ 9/4), and its slope."""
+def _cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """χ(q), the quintic smoothstep from 1 (q ≤ 1) to 0 (q ≥ 9/4), and its first and second derivative."""
     x = np.clip((FAR - q) / (FAR - NEAR), 0.0, 1.0)
-    return x**3 * (10.0 - 15.0 * x + 6.0 * x * x), -30.0 * (x * (1.0 - x)) ** 2 / (FAR - NEAR)
-
-
-def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.einsum("ij,ij->i", a, b)
+    product = x * (1.0 - x)
+    slope, curvature = 30.0 * product**2, 60.0 * product * (1.0 - 2.0 * x)
+    chi = np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x * x))
+    return chi, -slope / (FAR - NEAR), curvature / (FAR - NEAR) ** 2

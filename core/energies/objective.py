@@ -1,6 +1,6 @@
 """The objective that `relax` descends on: an energy plus the barrier of its near pairs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ..curve import Curve
 from ..types import FloatArray
@@ -12,8 +12,11 @@ from .moebius import MoebiusEnergy
 class Objective:
     """moebius + barrier, a C² function of the vertices that is infinite where edges touch."""
 
-    energy: MoebiusEnergy = MoebiusEnergy()
-    barrier: Barrier = Barrier()
+    energy: MoebiusEnergy = field(default_factory=MoebiusEnergy)
+    barrier: Barrier = field(default_factory=Barrier)
+
+    name = "objective"
+    description = "moebius + barrier, what relax descends on"
 
     def value(self, curve: Curve) -> float:
         """The objective at the curve."""
@@ -24,3 +27,14 @@ class Objective:
         energy, derivative = self.energy.value_and_derivative(curve)
         barrier, barrier_derivative = self.barrier.value_and_derivative(curve)
         return energy + barrier, derivative + barrier_derivative
+
+    def hessian(self, curve: Curve) -> FloatArray:
+        """Second derivative, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
+        matrix = self.energy.hessian(curve)
+        near = self.barrier.sparse_hessian(curve).tocoo()
+        matrix[near.coords] += near.data
+        return matrix
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        """The second derivative times ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
+        return self.energy.hessian_product(curve, v) + self.barrier.hessian_product(curve, v)

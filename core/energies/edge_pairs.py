@@ -1,0 +1,87 @@
+"""Pairs of straight edges in the three vectors that shape them: Δ between the midpoints, and the edges e and f."""
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..curve import Curve, Mesh
+from ..types import FloatArray, IntArray
+from .jets import Jet
+
+Combination = tuple[float, float, float]
+DELTA, E, F = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+# how the tail and head of the first edge and of the second (rows) enter Δ, e and f (columns)
+_CORNERS = np.array([[0.5, -1.0, 0.0], [0.5, 1.0, 0.0], [-0.5, 0.0, -1.0], [-0.5, 0.0, 1.0]])
+
+
+class EdgePairs(NamedTuple):
+    """k pairs of edges: x(s) = x_mid + (s − ½) e, y(t) = y_mid + (t − ½) f, Δ = x_mid − y_mid; each array (k, m).
+
+    ``directions`` are r directions in which (Δ, e, f) may change, shape (k, 3, m, r); see `Jet`.
+    """
+
+    delta: FloatArray
+    e: FloatArray
+    f: FloatArray
+    directions: FloatArray
+
+    @classmethod
+    def of(cls, curve: Curve, i: IntArray, j: IntArray) -> "EdgePairs":
+        """The pairs (i, j) of edges of a curve, without directions."""
+        delta, e, f = _shape(curve.mesh, curve.vertices, i, j)
+        return cls(delta, e, f, np.empty((*delta.shape[:1], 3, *delta.shape[1:], 0)))
+
+    def moving(self, mesh: Mesh, i: IntArray, j: IntArray, v: FloatArray) -> "EdgePairs":
+        """The pairs with the direction of vertex velocities ``v``, shape (n, m)."""
+        return self._replace(directions=np.stack(_shape(mesh, v, i, j), axis=1)[..., None])
+
+    def with_coordinates(self) -> "EdgePairs":
+        """The pairs with the 3m coordinate directions."""
+        k, m = self.delta.shape
+        identity = np.eye(3 * m).reshape(3, m, 3 * m)
+        return self._replace(directions=np.broadcast_to(identity, (k, *identity.shape)))
+
+    def combination(self, c: Combination) -> FloatArray:
+        """The vector c₀ Δ + c₁ e + c₂ f of every pair, shape (k, m)."""
+        return np.asarray(c[0] * self.delta + c[1] * self.e + c[2] * self.f)
+
+    def inner(self, a: Combination, b: Combination) -> Jet:
+        """The inner product of two combinations, as a function of the 3m coordinates of (Δ, e, f)."""
+        u, v = self.combination(a), self.combination(b)
+        k, m = u.shape
+        first = np.stack([p * v + q * u for p, q in zip(a, b, strict=True)], axis=1).reshape(k, 3 * m)
+        directions = self.directions.reshape(k, 3 * m, -1)
+        constant = np.kron(np.outer(a, b) + np.outer(b, a), np.eye(m))
+        along = np.einsum("kc,kcr->kr", first, directions)
+        return Jet(np.einsum("km,km->k", u, v), first, along, constant @ directions)
+
+
+def _shape(mesh: Mesh, p: FloatArray, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Δ, e and f of pairs of edges; the end points are subtracted first: edges may be close and far from the origin."""
+    x0, x1, y0, y1 = p[mesh.tails[i]], p[mesh.heads[i]], p[mesh.tails[j]], p[mesh.heads[j]]
+    return 0.5 * ((x0 - y0) + (x1 - y1)), x1 - x0, y1 - y0
+
+
+def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> FloatArray:
+    """Derivative by the vertices, shape (n, m), from those by (Δ, e, f) of pairs (i, j) of edges, shape (k, 3m)."""
+    by_delta, by_e, by_f = np.split(first, 3, axis=1)
+    by_midpoint, by_edge = (np.zeros((mesh.size, by_delta.shape[1])) for _ in range(2))
+    np.add.at(by_midpoint, i, by_delta)
+    np.subtract.at(by_midpoint, j, by_delta)
+    np.add.at(by_edge, i, by_e)
+    np.add.at(by_edge, j, by_f)
+    return mesh.scatter(0.5 * by_midpoint - by_edge, 0.5 * by_midpoint + by_edge)
+
+
+def scatter_second(mesh: Mesh, i: IntArray, j: IntArray, second: FloatArray) -> sp.csr_array:
+    """Second derivative by the vertices, sparse (n·m, n·m), from those by (Δ, e, f) of pairs, shape (k, 3m, 3m)."""
+    k, m = len(i), second.shape[1] // 3
+    corners = np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]], axis=1)
+    index = (m * corners[:, :, None] + np.arange(m)).reshape(k, 4 * m)
+    spread = np.kron(_CORNERS, np.eye(m))
+    blocks = spread @ second @ spread.T
+    rows, columns = np.broadcast_arrays(index[:, :, None], index[:, None, :])
+    size = mesh.size * m
+    return sp.csr_array((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
