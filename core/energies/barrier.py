@@ -36,6 +36,8 @@ class Barrier:
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """B and its derivative with respect to the vertices, shape (n, m)."""
         i, j = near_pairs(curve)
+        if not len(i):
+            return 0.0, np.zeros_like(curve.vertices)
         jet = _contributions(EdgePairs.of(curve, i, j))
         # unordered pairs are listed, the sum is over ordered ones
         return 2.0 * float(jet.value.sum()), 2.0 * scatter_first(curve.mesh, i, j, jet.first)
@@ -57,6 +59,8 @@ class Barrier:
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²B v for ``v`` of shape (n, m); shape (n, m)."""
         i, j = near_pairs(curve)
+        if not len(i):
+            return np.zeros_like(v)
         jet = _contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v))
         return 2.0 * scatter_first(curve.mesh, i, j, jet.second[:, :, 0])
 
