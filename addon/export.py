@@ -1,14 +1,31 @@
 """Keyframed scenes, movies and pictures of a relaxation: what the command line calls.
 
-They start from an empty factory scene, so what is open in Blender is gone afterwards.
+Each starts from an empty factory scene, so what is open in Blender is gone afterwards; writes the whole file
+or none; and returns whether everything it shows was proved free of contact.
 """
 
 import os
-from collections.abc import Sequence
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..core import Iterate, MobiusFlowError
+from ..core.collision import is_free
+from ..core.files import atomic_write
+from . import film, rendering
+from .rendering import Progress
 
-Path = str | os.PathLike[str]
+if TYPE_CHECKING:
+    import bpy
+
+Target = str | os.PathLike[str]
+
+_MOST_KEYS = 1000  # in a .blend; more are of no use to the eye
+_MOST_FILM_KEYS = 200
+_PICTURE = (1280, 720, 24)  # width, height, samples
+_FILM = (640, 360, 8)
 
 
 def require_blender() -> None:
@@ -22,16 +39,85 @@ def require_blender() -> None:
         ) from error
 
 
-def write_blend(path: Path, iterates: Sequence[Iterate]) -> None:
-    """Write a .blend that shows the relaxation, keyframed, in a scene ready to render."""
-    raise NotImplementedError
+def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
+    """Write a .blend in which the relaxation plays, ready to render, where the extension is not installed too.
+
+    Parameters
+    ----------
+    path
+        The file; it appears whole or not at all.
+    iterates
+        The iterates of a run, from the start to the last.
+
+    Returns
+    -------
+    bool
+        Whether the animation was proved free of contact, in Blender's own numbers.
+
+    Raises
+    ------
+    MobiusFlowError
+        If Blender's module is missing or the file cannot be written.
+    """
+    motion, origin = film.recorded(iterates)
+    keys = motion.keys(is_free, _MOST_KEYS)
+    scene = _empty_scene()
+    rendering.use_cycles(scene, *_PICTURE)
+    film.compose(scene, keys, film.steady_frames(keys), motion.start.curve.mesh, origin)
+    _make(path, _save)
+    return keys.certified
 
 
-def write_movie(path: Path, iterates: Sequence[Iterate]) -> None:
-    """Render the relaxation to an .mp4."""
-    raise NotImplementedError
+def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | None = None) -> bool:
+    """Render the relaxation to an .mp4 of a few seconds.
+
+    ``progress`` gets the number of frames done and of all frames. Otherwise as `write_blend`.
+    """
+    motion, _ = film.recorded(iterates)
+    keys = motion.keys(is_free, _MOST_FILM_KEYS)
+    scene = _empty_scene()
+    rendering.use_cycles(scene, *_FILM)
+    film.compose(scene, keys, film.smooth_frames(keys), motion.start.curve.mesh)
+    film.add_pauses(scene)
+    _make(path, lambda temporary: rendering.render_movie(scene, temporary, progress))
+    return keys.certified
 
 
-def write_still(path: Path, iterates: Sequence[Iterate]) -> None:
-    """Render the relaxed curve, the last iterate, to a .png."""
-    raise NotImplementedError
+def write_still(path: Target, iterates: Sequence[Iterate]) -> bool:
+    """Render the relaxed curve, the last iterate, to a .png; otherwise as `write_blend`."""
+    motion, _ = film.recorded(iterates)
+    keys = motion.result(is_free)
+    scene = _empty_scene()
+    rendering.use_cycles(scene, *_PICTURE)
+    film.compose(scene, keys, film.steady_frames(keys), motion.start.curve.mesh)
+    _make(path, lambda temporary: rendering.render_still(scene, temporary))
+    return keys.certified
+
+
+def _empty_scene() -> "bpy.types.Scene":
+    require_blender()
+    import bpy
+
+    with rendering.quiet():
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+    return bpy.context.scene
+
+
+def _save(path: Path) -> None:
+    import bpy
+
+    with rendering.quiet():
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
+
+
+def _make(path: Target, write: Callable[[Path], None]) -> None:
+    """Let Blender write a file in a directory of its own, and move it to its place when it is whole."""
+    try:
+        with atomic_write(path) as temporary, tempfile.TemporaryDirectory(dir=temporary.parent) as room:
+            made = Path(room) / temporary.name.lstrip(".")
+            write(made)
+            shutil.copymode(temporary, made)
+            made.replace(temporary)
+    except (OSError, RuntimeError) as error:
+        reason = getattr(error, "strerror", None) or str(error).strip()
+        raise MobiusFlowError(f"{path}: cannot be written: {reason}") from error

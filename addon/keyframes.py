@@ -56,7 +56,7 @@ def write(obj: "bpy.types.Object", keys: Keys, options: KeyOptions) -> None:
     _WRITERS[options.output](obj, keys, options.scene_frames(keys))
 
 
-def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> None:
+def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None) -> None:
     """Write keys as absolute shape keys and an F-curve that runs through them.
 
     The curve itself keeps the last key, so that removing the shape keys leaves the relaxed curve.
@@ -69,6 +69,8 @@ def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) ->
         What to write.
     frames
         Scene frame of each key, ascending.
+    radii
+        Radius of all points at each key; None keeps what the points have.
     """
     data = obj.data
     write_points(data, keys.keys[-1].points)
@@ -82,6 +84,8 @@ def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) ->
         block = obj.shape_key_add(name=f"Iterate {key.time:g}", from_mix=False)
         block.interpolation = "KEY_LINEAR"
         block.data.foreach_set("co", key.points.ravel())
+        if radii is not None:
+            block.data.foreach_set("radius", np.full(len(key.points), radii[k], dtype=np.float32))
     data.shape_keys.use_relative = False
     data.shape_keys.eval_time = 0
     curves = _FCurves(data.shape_keys, f"{obj.name} Relaxation")

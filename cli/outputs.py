@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
+from ..addon import export
 from ..core import Iterate, MobiusFlowError, Result, write_curve
 from ..core.curve.io import FORMATS
 
@@ -25,18 +26,11 @@ def _write_curve(path: str, result: Result, iterates: Sequence[Iterate]) -> None
 
 
 def _need_blender() -> None:
-    try:
-        import bpy  # noqa: F401
-    except ImportError as error:
-        raise MobiusFlowError(
-            "this output needs Blender's Python module, which is not installed; try pip install bpy"
-        ) from error
+    export.require_blender()
 
 
 def _blender_writer(function: str) -> Writer:
     def write(path: str, result: Result, iterates: Sequence[Iterate]) -> None:
-        from ..addon import export
-
         getattr(export, function)(path, iterates)
 
     return write

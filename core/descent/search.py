@@ -68,14 +68,16 @@ def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | N
         Upper bound of τ.
     """
     tau, limited_by = free_step(point, direction, longest)
-    towards_targets, share = _normal_step(point, tau * direction)
+    normal = _NormalStep.at(point)
+    slope_along = float(np.sum(point.derivative * direction))
     shrink = 1.0
     for _ in range(MAX_TRIALS):
-        move = shrink * (tau * direction + towards_targets)
-        slope = float(np.sum(point.derivative * move))
+        share = normal.share(-shrink * tau * slope_along) * min(1.0, 4.0 * shrink)
+        move = shrink * tau * direction + share * normal.full
+        slope = shrink * tau * slope_along + share * normal.cost
         if not np.max(np.abs(move)) > 1e-15:
             break
-        trial = restore(point, point.vertices + move, (1.0 - shrink * share) * point.residual)
+        trial = restore(point, point.vertices + move, (1.0 - share) * point.residual)
         if trial is None:
             shrink *= 0.5
             continue
@@ -107,22 +109,42 @@ def free_step(point: Point, direction: FloatArray, longest: float) -> tuple[floa
     return tau, free.pair
 
 
-def _normal_step(point: Point, tangential: FloatArray) -> tuple[FloatArray, float]:
-    """Displacement towards the targets of the constraints, and the share of the residual that it removes.
+@dataclass(frozen=True, eq=False)
+class _NormalStep:
+    """The way to the targets of the constraints.
 
-    Lengths change by a bounded factor, and the energy this costs is at most half of what the tangential step gains,
-    so that the objective goes down; at a critical point of the objective the lengths go first.
+    Attributes
+    ----------
+    full
+        −C^† Φ, the displacement that reaches them to first order; shape (n, m).
+    cost
+        DE·full, the energy that takes.
+    longest
+        The share of it that changes no length by more than a bounded factor.
     """
-    worst = float(np.max(np.abs(point.residual)))
-    if worst <= FEASIBLE:
-        return np.zeros_like(tangential), 1.0
-    share = min(1.0, LENGTH_CHANGE / worst)
-    full = point.saddle.pseudo_inverse(-point.residual)
-    cost = share * float(np.sum(point.derivative * full))
-    gain = -float(np.sum(point.derivative * tangential))
-    if cost > 0.5 * gain:
-        share *= max(0.5 * gain / cost, 0.01)
-    return share * full, share
+
+    full: FloatArray
+    cost: float
+    longest: float
+
+    @classmethod
+    def at(cls, point: Point) -> "_NormalStep":
+        """The normal step at a point; none if it is on the constraints."""
+        worst = float(np.max(np.abs(point.residual)))
+        if worst <= FEASIBLE:
+            return cls(np.zeros_like(point.vertices), 0.0, 1.0)
+        full = point.saddle.pseudo_inverse(-point.residual)
+        return cls(full, float(np.sum(point.derivative * full)), min(1.0, LENGTH_CHANGE / worst))
+
+    def share(self, gain: float) -> float:
+        """The share to take along with a tangential step that gains so much energy.
+
+        It costs at most half the gain, so that the objective goes down; but where there is nothing left to gain the
+        lengths go on, slowly, all the same.
+        """
+        if self.longest * self.cost <= 0.5 * gain:
+            return self.longest
+        return max(0.5 * gain / self.cost, 0.01 * self.longest)
 
 
 def _sufficient(excess: float, slope: float, energy: float) -> bool:

@@ -92,7 +92,7 @@ def connected_sum(first: Sequence[int], second: Sequence[int]) -> Word:
 
 
 def cancels(word: Sequence[int], place: int) -> bool:
-    """Whether the letter at ``place`` meets its inverse further on, round the end too, past letters it commutes with."""
+    """Whether a letter meets its inverse further on, round the end too, past letters it commutes with."""
     letter = word[place]
     for step in range(1, len(word)):
         other = word[(place + step) % len(word)]

@@ -1,7 +1,5 @@
 """Unknots that don't look it: closures of long braid words that stand for the trivial knot."""
 
-import math
-
 import numpy as np
 
 from ..curve import Curve
