@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..saddle import SaddleSolver
 from ..types import FloatArray
 from .problem import Point
 
@@ -10,11 +11,13 @@ MAX_ITERATIONS = 15
 CONTRACTION = 0.6  # slower than that, a shorter step is cheaper than more iterations
 
 
-def restore(base: Point, vertices: FloatArray, level: FloatArray) -> Point | None:
+def restore(base: Point, vertices: FloatArray, level: FloatArray, solver: SaddleSolver | None = None) -> Point | None:
     """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point.
 
-    Returns None if the residual does not contract: the step was too long.
+    ``solver`` gives the pseudo-inverse; by default it is that of the base point's metric.  Returns None if the
+    residual does not contract: the step was too long.
     """
+    solver = base.saddle if solver is None else solver
     last = np.inf
     for _ in range(MAX_ITERATIONS):
         if not np.isfinite(vertices).all():
@@ -29,5 +32,5 @@ def restore(base: Point, vertices: FloatArray, level: FloatArray) -> Point | Non
         if not error <= CONTRACTION * last:
             return None
         last = error
-        vertices = vertices - base.saddle.pseudo_inverse(residual)
+        vertices = vertices - solver.pseudo_inverse(residual)
     return None

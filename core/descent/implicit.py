@@ -20,7 +20,7 @@ from .feasibility import restore
 from .method import State
 from .newton import energy_hessian, projected_conjugate_gradient
 from .problem import Point
-from .search import FEASIBLE, MAX_TRIALS, NoStep, Step, armijo_step
+from .search import MAX_TRIALS, NormalStep, NoStep, Step
 
 FIRST_STEP = 0.1
 STEP_GROWTH = 2.0
@@ -42,13 +42,13 @@ class ImplicitFlow:
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Halve τ until the equations are solved, Armijo's rule holds and the motion is free of contact."""
-        if np.max(np.abs(point.residual)) > FEASIBLE:
-            step = armijo_step(point, -point.gradient, 4.0 * state.last_step)
-            return step, (State(None, step.size) if isinstance(step, Step) else state)
         tau = FIRST_STEP if state.memory is None else STEP_GROWTH * state.memory
+        preconditioner = self.preconditioner.matrix(point.curve)
+        share = 1.0
         limited_by = None
         for _ in range(MAX_TRIALS):
-            trial = self._backward_euler(point, tau)
+            solver = SaddleSolver(point.saddle.matrix / tau + preconditioner, ConstraintDerivative.at(point.curve))
+            trial = _backward_euler(point, tau, share, solver)
             slope = -math.inf if trial is None else float(np.sum(point.derivative * (trial.vertices - point.vertices)))
             if trial is not None and slope < 0.0 and trial.energy <= point.energy + 0.25 * slope:
                 proof = point.problem.free_motion(point.vertices, trial.vertices)
@@ -56,34 +56,39 @@ class ImplicitFlow:
                     return Step(trial, tau, (trial.vertices,), limited_by), State(tau, tau)
                 limited_by = proof.pair
             tau *= 0.5
+            share *= 0.5
         return NoStep.because(limited_by), state
 
-    def _backward_euler(self, point: Point, tau: float) -> Point | None:
-        """Solve for the next point; None if Newton's method does not get there."""
-        matrix = point.saddle.matrix / tau + self.preconditioner.matrix(point.curve)
-        solver = SaddleSolver(matrix, ConstraintDerivative.at(point.curve))
-        feasible = np.zeros_like(point.residual)
-        w = np.zeros_like(point.vertices)
-        trial, first, last = point, 0.0, math.inf
-        for _ in range(NEWTON_ITERATIONS):
-            right = -(trial.derivative + point.saddle.apply_metric(w) / tau)
-            size = math.sqrt(max(0.0, float(np.sum(right * solver.gradient(right)[0]))))
-            first = first or size
-            if size <= NEWTON_TOLERANCE * first:
-                return trial
-            if not size < 2.0 * last:
-                return None
-            last = size
-            of_energy = energy_hessian(trial)
-            w = w + projected_conjugate_gradient(
-                lambda v, h=of_energy: h(v) + point.saddle.apply_metric(v) / tau,  # type: ignore[misc]
-                right,
-                solver,
-                KRYLOV_TOLERANCE,
-                KRYLOV_ITERATIONS,
-            )
-            restored = restore(point, point.vertices + w, feasible)
-            if restored is None or not math.isfinite(restored.energy):
-                return None
-            trial = restored
-        return None
+
+def _backward_euler(point: Point, tau: float, share: float, solver: SaddleSolver) -> Point | None:
+    """Solve for the next point, None if Newton's method does not get there.
+
+    ``share`` of the way to the target lengths is taken along, if they are not reached yet.  Feasibility is restored in
+    the preconditioner's metric: in a weak one like L² the shortest way back is too rough (footnote 7 of [RS21]).
+    """
+    normal = NormalStep.at(point, solver)
+    base = point.vertices + share * normal.longest * normal.full
+    level = (1.0 - share * normal.longest) * point.residual
+    w = np.zeros_like(point.vertices)
+    first, last = 0.0, math.inf
+    for _ in range(NEWTON_ITERATIONS):
+        trial = restore(point, base + w, level, solver)
+        if trial is None or not math.isfinite(trial.energy):
+            return None
+        right = -(trial.derivative + point.saddle.apply_metric(w) / tau)
+        size = math.sqrt(max(0.0, float(np.sum(right * solver.gradient(right)[0]))))
+        first = first or size
+        if size <= NEWTON_TOLERANCE * first:
+            return trial
+        if not size < 2.0 * last:
+            return None
+        last = size
+        of_energy = energy_hessian(trial)
+        w = w + projected_conjugate_gradient(
+            lambda v, h=of_energy: h(v) + point.saddle.apply_metric(v) / tau,  # type: ignore[misc]
+            right,
+            solver,
+            KRYLOV_TOLERANCE,
+            KRYLOV_ITERATIONS,
+        )
+    return None

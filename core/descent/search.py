@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..saddle import SaddleSolver
 from ..types import FloatArray
 from .feasibility import restore
 from .problem import Point
@@ -68,7 +69,7 @@ def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | N
         Upper bound of τ.
     """
     tau, limited_by = free_step(point, direction, longest)
-    normal = _NormalStep.at(point)
+    normal = NormalStep.at(point, point.saddle)
     slope_along = float(np.sum(point.derivative * direction))
     shrink = 1.0
     for _ in range(MAX_TRIALS):
@@ -110,7 +111,7 @@ def free_step(point: Point, direction: FloatArray, longest: float) -> tuple[floa
 
 
 @dataclass(frozen=True, eq=False)
-class _NormalStep:
+class NormalStep:
     """The way to the targets of the constraints.
 
     Attributes
@@ -128,12 +129,12 @@ class _NormalStep:
     longest: float
 
     @classmethod
-    def at(cls, point: Point) -> "_NormalStep":
-        """The normal step at a point; none if it is on the constraints."""
+    def at(cls, point: Point, solver: SaddleSolver) -> "NormalStep":
+        """The normal step at a point, none if it is on the constraints; ``solver`` gives the pseudo-inverse."""
         worst = float(np.max(np.abs(point.residual)))
         if worst <= FEASIBLE:
             return cls(np.zeros_like(point.vertices), 0.0, 1.0)
-        full = point.saddle.pseudo_inverse(-point.residual)
+        full = solver.pseudo_inverse(-point.residual)
         return cls(full, float(np.sum(point.derivative * full)), min(1.0, LENGTH_CHANGE / worst))
 
     def share(self, gain: float) -> float:
