@@ -1,0 +1,167 @@
+"""Check that a trajectory is an isotopy: no two non-neighbour edges ever meet, and stages fit together.
+
+Why this is enough: if two neighbour edges fold onto each other, or an edge shrinks to a point, then an edge meets the
+one after its neighbour at the same moment, in every polygon of 4 or more vertices. (A triangle in space can turn inside
+out within a thin neighbourhood of itself; in the plane its corners are tested against the opposite edges.) So a motion
+free of such contact is a motion through embedded polygons.
+
+This package shares no code with ``core.collision``, which the program uses to find its steps.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+
+from ..types import FloatArray, IntArray
+from .filter import doubtful_pairs
+from .segments import Point, meet
+from .trajectory import TrajectoryError, stages
+from .transition import DifferentCurveError, common_vertices, straightened
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What was found.
+
+    Attributes
+    ----------
+    accepted
+        True if every leg and every change of stage is proved free of contact.
+    stages, legs
+        How many were checked, including the one that failed.
+    reason
+        Why the trajectory is not accepted; empty if it is.
+    stage, frame
+        Place of the failure: number of the stage and of the frame that the leg begins with, from 0.
+    edges
+        The edges that meet, from 0, None if that is not the reason.
+    """
+
+    accepted: bool
+    stages: int
+    legs: int
+    reason: str = ""
+    stage: int | None = None
+    frame: int | None = None
+    edges: tuple[int, int] | None = None
+
+    def __str__(self) -> str:
+        if self.accepted:
+            return f"accepted: no contact on {self.legs} legs in {self.stages} stages"
+        place = "" if self.stage is None else f"stage {self.stage}"
+        place += "" if self.frame is None else f", frame {self.frame}"
+        return f"rejected: {place}: {self.reason}" if place else f"rejected: {self.reason}"
+
+
+class ContactError(Exception):
+    """Two edges meet."""
+
+    def __init__(self, reason: str, edges: tuple[int, int]) -> None:
+        super().__init__(reason)
+        self.edges = edges
+
+
+@dataclass
+class _Progress:
+    stages: int = 0
+    legs: int = 0
+    frame: int | None = None
+
+
+def verify(path: Path | str) -> Verdict:
+    """Check a trajectory file; damaged files and failed checks give a verdict that is not accepted."""
+    progress = _Progress()
+    try:
+        _check_file(path, progress)
+    except TrajectoryError as error:
+        return Verdict(False, progress.stages, progress.legs, str(error))
+    except (ContactError, DifferentCurveError) as failure:
+        place = (progress.stages - 1, progress.frame)
+        edges = failure.edges if isinstance(failure, ContactError) else None
+        return Verdict(False, progress.stages, progress.legs, str(failure), *place, edges)
+    return Verdict(True, progress.stages, progress.legs)
+
+
+def _check_file(path: Path | str, progress: _Progress) -> None:
+    last: FloatArray | None = None
+    sizes: tuple[int, ...] = ()
+    for stage in stages(path):
+        progress.stages, progress.frame = progress.stages + 1, None
+        heads = _heads(stage.component_sizes)
+        first = next(stage.frames)
+        if last is not None:
+            _check_transition(last, sizes, first, stage.component_sizes)
+        progress.frame = 0
+        _check_leg(first, first, heads)  # also a stage of a single frame is a polygon that doesn't touch itself
+        last, sizes = first, stage.component_sizes
+        for frame in stage.frames:
+            progress.legs += 1
+            _check_leg(last, frame, heads)
+            last, progress.frame = frame, progress.frame + 1
+
+
+def _heads(sizes: Sequence[int]) -> IntArray:
+    """Head vertex of each edge; its tail has the edge's number."""
+    heads = np.arange(1, sum(sizes) + 1)
+    after = np.cumsum(sizes)
+    heads[after - 1] = after - np.asarray(sizes)
+    return heads
+
+
+def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray) -> None:
+    """Raise if two edges meet while the vertices go from start to end."""
+    first, last = _exact_points(start), _exact_points(end)
+    _check_pairs(doubtful_pairs(start, end, heads).T.tolist(), heads, first, last)
+    if start.shape[1] == 2:
+        # A triangle's vertex, as an edge of no length, and the edge opposite.
+        for k in np.flatnonzero(heads[heads[heads]] == np.arange(len(heads))).tolist():
+            corners = [k, k, int(heads[k]), int(heads[heads[k]])]
+            if meet([first(v) for v in corners], [last(v) for v in corners]):
+                raise ContactError(f"a triangle collapses at vertex {k + 1}", (k, int(heads[k])))
+
+
+def _check_transition(old: FloatArray, old_sizes: Sequence[int], new: FloatArray, new_sizes: Sequence[int]) -> None:
+    """Raise unless two polygons differ only by vertices on edges."""
+    if len(old_sizes) != len(new_sizes) or old.shape[1] != new.shape[1]:
+        raise DifferentCurveError("the stage before has another number of components or another dimension")
+    kept = []
+    for a, b in zip(_parts(old_sizes), _parts(new_sizes), strict=True):
+        kept.append(common_vertices(old[a], new[b]))
+    _check_straightening(old, old_sizes, [here for here, _ in kept])
+    _check_straightening(new, new_sizes, [sorted(there) for _, there in kept])
+
+
+def _check_straightening(points: FloatArray, sizes: Sequence[int], kept: Sequence[Sequence[int]]) -> None:
+    """Raise unless the vertices that are not kept can move onto the edges between the others without contact."""
+    moved: dict[int, Point] = {}
+    change = 0.0
+    for part, vertices in zip(_parts(sizes), kept, strict=True):
+        places, largest = straightened(points[part], vertices)
+        moved |= {part.start + k: place for k, place in places.items()}
+        change = max(change, largest)
+    if change > 0:
+        heads, here = _heads(sizes), _exact_points(points)
+        doubtful = doubtful_pairs(points, points, heads, clearance=change)
+        _check_pairs(doubtful.T.tolist(), heads, here, lambda k: moved.get(k) or here(k))
+
+
+def _check_pairs(
+    pairs: Sequence[tuple[int, int]], heads: IntArray, first: Callable[[int], Point], last: Callable[[int], Point]
+) -> None:
+    """Decide pairs exactly; raise if one meets."""
+    for i, j in pairs:
+        corners = [i, int(heads[i]), j, int(heads[j])]
+        if meet([first(k) for k in corners], [last(k) for k in corners]):
+            raise ContactError(f"edges {i + 1} and {j + 1} (counted from 1) meet", (i, j))
+
+
+def _exact_points(points: FloatArray) -> Callable[[int], Point]:
+    return lambda k: [Fraction(x) for x in points[k].tolist()]
+
+
+def _parts(sizes: Sequence[int]) -> list[slice]:
+    ends = np.cumsum(sizes).tolist()
+    return [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]

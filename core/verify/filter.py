@@ -1,0 +1,174 @@
+"""Sort out the pairs of edges that certainly don't meet during a leg, in floating-point numbers with error bounds."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ..types import BoolArray, FloatArray, IntArray
+
+# Bound of the rounding errors of the sums of products below, relative to the sum of the absolute values: differences
+# of coordinates are exact up to 2^-53, and there are fewer than 16 roundings after them.
+ROUNDING = 2.0**-48
+UNDERFLOW = 1e-290
+_PAIRS_AT_ONCE = 1 << 16
+_HALVINGS = 5
+
+
+def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float = 0.0) -> IntArray:
+    """Return the pairs of non-neighbour edges that are not proved apart while vertices go from start to end.
+
+    Parameters
+    ----------
+    start, end
+        Vertices, shape (n, m) with m = 2 or 3.
+    heads
+        Head vertex of each edge, shape (n,); tail and edge have the same number.
+    clearance
+        Stay apart even if every coordinate of every vertex is wrong by this much.
+
+    Returns
+    -------
+    Array of shape (2, pairs).
+    """
+    exponent = -int(np.frexp(max(np.abs(start).max(), np.abs(end).max()))[1])
+    start, end, clearance = np.ldexp(start, exponent), np.ldexp(end, exponent), float(np.ldexp(clearance, exponent))
+    doubtful = [np.empty((2, 0), dtype=np.intp)]
+    for i, j in _overlapping(start, end, heads, clearance):
+        strangers = (heads[i] != j) & (heads[j] != i)
+        pairs = np.stack([i[strangers], j[strangers]])
+        leg = _Leg(start, end, heads, pairs, clearance)
+        # Cheap things first; each looks at what is left over by the one before.
+        leg.drop(leg.apart_along_axis)
+        leg.drop(leg.apart_by_planes)
+        if clearance == 0.0:
+            leg.drop(leg.nowhere_coplanar)
+        doubtful.append(leg.pairs)
+    return np.concatenate(doubtful, axis=1)
+
+
+def _overlapping(
+    start: FloatArray, end: FloatArray, heads: IntArray, clearance: float
+) -> Iterator[tuple[IntArray, IntArray]]:
+    """Pairs of edges i, j whose ranges of the first coordinate overlap, a bounded number at a time."""
+    ends = np.stack([start[:, 0], end[:, 0], start[heads, 0], end[heads, 0]])
+    low, high = ends.min(axis=0) - 4 * clearance, ends.max(axis=0)
+    order = np.argsort(low, kind="stable")
+    # In this order edge k overlaps those after it that begin before it ends.
+    count = np.searchsorted(low[order], high[order], side="right") - np.arange(len(order)) - 1
+    count = np.maximum(count, 0)
+    total = np.concatenate([[0], np.cumsum(count)])
+    for first in range(0, int(total[-1]), _PAIRS_AT_ONCE):
+        position = np.arange(first, min(first + _PAIRS_AT_ONCE, int(total[-1])))
+        k = np.searchsorted(total, position, side="right") - 1
+        yield order[k], order[k + 1 + position - total[k]]
+
+
+class _Leg:
+    """Pairs of edges during one leg, and ways to prove them apart."""
+
+    def __init__(self, start: FloatArray, end: FloatArray, heads: IntArray, pairs: IntArray, clearance: float) -> None:
+        self.pairs, self.clearance = pairs, clearance
+        (i, j), points = pairs, np.stack([start, end])
+        ends = [points[:, k] for k in (i, heads[i], j, heads[j])]
+        # x_i − y_j at both times: shape (2, 4, pairs, m)
+        self.corners = np.stack([x - y for x in ends[:2] for y in ends[2:]], axis=1)
+        self.edges = np.stack([ends[1] - ends[0], ends[3] - ends[2]], axis=1)
+
+    def drop(self, proved: Callable[[], BoolArray]) -> None:
+        """Forget the pairs that are proved apart."""
+        if self.pairs.size:
+            left = ~proved()
+            self.pairs, self.corners, self.edges = self.pairs[:, left], self.corners[:, :, left], self.edges[:, :, left]
+
+    def apart_along_axis(self) -> BoolArray:
+        """Whether one edge stays above the other along a coordinate axis."""
+        gap = 2.5 * self.clearance
+        above = (self.corners > gap).all(axis=(0, 1)) | (self.corners < -gap).all(axis=(0, 1))
+        return np.asarray(above.any(axis=1))
+
+    def apart_by_planes(self) -> BoolArray:
+        """Whether fixed planes separate the edges, each for a part of the time."""
+        proved = np.ones(self.pairs.shape[1], dtype=bool)
+        self._plane_parts(np.arange(len(proved)), 0.0, 1.0, _HALVINGS, proved)
+        return proved
+
+    def _plane_parts(self, which: IntArray, a: float, b: float, halvings: int, proved: BoolArray) -> None:
+        """Prove pairs apart during [a, b], halving it where no plane is found; mark those that fail."""
+        middle = 0.5 * (a + b)
+        for normal in _NORMALS:
+            if not which.size:
+                return
+            corners, edges = self.corners[:, :, which], self.edges[:, :, which]
+            direction = normal(*((1 - middle) * x[0] + middle * x[1] for x in (corners, edges)))
+            which = which[~self._separates(direction, corners, a, b)]
+        if halvings and which.size:
+            self._plane_parts(which, a, middle, halvings - 1, proved)
+            self._plane_parts(which[proved[which]], middle, b, halvings - 1, proved)
+        else:
+            proved[which] = False
+
+    def _separates(self, direction: FloatArray, corners: FloatArray, a: float, b: float) -> BoolArray:
+        """Whether ⟨n, x_i − y_j⟩, linear in time, is certainly positive at times a and b for all four corners."""
+        value = np.einsum("tcpm,pm->tcp", corners, direction)
+        error = ROUNDING * np.einsum("tcpm,pm->tcp", np.abs(corners), np.abs(direction))
+        value -= error + (2.5 * self.clearance * np.abs(direction).sum(axis=1) + UNDERFLOW)
+        return np.asarray(np.all([((1 - t) * value[0] + t * value[1] > 0).all(axis=0) for t in (a, b)], axis=0))
+
+    def nowhere_coplanar(self) -> BoolArray:
+        """Whether det(D, e, f) has no zero in [0, 1]: all its Bernstein coefficients have one sign."""
+        if self.corners.shape[-1] == 2:
+            return np.zeros(self.pairs.shape[1], dtype=bool)
+        vectors = [np.stack([self.corners[t, 0], *self.edges[t]]) for t in (0, 1)]
+        sums, errors = np.zeros((4, self.pairs.shape[1])), np.full((4, self.pairs.shape[1]), UNDERFLOW)
+        for p in (0, 1):
+            for q in (0, 1):
+                for r in (0, 1):
+                    D, e, f = vectors[p][0], vectors[q][1], vectors[r][2]
+                    sums[p + q + r] += np.einsum("pm,pm->p", D, np.cross(e, f))
+                    errors[p + q + r] += ROUNDING * _permanent(np.abs(D), np.abs(e), np.abs(f))
+        return np.asarray((sums > errors).all(axis=0) | (sums < -errors).all(axis=0))
+
+
+def _permanent(u: FloatArray, v: FloatArray, w: FloatArray) -> FloatArray:
+    """det(u, v, w) with all six products taken positive."""
+    following, last = [1, 2, 0], [2, 0, 1]
+    products = v[:, following] * w[:, last] + v[:, last] * w[:, following]
+    return np.asarray(np.einsum("pm,pm->p", u, products))
+
+
+Normal = Callable[[FloatArray, FloatArray], FloatArray]
+
+
+def _chord(corners: FloatArray, edges: FloatArray) -> FloatArray:
+    return np.asarray(corners.sum(axis=0))
+
+
+def _common_normal(corners: FloatArray, edges: FloatArray) -> FloatArray:
+    """± e × f, pointing from y to x; in the plane there is none."""
+    if corners.shape[-1] == 2:
+        return np.zeros_like(corners[0])
+    normal = np.cross(edges[0], edges[1])
+    return np.asarray(normal * np.sign(np.einsum("pm,pm->p", normal, corners[0]))[:, None])
+
+
+def _from_line(corner: int, edge: int) -> Normal:
+    """From the other edge's line to an end."""
+
+    def direction(corners: FloatArray, edges: FloatArray) -> FloatArray:
+        c, e = corners[corner], edges[edge]
+        along = np.einsum("pm,pm->p", c, e) / np.maximum(np.einsum("pm,pm->p", e, e), np.finfo(np.float64).tiny)
+        return np.asarray(c - along[:, None] * e)
+
+    return direction
+
+
+def _from_end(corner: int) -> Normal:
+    return lambda corners, edges: corners[corner]
+
+
+_NORMALS: tuple[Normal, ...] = (
+    _chord,
+    _common_normal,
+    *(_from_line(corner, edge) for corner, edge in ((0, 1), (2, 1), (0, 0), (1, 0))),
+    *(_from_end(corner) for corner in range(4)),
+)

@@ -1,0 +1,124 @@
+"""Whether two moving segments meet: decided exactly, for any rational end points.
+
+Segments x(s) = x₀ + s e and y(r) = y₀ + r f, s, r in [0, 1], with end points linear in time t in [0, 1]; D = x₀ − y₀.
+If det(D, e, f) is not the zero polynomial, they can meet only at its roots. If it is, they stay coplanar; if they meet
+at all, then at the start, or for the first time with an end of one on the other: at a root of |f × (x_i − y₀)|² or
+|e × (y_j − x₀)|² or, if such a polynomial vanishes, of |x_i − y_j|². At each of these times, algebraic numbers, the
+segments are tested for a common point by signs of polynomials.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+from .polynomials import ZERO, Polynomial, Root, add, multiply, roots, subtract
+
+Point = Sequence[Fraction]
+Vector = tuple[Polynomial, Polynomial, Polynomial]
+Corners = tuple[Vector, Vector, Vector, Vector]  # x₀ − y₀, x₀ − y₁, x₁ − y₀, x₁ − y₁
+
+
+def meet(start: Sequence[Point], end: Sequence[Point]) -> bool:
+    """Whether two moving segments meet at any time in [0, 1]; parameters as in `meetings`."""
+    return any(True for _ in meetings(start, end))
+
+
+def meetings(start: Sequence[Point], end: Sequence[Point]) -> Iterator[Root]:
+    """Yield times at which two moving segments meet, among them the first; none if they never do.
+
+    Parameters
+    ----------
+    start, end
+        The points x₀, x₁, y₀, y₁ at times 0 and 1, in the plane or in space.
+    """
+    x0, x1, y0, y1 = _moving_points(start, end)
+    corners = (_minus(x0, y0), _minus(x0, y1), _minus(x1, y0), _minus(x1, y1))
+    e, f = _minus(x1, x0), _minus(y1, y0)
+    return (time for time in _candidates(corners, e, f) if _touch(time, corners, e, f))
+
+
+def _moving_points(start: Sequence[Point], end: Sequence[Point]) -> list[Vector]:
+    """The four points as polynomials in t, scaled to integers; the plane lies in space."""
+    unit = math.lcm(*(x.denominator for point in (*start, *end) for x in point))
+    flat = [0] * (3 - len(start[0]))
+    moving = []
+    for p, q in zip(start, end, strict=True):
+        first, last = ([int(x * unit) for x in point] + flat for point in (p, q))
+        a, b, c = (add((u,) if u else (), (0, v - u) if v != u else ()) for u, v in zip(first, last, strict=True))
+        moving.append((a, b, c))
+    return moving
+
+
+def _candidates(corners: Corners, e: Vector, f: Vector) -> Iterator[Root]:
+    """Times among which the first contact is, if there is one."""
+    volume = _dot(corners[0], _cross(e, f))
+    if volume:
+        yield from roots(volume)
+        return
+    yield ZERO
+    for offset, line in _ends(corners, e, f):
+        height = _cross(line, offset)
+        yield from _roots_unless_zero(_dot(height, height))
+    for corner in corners:
+        yield from _roots_unless_zero(_dot(corner, corner))
+
+
+def _ends(corners: Corners, e: Vector, f: Vector) -> tuple[tuple[Vector, Vector], ...]:
+    """Each of the four ends relative to the first point of the other segment, and that segment's vector."""
+    x0y0, x0y1, x1y0, _ = corners
+    return (x0y0, f), (x1y0, f), (_minus(_ORIGIN, x0y0), e), (_minus(_ORIGIN, x0y1), e)
+
+
+def _touch(time: Root, corners: Corners, e: Vector, f: Vector) -> bool:
+    """Whether the closed segments have a common point at an exact time."""
+    if time.sign_of(_dot(_cross(e, f), _cross(e, f))):
+        return _lines_meet_inside(time, corners[0], e, f)
+    # Parallel, or of no length: they meet if an end of one lies on the other.
+    return any(_lies_on(time, offset, line) for offset, line in _ends(corners, e, f))
+
+
+def _lines_meet_inside(time: Root, D: Vector, e: Vector, f: Vector) -> bool:
+    """Whether segments that are not parallel meet: D + s e − r f = 0 with s and r in [0, 1]."""
+    normal = _cross(e, f)
+    if time.sign_of(_dot(D, normal)):
+        return False
+    whole = _dot(normal, normal)
+    # s and r are these numerators divided by |e × f|².
+    numerators = (_dot(_cross(f, D), normal), _dot(_cross(e, D), normal))
+    return all(time.sign_of(p) >= 0 and time.sign_of(subtract(whole, p)) >= 0 for p in numerators)
+
+
+def _lies_on(time: Root, offset: Vector, line: Vector) -> bool:
+    """Whether the point at ``offset`` from the first end of a segment lies on it."""
+    height, along, whole = _cross(line, offset), _dot(line, offset), _dot(line, line)
+    if time.sign_of(whole) == 0:
+        return time.sign_of(_dot(offset, offset)) == 0
+    return (
+        time.sign_of(_dot(height, height)) == 0
+        and time.sign_of(along) >= 0
+        and time.sign_of(subtract(whole, along)) >= 0
+    )
+
+
+def _roots_unless_zero(p: Polynomial) -> list[Root]:
+    return roots(p) if p else []
+
+
+_ORIGIN: Vector = ((), (), ())
+
+
+def _minus(u: Vector, v: Vector) -> Vector:
+    a, b, c = (subtract(p, q) for p, q in zip(u, v, strict=True))
+    return a, b, c
+
+
+def _dot(u: Vector, v: Vector) -> Polynomial:
+    total: Polynomial = ()
+    for p, q in zip(u, v, strict=True):
+        total = add(total, multiply(p, q))
+    return total
+
+
+def _cross(u: Vector, v: Vector) -> Vector:
+    a, b, c = (subtract(multiply(u[i], v[j]), multiply(u[j], v[i])) for i, j in ((1, 2), (2, 0), (0, 1)))
+    return a, b, c

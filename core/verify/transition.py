@@ -1,0 +1,94 @@
+"""Whether two polygons are the same curve with vertices inserted and removed on edges.
+
+Vertices that both have, with exactly the same coordinates and in the same cyclic order, span a third polygon. Each
+other vertex has to lie on the edge of that polygon between its neighbours, up to the rounding of its coordinates, and
+in the same order. Moving it exactly onto the edge must then be free of contact: this is checked like any other leg, in
+rational numbers where necessary. So each of the two is isotopic to the common polygon, hence to the other.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from ..types import FloatArray
+
+_ROUNDING_UNITS = 16  # distance from the edge that is taken for rounding, in units of the last place
+
+Point = Sequence[Fraction]
+
+
+class DifferentCurveError(Exception):
+    """Two polygons are not the same curve; the message says where."""
+
+
+def common_vertices(first: FloatArray, second: FloatArray) -> tuple[list[int], list[int]]:
+    """Return the indices, in the first and in the second closed polygon, of the vertices they share.
+
+    Parameters
+    ----------
+    first, second
+        Vertices of one component at the end of a stage and the start of the next, shapes (n, m) and (n', m).
+
+    Raises
+    ------
+    DifferentCurveError
+        If there are fewer than 3, or not in the same cyclic order.
+    """
+    places = {tuple(p): k for k, p in enumerate(second.tolist())}
+    here = [k for k, p in enumerate(first.tolist()) if tuple(p) in places]
+    there = [places[tuple(first[k].tolist())] for k in here]
+    if len(there) < 3:
+        raise DifferentCurveError(f"only {len(there)} vertices are kept")
+    turns = sum(b <= a for a, b in zip(there, there[1:] + there[:1], strict=True))
+    if turns != 1:
+        raise DifferentCurveError("the vertices that are kept are not in the same order")
+    return here, there
+
+
+def straightened(polygon: FloatArray, kept: Sequence[int]) -> tuple[dict[int, Point], float]:
+    """Move the vertices of a closed polygon that are not kept onto the edges between those that are.
+
+    Parameters
+    ----------
+    polygon
+        Vertices, shape (n, m).
+    kept
+        Indices of the vertices that stay, in ascending order.
+
+    Returns
+    -------
+    The new places of the vertices that move, exact, and an upper bound for the change of any coordinate.
+
+    Raises
+    ------
+    DifferentCurveError
+        If one of them is further away than rounding, or they are not in order.
+    """
+    moved: dict[int, Point] = {}
+    largest = 0.0
+    n = len(polygon)
+    for a, b in zip(kept, [*kept[1:], kept[0] + n], strict=True):
+        parameter = Fraction(0)
+        for k in range(a + 1, b):
+            place, at = _onto_edge(polygon[k % n], polygon[a % n], polygon[b % n])
+            change = max(abs(x - Fraction(y)) for x, y in zip(place, polygon[k % n].tolist(), strict=True))
+            largest = max(largest, float(change) * (1 + 1e-12))
+            if not (parameter < at < 1 and float(change) <= _allowed(polygon[[k % n, a % n, b % n]])):
+                raise DifferentCurveError(f"vertex {k % n} of the component is not on the edge between its neighbours")
+            moved[k % n], parameter = place, at
+    return moved, largest
+
+
+def _onto_edge(p: FloatArray, u: FloatArray, v: FloatArray) -> tuple[Point, Fraction]:
+    """A point of the edge from u to v near p, and its parameter there, which is rounded to a double."""
+    d = v - u
+    scale = float(np.abs(d).max()) or 1.0
+    d, q = d / scale, (p - u) / scale
+    parameter = Fraction(float(d @ q / max(float(d @ d), np.finfo(np.float64).tiny)))
+    ends = [(Fraction(x), Fraction(y)) for x, y in zip(u.tolist(), v.tolist(), strict=True)]
+    return [x + parameter * (y - x) for x, y in ends], parameter
+
+
+def _allowed(points: FloatArray) -> float:
+    return _ROUNDING_UNITS * float(np.spacing(np.abs(points).max()))
