@@ -1,11 +1,38 @@
 """Energies of polygons: one file each, and the table they are chosen from."""
 
 from .barrier import Barrier
+from .density import Density
+from .edge import EDGE_ENERGY
 from .energy import Energy, TwiceDifferentiable
+from .kpoint import KPointEnergy, Rule
 from .moebius import MoebiusEnergy
+from .moebius_kpoint import moebius_kpoint
 from .objective import Objective
+from .tangent_point import TANGENT_POINT_ENERGY
+from .vertex import VERTEX_ENERGY
 
-ENERGIES: dict[str, Energy] = {energy.name: energy for energy in (MoebiusEnergy(),)}
+ENERGIES: dict[str, Energy] = {
+    energy.name: energy
+    for energy in (
+        MoebiusEnergy(),
+        VERTEX_ENERGY,
+        EDGE_ENERGY,
+        moebius_kpoint(2),
+        moebius_kpoint(3),
+        TANGENT_POINT_ENERGY,
+    )
+}
 """Every energy that users can choose, by name; the first is the default."""
 
-__all__ = ["ENERGIES", "Barrier", "Energy", "MoebiusEnergy", "Objective", "TwiceDifferentiable"]
+__all__ = [
+    "ENERGIES",
+    "Barrier",
+    "Density",
+    "Energy",
+    "KPointEnergy",
+    "MoebiusEnergy",
+    "Objective",
+    "Rule",
+    "TwiceDifferentiable",
+    "moebius_kpoint",
+]

@@ -1,0 +1,117 @@
+"""Energies ∬ F by k-point quadrature on pairs of edges, eq. (40) of [RS21].
+
+E = constant · components + Σ W_IJ over ordered pairs of edges with disjoint closures,
+W_IJ = ℓ_I ℓ_J Σ_ij ω_i ω_j F(x_I(t_i), x_J(t_j)),  x_I(t) = (1 − t) P(I↓) + t P(I↑).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..curve import Curve
+from ..curve.distances import points_at
+from ..curve.tiles import Tile, pair_tiles
+from ..errors import OptionError
+from ..quadrature import gauss_legendre
+from ..types import FloatArray
+from .density import Density, PointPairs, PointSet
+from .kpoint_sums import KPointSums
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A quadrature rule on [0, 1].
+
+    Parameters
+    ----------
+    points, weights
+        t_i in [0, 1] and ω_i, as many of one as of the other; the weights add up to 1.
+
+    Raises
+    ------
+    OptionError
+        If they are anything else.
+    """
+
+    points: tuple[float, ...]
+    weights: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not self.points or len(self.points) != len(self.weights):
+            raise OptionError(
+                f"the rule has {len(self.points)} points, {len(self.weights)} weights; give as many of both, 1 or more"
+            )
+        if not all(0.0 <= t <= 1.0 for t in self.points):
+            raise OptionError(f"points are {self.points}; they must lie between 0 and 1")
+        if not abs(sum(self.weights) - 1.0) < 1e-12:
+            raise OptionError(f"weights are {self.weights}; they must add up to 1")
+
+    @classmethod
+    def gauss(cls, points: int) -> "Rule":
+        """Gauss–Legendre rule with ``points`` points, 1 or more; it is of order 2·points."""
+        if points < 1:
+            raise OptionError(f"points is {points}; the quadrature needs 1 point per edge or more")
+        t, omega = gauss_legendre(points)
+        return cls(tuple(t.tolist()), tuple(omega.tolist()))
+
+
+TAIL = Rule((0.0,), (1.0,))
+MIDPOINT = Rule((0.5,), (1.0,))
+ENDS = Rule((0.0, 1.0), (0.5, 0.5))
+
+
+@dataclass(frozen=True)
+class KPointEnergy:
+    """The energy of a density by a quadrature rule.
+
+    Parameters
+    ----------
+    name, description
+        As shown to users.
+    density
+        F.
+    rule
+        Its points on every edge.
+    arc_derivative
+        Whether the derivative includes that of ϱ.  If it does not, it is right only in directions that keep every
+        edge length, so for gradients projected onto that constraint (footnote 5 of [RS21]).
+    """
+
+    name: str
+    description: str
+    density: Density
+    rule: Rule
+    arc_derivative: bool = True
+
+    def value(self, curve: Curve) -> float:
+        """Energy of the curve."""
+        sums = KPointSums(curve)
+        total = 0.0
+        for tile, x, y, area in self._pairs(curve, sums):
+            total += float(np.vdot(area, self.density.value(PointPairs(x, y, sums.arcs, tile))))
+        return self._energy(curve, total)
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        """Energy and its derivative with respect to the vertices, shape (n, m)."""
+        sums = KPointSums(curve)
+        total = 0.0
+        for tile, x, y, area in self._pairs(curve, sums):
+            total += sums.add(tile, x, y, area, self.density)
+        return self._energy(curve, total), 2.0 * sums.at_vertices(self.arc_derivative)
+
+    def _energy(self, curve: Curve, total: float) -> float:
+        """The energy from the sum over unordered pairs."""
+        return self.density.constant * len(curve.mesh.component_sizes) + 2.0 * total
+
+    def _pairs(self, curve: Curve, sums: KPointSums) -> Iterator[tuple[Tile, PointSet, PointSet, FloatArray]]:
+        """All pairs of quadrature points, with their weights ω_i ω_j ℓ_I ℓ_J, 0 for edges with a common vertex."""
+        centre = curve.vertices.mean(axis=0)
+        sets = [PointSet(t, points_at(curve, t) - centre, sums.tau) for t in self.rule.points]
+        weighted = list(zip(sets, self.rule.weights, strict=True))
+        for tile in pair_tiles(curve.mesh):
+            area = np.multiply.outer(curve.edge_lengths[tile.rows], curve.edge_lengths[tile.columns])
+            area[tile.excluded] = 0.0
+            for x, omega_x in weighted:
+                for y, omega_y in weighted:
+                    yield tile, x, y, area * (omega_x * omega_y)

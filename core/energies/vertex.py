@@ -1,0 +1,11 @@
+"""The vertex energy of Kusner and Sullivan: one point per edge, at its tail (Section 6.1.1 of [RS21])."""
+
+from .arc_density import ArcDensity
+from .kpoint import TAIL, KPointEnergy
+
+VERTEX_ENERGY = KPointEnergy(
+    name="vertex",
+    description="vertex energy of Kusner and Sullivan: 1/r² − 1/ϱ² at the edges' tails",
+    density=ArcDensity(),
+    rule=TAIL,
+)
