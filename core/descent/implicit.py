@@ -20,7 +20,7 @@ from .feasibility import restore
 from .method import State
 from .newton import energy_hessian, projected_conjugate_gradient
 from .problem import Point
-from .search import MAX_TRIALS, NormalStep, NoStep, Step
+from .search import MAX_TRIALS, SMALL_SHARE, NormalStep, NoStep, Step, sufficient
 
 FIRST_STEP = 0.1
 STEP_GROWTH = 2.0
@@ -49,12 +49,16 @@ class ImplicitFlow:
         for _ in range(MAX_TRIALS):
             solver = SaddleSolver(point.saddle.matrix / tau + preconditioner, ConstraintDerivative.at(point.curve))
             trial = _backward_euler(point, tau, share, solver)
-            slope = -math.inf if trial is None else float(np.sum(point.derivative * (trial.vertices - point.vertices)))
-            if trial is not None and slope < 0.0 and trial.energy <= point.energy + 0.25 * slope:
-                proof = point.problem.free_motion(point.vertices, trial.vertices)
-                if proof.time == 1.0:
-                    return Step(trial, tau, (trial.vertices,), limited_by), State(tau, tau)
-                limited_by = proof.pair
+            if trial is not None:
+                slope = float(np.sum(point.derivative * (trial.vertices - point.vertices)))
+                if slope > 0.0 and share > SMALL_SHARE:
+                    share *= 0.25  # the way to the target lengths costs more than the flow gains
+                    continue
+                if sufficient(trial.energy - point.energy, slope, point.energy):
+                    proof = point.problem.free_motion(point.vertices, trial.vertices)
+                    if proof.time == 1.0:
+                        return Step(trial, tau, (trial.vertices,), limited_by), State(tau, tau)
+                    limited_by = proof.pair
             tau *= 0.5
             share *= 0.5
         return NoStep.because(limited_by), state

@@ -14,6 +14,7 @@ COLLISION_FRACTION = 2.0 / 3.0  # of the first step with a contact, the first tr
 MAX_DISPLACEMENT = 0.5  # of any vertex in one step, in the program's units (a component is 4 to 8 long)
 MAX_TRIALS = 40
 LENGTH_CHANGE = 0.25  # largest logarithmic change of an edge length in one step, on the way to the targets
+SMALL_SHARE = 0.01  # of the way to the target lengths, taken even where it costs more energy than can be gained
 FEASIBLE = 1e-7  # residual below which the curve counts as being on the constraints
 
 
@@ -83,7 +84,7 @@ def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | N
             shrink *= 0.5
             continue
         excess = trial.energy - point.energy
-        if not _sufficient(excess, slope, point.energy):
+        if not sufficient(excess, slope, point.energy):
             shrink *= _interpolated(excess, slope)
             continue
         proof = point.problem.free_motion(point.vertices, trial.vertices)
@@ -145,10 +146,10 @@ class NormalStep:
         """
         if self.longest * self.cost <= 0.5 * gain:
             return self.longest
-        return max(0.5 * gain / self.cost, 0.01 * self.longest)
+        return max(0.5 * gain / self.cost, SMALL_SHARE * self.longest)
 
 
-def _sufficient(excess: float, slope: float, energy: float) -> bool:
+def sufficient(excess: float, slope: float, energy: float) -> bool:
     """Armijo's rule; where the lengths' cost makes the slope positive, the energy may rise by twice the prediction.
 
     Differences below the rounding of the energy count as none.
