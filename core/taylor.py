@@ -16,6 +16,7 @@ from .errors import OptionError
 from .types import FloatArray
 
 WINDOW = 5  # consecutive steps that make one fit
+ROUNDING = 1e-15  # remainders below this part of the function are not looked at
 
 
 def taylor_slope(
@@ -44,7 +45,7 @@ def taylor_slope(
     Returns
     -------
     float
-        The slope; ``len(terms)`` if the terms are right, inf if the remainder vanishes altogether.
+        The slope; ``len(terms)`` if the terms are right, inf if the remainder vanishes.
 
     Raises
     ------
@@ -88,10 +89,13 @@ def _along(
 
 
 def _remainder(function: Callable[[float], npt.ArrayLike], terms: Sequence[npt.ArrayLike], t: float) -> float:
-    remainder = np.asarray(function(t), dtype=np.float64)
+    """Size of the remainder, 0 if it is nothing but the rounding of the function's values."""
+    value = np.asarray(function(t), dtype=np.float64)
+    remainder = value
     for k, term in enumerate(terms):
         remainder = remainder - np.asarray(term) * (t**k / math.factorial(k))
-    return float(np.linalg.norm(remainder))
+    size = float(np.linalg.norm(remainder))
+    return size if size > ROUNDING * float(np.linalg.norm(value)) else 0.0
 
 
 def _line(x: FloatArray, y: FloatArray) -> tuple[float, float]:

@@ -13,6 +13,7 @@ import numpy as np
 from ..quadrature import gauss_legendre
 from ..types import FloatArray, IntArray
 from .edge_pairs import EdgePairs
+from .moments import CONTACT
 
 _EXPONENT = 40.0  # convergence exponent of the panels: 5e-9 relative on the hardest pairs tried, gaps to 1e-7
 _POINT_COUNTS = np.array([8, 12, 16, 24, 32, 48, 64, 96, 128])
@@ -33,7 +34,7 @@ def graded_points(pairs: EdgePairs) -> Iterator[tuple[IntArray, FloatArray, Floa
     half = 0.5 * np.diff(breaks, axis=1)
     start = np.concatenate([breaks[:, :-1], breaks[:, 1:]], axis=1)
     signed_half = np.concatenate([half, -half], axis=1)
-    width = np.concatenate([delta[:, :-1], delta[:, 1:]], axis=1)
+    width = np.maximum(np.concatenate([delta[:, :-1], delta[:, 1:]], axis=1), CONTACT)
     pair, panel = np.nonzero(signed_half)
     start, signed_half, width = start[pair, panel], signed_half[pair, panel], width[pair, panel]
     reach = np.arcsinh(np.abs(signed_half) / width)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..types import BoolArray, FloatArray
 
+CONTACT = 1e-16  # distance of edges, relative to their length, below which they count as that far apart
 _SERIES_TERMS = 14
 _SERIES_LIMIT = 0.0625  # of (h/w)²: up to here series, above it closed forms; both to 1e-13
 
@@ -24,7 +25,11 @@ class Moments(NamedTuple):
 
 
 def moments(h2: FloatArray, a: FloatArray, b: FloatArray, cubes: bool) -> Moments:
-    """The moments for arrays h² ≥ 0 and a < b of one shape; h may vanish if 0 is not between a and b."""
+    """The moments for arrays h² ≥ 0 and a < b of one shape.
+
+    A point on the edge counts as being 10⁻¹⁶ of the edge's length away, so that nothing is infinite.
+    """
+    h2 = np.maximum(h2, ((b - a) * CONTACT) ** 2)
     h = np.sqrt(h2)
     # if the foot is well outside the edge, nothing may be divided by h
     outside = a * b > h2
