@@ -21,7 +21,7 @@ Vector = tuple[Polynomial, ...]
 Motion = tuple[Vector, Vector, Vector]  # D, e, f, each linear
 
 _MAX_DEPTH = 60  # shortest interval 2^-60
-_FINEST = 2.0**-32  # relative length of an interval that is given up
+_FINEST = 2.0**-52  # relative length of an interval that is given up
 _SURE = 2.0**-10  # relative length below which a robust crossing needs no further localising
 _NORMALS_EVERY = 3  # levels of halving from one attempt with moving planes to the next: they are dear
 _MAX_INTERVALS = 600  # a bound for pathological motions that touch all the time
@@ -107,10 +107,14 @@ def _crosses(motion: Motion) -> bool:
     if len(motion[0]) == 2:
         return _crosses_in_plane(motion)
     volume = _volume(motion)
-    if volume[0] * volume[-1] >= 0:
-        return False
-    scale = max(abs(p[0]) for vector in motion for p in vector)
-    D, e, f = (np.array([p[0] / scale for p in vector]) for vector in motion)
+    return volume[0] * volume[-1] < 0 and _well_inside(motion, 0) and _well_inside(motion, -1)
+
+
+def _well_inside(motion: Motion, time: int) -> bool:
+    """Whether the point where the lines come nearest is well inside both edges, at the first or last time."""
+    vectors = [[p[time] for p in vector] for vector in motion]
+    scale = max(abs(x) for vector in vectors for x in vector)
+    D, e, f = (np.array([x / scale for x in vector]) for vector in vectors)
     solution = np.linalg.lstsq(np.stack([e, -f], axis=1), -D, rcond=None)[0]
     return bool(((solution > 0.01) & (solution < 0.99)).all())
 
