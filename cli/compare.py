@@ -10,11 +10,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core import METHODS, RelaxOptions, read_curve
+from ..core import METHODS, read_curve
 from ..core.compare import Run, compare
 from ..core.errors import MobiusFlowError, OptionError
 from ..core.files import atomic_write
 from ..core.relax import method_named
+from . import options as relax_options
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -24,12 +25,12 @@ def add_to(subparsers: "Subparsers") -> None:
     """Add the subcommand."""
     parser = subparsers.add_parser("compare", help="compare descent methods on a curve", description=__doc__)
     parser.add_argument("input", metavar="IN", help="closed polygons: .txt/.xyz, .obj, .vect or .json")
-    parser.add_argument("--methods", metavar="A,B,…", help=f"names, comma separated (default: all: {','.join(METHODS)})")
+    parser.add_argument(
+        "--methods", metavar="A,B,…", help=f"names, comma separated (default: all: {','.join(METHODS)})"
+    )
     parser.add_argument("--time-limit", type=float, default=30.0, metavar="S", help="seconds per method (30)")
-    parser.add_argument("--max-iterations", type=int, default=RelaxOptions().max_iterations, metavar="K")
-    parser.add_argument("--tolerance", type=float, default=RelaxOptions().tolerance, metavar="T")
-    parser.add_argument("--vertices", type=int, metavar="N")
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"one of {', '.join(WRITERS)}")
+    relax_options.add_to(parser, method=False)
     parser.set_defaults(run=run)
 
 
@@ -43,11 +44,9 @@ def run(options: argparse.Namespace) -> int:
     names = list(METHODS) if options.methods is None else [name.strip() for name in options.methods.split(",")]
     for name in names:
         method_named(name)
-    relax_options = RelaxOptions(
-        max_iterations=options.max_iterations, tolerance=options.tolerance, vertices=options.vertices
-    )
+    wanted = relax_options.from_arguments(options)
     runs = []
-    for result in compare(read_curve(options.input), names, relax_options, options.time_limit):
+    for result in compare(read_curve(options.input), names, wanted, options.time_limit):
         runs.append(result)
         print(_line(result), file=sys.stderr, flush=True)
     try:

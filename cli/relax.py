@@ -5,9 +5,10 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from ..core import METHODS, Curve, Iterate, RelaxOptions, Result, Status, Trajectory, minimize, read_curve
+from ..core import Curve, Iterate, RelaxOptions, Result, Status, Trajectory, minimize, read_curve
 from ..core.errors import MobiusFlowError
 from ..core.files import atomic_write
+from . import options as relax_options
 from .outputs import OUTPUTS, Output, output_for
 from .progress import Progress
 
@@ -19,37 +20,22 @@ EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1
 
 def add_to(subparsers: "Subparsers") -> None:
     """Add the subcommand."""
-    defaults = RelaxOptions()
     parser = subparsers.add_parser("relax", help="relax a curve", description=__doc__)
     parser.add_argument("input", metavar="IN", help="closed polygons: .txt/.xyz, .obj, .vect or .json")
     parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(OUTPUTS)}")
-    parser.add_argument("--method", default=defaults.method, metavar="M", help=f"one of {', '.join(METHODS)}")
-    parser.add_argument("--max-iterations", type=int, default=defaults.max_iterations, metavar="K")
-    parser.add_argument(
-        "--tolerance",
-        type=float,
-        default=defaults.tolerance,
-        metavar="T",
-        help="stop at |projected gradient| ≤ T √E in the method's metric (default: %(default)s)",
-    )
-    parser.add_argument("--vertices", type=int, metavar="N", help="refine to N vertices (default: by strand distance)")
     parser.add_argument("--report", metavar="R.json", help="write what happened as JSON")
     parser.add_argument("--trajectory", metavar="T.npz", help="write the certified path, for mobius-flow verify")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    relax_options.add_to(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Relax, write everything asked for, and return the exit status."""
-    relax_options = RelaxOptions(
-        method=options.method,
-        max_iterations=options.max_iterations,
-        tolerance=options.tolerance,
-        vertices=options.vertices,
-    )
+    wanted = relax_options.from_arguments(options)
     output = output_for(options.output)
     curve = read_curve(options.input)
-    result, iterates, trajectory = _relax(curve, relax_options, output, options)
+    result, iterates, trajectory = _relax(curve, wanted, output, options)
     output.write(options.output, result, iterates)
     if options.report is not None:
         _write_report(options.report, result)
@@ -61,11 +47,11 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _relax(
-    curve: Curve, relax_options: RelaxOptions, output: Output, options: argparse.Namespace
+    curve: Curve, wanted: RelaxOptions, output: Output, options: argparse.Namespace
 ) -> tuple[Result, list[Iterate], Trajectory]:
     iterates: list[Iterate] = []
     trajectory = Trajectory()
-    with Progress(relax_options, shown=not options.quiet and sys.stderr.isatty()) as progress:
+    with Progress(wanted, shown=not options.quiet and sys.stderr.isatty()) as progress:
 
         def on_iterate(iterate: Iterate) -> None:
             progress.update(iterate)
@@ -74,7 +60,7 @@ def _relax(
             if options.trajectory is not None:
                 trajectory.add(iterate)
 
-        return minimize(curve, relax_options, on_iterate), iterates, trajectory
+        return minimize(curve, wanted, on_iterate), iterates, trajectory
 
 
 def _write_report(path: str, result: Result) -> None:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 from .errors import OptionError
 
+EDGE_LENGTHS = ("equal", "keep")
+
 
 @dataclass(frozen=True, kw_only=True)
 class RelaxOptions:
@@ -21,6 +23,16 @@ class RelaxOptions:
     vertices
         Number of vertices to refine to; None chooses it so that neighbouring vertices are nearer
         than strands (Section 6.1.3 of [RS21]).
+    energy
+        Name of the energy, see ``mobius_flow.core.energies.ENERGIES``; the barrier is added to every one.
+    metric
+        Name of the metric, see ``mobius_flow.core.metrics.METRICS``; None is the method's own.
+    quadrature_points
+        Gauss points per edge of the metric J_C.
+    penalty
+        Weight α of the length penalty of the infeasible methods; None is their default.
+    edge_lengths
+        Targets ℓ⁰: "equal" within each component, or "keep" those of the refined start.
 
     Raises
     ------
@@ -32,6 +44,11 @@ class RelaxOptions:
     max_iterations: int = 2000
     tolerance: float = 1e-4
     vertices: int | None = None
+    energy: str = "moebius"
+    metric: str | None = None
+    quadrature_points: int = 1
+    penalty: float | None = None
+    edge_lengths: str = "equal"
 
     def __post_init__(self) -> None:
         if self.max_iterations < 0:
@@ -40,3 +57,9 @@ class RelaxOptions:
             raise OptionError(f"tolerance is {self.tolerance}; it must be a finite number above 0")
         if self.vertices is not None and self.vertices < 3:
             raise OptionError(f"vertices is {self.vertices}; it must be 3 or more")
+        if self.quadrature_points < 1:
+            raise OptionError(f"quadrature_points is {self.quadrature_points}; it must be 1 or more")
+        if self.penalty is not None and not (math.isfinite(self.penalty) and self.penalty > 0):
+            raise OptionError(f"penalty is {self.penalty}; it must be a finite number above 0")
+        if self.edge_lengths not in EDGE_LENGTHS:
+            raise OptionError(f"edge_lengths is {self.edge_lengths!r}; choose one of {', '.join(EDGE_LENGTHS)}")

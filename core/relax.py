@@ -1,8 +1,9 @@
 """The one driver: `relax` yields the iterates of a relaxation, `minimize` runs it to its end."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -10,13 +11,15 @@ from .collision import check_embedded
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
 from .descent import METHODS, Method, NoStep, Point, Problem, State
-from .energies import MoebiusEnergy, Objective
+from .energies import ENERGIES, MoebiusEnergy, Objective
 from .errors import OptionError
 from .iterate import Iterate, Status
+from .metrics import METRICS, MoebiusMetric
 from .options import RelaxOptions
 from .types import FloatArray
 from .units import Units
 
+_Entry = TypeVar("_Entry")
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
 
 
@@ -91,7 +94,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     method = method_named(options.method)
     check_embedded(curve)
     refined = refine(curve, options.vertices)
-    return _iterates(start_problem(refined, method), refined, method, options)
+    return _iterates(start_problem(refined, options), refined, method, options)
 
 
 def minimize(
@@ -131,20 +134,49 @@ def minimize(
 
 def method_named(name: str) -> Method:
     """Look a method up; an OptionError lists the known ones."""
-    if name not in METHODS:
-        raise OptionError(f"method {name!r} is unknown; choose one of {', '.join(METHODS)}")
-    return METHODS[name]
+    return _named(METHODS, "method", name)
 
 
-def start_problem(curve: Curve, method: Method) -> Problem:
-    """The problem of relaxing a curve at equal edge lengths within each component, its length and barycenter kept."""
+def _named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
+    if name not in table:
+        raise OptionError(f"{kind} {name!r} is unknown; choose one of {', '.join(table)}")
+    return table[name]
+
+
+def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
+    """The problem of relaxing a refined curve: its lengths or equal ones, and its barycenter, are prescribed.
+
+    Raises
+    ------
+    OptionError
+        If an option names something unknown, or a method and an energy do not go together.
+    """
+    method = method_named(options.method)
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
-    lengths = [np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices]
-    constraints = Constraints(np.concatenate(lengths), weighted_barycenter(start))
-    return Problem(
-        curve.mesh, Objective(), method.metric, constraints, units, method.penalty, extended=method.metric.name != "l2"
-    )
+    constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
+    objective = Objective(_named(ENERGIES, "energy", options.energy))
+    if method.second_order and not objective.has_hessian:
+        raise OptionError(f"method {method.name!r} needs a second derivative, which energy {options.energy!r} lacks")
+    metric = method.metric if options.metric is None else _named(METRICS, "metric", options.metric)
+    if options.quadrature_points > 1:
+        if not isinstance(metric, MoebiusMetric):
+            raise OptionError(
+                f"quadrature_points is {options.quadrature_points}; metric {metric.name!r} has no such rule"
+            )
+        metric = MoebiusMetric(options.quadrature_points)
+    penalty = method.penalty
+    if options.penalty is not None:
+        if penalty is None:
+            raise OptionError(f"penalty is {options.penalty}; method {method.name!r} keeps lengths and has no penalty")
+        penalty = options.penalty
+    return Problem(curve.mesh, objective, metric, constraints, units, penalty, extended=metric.name != "l2")
+
+
+def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:
+    if options.edge_lengths == "keep":
+        return start.edge_lengths
+    return np.concatenate([np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices])
 
 
 def _iterates(problem: Problem, start: Curve, method: Method, options: RelaxOptions) -> Iterator[Iterate]:

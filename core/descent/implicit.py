@@ -10,6 +10,7 @@ conjugate gradients its linear systems, preconditioned by A/τ + J_C.
 
 import math
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -37,7 +38,8 @@ class ImplicitFlow:
     name: str
     description: str
     metric: Metric
-    penalty: None = None
+    penalty: ClassVar[None] = None
+    second_order: ClassVar[bool] = True
     preconditioner: MoebiusMetric = field(default_factory=MoebiusMetric)
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:

@@ -1,7 +1,7 @@
 """A descent method: a direction, found in a metric, and a step search.  Adding one is a file and a registry line."""
 
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -43,6 +43,10 @@ class Method(Protocol):
     def penalty(self) -> float | None:
         """α if the method minimises the penalised energy, None if it keeps the constraints."""
 
+    @property
+    def second_order(self) -> bool:
+        """Whether the method needs the energy's second derivative."""
+
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Take one certified step."""
 
@@ -67,6 +71,7 @@ class LineSearchMethod:
     metric: Metric
     direction: Direction
     penalty: float | None = None
+    second_order: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         check_penalty(self.penalty)

@@ -6,6 +6,7 @@ Both sub-steps are truncated by collision detection, and the momentum is reset w
 
 import math
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -33,6 +34,7 @@ class AcceleratedGradient:
     description: str
     metric: Metric
     penalty: float
+    second_order: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         check_penalty(self.penalty)

@@ -7,6 +7,7 @@ blend of Byrd, Schnabel and Shultz (1987) with the two-dimensional subspace meth
 
 import math
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import eigh
@@ -39,7 +40,8 @@ class TrustRegion:
     name: str
     description: str
     metric: Metric
-    penalty: None = None
+    penalty: ClassVar[None] = None
+    second_order: ClassVar[bool] = True
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Shrink the radius until the step is feasible, free of contact and as good as predicted."""
