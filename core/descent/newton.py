@@ -40,6 +40,20 @@ def lagrangian_hessian(point: Point) -> LinearMap:
     return apply
 
 
+def lagrangian_hessian_matrix(point: Point) -> FloatArray:
+    """The same as a dense symmetric matrix, shape (n·m, n·m)."""
+    ell, mesh = point.curve.edge_lengths, point.problem.mesh
+    n, m = point.vertices.shape
+    tau = point.curve.edge_vectors / ell[:, None]
+    weight = point.multipliers[: len(ell)] / ell**2
+    matrix = point.problem.objective.hessian(point.curve).reshape(n, m, n, m)
+    blocks = weight[:, None, None] * (np.eye(m) - 2.0 * tau[:, :, None] * tau[:, None, :])
+    tail, head = mesh.tails, mesh.heads
+    for a, b, sign in ((tail, tail, -1.0), (head, head, -1.0), (tail, head, 1.0), (head, tail, 1.0)):
+        np.add.at(matrix, (a, slice(None), b), sign * blocks)
+    return matrix.reshape(n * m, n * m)
+
+
 def projected_conjugate_gradient(
     operator: LinearMap, right: FloatArray, solver: SaddleSolver, tolerance: float, max_iterations: int
 ) -> FloatArray:

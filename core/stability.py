@@ -1,0 +1,55 @@
+"""Minimum or saddle: the Lagrangian's Hessian on the tangent space of the constraints."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh, qr
+
+from .constraints import ConstraintDerivative
+from .descent import Point
+from .descent.newton import lagrangian_hessian_matrix
+from .types import FloatArray
+
+ZERO = 1e-5  # eigenvalues against J_C below this count as 0: rotations and sliding are flat directions
+
+
+@dataclass(frozen=True, eq=False)
+class Stability:
+    """Second-order information at a critical point.
+
+    Attributes
+    ----------
+    eigenvalues
+        The lowest eigenvalues against the metric, in ascending order; shape (k,).
+    directions
+        Their eigenvectors, tangent and of length 1 in the metric; shape (k, n, m).
+    """
+
+    eigenvalues: FloatArray
+    directions: FloatArray
+
+    @property
+    def index(self) -> int:
+        """Number of negative eigenvalues: 0 at a minimum, more at a saddle."""
+        return int(np.count_nonzero(self.eigenvalues < -ZERO))
+
+
+def stability(point: Point, count: int = 20) -> Stability:
+    """The lowest ``count`` eigenvalues of D²E − Σ λ_I D²Φ_I on ker DΦ, against the metric.
+
+    Dense: O((n m)³) operations and O((n m)²) memory.
+    """
+    n, m = point.vertices.shape
+    tangent = _tangent_basis(point.saddle.constraints)
+    hessian = tangent.T @ lagrangian_hessian_matrix(point) @ tangent
+    gram = tangent.T @ np.kron(point.saddle.matrix, np.eye(m)) @ tangent
+    last = min(count, len(gram)) - 1
+    values, vectors = eigh(0.5 * (hessian + hessian.T), 0.5 * (gram + gram.T), subset_by_index=(0, last))
+    return Stability(values, np.ascontiguousarray((tangent @ vectors).T).reshape(-1, n, m))
+
+
+def _tangent_basis(constraints: ConstraintDerivative) -> FloatArray:
+    """Orthonormal basis of ker DΦ, as columns; shape (n·m, (n − 1)·m − n)."""
+    rows = len(constraints.tangents) + len(constraints.barycenter)
+    transposed = np.stack([constraints.apply_transpose(unit).ravel() for unit in np.eye(rows)], axis=1)
+    return np.asarray(qr(transposed)[0][:, rows:])
