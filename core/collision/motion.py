@@ -78,8 +78,8 @@ def _search(mesh: Mesh, start: FloatArray, end: FloatArray, *, exhaustive: bool)
             f"start and end have shapes {start.shape} and {end.shape}; "
             f"both must be ({mesh.size}, 2) or ({mesh.size}, 3)"
         )
-    size = max(float(np.abs(start).max()), float(np.abs(end).max()))
-    if not np.isfinite(size):
+    size = np.maximum(np.abs(start).max(), np.abs(end).max())
+    if not np.isfinite(size):  # NumPy's maximum, unlike Python's, is NaN if one is
         return FreeMotion(0.0, None, Limit.NOT_FINITE)
     # A power of two changes no digit, but keeps products away from overflow and underflow.
     unit = -np.frexp(size)[1]
