@@ -40,6 +40,8 @@ class Iterate:
         True if every leg from the start of the run to here was proved free of contact.
     edge_length_error
         max |log ℓ/ℓ⁰| over the edges.
+    negative_eigenvalues
+        Of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum, more at a saddle.
     status
         RUNNING, or the reason why this is the last iterate.
     message
@@ -54,5 +56,6 @@ class Iterate:
     path: tuple[FloatArray, ...]
     certified: bool
     edge_length_error: float
+    negative_eigenvalues: int | None = None
     status: Status = Status.RUNNING
     message: str = ""

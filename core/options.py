@@ -31,6 +31,10 @@ class RelaxOptions:
         Gauss points per edge of the metric J_C.
     penalty
         Weight α of the length penalty of the infeasible methods; None is their default.
+    stability
+        Tell whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian.
+    escape_saddles
+        Do so, and go on downhill from a saddle.
     edge_lengths
         Targets ℓ⁰: "equal" within each component, or "keep" those of the refined start.
 
@@ -49,6 +53,8 @@ class RelaxOptions:
     quadrature_points: int = 1
     penalty: float | None = None
     edge_lengths: str = "equal"
+    stability: bool = False
+    escape_saddles: bool = False
 
     def __post_init__(self) -> None:
         if self.max_iterations < 0:

@@ -11,11 +11,13 @@ from .collision import check_embedded
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
 from .descent import METHODS, Method, NoStep, Point, Problem, State
+from .descent.escape import escape_step
 from .energies import ENERGIES, MoebiusEnergy, Objective
 from .errors import OptionError
 from .iterate import Iterate, Status
 from .metrics import METRICS, MoebiusMetric
 from .options import RelaxOptions
+from .stability import stability
 from .types import FloatArray
 from .units import Units
 
@@ -43,6 +45,8 @@ class Result:
         max |log ℓ/ℓ⁰| over the edges.
     method
         Name of the method.
+    negative_eigenvalues
+        Of the Lagrangian's Hessian, if asked for: 0 at a minimum.
     """
 
     curve: Curve
@@ -53,6 +57,7 @@ class Result:
     certified: bool
     edge_length_error: float
     method: str
+    negative_eigenvalues: int | None
 
     def report(self) -> dict[str, object]:
         """The result as the plain values that ``--report`` writes."""
@@ -68,6 +73,7 @@ class Result:
             "max_edge_length_error": self.edge_length_error,
             "certified": self.certified,
             "method": self.method,
+            "negative_eigenvalues": self.negative_eigenvalues,
         }
 
 
@@ -129,6 +135,7 @@ def minimize(
         certified=last.certified,
         edge_length_error=last.edge_length_error,
         method=options.method,
+        negative_eigenvalues=last.negative_eigenvalues,
     )
 
 
@@ -156,8 +163,13 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
     objective = Objective(_named(ENERGIES, "energy", options.energy))
-    if method.second_order and not objective.has_hessian:
-        raise OptionError(f"method {method.name!r} needs a second derivative, which energy {options.energy!r} lacks")
+    second_order = method.second_order or options.stability or options.escape_saddles
+    if second_order and not objective.has_hessian:
+        raise OptionError(
+            f"{method.name} with these options needs a second derivative; energy {options.energy} has none"
+        )
+    if (options.stability or options.escape_saddles) and method.penalty is not None:
+        raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
     metric = method.metric if options.metric is None else _named(METRICS, "metric", options.metric)
     if options.quadrature_points > 1:
         if not isinstance(metric, MoebiusMetric):
@@ -184,12 +196,14 @@ def _iterates(problem: Problem, start: Curve, method: Method, options: RelaxOpti
     iterate = _iterate(problem, point, start, 0, 0.0, ())
     state = State()
     while True:
-        status, message = _status(point, iterate, options)
-        iterate = replace(iterate, status=status, message=message)
+        iterate, way_down = _judged(point, iterate, options)
         yield iterate
-        if status is not Status.RUNNING:
+        if iterate.status is not Status.RUNNING:
             return
-        step, state = method.step(point, state)
+        if way_down is None:
+            step, state = method.step(point, state)
+        else:
+            step, state = escape_step(point, *way_down), State()
         if isinstance(step, NoStep):
             yield replace(iterate, status=Status.STALLED, message=f"stalled: {step.reason}", path=())
             return
@@ -213,11 +227,22 @@ def _iterate(
     )
 
 
-def _status(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Status, str]:
+def _judged(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Iterate, tuple[FloatArray, float] | None]:
+    """The iterate with its status, and from a saddle the way down: a direction and its negative curvature."""
     bound = options.tolerance * np.sqrt(abs(point.energy))
     feasible = point.problem.penalty is not None or iterate.edge_length_error <= LENGTHS_REACHED
+    way_down = None
     if iterate.gradient_norm <= bound and feasible:
-        return Status.CONVERGED, f"converged: projected gradient {iterate.gradient_norm:.3g} ≤ {bound:.3g}"
-    if iterate.index >= options.max_iterations:
-        return Status.ITERATION_LIMIT, f"stopped after {iterate.index} iterations, as asked for"
-    return Status.RUNNING, ""
+        message = f"converged: projected gradient {iterate.gradient_norm:.3g} ≤ {bound:.3g}"
+        iterate = replace(iterate, status=Status.CONVERGED, message=message)
+        if options.stability or options.escape_saddles:
+            found = stability(point)
+            kind = f"; a saddle with index {found.index}" if found.index else "; a minimum"
+            iterate = replace(iterate, negative_eigenvalues=found.index, message=message + kind)
+            if options.escape_saddles and found.index:
+                iterate = replace(iterate, status=Status.RUNNING, message="")
+                way_down = found.directions[0], float(found.eigenvalues[0])
+    if iterate.status is not Status.CONVERGED and iterate.index >= options.max_iterations:
+        message = f"stopped after {iterate.index} iterations, as asked for"
+        iterate = replace(iterate, status=Status.ITERATION_LIMIT, message=message)
+    return iterate, way_down

@@ -1,0 +1,194 @@
+"""What the paper and the README claim about the methods."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, OptionError, RelaxOptions, Status, minimize, relax
+from mobius_flow.core.descent.feasibility import restore
+from mobius_flow.core.descent.newton import lagrangian_hessian, lagrangian_hessian_matrix
+from mobius_flow.core.relax import start_problem
+from mobius_flow.core.stability import stability
+from mobius_flow.core.taylor import taylor_slope
+from shapes import shared_knot, torus_trefoil
+
+
+def torus_knot(p: int, q: int, n: int) -> Curve:
+    t = 2 * np.pi * np.arange(n) / n
+    radius = 2 + np.cos(q * t)
+    return Curve(np.stack([radius * np.cos(p * t), radius * np.sin(p * t), np.sin(q * t)], axis=1))
+
+
+def point_at(curve: Curve, **options):
+    problem = start_problem(curve, RelaxOptions(**options))
+    return problem.at(problem.units.from_user(curve.vertices))
+
+
+def iterations(method: str, n: int, limit: int) -> int:
+    options = RelaxOptions(method=method, tolerance=1e-3, vertices=n, max_iterations=limit)
+    result = minimize(torus_trefoil(n), options)
+    return len(result.energies) - 1 if result.status is Status.CONVERGED else limit
+
+
+@pytest.mark.parametrize("method", ["flow-moebius", "lbfgs", "trust-region"])
+def test_iterations_do_not_depend_on_the_mesh(method):
+    counts = [iterations(method, n, 60) for n in (100, 200, 400, 800)]
+    assert counts[0] < 60
+    assert max(counts) < 1.3 * min(counts) + 1
+
+
+def test_the_l2_flow_depends_on_the_mesh():
+    """After as many steps, the finer mesh is far behind: L² steps are bounded by a power of the edge length."""
+    left = []
+    for n in (50, 100):
+        result = minimize(torus_trefoil(n), RelaxOptions(method="flow-l2", vertices=n, max_iterations=60))
+        best = minimize(torus_trefoil(n), RelaxOptions(vertices=n)).energies[-1]
+        left.append((result.energies[-1] - best) / (result.energies[0] - best))
+    assert left[1] > 1.5 * left[0] > 0
+    assert iterations("flow-l2", 100, 100) == 100
+    assert iterations("flow-moebius", 100, 100) < 20
+
+
+@pytest.fixture(scope="module")
+def minimum():
+    return minimize(torus_trefoil(120), RelaxOptions(method="trust-region", tolerance=1e-11, vertices=120))
+
+
+def test_trust_region_ends_superlinearly(minimum):
+    options = RelaxOptions(method="trust-region", tolerance=1e-11, vertices=120)
+    norms = [iterate.gradient_norm for iterate in relax(torus_trefoil(120), options)]
+    assert norms[-1] <= 1e-9
+    ratios = np.divide(norms[-2:], norms[-3:-1])
+    assert ratios[1] < 0.1
+    assert ratios[1] < ratios[0] or ratios.max() < 1e-2
+    assert minimum.status is Status.CONVERGED
+
+
+@pytest.mark.parametrize(
+    ("method", "tolerance", "relative"),
+    [
+        ("lbfgs", 1e-5, 1e-6),
+        ("cg", 1e-4, 1e-4),
+        ("flow-moebius", 1e-3, 1e-3),
+        ("flow-h3-2", 1e-3, 1e-3),
+        ("implicit-moebius", 1e-3, 1e-3),
+        ("penalty-lbfgs", 1e-4, 1e-3),
+        ("penalty-cg", 1e-2, 1e-3),
+        ("penalty-nesterov", 1e-2, 1e-3),
+    ],
+)
+def test_methods_agree_on_the_minimum(minimum, method, tolerance, relative):
+    options = RelaxOptions(method=method, tolerance=tolerance, vertices=120, max_iterations=800)
+    result = minimize(torus_trefoil(120), options)
+    assert result.status is Status.CONVERGED
+    assert result.energies[-1] == pytest.approx(minimum.energies[-1], rel=relative)
+
+
+@pytest.mark.parametrize("name", ["3_1.txt", "4_1.txt", "5_1.txt"])
+def test_table_by_extrapolation(name):
+    """Energies at three N, extrapolated in N⁻², against MATHS."""
+    expected = {"3_1.txt": 74.4120428860, "4_1.txt": 108.8237248, "5_1.txt": 130.7147956}[name]
+    counts = np.array([120, 170, 240])
+    options = [RelaxOptions(method="trust-region", vertices=int(n), tolerance=1e-6) for n in counts]
+    energies = [minimize(shared_knot(name), option).energies[-1] for option in options]
+    limit = np.polyfit(1.0 / counts**2, energies, 1)[1]
+    assert limit == pytest.approx(expected, rel=1e-3)
+
+
+def test_lagrangian_hessian_has_slope_three_on_the_constraint_set():
+    """E along the feasible curve Q(t) = restore(P + t v), v tangent: E' = DE·v and E'' = ⟨v, D²L v⟩ at t = 0."""
+    even = minimize(torus_trefoil(60), RelaxOptions(max_iterations=3, vertices=60)).curve
+    point = point_at(even)
+    rng = np.random.default_rng(23)
+    v = point.saddle.project(rng.normal(size=point.vertices.shape))
+    v /= np.abs(v).max()
+    hessian = lagrangian_hessian(point)
+
+    def along(t: float) -> float:
+        trial = restore(point, point.vertices + t * v, point.residual)
+        assert trial is not None
+        return trial.energy
+
+    terms = [point.energy, np.sum(point.derivative * v), np.sum(v * hessian(v))]
+    assert taylor_slope(along, terms, largest=0.01, halvings=12) == pytest.approx(3, abs=0.25)
+    wrong = [point.energy, np.sum(point.derivative * v), 1.1 * np.sum(v * hessian(v))]
+    assert taylor_slope(along, wrong, largest=0.01, halvings=12) < 2.5
+
+
+def test_lagrangian_hessian_matrix_is_the_operator():
+    point = point_at(torus_trefoil(40))
+    v = np.random.default_rng(29).normal(size=point.vertices.shape)
+    matrix = lagrangian_hessian_matrix(point)
+    np.testing.assert_allclose(matrix, matrix.T, atol=1e-9 * np.abs(matrix).max())
+    np.testing.assert_allclose(
+        (matrix @ v.ravel()).reshape(v.shape), lagrangian_hessian(point)(v), atol=1e-10 * np.abs(matrix).max()
+    )
+
+
+def test_trefoil_is_a_minimum_with_four_flat_and_two_soft_modes(minimum):
+    found = stability(point_at(minimum.curve))
+    assert found.index == 0
+    np.testing.assert_allclose(found.eigenvalues[:4], 0, atol=1e-9)
+    np.testing.assert_allclose(found.eigenvalues[4:6], 11 / 120**2, rtol=0.1)
+    assert found.eigenvalues[6] == pytest.approx(0.28, rel=0.05)
+
+
+@pytest.mark.parametrize(("p", "q", "index"), [(3, 4, 2), (3, 5, 4)])
+def test_torus_knots_that_are_saddles_can_be_left(p, q, index):
+    options = {"method": "trust-region", "tolerance": 1e-6, "vertices": 160, "max_iterations": 150}
+    stuck = minimize(torus_knot(p, q, 160), RelaxOptions(stability=True, **options))
+    assert stuck.status is Status.CONVERGED
+    assert stuck.negative_eigenvalues == index
+    assert "saddle" in stuck.message
+    free = minimize(torus_knot(p, q, 160), RelaxOptions(escape_saddles=True, **options))
+    assert free.negative_eigenvalues == 0
+    assert free.energies[-1] < stuck.energies[-1] - 1
+    assert free.certified
+
+
+def test_edge_length_distribution_hardly_matters():
+    """The paper's remark: a minimum with targets varying 4:1 along the curve is that of equal ones."""
+    n = 400
+    s = (np.arange(n) + 0.5) / n
+    t = 2 * np.pi * np.interp(np.arange(n) / n, np.linspace(0, 1, n + 1), _graded(s))
+    radius = 2 + np.cos(3 * t)
+    graded = Curve(np.stack([radius * np.cos(2 * t), radius * np.sin(2 * t), np.sin(3 * t)], axis=1))
+    assert graded.edge_lengths.max() > 4 * graded.edge_lengths.min()
+    options = {"method": "trust-region", "vertices": n, "tolerance": 1e-4}
+    kept = minimize(graded, RelaxOptions(edge_lengths="keep", **options))
+    equal = minimize(torus_trefoil(n), RelaxOptions(**options))
+    assert kept.status is equal.status is Status.CONVERGED
+    assert kept.edge_length_error < 1e-7
+    assert kept.energies[-1] == pytest.approx(equal.energies[-1], rel=5e-3)
+
+
+def _graded(s: np.ndarray) -> np.ndarray:
+    """Parameters of n + 1 points whose spacing varies 4:1."""
+    density = 1 + 0.6 * np.cos(2 * np.pi * s)
+    return np.concatenate([[0], np.cumsum(density) / density.sum()])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"energy": "gravity"}, "energy 'gravity' is unknown; choose one of moebius"),
+        ({"metric": "l7"}, "metric 'l7' is unknown; choose one of l2"),
+        ({"quadrature_points": 0}, "quadrature_points is 0"),
+        ({"quadrature_points": 2, "metric": "l2"}, "has no such rule"),
+        ({"penalty": -1.0}, "penalty is -1"),
+        ({"penalty": 5.0}, "has no penalty"),
+        ({"edge_lengths": "odd"}, "edge_lengths is 'odd'"),
+        ({"method": "trust-region", "energy": "edge"}, "second derivative"),
+        ({"method": "penalty-cg", "stability": True}, "penalises lengths"),
+    ],
+)
+def test_bad_options(options, message):
+    with pytest.raises(OptionError, match=message):
+        relax(torus_trefoil(60), RelaxOptions(**options))
+
+
+@pytest.mark.parametrize("energy", ["edge", "vertex", "moebius-k2", "tangent-point"])
+@pytest.mark.parametrize("metric", ["l2", "h1", "h3-2", "h2", "moebius"])
+def test_every_energy_in_every_metric_goes_down(energy, metric):
+    options = RelaxOptions(energy=energy, metric=metric, max_iterations=3, vertices=60)
+    energies = minimize(torus_trefoil(60), options).energies
+    assert len(energies) == 4
+    assert all(b < a for a, b in zip(energies, energies[1:], strict=False))
