@@ -40,8 +40,8 @@ def at_time(values: FloatArray, t: FloatArray) -> FloatArray:
 def closest_chord(motion: FloatArray) -> FloatArray:
     """Return the vector from the closest point of y to the closest point of x.
 
-    ``motion`` holds D, e, f at one time, shape (3, m, pairs); the result has shape (m, pairs). No proof depends on its
-    accuracy.
+    ``motion`` holds D, e, f at one time, shape (3, m, pairs); the result has shape (m, pairs). It is 0 where segments
+    in the plane cross. No proof depends on its accuracy.
     """
     D, e, f = motion
     ee, ef, ff = (_dot(u, v) for u, v in ((e, e), (e, f), (f, f)))
@@ -57,12 +57,11 @@ def closest_chord(motion: FloatArray) -> FloatArray:
     chords[3] = D - f + s[1] * e
     nearest = np.einsum("kmp,kmp->kp", chords, chords).argmin(axis=0)
     chord = np.take_along_axis(chords, nearest[None, None], axis=0)[0]
-    if len(D) == 3:
-        sine = ee * ff - ef * ef
-        s, r = ef * Df - ff * De, ee * Df - ef * De
-        inner = (sine > _PARALLEL * ee * ff) & (s > 0) & (s < sine) & (r > 0) & (r < sine)
-        if inner.any():
-            chord[:, inner] = _common_normal(D[:, inner], e[:, inner], f[:, inner])
+    sine = ee * ff - ef * ef
+    s, r = ef * Df - ff * De, ee * Df - ef * De
+    inner = (sine > _PARALLEL * ee * ff) & (s > 0) & (s < sine) & (r > 0) & (r < sine)
+    if inner.any():
+        chord[:, inner] = _common_normal(D[:, inner], e[:, inner], f[:, inner]) if len(D) == 3 else 0.0
     return np.asarray(chord)
 
 

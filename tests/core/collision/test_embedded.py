@@ -1,0 +1,102 @@
+"""Curves that touch themselves are refused, with a sentence that says where."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, CurveError
+from mobius_flow.core.collision import check_embedded
+from shapes import hopf_link, regular_polygon, torus_trefoil
+
+SQUARE = [[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+FAR_SQUARE = [[5.0, 5, 5], [6, 5, 5], [6, 6, 5], [5, 6, 5]]
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6, 1e-300])
+@pytest.mark.parametrize(
+    "curve",
+    [torus_trefoil(300), hopf_link(50), regular_polygon(3), regular_polygon(7, dimension=2), Curve(SQUARE)],
+    ids=["trefoil", "link", "triangle", "plane", "square"],
+)
+def test_embedded_curves_pass(curve: Curve, scale: float) -> None:
+    check_embedded(curve.with_vertices(scale * curve.vertices))
+
+
+def refusal(curve: Curve) -> str:
+    with pytest.raises(CurveError) as caught:
+        check_embedded(curve)
+    return str(caught.value)
+
+
+def test_repeated_point() -> None:
+    points = SQUARE[:2] + SQUARE[1:]
+    expected = "component 1: vertices 2 and 3 are the same point (1, 0, 0); remove one of them"
+    assert refusal(Curve(points)) == expected
+    closing = Curve.from_components([FAR_SQUARE, [*SQUARE, SQUARE[0]]])
+    assert refusal(closing) == "component 2: vertices 5 and 1 are the same point (0, 0, 0); remove one of them"
+
+
+@pytest.mark.parametrize("m", [2, 3, 4])
+def test_doubled_back(m: int) -> None:
+    spike = np.zeros((5, m))
+    spike[:, :2] = [[0, 0], [1, 0], [3, 3], [2, 2], [0, 1]]
+    spike[1, :2] = [1, 1]
+    expected = (
+        f"component 1: edge 3 doubles back on edge 2 at vertex 3, (3, 3{', 0' * (m - 2)}); move or remove that vertex"
+    )
+    assert refusal(Curve(spike)) == expected
+
+
+def test_flat_triangle_is_doubled_back() -> None:
+    for flat in ([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0]], [[0.1, 0.1, 0.1], [0.3, 0.3, 0.3], [0.2, 0.2, 0.2]]):
+        assert "doubles back" in refusal(Curve(flat))
+
+
+def test_crossing_in_the_plane() -> None:
+    eight = Curve([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])
+    assert refusal(eight) == "component 1: edges 1 and 3 touch or cross near (1, 1); move the strands apart"
+
+
+def test_touching_in_space() -> None:
+    pentagon = Curve([*SQUARE, [0.5, 0.0, 0.0], [-1.0, 0.5, 0.5]])
+    message = refusal(pentagon)
+    assert message.startswith("component 1: edges 1 and ")
+    assert message.endswith("touch or cross near (0.5, 0, 0); move the strands apart")
+
+
+def test_two_components() -> None:
+    needle = [[5.5, 5.0, 4.0], [5.5, 5.0, 6.0], [9.0, 9.0, 9.0]]
+    curve = Curve.from_components([FAR_SQUARE, needle])
+    expected = "edge 1 of component 1 and edge 1 of component 2 touch or cross near (5.5, 5, 5); move the strands apart"
+    assert refusal(curve) == expected
+
+
+def test_curve_run_through_twice() -> None:
+    once = regular_polygon(40).vertices
+    assert "edges 1 and 40 touch" in refusal(Curve(np.concatenate([once, once])))
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-9, 1e-14])
+def test_near_strands_pass(gap: float) -> None:
+    curve = Curve.from_components([SQUARE, np.asarray(SQUARE) + np.array([0.0, 0.0, gap])])
+    check_embedded(curve)
+
+
+def test_lattice_polygon_with_parallel_and_collinear_edges() -> None:
+    path = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [2, 0, 0],
+        [3, 0, 0],
+        [3, 1, 0],
+        [2, 1, 0],
+        [1, 1, 0],
+        [0, 1, 0],
+        [0, 1, 1],
+        [0, 0, 1],
+    ]
+    check_embedded(Curve(path))
+    path[6] = [1, 0, 0]
+    assert "touch or cross near (1, 0, 0)" in refusal(Curve(path))
+
+
+def test_crossings_do_not_matter_in_four_dimensions() -> None:
+    check_embedded(Curve([[0.0, 0, 0, 0], [2, 2, 0, 0], [2, 0, 0, 0], [0, 2, 0, 0]]))
