@@ -6,7 +6,9 @@ at a time, and memory is taken only for data that the file really has.
 """
 
 import ast
+import struct
 import zipfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +21,7 @@ from ..types import FloatArray
 _MAX_HEADER = 1000
 _MAX_FRAME = 1 << 28  # bytes: eleven million vertices in space
 _MAX_SIZES = 1 << 24  # bytes
+_DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError)
 
 
 class TrajectoryError(ValueError):
@@ -46,7 +49,7 @@ def stages(path: Path | str) -> Iterator[Stage]:
         with zipfile.ZipFile(path) as archive:
             for number in range(_count(archive)):
                 yield _stage(archive, number)
-    except (OSError, EOFError, zipfile.BadZipFile, NotImplementedError, RuntimeError) as error:
+    except _DAMAGE as error:
         raise TrajectoryError(f"the file cannot be read: {error}") from error
 
 

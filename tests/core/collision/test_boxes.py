@@ -54,7 +54,7 @@ def test_no_pair_that_can_meet_is_lost(mesh: Mesh, m: int) -> None:
 def overlapping(mesh: Mesh, start: np.ndarray, end: np.ndarray) -> set[tuple[int, int]]:
     """Pairs of edges whose bounding boxes overlap at one of many times, by brute force."""
     pairs = set()
-    for t in np.linspace(0, 1, 41):
+    for t in np.linspace(0, 1, 21):
         p = (1 - t) * start + t * end
         q = p[:, mesh.heads]
         low, high = np.minimum(p, q), np.maximum(p, q)

@@ -1,6 +1,6 @@
 """Free motions of quadrilaterals against exact decisions at algebraic times, by code that shares nothing with them.
 
-MOBIUS_FLOW_MOTIONS=3000 makes it more than 100,000 motions (200,000 pairs of edges), in about half an hour.
+MOBIUS_FLOW_MOTIONS=4000 makes it more than 100,000 motions (200,000 pairs of edges), in about half an hour.
 """
 
 import os
@@ -58,10 +58,10 @@ def test_nothing_false_is_claimed(kind: Callable[[Rng, int], Motion], m: int) ->
 
 def test_many_tame_motions() -> None:
     rng, tally = np.random.default_rng(331), Tally()
-    for _ in range(20 * COUNT):
+    for _ in range(12 * COUNT):
         compare(gaussian(rng, 3), tally)
-    assert tally.hits > 3 * COUNT
-    assert tally.misses > 3 * COUNT
+    assert tally.hits > COUNT
+    assert tally.misses > COUNT
     assert tally.false_hits == 0
     assert tally.worst_time > 0.98
 

@@ -1,0 +1,264 @@
+"""Trajectory files: real ones are accepted, wrong ones refused with the place."""
+
+import io
+import json
+import struct
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from mobius_flow.core import Curve, Mesh
+from mobius_flow.core.collision import free_motion
+from mobius_flow.core.verify import Verdict, verify
+from shapes import hopf_link, regular_polygon, torus_trefoil
+
+Array = npt.NDArray[np.float64]
+Sizes = tuple[int, ...]
+
+
+def write(path: Path, *stages: tuple[Sizes, list[Array]], compressed: bool = False) -> Path:
+    arrays = {}
+    for k, (sizes, frames) in enumerate(stages):
+        arrays[f"stage_{k:03d}"] = np.stack(frames)
+        arrays[f"component_sizes_{k:03d}"] = np.array(sizes)
+    (np.savez_compressed if compressed else np.savez)(path, **arrays)
+    return path
+
+
+def walk(curve: Curve, steps: int, seed: int = 3) -> list[Array]:
+    """Frames of a random motion that is free of contact."""
+    rng, frames = np.random.default_rng(seed), [curve.vertices]
+    t = 2 * np.pi * np.arange(len(curve)) / len(curve)
+    for _ in range(steps):
+        waves = np.stack([np.cos(k * t + rng.uniform(0, 7)) for k in range(6)], axis=1)
+        step = 0.3 * waves @ rng.normal(size=(6, curve.dimension))
+        share = 0.66 * free_motion(curve.mesh, frames[-1], frames[-1] + step).time
+        frames.append(frames[-1] + share * step)
+    return frames
+
+
+def refined(frame: Array, parameters: tuple[float, ...]) -> Array:
+    """Every edge cut at the parameters, at rounded points."""
+    following = np.roll(frame, -1, axis=0)
+    return np.stack([(1 - t) * frame + t * following for t in (0.0, *parameters)], axis=1).reshape(-1, frame.shape[1])
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e5])
+@pytest.mark.parametrize("compressed", [False, True])
+def test_accepts_a_free_motion(tmp_path: Path, compressed: bool, offset: float) -> None:
+    trefoil = torus_trefoil(60)
+    frames = [frame + offset for frame in walk(trefoil, 12)]
+    verdict = verify(write(tmp_path / "T.npz", ((60,), frames), compressed=compressed))
+    assert verdict == Verdict(True, 1, 12)
+    assert str(verdict) == "accepted: no contact on 12 legs in 1 stages"
+
+
+def test_accepts_links_and_plane_curves(tmp_path: Path) -> None:
+    link = hopf_link(30)
+    assert verify(write(tmp_path / "L.npz", (link.mesh.component_sizes, walk(link, 6)))).accepted
+    plane = regular_polygon(30, dimension=2)
+    assert verify(write(tmp_path / "P.npz", ((30,), walk(plane, 6)))).accepted
+
+
+@pytest.mark.parametrize("frame", [2, 7])
+def test_refuses_a_strand_moved_through_another(tmp_path: Path, frame: int) -> None:
+    """After the mutation each frame is an embedded curve again; only the leg into it is wrong."""
+    link = hopf_link(40)
+    frames = walk(link, 10)
+    for k in range(frame + 1, len(frames)):
+        frames[k] = frames[k].copy()
+        frames[k][40:] += [5.0, 0.0, 0.0]
+    verdict = verify(write(tmp_path / "T.npz", ((40, 40), frames)))
+    assert (verdict.accepted, verdict.stage, verdict.frame, verdict.legs) == (False, 0, frame, frame + 1)
+    assert verdict.edges is not None
+    i, j = sorted(verdict.edges)
+    assert i < 40 <= j
+    assert str(verdict) == f"rejected: stage 0, frame {frame}: {verdict.reason}"
+    assert f"edges {verdict.edges[0] + 1} and {verdict.edges[1] + 1}" in verdict.reason
+
+
+def test_refuses_a_knot_that_jumps(tmp_path: Path) -> None:
+    trefoil = torus_trefoil(60).vertices
+    mirror = trefoil * [1, 1, -1]
+    for frames in ([trefoil, mirror], [trefoil, 0 * trefoil, mirror], [trefoil, trefoil[::-1]]):
+        assert not verify(write(tmp_path / "T.npz", ((60,), frames))).accepted
+
+
+def test_refuses_a_single_frame_that_touches_itself(tmp_path: Path) -> None:
+    eight = np.array([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])
+    verdict = verify(write(tmp_path / "T.npz", ((4,), [eight])))
+    assert (verdict.accepted, verdict.edges, verdict.frame) == (False, (0, 2), 0)
+
+
+def test_triangle_that_turns_inside_out(tmp_path: Path) -> None:
+    triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 1.0]])
+    flipped = triangle * [1, -1]
+    verdict = verify(write(tmp_path / "T.npz", ((3,), [triangle, flipped])))
+    assert not verdict.accepted
+    assert "triangle collapses" in verdict.reason
+    lifted = [np.concatenate([p, np.zeros((3, 1))], axis=1) for p in (triangle, flipped)]
+    assert verify(write(tmp_path / "S.npz", ((3,), lifted))).accepted
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e4])
+def test_accepts_refinement_and_coarsening(tmp_path: Path, offset: float) -> None:
+    first = [frame + offset for frame in walk(torus_trefoil(40), 3)]
+    fine = refined(first[-1], (0.3, 0.7000001))
+    second = walk(Curve(fine - offset), 2)
+    second = [fine, *[frame + offset for frame in second[1:]]]
+    last = np.roll(second[-1].copy(), 5, axis=0)
+    stages = [
+        ((40,), first),
+        ((120,), second),
+        ((120,), [last]),
+        ((360,), [refined(last, (0.25, 0.5))]),
+        ((120,), [last]),
+    ]
+    verdict = verify(write(tmp_path / "T.npz", *stages))
+    assert verdict.accepted, str(verdict)
+    assert (verdict.stages, verdict.legs) == (5, 5)
+
+
+def test_refinement_of_a_link(tmp_path: Path) -> None:
+    link = hopf_link(20)
+    parts = [link.vertices[:20], refined(link.vertices[20:], (0.1, 0.4, 0.9))]
+    stages = [((20, 20), [link.vertices]), ((20, 80), [np.concatenate(parts)])]
+    assert verify(write(tmp_path / "T.npz", *stages)).accepted
+
+
+def changed(frame: Array, kind: str) -> tuple[Sizes, list[Array]]:
+    fine = refined(frame, (0.5,))
+    sizes: Sizes = (len(fine),)
+    if kind == "off the edge":
+        fine[3] += 1e-9
+    elif kind == "out of order":
+        fine = refined(frame, (0.6, 0.4))
+        sizes = (len(fine),)
+    elif kind == "moved":
+        fine = fine + 1e-12
+    elif kind == "reversed":
+        fine = fine[::-1]
+    elif kind == "another component":
+        sizes = (len(fine) // 2, len(fine) // 2)
+    elif kind == "other dimension":
+        fine = fine[:, :2]
+    return sizes, [fine]
+
+
+KINDS = {
+    "off the edge": "not on the edge",
+    "out of order": "not on the edge",
+    "moved": "only 0 vertices are kept",
+    "reversed": "not in the same order",
+    "another component": "another number of components",
+    "other dimension": "another dimension",
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_refuses_wrong_transitions(tmp_path: Path, kind: str) -> None:
+    frame = torus_trefoil(30).vertices
+    verdict = verify(write(tmp_path / "T.npz", ((30,), [frame]), changed(frame, kind)))
+    assert not verdict.accepted
+    assert (verdict.stage, verdict.frame) == (1, None)
+    assert KINDS[kind] in verdict.reason
+
+
+def test_rounding_of_inserted_vertices_is_checked_for_contact(tmp_path: Path) -> None:
+    """Two strands so near that the rounding of inserted vertices is enough to move one through the other."""
+    lower = np.array([[0.0, 0.0, 1.0], [1.0, 0.3, 1.0], [1.0, 0.3, 2.0], [0.0, 0.0, 2.0]])
+    gap = np.array([0.0, 2.0**-50, 0.0])
+    upper = lower + gap
+    first = ((4, 4), [np.concatenate([lower, upper])])
+    bent = np.insert(lower, 1, 0.5 * (lower[0] + lower[1]) + 3 * gap, axis=0)
+    verdict = verify(write(tmp_path / "T.npz", first, ((5, 4), [np.concatenate([bent, upper])])))
+    assert not verdict.accepted
+    assert "meet" in verdict.reason
+
+
+def npy(shape: tuple[int, ...], data: bytes, descr: str = "<f8", fortran: bool = False) -> bytes:
+    header = repr({"descr": descr, "fortran_order": fortran, "shape": shape}).encode()
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + data
+
+
+SIZES = npy((1,), struct.pack("<q", 4), "<i8")
+SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]).tobytes()
+
+
+def archive(path: Path, members: dict[str, bytes]) -> Path:
+    with zipfile.ZipFile(path, "w") as file:
+        for name, data in members.items():
+            file.writestr(name, data)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("stage", "sizes", "reason"),
+    [
+        (npy((10**12, 4, 3), SQUARE), SIZES, "shorter than its header says"),
+        (npy((1, 4, 3), SQUARE[:-1]), SIZES, "shorter"),
+        (npy((1, 4, 3), SQUARE + b"x"), SIZES, "longer"),
+        (npy((1, 10**9, 3), SQUARE), npy((1,), struct.pack("<q", 10**9), "<i8"), "more than this program takes"),
+        (npy((1, 4, 10**12), SQUARE), SIZES, "dimension 2 or 3"),
+        (npy((0, 4, 3), b""), SIZES, "frames there must be"),
+        (npy((1, -4, -3), SQUARE), SIZES, "negative"),
+        (npy((4, 3), SQUARE), SIZES, "must be (k, n, m)"),
+        (npy((1, 4, 3), SQUARE, "|O"), SIZES, "of float64"),
+        (npy((1, 4, 3), SQUARE, "<i8"), SIZES, "of float64"),
+        (npy((1, 4, 3), SQUARE, fortran=True), SIZES, "Fortran"),
+        (npy((1, 4, 3), SQUARE, "nonsense"), SIZES, "header that cannot be read"),
+        (b"\x93NUMPY\x01\x00\xff\xff" + b"(" * 65535, SIZES, "too long"),
+        (b"\x93NUMPY\x01\x00\xe7\x03" + b"(" * 999, SIZES, "header that cannot be read"),
+        (b"\x93NUMPY\x03\x00", SIZES, "NumPy's format"),
+        (b"", SIZES, "shorter"),
+        (npy((1, 4, 3), SQUARE.replace(struct.pack("<d", 1.0), struct.pack("<d", np.nan), 1)), SIZES, "not finite"),
+        (npy((1, 4, 3), SQUARE), npy((1,), struct.pack("<q", 5), "<i8"), "its components have 5"),
+        (npy((1, 4, 3), SQUARE), npy((2,), struct.pack("<qq", 2, 2), "<i8"), "3 or more"),
+        (npy((1, 4, 3), SQUARE), npy((2,), struct.pack("<qq", 8, -4), "<i8"), "3 or more"),
+        (npy((1, 4, 3), SQUARE), npy((0,), b"", "<i8"), "whole numbers"),
+        (npy((1, 4, 3), SQUARE), npy((10**15,), b"", "<i8"), "whole numbers"),
+        (npy((1, 4, 3), SQUARE), npy((1,), struct.pack("<d", 4.0)), "whole numbers"),
+    ],
+)
+def test_refuses_wrong_arrays(tmp_path: Path, stage: bytes, sizes: bytes, reason: str) -> None:
+    verdict = verify(archive(tmp_path / "T.npz", {"stage_000.npy": stage, "component_sizes_000.npy": sizes}))
+    assert not verdict.accepted
+    assert reason in verdict.reason
+
+
+def test_refuses_wrong_files(tmp_path: Path) -> None:
+    good = {"stage_000.npy": npy((1, 4, 3), SQUARE), "component_sizes_000.npy": SIZES}
+    assert verify(archive(tmp_path / "good.npz", good)).accepted
+    gap = good | {"stage_002.npy": good["stage_000.npy"], "component_sizes_002.npy": SIZES}
+    assert "numbered" in verify(archive(tmp_path / "gap.npz", gap)).reason
+    assert "numbered" in verify(archive(tmp_path / "empty.npz", {})).reason
+    del good["component_sizes_000.npy"]
+    assert "component_sizes_000 is missing" in verify(archive(tmp_path / "sizes.npz", good)).reason
+    assert "cannot be read" in verify(tmp_path / "none.npz").reason
+    (tmp_path / "text.npz").write_text(json.dumps({"stage_000": []}))
+    assert "cannot be read" in verify(tmp_path / "text.npz").reason
+
+
+def test_damaged_files_never_crash_it(tmp_path: Path) -> None:
+    buffer = io.BytesIO()
+    frames = np.stack(walk(regular_polygon(8), 2))
+    np.savez_compressed(buffer, stage_000=frames, component_sizes_000=np.array([8]))
+    data, rng, path = bytearray(buffer.getvalue()), np.random.default_rng(9), tmp_path / "T.npz"
+    for _ in range(150):
+        broken = data.copy()
+        for at in rng.integers(len(data), size=rng.integers(1, 4)):
+            broken[at] = rng.integers(256)
+        path.write_bytes(broken if rng.random() < 0.8 else broken[: rng.integers(len(data))])
+        assert isinstance(verify(path), Verdict)
+
+
+def test_stages_may_end_anywhere(tmp_path: Path) -> None:
+    """The same frames in one stage or in several are the same trajectory."""
+    frames = walk(torus_trefoil(30), 4)
+    sizes = Mesh((30,)).component_sizes
+    verdict = verify(write(tmp_path / "T.npz", (sizes, frames[:3]), (sizes, frames[2:])))
+    assert (verdict.accepted, verdict.legs) == (True, 4)
+    missing = verify(write(tmp_path / "T.npz", (sizes, frames[:2]), (sizes, frames[2:])))
+    assert (missing.accepted, missing.stage) == (False, 1)
