@@ -69,10 +69,10 @@ def _contributions(pairs: EdgePairs) -> Jet:
     """χ (W_exact − W_mid) of pairs of edges."""
     w = Contributions(pairs)
     q = w.closeness()
-    return q.compose(*_cutoff(q.value)) * (w.exact() - w.midpoint())
+    return q.compose(*cutoff(q.value)) * (w.exact() - w.midpoint())
 
 
-def _cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """χ(q), the quintic smoothstep from 1 (q ≤ 1) to 0 (q ≥ 9/4), and its first and second derivative."""
     x = np.clip((FAR - q) / (FAR - NEAR), 0.0, 1.0)
     product = x * (1.0 - x)

@@ -28,9 +28,9 @@ CURVES = {
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 
-def near_curve(gap: float = 0.05) -> Curve:
+def near_curve(gap: float = 0.05, n: int = 20) -> Curve:
     """Two crossing strands of one curve, nearer to each other than their edges are long."""
-    t = 2 * np.pi * (np.arange(30) + 0.3) / 30
+    t = 2 * np.pi * (np.arange(n) + 0.3) / n
     return Curve(np.stack([np.sin(t), np.sin(2 * t), 0.5 * gap * np.cos(t)], axis=1))
 
 

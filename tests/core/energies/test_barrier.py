@@ -1,0 +1,129 @@
+"""The barrier: its local contributions, its pairs, its smoothness."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mobius_flow.core import Curve, MoebiusEnergy, Objective
+from mobius_flow.core.energies import Barrier
+from mobius_flow.core.energies.barrier import cutoff
+from mobius_flow.core.energies.contributions import Contributions
+from mobius_flow.core.energies.edge_pairs import EdgePairs
+from mobius_flow.core.energies.near_pairs import near_pairs
+from mobius_flow.core.taylor import taylor_slope
+from shapes import regular_polygon, shared_knot
+from smooth_curves import SMOOTH_CURVES, random_polygon
+
+BARRIER = Barrier()
+
+
+def contributions(x0: list[float], x1: list[float], y0: list[float], y1: list[float]) -> Contributions:
+    """Of one pair of edges, by way of a curve that has them as edges 0 and 4."""
+    far = [[50.0, 0, 0], [50.0, 50.0, 0], [0, 50.0, 50.0], [0, 0, 90.0], [-70.0, 0, 0]]
+    curve = Curve([x0, x1, far[0], far[1], y0, y1, *far[2:]])
+    return Contributions(EdgePairs.of(curve, np.array([0]), np.array([4])))
+
+
+@pytest.mark.parametrize(
+    ("gap", "midpoint", "exact"),
+    [(0.5, 4.188574125, 2.769582087), (0.1, 13.993463424, 11.235155010), (0.02, 2.124182083, 21.440754439)],
+)
+def test_one_pair(gap: float, midpoint: float, exact: float) -> None:
+    pair = contributions([0, 0, 0], [1, 0, 0], [0.3, -0.6, gap], [0.5, 0.4, gap])
+    assert pair.midpoint().value[0] == pytest.approx(midpoint, abs=1e-9)
+    assert pair.exact().value[0] == pytest.approx(exact, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "pairs"),
+    [("3_1.txt", -0.202695414, 160), ("unknot_thistlethwaite.txt", -48.923863456, 1684)],
+)
+def test_shared_knots(name: str, value: float, pairs: int) -> None:
+    curve = shared_knot(name)
+    assert BARRIER.value(curve) == pytest.approx(value, abs=1e-9)
+    assert 2 * len(near_pairs(curve)[0]) == pairs
+
+
+@pytest.mark.parametrize(
+    "curve", [regular_polygon(200), SMOOTH_CURVES["trefoil"].polygon(200)], ids=["200-gon", "knot"]
+)
+def test_it_vanishes_on_resolved_curves(curve: Curve) -> None:
+    assert BARRIER.value(curve) == 0.0
+    assert Objective().value(curve) == MoebiusEnergy().value(curve)
+
+
+def brute_force_pairs(curve: Curve) -> set[tuple[int, int]]:
+    """The definition, pair by pair."""
+    found = set()
+    for i in range(len(curve)):
+        for j in range(i):
+            same = curve.mesh.component[i] == curve.mesh.component[j]
+            size = curve.mesh.component_sizes[curve.mesh.component[i]]
+            if same and min(i - j, size - (i - j)) < 4:
+                continue
+            distance = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j])
+            if distance**2 < 2.25 * (curve.edge_lengths[i] + curve.edge_lengths[j]) ** 2:
+                found.add((i, j))
+    return found
+
+
+@given(seed=st.integers(0, 999), spread=st.floats(0, 3))
+@settings(max_examples=25, deadline=None)
+def test_near_pairs_are_complete(seed: int, spread: float) -> None:
+    """Edge lengths over up to three decades and more."""
+    rng = np.random.default_rng(seed)
+    steps = rng.normal(size=(40, 3)) * 10.0 ** rng.uniform(-spread, 0, size=(40, 1))
+    curve = Curve.from_components([np.cumsum(steps[:25], axis=0), np.cumsum(steps[25:], axis=0)])
+    i, j = near_pairs(curve)
+    listed = [(max(pair), min(pair)) for pair in zip(i.tolist(), j.tolist(), strict=True)]
+    assert len(listed) == len(set(listed))
+    assert set(listed) == brute_force_pairs(curve)
+    assert np.all(curve.edge_lengths[i] <= curve.edge_lengths[j])
+
+
+def crossing(gap: float) -> Curve:
+    """A figure eight whose strands cross at the height ``gap``, off the midpoints of their edges."""
+    t = 2 * np.pi * (np.arange(40) + 0.3) / 40
+    return Curve(np.stack([np.sin(t), np.sin(2 * t), 0.5 * gap * np.cos(t)], axis=1))
+
+
+def test_it_grows_without_bound_where_strands_meet() -> None:
+    """Across straight strands the energy grows by 2 · 2π/sin θ · log of the gap's inverse."""
+    values = [Objective().value(crossing(10.0**-k)) for k in range(3, 9)]
+    growth = np.diff(values)
+    assert np.all(growth > 0)
+    e = crossing(1e-8)
+    i, j = np.argsort(np.linalg.norm(e.midpoints, axis=1))[:2]
+    sine = np.linalg.norm(np.cross(e.edge_vectors[i], e.edge_vectors[j])) / np.prod(e.edge_lengths[[i, j]])
+    assert growth[-1] == pytest.approx(4 * np.pi / sine * np.log(10), rel=0.01)
+
+
+def test_one_point_rule_alone_is_no_barrier() -> None:
+    far, near = (MoebiusEnergy().value(crossing(gap)) for gap in (1e-3, 1e-8))
+    assert near == pytest.approx(far, rel=1e-3)
+
+
+def test_the_cutoff_joins_with_two_derivatives() -> None:
+    for q, value in ((0.2, 1.0), (1.0, 1.0), (2.25, 0.0), (3.0, 0.0)):
+        assert [float(part[0]) for part in cutoff(np.array([q]))] == [value, 0.0, 0.0]
+    x = (2.25 - 1.7) / 1.25
+    assert cutoff(np.array([1.7]))[0] == pytest.approx(x**3 * (10 - 15 * x + 6 * x**2))
+    chi, slope, curvature = cutoff(np.array([1.7]))
+    assert taylor_slope(lambda t: cutoff(np.array([1.7 + t]))[0], [chi, slope, curvature]) == pytest.approx(3, abs=0.02)
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1e3])
+def test_it_is_finite_on_random_polygons(factor: float) -> None:
+    curve = random_polygon(17, (30, 20), 3)
+    stretched = curve.with_vertices(curve.vertices * np.array([1.0, factor, 1.0]))
+    value, derivative = BARRIER.value_and_derivative(stretched)
+    assert np.isfinite(value)
+    assert np.isfinite(derivative).all()
+    assert np.isfinite(BARRIER.hessian(stretched)).all()
+
+
+def test_touching_strands_give_no_nan() -> None:
+    value, derivative = Objective().value_and_derivative(crossing(0.0))
+    assert np.isfinite(value)
+    assert value > Objective().value(crossing(1e-9))
+    assert np.isfinite(derivative).all()

@@ -1,0 +1,90 @@
+"""The default energy: known values, rates, links, and sums done the slow way."""
+
+import numpy as np
+import pytest
+from energy_references import circle_density, disjoint_pairs, pair_sum
+from mobius_flow.core import Curve, MoebiusEnergy
+from mobius_flow.core.energies import ENERGIES
+from shapes import regular_polygon, shared_knot
+from smooth_curves import SMOOTH_CURVES, dual_circles, random_polygon
+
+ENERGY = MoebiusEnergy()
+
+
+def test_it_is_the_default() -> None:
+    assert next(iter(ENERGIES)) == "moebius"
+
+
+@pytest.mark.parametrize("n", [3, 4, 5, 6, 7, 17, 64, 301, 1000])
+@pytest.mark.parametrize("dimension", [2, 3, 4])
+def test_regular_polygons_have_energy_4(n: int, dimension: int) -> None:
+    assert ENERGY.value(regular_polygon(n, dimension)) == pytest.approx(4, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", SMOOTH_CURVES)
+def test_smooth_curves_at_the_rate_of_the_midpoint_rule(name: str) -> None:
+    counts = np.array([100, 200, 400, 800])
+    curve, exact = SMOOTH_CURVES[name], SMOOTH_CURVES[name].energy
+    errors = np.array([abs(ENERGY.value(curve.polygon(int(n))) - exact) for n in counts])
+    assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-2, abs=0.1)
+    assert errors[-1] < 1.5e-4 * exact
+
+
+def test_trefoil_excess_as_published() -> None:
+    excess = [ENERGY.value(SMOOTH_CURVES["trefoil"].polygon(n)) - 81.840852989 for n in (100, 200, 400, 800)]
+    assert excess == pytest.approx([0.1686, 0.0411, 0.0101, 0.00252], abs=1e-4)
+
+
+def test_hopf_link() -> None:
+    counts = np.array([50, 100, 200, 400])
+    errors = [ENERGY.value(dual_circles(int(n))) - (8 + 4 * np.pi**2) for n in counts]
+    assert np.polyfit(np.log(counts), np.log(np.abs(errors)), 1)[0] == pytest.approx(-2, abs=0.1)
+    assert abs(errors[-1]) < 2e-3
+
+
+@pytest.mark.parametrize("dimension", [2, 3, 4])
+def test_separate_circles_do_not_see_each_other_far_away(dimension: int) -> None:
+    circle = regular_polygon(60, dimension).vertices
+    energies = []
+    for distance in (10.0, 100.0):
+        shift = np.zeros(dimension)
+        shift[0] = distance
+        energies.append(ENERGY.value(Curve.from_components([circle, circle + shift])))
+    # the density decays like 1/r², once for each order of the pair
+    assert energies[0] - 8 == pytest.approx(2 * (2 * np.pi / 10) ** 2, rel=0.1)
+    assert energies[1] - 8 == pytest.approx(2 * (2 * np.pi / 100) ** 2, rel=0.01)
+
+
+@pytest.mark.parametrize(("sizes", "dimension"), [((9,), 2), ((12,), 3), ((3, 4, 5), 3), ((6, 7), 4)])
+def test_sum_over_pairs(sizes: tuple[int, ...], dimension: int) -> None:
+    curve = random_polygon(3, sizes, dimension)
+    slow = 4 * len(sizes) + pair_sum(curve, circle_density, [0.5], [1.0])
+    assert ENERGY.value(curve) == pytest.approx(slow, rel=1e-13)
+
+
+@pytest.mark.parametrize("dimension", [2, 3, 4])
+def test_formula_of_the_local_contribution(dimension: int) -> None:
+    """The reference's angle is the formula of Ishizeki and Nagasawa."""
+    rng = np.random.default_rng(9)
+    for _ in range(20):
+        x, y, e, f = rng.normal(size=(4, dimension))
+        delta, lengths = x - y, np.linalg.norm(e) * np.linalg.norm(f)
+        s = 1 / (delta @ delta)
+        formula = (lengths + e @ f) * s - 2 * (delta @ e) * (delta @ f) * s**2
+        angle = lengths * circle_density(x, y, e / np.linalg.norm(e), f / np.linalg.norm(f), 0.0)
+        assert formula == pytest.approx(angle, rel=1e-12)
+        assert formula >= 0
+
+
+@pytest.mark.parametrize(("name", "energy"), [("3_1.txt", 126.145173390), ("unknot_thistlethwaite.txt", 843.253289129)])
+def test_shared_knots(name: str, energy: float) -> None:
+    assert ENERGY.value(shared_knot(name)) == pytest.approx(energy, abs=1e-9)
+
+
+def test_triangles_have_no_disjoint_edges() -> None:
+    curve = Curve([[0, 0], [1, 0], [0, 1.0]])
+    assert not list(disjoint_pairs(curve))
+    energy, derivative = ENERGY.value_and_derivative(curve)
+    assert energy == 4
+    assert not derivative.any()
+    assert not ENERGY.hessian(curve).any()
