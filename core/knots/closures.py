@@ -11,7 +11,7 @@ from ..types import FloatArray, IntArray
 from .braids import Word, checked_word, columns, cycles, permutation
 from .rings import ClosedBraid, Ring
 
-_COLUMN = 3.0  # length of a crossing along the innermost strand, in units of the strands' distance
+_COLUMN = 2.2  # length of a crossing along the innermost strand, in units of the strands' distance
 
 
 def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: int | None = None) -> Curve:
@@ -55,7 +55,7 @@ def _smooth(word: Word, strands: int) -> ClosedBraid:
         Ring(len(cycle), partial(_profile, letters, np.array(cycle), inner, scale))
         for cycle in cycles(permutation(word, strands))
     ]
-    return ClosedBraid(rings, gap=scale, detail=max(60, 4 * strands * width))
+    return ClosedBraid(rings, gap=scale, detail=max(60, 2 * strands * width))
 
 
 def _letter_table(word: Word, places: list[int], strands: int, width: int) -> tuple[IntArray, IntArray]:

@@ -30,9 +30,9 @@ def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> C
     """
     if not 0.5 <= turns <= 500:
         raise CurveError(f"turns is {turns}; it must be between 0.5 and 500")
-    if not math.isfinite(rise):
-        raise CurveError(f"rise is {rise}; it must be finite")
-    smooth = _double_spiral(turns)
+    if not abs(rise) <= 100:
+        raise CurveError(f"rise is {rise}; it must be between -100 and 100")
+    smooth = _lifted(_double_spiral(turns), rise)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(smooth, axis=0), axis=1))])
     gap = 1 / (2 * turns + 1)
     # An edge of length h leaves a curve of curvature κ by at most κh²/8; here κ is at most 2π/gap, in the
@@ -42,8 +42,13 @@ def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> C
     if not fewest <= vertices <= _MOST_VERTICES:
         raise CurveError(f"vertices is {vertices}; a spiral of {turns} turns takes {fewest} to {_MOST_VERTICES}")
     marks = np.linspace(0.0, along[-1], vertices + 1)[:-1]
-    x, y = (np.interp(marks, along, coordinate) for coordinate in smooth.T)
-    return Curve(np.stack([x, y, rise * (x**2 + y**2)], axis=1))
+    flat = np.stack([np.interp(marks, along, coordinate) for coordinate in smooth[:, :2].T], axis=1)
+    return Curve(_lifted(flat, rise))
+
+
+def _lifted(points: FloatArray, rise: float) -> FloatArray:
+    """Put points of the plane, shape (k, 2), on the paraboloid; shape (k, 3)."""
+    return np.column_stack([points, rise * (points * points).sum(axis=1)])
 
 
 def _double_spiral(turns: float) -> FloatArray:

@@ -19,7 +19,9 @@ class UnknownKnotError(MobiusFlowError):
     """A knot name that means nothing; the message gives close names and the grammar."""
 
     def __init__(self, name: str) -> None:
-        close = difflib.get_close_matches(_plain(name), [*_TABLE, *ALIASES], n=3, cutoff=0.5)
+        plain = _plain(name)
+        alike = [key for key in _TABLE if "_" in plain and key.startswith(plain.partition("_")[0] + "_")]
+        close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES], n=3, cutoff=0.5)
         advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""
         super().__init__(
             f"no knot is called {name[:60]!r}; {advice}known are 0_1 to 10_165, the links "

@@ -10,6 +10,7 @@ from ..curve import Curve
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
 
+_EDGE = 0.7  # default edge length in units of the gap; tilted strands are a little nearer than the gap
 _PAGES_PER_EDGE = 8
 _MOST_VERTICES = 1_000_000
 
@@ -51,7 +52,7 @@ class ClosedBraid:
     gap
         Least distance of two strands within a half plane that ends at the axis.
     detail
-        Number of vertices enough to follow every bend, whatever the gap.
+        Number of vertices that every polygon gets at least, whatever the gap.
     """
 
     rings: Sequence[Ring]
@@ -73,7 +74,7 @@ class ClosedBraid:
         """
         lengths = np.array([_length(ring, self.detail) for ring in self.rings])
         if vertices is None:
-            vertices = max(math.ceil(lengths.sum() / (0.6 * self.gap)), self.detail)
+            vertices = max(math.ceil(lengths.sum() / (_EDGE * self.gap)), self.detail)
         if vertices > _MOST_VERTICES:
             raise CurveError(f"{vertices} vertices would be needed; at most {_MOST_VERTICES} are allowed")
         counts = _shares(vertices, lengths)

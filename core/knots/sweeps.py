@@ -23,7 +23,9 @@ def segment_distances(p: FloatArray, q: FloatArray, tails: FloatArray, heads: Fl
     dr, er = r @ d, (e * r).sum(axis=1)
     s = np.clip((de * er - dr * ee) / np.maximum(dd * ee - de * de, _TINY), 0.0, 1.0)
     t = (de * s + er) / np.maximum(ee, _TINY)
-    s = np.where((t < 0) | (t > 1), np.clip((np.clip(t, 0.0, 1.0) * de - dr) / max(dd, _TINY), 0.0, 1.0), s)
+    # Where t leaves its range, or is arbitrary since the segment is a point, s is solved anew for the clipped t.
+    again = (t < 0) | (t > 1) | (ee <= _TINY)
+    s = np.where(again, np.clip((np.clip(t, 0.0, 1.0) * de - dr) / max(dd, _TINY), 0.0, 1.0), s)
     t = np.clip(t, 0.0, 1.0)
     between = r + s[:, None] * d - t[:, None] * e
     return np.asarray(np.sqrt((between * between).sum(axis=1)))

@@ -11,6 +11,7 @@ from ..types import FloatArray
 from .rings import ClosedBraid, Ring
 
 _MOST = 2000
+_LARGEST = 1e100  # whose square is still a double
 
 
 def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.0, minor: float | None = None) -> Curve:
@@ -49,8 +50,8 @@ def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.
     hand = 1 if p * q > 0 else -1
     p, q = abs(p), abs(q)
     minor = major * min(p / math.hypot(p, 1.25 * q), 0.6) if minor is None else minor
-    if not 0 < minor < major < math.inf:
-        raise CurveError(f"major is {major} and minor {minor}; they must satisfy 0 < minor < major")
+    if not 1 / _LARGEST < minor < major < _LARGEST:
+        raise CurveError(f"major is {major} and minor {minor}; they must satisfy 0 < minor < major, not beyond 1e±100")
     return _smooth(p, q, hand, major, minor).polygon(vertices)
 
 
@@ -70,7 +71,7 @@ def _profile(major: float, minor: float, hand: int, slope: float, phase: float, 
 def _tube(major: float, minor: float, phi: FloatArray) -> FloatArray:
     """Points of the tube's cross-section at conformal angles (k,), counted from the outside; shape (k, 2)."""
     r2 = minor / major
-    stretch = (major**2 - minor**2) / (major * (1 - r2 * np.cos(phi)))
+    stretch = major * (1 - r2**2) / (1 - r2 * np.cos(phi))
     return np.stack([stretch, stretch * r2 * np.sin(phi) / math.sqrt(1 - r2**2)], axis=1)
 
 

@@ -52,8 +52,8 @@ def unknot_word(crossings: int, seed: int, *, strands: int | None = None) -> Wor
     word: list[int] = []
     for new in range(1, strands):
         word.insert(int(rng.integers(len(word) + 1)), _signed(new, rng))
-        # Every stabilisation needs one letter; the rest is shared out in pairs as strands come.
-        length = crossings if new == strands - 1 else crossings * new // (strands - 1)
+        # A little growth at every strand hides its stabilisation, most at the end spreads over all strands.
+        length = crossings if new == strands - 1 else min(3 * new, crossings - strands + 1 + new)
         word = _grown(word, length, new, rng)
         _mix(word, rng)
     return tuple(word)
@@ -61,7 +61,7 @@ def unknot_word(crossings: int, seed: int, *, strands: int | None = None) -> Wor
 
 def _strand_count(crossings: int) -> int:
     """A number of strands that fits: 3 and a few more for many crossings, of the right parity."""
-    strands = min(3 + max(crossings, 0) // 40, crossings + 1)
+    strands = min(3 + max(crossings, 0) // 60, crossings + 1)
     return strands if (crossings - strands) % 2 else strands + 1
 
 
@@ -87,13 +87,18 @@ def _grown(word: list[int], length: int, largest: int, rng: np.random.Generator)
         if len(word) + 2 > length or largest < 2:
             return word
         place = int(rng.integers(len(word) + 1))
-        letter = _signed(int(rng.integers(1, largest + 1)), rng)
+        letter = _signed(_rarer(word, rng.integers(1, largest + 1, size=2).tolist()), rng)
         trial = [*word[:place], letter, -letter, *word[place:]]
         for start in (place + rng.integers(-_NEARBY, _NEARBY, size=2 * _NEARBY)).tolist():
             _relate(trial, start)
         if is_reduced(trial):
             word = trial
     raise CurveError(f"no braid of {length} crossings was found with this seed and these strands; change one of them")
+
+
+def _rarer(word: list[int], letters: list[int]) -> int:
+    """The letter that the word has less often, so that crossings spread over all strands."""
+    return min(letters, key=lambda letter: word.count(letter) + word.count(-letter))
 
 
 def _mix(word: list[int], rng: np.random.Generator) -> None:

@@ -1,0 +1,95 @@
+"""The grammar of knot names."""
+
+import numpy as np
+import pytest
+from knot_type import knot_invariants
+from mobius_flow.core.errors import CurveError, MobiusFlowError
+from mobius_flow.core.knots import KNOTS, UnknownKnotError, braid_word, knot
+
+SAME = {
+    "3_1": ["trefoil", " Trefoil  Knot ", "TREFOIL", "3_1", "braid(1,1,1)", "braid( 1, 1,+1 )", "mm3_1"],
+    "4_1": ["figure-eight", "figure eight", "figure_eight", "Figure-Eight Knot", "braid(1,-2,1,-2)"],
+    "L2a1": ["hopf", "Hopf link", "l2a1"],
+    "L6a4": ["borromean", "Borromean rings"],
+    "T(2,5)": ["torus(2,5)", "t( 2 , 5 )", "Torus(2,5)"],
+    "0_1": ["unknot", "circle", "braid()", "0_1#0_1"],
+    "m3_1": ["mtrefoil", "m trefoil", "braid(-1,-1,-1)"],
+    "3_1#m3_1": ["square", "square knot", "trefoil # m3_1"],
+}
+
+
+@pytest.mark.parametrize(("name", "other"), [(name, other) for name, others in SAME.items() for other in others])
+def test_other_spellings(name: str, other: str) -> None:
+    assert np.array_equal(knot(name, 90).vertices, knot(other, 90).vertices)
+
+
+@pytest.mark.parametrize(
+    ("name", "genus", "tau"),
+    [("T(2,5)", 2, 2), ("T(-2,5)", 2, -2), ("T(5,-3)", 4, -4), ("mT(3,4)", 3, -3), ("T(2,3)#5_1", 3, 3)],
+)
+def test_handedness(name: str, genus: int, tau: int) -> None:
+    found = knot_invariants(knot(name).vertices)
+    assert (found.genus, found.tau) == (genus, tau)
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("trefol", "did you mean trefoil"),
+        ("3_2", "did you mean 3_1"),
+        ("borromaen", "borromean"),
+        ("11_1", "10_165"),
+        ("", "unknot"),
+        ("m", "known are"),
+        ("#", "known are"),
+        ("T(2)", "T(p,q)"),
+        ("braid(1,,2)", "braid"),
+        ("braid(1;2)", "braid"),
+        ("T(2,x)", "T(p,q)"),
+        ("x" * 5000, "known are"),
+    ],
+)
+def test_unknown_names_list_close_and_known_ones(name: str, hint: str) -> None:
+    with pytest.raises(UnknownKnotError) as caught:
+        knot(name)
+    assert hint in str(caught.value)
+    assert isinstance(caught.value, MobiusFlowError)
+    assert len(str(caught.value)) < 600
+
+
+@pytest.mark.parametrize("name", ["T(0,3)", "T(2,99999)", "braid(0)", "braid(1,999999)", "0_1#T(0,1)"])
+def test_numbers_that_are_not_allowed(name: str) -> None:
+    with pytest.raises(MobiusFlowError, match=r"T\(|letter|strands"):
+        knot(name)
+
+
+@pytest.mark.parametrize("name", ["3_1", "10_123", "T(3,7)", "whitehead"])
+@pytest.mark.parametrize("vertices", [-5, 0, 2, 3])
+def test_too_few_vertices(name: str, vertices: int) -> None:
+    with pytest.raises(CurveError, match="too few"):
+        knot(name, vertices)
+
+
+@pytest.mark.parametrize("vertices", [90, 101, 1000])
+def test_the_number_of_vertices_is_the_one_asked_for(vertices: int) -> None:
+    for name in ("3_1", "T(3,3)", "whitehead", "0_1"):
+        assert len(knot(name, vertices)) == vertices
+
+
+def test_coarse_polygons_are_the_right_knot_or_refused() -> None:
+    for name in ("3_1", "6_2", "10_124", "T(3,4)"):
+        expected = knot_invariants(knot(name).vertices)
+        accepted = 0
+        for vertices in range(5, 60, 3):
+            try:
+                curve = knot(name, vertices)
+            except CurveError:
+                continue
+            accepted += 1
+            assert knot_invariants(curve.vertices) == expected
+        assert accepted >= 2
+
+
+def test_words_are_plain_tuples() -> None:
+    assert braid_word("granny") == KNOTS["3_1"] + (2, 2, 2)
+    assert braid_word("m4_1") == (-1, 2, -1, 2)

@@ -1,0 +1,88 @@
+"""Every knot of the table has the type its name says, checked from the coordinates and from the word."""
+
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+from braid_words import burau_alexander
+from curve_checks import strand_distance
+from knot_diagrams import Laurent
+from knot_type import UNKNOT, jones, knot_invariants, pairwise_linking, small_diagram
+from mobius_flow.core.knots import ALIASES, KNOTS, knot
+
+_LINES = (Path(__file__).parent / "known_knots.txt").read_text().splitlines()
+KNOWN = {line.split()[0]: line.split()[1:] for line in _LINES if not line.startswith("#")}
+
+# Pairs with the same knot Floer homology and the same Jones polynomial; everything else is told apart.
+TWINS = [{"8_8", "10_129"}, {"8_16", "10_156"}, {"10_25", "10_56"}, {"10_40", "10_103"}]
+
+LINKS: dict[str, tuple[dict[tuple[int, int], int], Laurent]] = {
+    "L2a1": ({(0, 1): 1}, {1: -1, 5: -1}),
+    "L4a1": ({(0, 1): 2}, {3: -1, 7: -1, 9: 1, 11: -1}),
+    "L5a1": ({(0, 1): 0}, {-7: 1, -5: -2, -3: 1, -1: -2, 1: 1, 3: -1}),
+    "L6a3": ({(0, 1): 3}, {5: -1, 9: -1, 11: 1, 13: -1, 15: 1, 17: -1}),
+    "L6a4": ({(0, 1): 0, (0, 2): 0, (1, 2): 0}, {-6: -1, -4: 3, -2: -2, 0: 4, 2: -2, 4: 3, 6: -1}),
+    "L6n1": ({(0, 1): 1, (0, 2): 1, (1, 2): 1}, {4: 1, 8: 1, 12: 2}),
+}
+
+
+def _integers(text: str) -> tuple[int, ...]:
+    return tuple(map(int, text.split(",")))
+
+
+def _known_jones(name: str) -> Laurent:
+    lowest, coefficients = int(KNOWN[name][4]), _integers(KNOWN[name][5])
+    return {2 * (lowest + i): c for i, c in enumerate(coefficients) if c}
+
+
+def test_the_table_has_all_prime_knots_to_ten_crossings() -> None:
+    counts: dict[int, int] = defaultdict(int)
+    for name in KNOTS:
+        if name[0] != "L":
+            counts[int(name.split("_")[0])] += 1
+    # The numbers of prime knots, OEIS A002863, and the unknot.
+    assert counts == {0: 1, 3: 1, 4: 1, 5: 2, 6: 3, 7: 7, 8: 21, 9: 49, 10: 165}
+    assert set(KNOTS) - set(LINKS) == set(KNOWN)
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_knot_type_of_the_polygon(name: str) -> None:
+    genus, fibered, tau, alexander = KNOWN[name][:4]
+    found = knot_invariants(knot(name).vertices)
+    assert found.alexander == _integers(alexander)
+    assert found.genus == int(genus)
+    assert found.fibered == (fibered == "yes")
+    assert found.tau == int(tau)
+
+
+def test_polynomials_of_words_and_polygons_tell_all_but_four_pairs_apart() -> None:
+    groups: dict[tuple[object, ...], set[str]] = defaultdict(set)
+    for name in KNOWN:
+        alexander = _integers(KNOWN[name][3])
+        word = KNOTS[name]
+        assert burau_alexander(word, max(map(abs, word), default=0) + 1) == alexander
+        found = jones(small_diagram([knot(name).vertices]))
+        assert found == _known_jones(name)
+        mirrored = {-k: c for k, c in found.items()}
+        either = min(sorted(found.items()), sorted(mirrored.items()))
+        groups[(*KNOWN[name][:2], abs(int(KNOWN[name][2])), alexander, tuple(either))].add(name)
+    assert [group for group in groups.values() if len(group) > 1] == TWINS
+
+
+@pytest.mark.parametrize("name", LINKS)
+def test_links(name: str) -> None:
+    linking, polynomial = LINKS[name]
+    link = knot(name)
+    assert pairwise_linking(link.components) == linking
+    assert jones(small_diagram(link.components)) == polynomial
+    assert all(knot_invariants(part) == UNKNOT for part in link.components)
+
+
+@pytest.mark.parametrize("name", [*KNOTS, *ALIASES])
+def test_geometry(name: str) -> None:
+    curve = knot(name)
+    lengths = curve.edge_lengths
+    assert 60 <= len(curve) <= 400
+    assert lengths.max() < 1.1 * lengths.min()
+    assert abs(curve.vertices).max() < 1.7
+    assert strand_distance(curve) > lengths.max()
