@@ -29,7 +29,9 @@ _ALL: tuple[Method, ...] = (
         ImplicitFlow(f"implicit-{name}", f"projected gradient flow, implicit, {m.description}", m)
         for name, m in METRICS.items()
     ),
-    LineSearchMethod("penalty-lbfgs", "L-BFGS on the penalised energy", _J_C, LimitedMemoryBFGS(), DEFAULT_PENALTY),
+    LineSearchMethod(
+        "penalty-lbfgs", "L-BFGS on the penalised energy", _J_C, LimitedMemoryBFGS(history=30), DEFAULT_PENALTY
+    ),
     LineSearchMethod(
         "penalty-cg", "conjugate gradients (PR+) on the penalised energy", _J_C, ConjugateGradient(), DEFAULT_PENALTY
     ),

@@ -23,9 +23,13 @@ class Memory:
 
 @dataclass(frozen=True)
 class LimitedMemoryBFGS:
-    """Quasi-Newton direction from the last ``history`` steps."""
+    """Quasi-Newton direction from the last ``history`` steps.
 
-    history: int = 30
+    On tangles, where the curvature changes from step to step, few pairs are better than the paper's 30: Freedman's
+    unknot takes 123 steps with 8 and 161 with 30.  At the end of the road it makes little difference.
+    """
+
+    history: int = 8
     natural_step: float = 1.0
 
     def propose(self, point: Point, memory: Memory | None) -> tuple[FloatArray, Memory]:
