@@ -4,12 +4,16 @@ On an interval of time the segments x(s) = x₀ + s e and y(r) = y₀ + r f stay
 det(D, e, f) ≠ 0, D = x₀ − y₀, or if a plane that moves along separates them: ⟨n(t), x_i(t) − y_j(t)⟩ > 0 for all four
 i, j. The directions tried are those from the closest point on one of the edges' lines to an end of the other edge, and
 from end to end: wherever such a pair of points is the closest one, its direction works, however small the gap. All of
-these are polynomials in t, positive if their Bernstein coefficients are. An interval without such a proof is halved.
+these are polynomials in t, positive if their Bernstein coefficients are. An interval without such a proof is narrowed
+down to the time when the lines are coplanar, if there is one such time, or else halved.
 
-Coordinates are floating-point numbers, hence integers after scaling, and nothing is ever rounded.
+Coordinates are floating-point numbers, hence integers after scaling, and nothing that matters is ever rounded.
 """
 
+import math
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,10 +24,11 @@ Polynomial = Sequence[int]
 Vector = tuple[Polynomial, ...]
 Motion = tuple[Vector, Vector, Vector]  # D, e, f, each linear
 
-_MAX_DEPTH = 60  # shortest interval 2^-60
-_FINEST = 2.0**-52  # relative length of an interval that is given up
-_SURE = 2.0**-10  # relative length below which a robust crossing needs no further localising
-_NORMALS_EVERY = 3  # levels of halving from one attempt with moving planes to the next: they are dear
+_SHORTEST = Fraction(1, 2**60)  # length of an interval that is given up,
+_FINEST = Fraction(1, 2**52)  # or its length relative to its end
+_SURE = Fraction(1, 2**10)  # relative length below which a plain crossing needs no sharper time
+_INSIDE = 10**6  # one part in this many from the ends of both edges is plainly inside
+_BITS = 40  # a single time of coplanarity is narrowed down by 2^-40 at once
 _MAX_INTERVALS = 600  # a bound for pathological motions that touch all the time
 
 
@@ -31,25 +36,29 @@ def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> flo
     """Return a time before which two moving segments certainly don't meet, or None if they never do.
 
     ``start`` and ``end`` hold x₀, x₁, y₀, y₁, shape (4, m) with m = 2 or 3; until ``after`` they are known not to
-    meet. The time is sharp to 0.1 % where the
-    segments plainly cross; elsewhere it is as sharp as a double.
+    meet. The time is nearly as sharp as a double. Segments that miss each other by less are taken to meet.
     """
     motion = _motion(start, end)
-    if after <= 0 and not (_skew(_at_start(motion)) or _separated(_at_start(motion))):
+    if after <= 0 and not _free(_frame(motion, 0)):
         return 0.0
-    work = [(0.0, 1.0, 0, motion)]
+    work = [(Fraction(0), Fraction(1), motion)]
     for _ in range(_MAX_INTERVALS):
         if not work:
             return None
-        a, b, depth, motion = work.pop()
-        if b <= after or _skew(motion) or (depth % _NORMALS_EVERY == 0 and _separated(motion)):
+        a, b, motion = work.pop()
+        if b <= after or _free(motion):
             continue
-        if depth == _MAX_DEPTH or b - a < _FINEST * b or (b - a < _SURE * a and _crosses(motion)):
-            return max(a, after)
-        middle = 0.5 * (a + b)
-        first, second = _halves(motion)
-        work += [(middle, b, depth + 1, second), (a, middle, depth + 1, first)]
-    return max(work[-1][0], after) if work else None
+        if b - a <= max(_SHORTEST, _FINEST * b) or (b - a <= _SURE * b and _crosses(motion)):
+            return max(_below(a), after)
+        if bracket := _only_root(motion):
+            low, high = (a + (b - a) * Fraction(k, 2**_BITS) for k in bracket)
+            work.append((low, high, _part(motion, *bracket)))
+        else:
+            middle = (a + b) / 2
+            half = 2 ** (_BITS - 1)
+            work.append((middle, b, _part(motion, half, 2 * half)))
+            work.append((a, middle, _part(motion, 0, half)))
+    return max(_below(work[-1][0]), after) if work else None
 
 
 def _motion(start: FloatArray, end: FloatArray) -> Motion:
@@ -60,16 +69,30 @@ def _motion(start: FloatArray, end: FloatArray) -> Motion:
     return _minus(x0, y0), _minus(x1, x0), _minus(y1, y0)
 
 
-def _at_start(motion: Motion) -> Motion:
-    D, e, f = (tuple((p[0],) for p in vector) for vector in motion)
+def _frame(motion: Motion, time: int) -> Motion:
+    """The motion stopped at its start, time 0, or at its end, time 1."""
+    D, e, f = (tuple((p[time],) for p in vector) for vector in motion)
     return D, e, f
 
 
-def _halves(motion: Motion) -> tuple[Motion, Motion]:
-    """The two halves of a motion, all lengths doubled."""
-    D, e, f = (tuple((2 * p, p + q) for p, q in vector) for vector in motion)
-    G, g, h = (tuple((p + q, 2 * q) for p, q in vector) for vector in motion)
-    return (D, e, f), (G, g, h)
+def _part(motion: Motion, first: int, last: int) -> Motion:
+    """The motion from one time to another in units of 2^-40, all lengths times 2^40, or less by a common factor."""
+    whole = 2**_BITS
+    common = math.gcd(whole, first, last)
+    whole, first, last = whole // common, first // common, last // common
+    D, e, f = (
+        tuple(((whole - first) * p + first * q, (whole - last) * p + last * q) for p, q in vector) for vector in motion
+    )
+    return D, e, f
+
+
+def _below(time: Fraction) -> float:
+    """A double that is not greater, nor negative."""
+    return float(time) if Fraction(float(time)) <= time else math.nextafter(float(time), 0.0)
+
+
+def _free(motion: Motion) -> bool:
+    return _skew(motion) or _separated(motion)
 
 
 def _skew(motion: Motion) -> bool:
@@ -78,6 +101,29 @@ def _skew(motion: Motion) -> bool:
         return False
     volume = _volume(motion)
     return min(volume) > 0 or max(volume) < 0
+
+
+def _only_root(motion: Motion) -> tuple[int, int] | None:
+    """A short interval around the only time when the lines are coplanar, in units of 2^-40; None if there may be more.
+
+    By Descartes' rule one change of sign among the coefficients means one root.
+    """
+    if len(motion[0]) == 2:
+        return None
+    volume = _volume(motion)
+    signs = [c > 0 for c in volume if c]
+    if not volume[0] or not volume[-1] or sum(p != q for p, q in pairwise(signs)) != 1:
+        return None
+    low, high, whole = 0, 2**_BITS, 2**_BITS
+    while high - low > 1:
+        middle = (low + high) // 2
+        value = 0
+        for k, c in enumerate(volume):
+            value += c * (whole - middle) ** (len(volume) - 1 - k) * middle**k
+        if value == 0:
+            return middle - 1, middle + 1
+        low, high = (middle, high) if (value > 0) == signs[0] else (low, middle)
+    return low, high
 
 
 def _separated(motion: Motion) -> bool:
@@ -105,23 +151,26 @@ def _gaps(motion: Motion) -> Iterator[Iterator[Polynomial]]:
 def _crosses(motion: Motion) -> bool:
     """Whether the segments plainly meet during a short motion."""
     if len(motion[0]) == 2:
-        return _crosses_in_plane(motion)
+        return _crosses_in_plane(_frame(motion, 1))
     volume = _volume(motion)
-    return volume[0] * volume[-1] < 0 and _well_inside(motion, 0) and _well_inside(motion, -1)
+    return volume[0] * volume[-1] < 0 and all(_well_inside(_frame(motion, k)) for k in (0, 1))
 
 
-def _well_inside(motion: Motion, time: int) -> bool:
-    """Whether the point where the lines come nearest is well inside both edges, at the first or last time."""
-    vectors = [[p[time] for p in vector] for vector in motion]
-    scale = max(abs(x) for vector in vectors for x in vector)
-    D, e, f = (np.array([x / scale for x in vector]) for vector in vectors)
-    solution = np.linalg.lstsq(np.stack([e, -f], axis=1), -D, rcond=None)[0]
-    return bool(((solution > 0.01) & (solution < 0.99)).all())
+def _well_inside(motion: Motion) -> bool:
+    """Whether the points where two lines, standing still, come nearest are well inside both edges."""
+    D, e, f = motion
+    normal = _normal(e, f)
+    (whole,) = _dot(normal, normal)
+    for line in (f, e):
+        (part,) = _dot(_normal(line, D), normal)  # s |e × f|² and r |e × f|²
+        if min(part, whole - part) * _INSIDE <= whole:
+            return False
+    return True
 
 
 def _crosses_in_plane(motion: Motion) -> bool:
-    """Whether the segments cross properly at the end."""
-    D, e, f = (tuple((p[-1],) for p in vector) for vector in motion)
+    """Whether two segments in the plane, standing still, cross properly."""
+    D, e, f = motion
     sides = [_cross(f, D), _cross(f, _plus(D, e)), _cross(e, D), _cross(e, _minus(D, f))]
     (p,), (q,), (r,), (s,) = sides
     return p * q < 0 and r * s < 0
@@ -130,8 +179,11 @@ def _crosses_in_plane(motion: Motion) -> bool:
 def _volume(motion: Motion) -> Polynomial:
     """det(D, e, f)."""
     D, e, f = motion
-    normal = tuple(_cross((e[i], e[j]), (f[i], f[j])) for i, j in ((1, 2), (2, 0), (0, 1)))
-    return _dot(D, normal)
+    return _dot(D, _normal(e, f))
+
+
+def _normal(u: Vector, v: Vector) -> Vector:
+    return tuple(_cross((u[i], u[j]), (v[i], v[j])) for i, j in ((1, 2), (2, 0), (0, 1)))
 
 
 def _cross(u: Vector, v: Vector) -> Polynomial:

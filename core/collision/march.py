@@ -5,7 +5,7 @@ import numpy as np
 from ..types import FloatArray, IntArray
 from .planes import Separation, at_time, closest_chord, relative_motion
 
-_ROUNDS = 12
+_ROUNDS = 20
 _SHORT = 0.01  # a step that adds less than this part of the time reached calls for the exact decision
 _SHARE = 1 - 2.0**-6  # part of the way to the plane's own contact that a step goes, to stay apart for the next plane
 
