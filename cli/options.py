@@ -35,6 +35,7 @@ def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
     group.add_argument(
         "--edge-lengths", default=defaults.edge_lengths, metavar="L", help=_choice(EDGE_LENGTHS, defaults.edge_lengths)
     )
+    group.add_argument("--adaptive", action="store_true", help="split and collapse edges during the run")
     group.add_argument("--stability", action="store_true", help="tell whether a converged curve is a minimum")
     group.add_argument("--escape-saddles", action="store_true", help="and go on downhill from a saddle")
 

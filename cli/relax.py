@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from ..core import Curve, Iterate, RelaxOptions, Result, Status, Trajectory, minimize, read_curve
-from ..core.errors import MobiusFlowError
+from ..core.errors import MobiusFlowError, OptionError
 from ..core.files import atomic_write
 from . import options as relax_options
 from .outputs import OUTPUTS, Output, output_for
@@ -34,6 +34,8 @@ def run(options: argparse.Namespace) -> int:
     """Relax, write everything asked for, and return the exit status."""
     wanted = relax_options.from_arguments(options)
     output = output_for(options.output)
+    if wanted.adaptive and output.needs_iterates:
+        raise OptionError(f"{options.output}: keyframes need a fixed mesh; leave --adaptive out or write a curve file")
     curve = read_curve(options.input)
     result, iterates, trajectory = _relax(curve, wanted, output, options)
     output.write(options.output, result, iterates)

@@ -26,7 +26,7 @@ class Iterate:
     index
         0 for the (refined) start, then 1, 2, ...
     curve
-        The polygon; all iterates of a run have the same number of vertices.
+        The polygon; the iterates of a run have the same vertices unless the mesh is adaptive.
     energy
         The objective, moebius + barrier.
     gradient_norm
@@ -35,7 +35,8 @@ class Iterate:
         Step size τ that led here, 0 for the start.
     path
         The motion from the previous iterate to this one: vertices, each (n, m), at the ends of its straight
-        legs; the last is this curve, the start (the previous curve) is left out. Empty for the start.
+        legs; the last is this curve, the start (the previous curve) is left out. Empty for the start, and where an
+        adaptive mesh changes: there this is the previous curve with other vertices on its edges.
     certified
         True if every leg from the start of the run to here was proved free of contact.
     edge_length_error

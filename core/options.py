@@ -35,6 +35,9 @@ class RelaxOptions:
         Tell whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian.
     escape_saddles
         Do so, and go on downhill from a saddle.
+    adaptive
+        Split and collapse edges during the run, so that neighbours stay nearer than strands.  The number of vertices
+        changes from iterate to iterate, which point keyframes cannot follow.
     edge_lengths
         Targets ℓ⁰: "equal" within each component, or "keep" those of the refined start.
 
@@ -52,6 +55,7 @@ class RelaxOptions:
     metric: str | None = None
     quadrature_points: int = 1
     penalty: float | None = None
+    adaptive: bool = False
     edge_lengths: str = "equal"
     stability: bool = False
     escape_saddles: bool = False
@@ -67,5 +71,7 @@ class RelaxOptions:
             raise OptionError(f"quadrature_points is {self.quadrature_points}; it must be 1 or more")
         if self.penalty is not None and not (math.isfinite(self.penalty) and self.penalty > 0):
             raise OptionError(f"penalty is {self.penalty}; it must be a finite number above 0")
+        if self.adaptive and self.edge_lengths != "equal":
+            raise OptionError("an adaptive mesh makes its own edge_lengths; leave one of the two options out")
         if self.edge_lengths not in EDGE_LENGTHS:
             raise OptionError(f"edge_lengths is {self.edge_lengths!r}; choose one of {', '.join(EDGE_LENGTHS)}")

@@ -7,10 +7,11 @@ from typing import TypeVar
 
 import numpy as np
 
+from .adaptive import INTERVAL, adapt, graded_problem
 from .collision import check_embedded
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
-from .descent import METHODS, Method, NoStep, Point, Problem, State
+from .descent import METHODS, Method, NoStep, Point, Problem, State, Step
 from .descent.escape import escape_step
 from .energies import ENERGIES, MoebiusEnergy, Objective
 from .errors import OptionError
@@ -192,24 +193,48 @@ def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:
 
 
 def _iterates(problem: Problem, start: Curve, method: Method, options: RelaxOptions) -> Iterator[Iterate]:
-    point = problem.at(problem.units.from_user(start.vertices))
-    iterate = _iterate(problem, point, start, 0, 0.0, ())
+    if options.adaptive:
+        problem = graded_problem(problem, start, options.vertices)
+    iterate, point = _first(problem, start, 0)
     state = State()
+    fresh = False  # whether the mesh has just been refined around edges that were stuck
     while True:
         iterate, way_down = _judged(point, iterate, options)
         yield iterate
         if iterate.status is not Status.RUNNING:
             return
-        if way_down is None:
-            step, state = method.step(point, state)
-        else:
+        if way_down is not None:
             step, state = escape_step(point, *way_down), State()
-        if isinstance(step, NoStep):
+        else:
+            step, state = method.step(point, state)
+        stuck = step.limited_by if isinstance(step, NoStep) else None
+        if isinstance(step, NoStep) and (not options.adaptive or stuck is None or fresh):
             yield replace(iterate, status=Status.STALLED, message=f"stalled: {step.reason}", path=())
             return
-        point = step.point
-        path = tuple(problem.units.to_user(vertices) for vertices in step.path)
-        iterate = _iterate(problem, point, start.with_vertices(path[-1]), iterate.index + 1, step.size, path)
+        if isinstance(step, Step):
+            point = step.point
+            path = tuple(problem.units.to_user(vertices) for vertices in step.path)
+            iterate = _iterate(problem, point, start.with_vertices(path[-1]), iterate.index + 1, step.size, path)
+        fresh = stuck is not None
+        if options.adaptive and (fresh or iterate.index % INTERVAL == 0):
+            change = adapt(problem, iterate.curve, options.vertices, stuck)
+            if change is not None:
+                if isinstance(step, Step):
+                    yield iterate
+                # the last motion on the old mesh, then the same curve on the new one
+                moved = problem.at(problem.units.from_user(change.moved))
+                yield _iterate(
+                    problem, moved, start.with_vertices(change.moved), iterate.index + 1, 0.0, (change.moved,)
+                )
+                problem, start = change.problem, change.curve
+                iterate, point = _first(problem, start, iterate.index + 2)
+                state = State(None, state.last_step)
+
+
+def _first(problem: Problem, curve: Curve, index: int) -> tuple[Iterate, Point]:
+    """The first iterate on a mesh, and its point."""
+    point = problem.at(problem.units.from_user(curve.vertices))
+    return _iterate(problem, point, curve, index, 0.0, ()), point
 
 
 def _iterate(

@@ -15,20 +15,22 @@ class Trajectory:
     """Frames between which all vertices move on straight lines, collected from iterates.
 
     Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, …; a new stage begins
-    where the number of vertices changes.  Coordinates are the user's, in double: what was proved is about exactly
+    where the mesh changes.  Coordinates are the user's, in double: what was proved is about exactly
     these numbers.
     """
 
     def __init__(self) -> None:
         self._stages: list[tuple[tuple[int, ...], list[FloatArray]]] = []
+        self._last_index = -1
 
     def add(self, iterate: Iterate) -> None:
         """Append the motion that led to an iterate (for the first one: the start)."""
-        sizes = iterate.curve.mesh.component_sizes
-        if not self._stages or self._stages[-1][0] != sizes:
-            self._stages.append((sizes, [iterate.curve.vertices]))
+        if iterate.index > self._last_index and not iterate.path:
+            # the start, or the same curve on another mesh
+            self._stages.append((iterate.curve.mesh.component_sizes, [iterate.curve.vertices]))
         else:
             self._stages[-1][1].extend(iterate.path)
+        self._last_index = iterate.index
 
     def arrays(self) -> dict[str, FloatArray | IntArray]:
         """The arrays of the file, by name."""

@@ -52,7 +52,7 @@ class Curve:
         for k, array in enumerate(arrays):
             if array.ndim != 2 or array.shape[1] != arrays[0].shape[-1]:
                 raise CurveError(
-                    f"component {k + 1} has shape {array.shape}; every component must be an array (n, m) with the same m"
+                    f"component {k + 1} has shape {array.shape}; all components must be arrays (n, m) with one m"
                 )
         mesh = Mesh(tuple(len(array) for array in arrays))
         return cls(np.concatenate(arrays), mesh)

@@ -56,24 +56,30 @@ def subdivide(curve: Curve, pieces: IntArray) -> Curve:
     return Curve(vertices, Mesh(tuple(int(pieces[s].sum()) for s in curve.mesh.slices)))
 
 
-def target_spacing(curve: Curve) -> FloatArray:
-    """Largest edge length wanted on every edge, shape (n,): that of the default count, or the gap to other strands."""
-    base = curve.length / (DEFAULT_VERTICES * len(curve.mesh.component_sizes))
+def target_spacing(curve: Curve, vertices: int | None = None) -> FloatArray:
+    """Largest edge length wanted on every edge: that of the count, or the gap to other strands; shape (n,).
+
+    ``vertices`` is the count without gaps, by default 200 per component.  Gaps wider than that length, or than the
+    longest edge, do not matter and are not looked for.
+    """
+    base = curve.length / (vertices or DEFAULT_VERTICES * len(curve.mesh.component_sizes))
     pieces = np.ceil(SAMPLES_PER_SPACING * curve.edge_lengths / base).astype(np.intp)
     samples = subdivide(curve, pieces)
     spacing = np.full(len(curve), base)
-    np.minimum.at(spacing, np.repeat(np.arange(len(curve)), pieces), _strand_gaps(samples, base))
+    gaps = _strand_gaps(samples, min(base, float(curve.edge_lengths.max())))
+    near = gaps < np.inf
+    np.minimum.at(spacing, np.repeat(np.arange(len(curve)), pieces)[near], gaps[near])
     return spacing
 
 
 def _strand_gaps(curve: Curve, radius: float) -> FloatArray:
-    """Distance from each vertex to the nearest one on another strand, at most ``radius``; shape (n,)."""
+    """Distance from each vertex to the nearest one on another strand, inf beyond ``radius``; shape (n,)."""
     tree = cKDTree(curve.vertices)
     pairs = tree.query_pairs(radius, output_type="ndarray")
     i, j = pairs[:, 0], pairs[:, 1]
     distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
     other = arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance
-    gaps = np.full(len(curve), radius)
+    gaps = np.full(len(curve), np.inf)
     for end in (i, j):
         np.minimum.at(gaps, end[other], distance[other])
     return gaps

@@ -42,9 +42,10 @@ class Step:
 
 @dataclass(frozen=True)
 class NoStep:
-    """Why no step was found."""
+    """Why no step was found: in words, and the pair of edges in the way if it was contact."""
 
     reason: str
+    limited_by: tuple[int, int] | None = None
 
     @classmethod
     def because(cls, limited_by: tuple[int, int] | None) -> "NoStep":
@@ -52,7 +53,7 @@ class NoStep:
         if limited_by is None:
             return cls("no step along the direction lowers the energy by a measurable amount")
         i, j = limited_by
-        return cls(f"edges {i + 1} and {j + 1} are so near to each other that no step is free of contact")
+        return cls(f"edges {i + 1} and {j + 1} are so near to each other that no step is free of contact", limited_by)
 
 
 def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | NoStep:

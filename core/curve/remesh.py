@@ -1,0 +1,109 @@
+"""Adaptive meshes: split and collapse edges so that neighbours stay nearer than strands (Section 6.1.3 of [RS21]).
+
+A split puts vertices on an edge.  A collapse first moves a vertex onto the chord of its neighbours, a motion to be
+proved free of contact like any other, and then removes it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..types import BoolArray, FloatArray, IntArray
+from .curve import Curve
+from .mesh import Mesh
+from .refine import subdivide, target_spacing
+
+SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
+COLLAPSE = 0.5  # two edges are joined if they are shorter than this many times the spacing, each
+GRADING = 1.3  # ratio of the spacings wanted on neighbouring edges, at most
+FEWEST = 16  # vertices that a component keeps, if it had as many
+
+
+def graded_spacing(curve: Curve, vertices: int | None) -> FloatArray:
+    """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (n,)."""
+    spacing = target_spacing(curve, vertices)
+    for part in curve.mesh.slices:
+        # one sweep each way, twice round, spreads every minimum as far as it reaches
+        for direction in (1, -1):
+            local = np.tile(spacing[part][::direction], 2)
+            steps = np.log(GRADING) * np.arange(len(local))
+            local = np.exp(np.minimum.accumulate(np.log(local) - steps) + steps)
+            spacing[part] = local[len(local) // 2 :][::direction]
+    return spacing
+
+
+def superfluous(curve: Curve, spacing: FloatArray) -> IntArray:
+    """Vertices that may be removed, no two of them neighbours or next to neighbours."""
+    mesh, ell = curve.mesh, curve.edge_lengths
+    before = mesh.previous  # the edge whose head is the vertex; the vertex's own edge starts there
+    short = (ell[before] < COLLAPSE * spacing[before]) & (ell < COLLAPSE * spacing)
+    chosen: list[int] = []
+    for part in mesh.slices:
+        size = part.stop - part.start
+        room, last, first = size - min(size, FEWEST), -3, None
+        for k in np.flatnonzero(short[part]):
+            wraps = first is not None and first + size - k < 3
+            if room > 0 and k - last >= 3 and not wraps:
+                chosen.append(part.start + int(k))
+                first = int(k) if first is None else first
+                last, room = int(k), room - 1
+    return np.array(chosen, dtype=np.intp)
+
+
+def onto_chords(curve: Curve, vertices: IntArray) -> FloatArray:
+    """All vertices after the given ones have moved onto the chords of their neighbours; shape (n, m)."""
+    mesh = curve.mesh
+    moved = curve.vertices.copy()
+    before, after = curve.vertices[mesh.tails[mesh.previous[vertices]]], curve.vertices[mesh.heads[vertices]]
+    chord = after - before
+    along = np.einsum("ij,ij->i", curve.vertices[vertices] - before, chord) / np.einsum("ij,ij->i", chord, chord)
+    moved[vertices] = before + np.clip(along, 0.2, 0.8)[:, None] * chord
+    return moved
+
+
+@dataclass(frozen=True, eq=False)
+class Remeshed:
+    """A change of mesh.
+
+    Attributes
+    ----------
+    moved
+        The old polygon after its superfluous vertices have moved onto their chords.
+    curve
+        The new polygon: the same set of points as ``moved``, up to rounding.
+    lengths
+        Edge lengths wanted on the new mesh, adding up to the total length of each component; shape (n',).
+    """
+
+    moved: Curve
+    curve: Curve
+    lengths: FloatArray
+
+
+def remesh(curve: Curve, vertices: int | None, removable: IntArray, spacing: FloatArray) -> Remeshed:
+    """Remove the given vertices after moving them onto their chords, and split edges that are too long."""
+    moved = curve.with_vertices(onto_chords(curve, removable))
+    keep = np.ones(len(curve), dtype=bool)
+    keep[removable] = False
+    coarse = _without(moved, keep)
+    pieces = np.where(coarse.edge_lengths > SPLIT * spacing[keep], np.ceil(coarse.edge_lengths / spacing[keep]), 1.0)
+    fine = subdivide(coarse, pieces.astype(np.intp))
+    return Remeshed(moved, fine, _normalised(fine, graded_spacing(fine, vertices)))
+
+
+def needs_remesh(curve: Curve, spacing: FloatArray) -> bool:
+    """Whether an edge is too long for its neighbourhood, or a tenth of the vertices are superfluous."""
+    too_long = bool((curve.edge_lengths > SPLIT * spacing).any())
+    return too_long or len(superfluous(curve, spacing)) > 0.1 * len(curve)
+
+
+def _without(curve: Curve, keep: BoolArray) -> Curve:
+    sizes = tuple(int(np.count_nonzero(keep[part])) for part in curve.mesh.slices)
+    return Curve(curve.vertices[keep], Mesh(sizes))
+
+
+def _normalised(curve: Curve, spacing: FloatArray) -> FloatArray:
+    lengths = spacing.copy()
+    for part in curve.mesh.slices:
+        lengths[part] *= curve.edge_lengths[part].sum() / spacing[part].sum()
+    return lengths

@@ -1,0 +1,103 @@
+"""Adaptive meshes: neighbours stay nearer than strands, and the changes of mesh are inside the proof."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
+from mobius_flow.core.curve.remesh import (
+    COLLAPSE,
+    FEWEST,
+    GRADING,
+    SPLIT,
+    graded_spacing,
+    needs_remesh,
+    onto_chords,
+    remesh,
+    superfluous,
+)
+from mobius_flow.core.verify import verify
+from shapes import hopf_link, regular_polygon, shared_knot, torus_trefoil
+
+
+def near_strands(gap: float) -> Curve:
+    """A long thin loop with a bulge: two strands ``gap`` apart."""
+    x = np.linspace(0, 4, 60)
+    upper = np.stack([x, gap * np.ones_like(x), 0 * x], axis=1)
+    lower = np.stack([x[::-1], -gap * np.ones_like(x), 0 * x], axis=1)
+    t = np.linspace(np.pi / 2, -np.pi / 2, 20)[1:-1]
+    end = np.stack([4.0 + np.cos(t), np.sin(t), 0 * t], axis=1)
+    return Curve(np.concatenate([upper, end, lower, np.stack([-np.cos(t), -np.sin(t), 0 * t], axis=1)]))
+
+
+def test_spacing_follows_gaps_and_is_graded():
+    curve = near_strands(0.01)
+    spacing = graded_spacing(curve, 200)
+    middle = (curve.vertices[:, 0] > 1) & (curve.vertices[:, 0] < 3)
+    assert spacing[middle].max() < 0.03
+    ratios = spacing / spacing[curve.mesh.previous]
+    assert ratios.max() <= GRADING * (1 + 1e-12)
+    assert ratios.min() >= 1 / GRADING * (1 - 1e-12)
+
+
+def test_remesh_reaches_the_rule():
+    curve = near_strands(0.01)
+    spacing = graded_spacing(curve, 200)
+    assert needs_remesh(curve, spacing)
+    fine = remesh(curve, 200, superfluous(curve, spacing), spacing).curve
+    assert (fine.edge_lengths <= SPLIT * 1.01 * graded_spacing(fine, 200)).all()
+    assert fine.length == pytest.approx(curve.length)
+
+
+def test_collapse_keeps_far_vertices_and_few_per_component():
+    curve = regular_polygon(900)
+    spacing = graded_spacing(curve, 100)
+    chosen = superfluous(curve, spacing)
+    assert len(chosen) == 300
+    assert (np.diff(np.concatenate([chosen, [chosen[0] + 900]])) >= 3).all()
+    moved = onto_chords(curve, chosen)
+    kept = np.setdiff1d(np.arange(900), chosen)
+    np.testing.assert_array_equal(moved[kept], curve.vertices[kept])
+    chord = curve.vertices[(chosen + 1) % 900] - curve.vertices[chosen - 1]
+    offset = moved[chosen] - curve.vertices[chosen - 1]
+    np.testing.assert_allclose(np.linalg.norm(np.cross(chord, offset), axis=1), 0, atol=1e-15)
+    assert len(superfluous(regular_polygon(FEWEST), np.full(FEWEST, 100.0))) == 0
+    assert COLLAPSE * 2 <= 1
+
+
+@pytest.mark.parametrize(
+    ("curve", "energy"),
+    [(near_strands(0.02), 4.0), (hopf_link(500), 8 + 4 * np.pi**2)],
+    ids=["near strands", "link with too many vertices"],
+)
+def test_adaptive_runs_are_certified_through_changes_of_mesh(curve, energy, tmp_path):
+    trajectory = Trajectory()
+    result = minimize(curve, RelaxOptions(adaptive=True), trajectory.add)
+    assert result.status is Status.CONVERGED
+    assert result.certified
+    assert result.energies[-1] == pytest.approx(energy, rel=5e-3)
+    assert len(trajectory.arrays()) >= 4
+    trajectory.save(tmp_path / "t.npz")
+    verdict = verify(tmp_path / "t.npz")
+    assert verdict.accepted, verdict
+
+
+def test_stages_begin_where_the_mesh_changes_even_to_the_same_size():
+    first, *_ = relax(torus_trefoil(60), RelaxOptions(max_iterations=0))
+    trajectory = Trajectory()
+    trajectory.add(first)
+    trajectory.add(replace(first, index=1))
+    assert set(trajectory.arrays()) == {"stage_000", "stage_001", "component_sizes_000", "component_sizes_001"}
+
+
+def test_famous_unknot_adaptively(tmp_path):
+    trajectory = Trajectory()
+    result = minimize(shared_knot("unknot_culprit.txt"), RelaxOptions(adaptive=True), trajectory.add)
+    assert result.energies[-1] < 4.01
+    trajectory.save(tmp_path / "t.npz")
+    assert verify(tmp_path / "t.npz").accepted
+
+
+def test_one_rule_for_edge_lengths():
+    with pytest.raises(OptionError, match="adaptive mesh makes its own"):
+        RelaxOptions(adaptive=True, edge_lengths="keep")
