@@ -6,20 +6,20 @@ over ordered pairs of different components or at index distance 4 or more.  χ i
 q = 1 and 0 from q = 9/4, so B is one C² function of the vertices and vanishes on well-resolved curves.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 
 from ..curve import Curve
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .contributions import Contributions
 from .edge_pairs import EdgePairs, scatter_first, scatter_second
 from .jets import Jet
 from .near_pairs import FAR, near_pairs
 
 NEAR = 1.0  # of q, where the cutoff leaves 1; it reaches 0 at FAR
-BLOCK = 192  # pairs whose 3m × 3m matrices are handled at once, to stay in the processor's cache
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,12 @@ class Barrier:
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """B and its derivative with respect to the vertices, shape (n, m)."""
-        i, j = near_pairs(curve)
-        if not len(i):
-            return 0.0, np.zeros_like(curve.vertices)
-        jet = _contributions(EdgePairs.of(curve, i, j))
-        # unordered pairs are listed, the sum is over ordered ones
-        return 2.0 * float(jet.value.sum()), 2.0 * scatter_first(curve.mesh, i, j, jet.first)
+        total, derivative = 0.0, np.zeros_like(curve.vertices)
+        for i, j in _blocks(curve, 4096):
+            jet = _contributions(EdgePairs.of(curve, i, j))
+            total += float(jet.value.sum())
+            derivative += scatter_first(curve.mesh, i, j, jet.first)
+        return 2.0 * total, 2.0 * derivative  # unordered pairs are listed, the sum is over ordered ones
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative D²B, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
@@ -48,21 +48,28 @@ class Barrier:
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²B as a sparse matrix: it couples near edges only."""
-        i, j = near_pairs(curve)
-        size = 3 * curve.dimension
-        second = np.empty((len(i), size, size))
-        for first in range(0, len(i), BLOCK):
-            part = slice(first, first + BLOCK)
-            second[part] = _contributions(EdgePairs.of(curve, i[part], j[part]).with_coordinates()).second
-        return 2.0 * scatter_second(curve.mesh, i, j, second)
+        total = sp.csr_array((curve.vertices.size, curve.vertices.size))
+        for i, j in _blocks(curve, 16384):
+            # the jets' matrices, many of 3m × 3m for each pair, should stay in the processor's cache
+            parts = [slice(first, first + 128) for first in range(0, len(i), 128)]
+            second = [_contributions(EdgePairs.of(curve, i[s], j[s]).with_coordinates()).second for s in parts]
+            total = total + scatter_second(curve.mesh, i, j, 2.0 * np.concatenate(second))
+        return total
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²B v for ``v`` of shape (n, m); shape (n, m)."""
-        i, j = near_pairs(curve)
-        if not len(i):
-            return np.zeros_like(v)
-        jet = _contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v))
-        return 2.0 * scatter_first(curve.mesh, i, j, jet.second[:, :, 0])
+        product = np.zeros_like(v)
+        for i, j in _blocks(curve, 4096):
+            jet = _contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v))
+            product += scatter_first(curve.mesh, i, j, jet.second[:, :, 0])
+        return 2.0 * product
+
+
+def _blocks(curve: Curve, size: int) -> Iterator[tuple[IntArray, IntArray]]:
+    """The near pairs in blocks, to bound the memory."""
+    i, j = near_pairs(curve)
+    for first in range(0, len(i), size):
+        yield i[first : first + size], j[first : first + size]
 
 
 def _contributions(pairs: EdgePairs) -> Jet:

@@ -19,7 +19,8 @@ _CORNERS = np.array([[0.5, -1.0, 0.0], [0.5, 1.0, 0.0], [-0.5, 0.0, -1.0], [-0.5
 class EdgePairs(NamedTuple):
     """k pairs of edges: x(s) = x_mid + (s − ½) e, y(t) = y_mid + (t − ½) f, Δ = x_mid − y_mid; each array (k, m).
 
-    ``directions`` are r directions in which (Δ, e, f) may change, shape (k, 3, m, r); see `Jet`.
+    ``directions`` are r directions in which (Δ, e, f) may change, see `Jet`; shape (k, 3m, r), or (1, 3m, r) if they
+    are the same for all pairs.
     """
 
     delta: FloatArray
@@ -31,31 +32,32 @@ class EdgePairs(NamedTuple):
     def of(cls, curve: Curve, i: IntArray, j: IntArray) -> "EdgePairs":
         """The pairs (i, j) of edges of a curve, without directions."""
         delta, e, f = _shape(curve.mesh, curve.vertices, i, j)
-        return cls(delta, e, f, np.empty((*delta.shape[:1], 3, *delta.shape[1:], 0)))
+        return cls(delta, e, f, np.empty((1, 3 * delta.shape[1], 0)))
 
     def moving(self, mesh: Mesh, i: IntArray, j: IntArray, v: FloatArray) -> "EdgePairs":
         """The pairs with the direction of vertex velocities ``v``, shape (n, m)."""
-        return self._replace(directions=np.stack(_shape(mesh, v, i, j), axis=1)[..., None])
+        return self._replace(directions=np.hstack(_shape(mesh, v, i, j))[:, :, None])
 
     def with_coordinates(self) -> "EdgePairs":
         """The pairs with the 3m coordinate directions."""
-        k, m = self.delta.shape
-        identity = np.eye(3 * m).reshape(3, m, 3 * m)
-        return self._replace(directions=np.broadcast_to(identity, (k, *identity.shape)))
+        return self._replace(directions=np.eye(3 * self.delta.shape[1])[None])
 
     def combination(self, c: Combination) -> FloatArray:
         """The vector c₀ Δ + c₁ e + c₂ f of every pair, shape (k, m)."""
         return np.asarray(c[0] * self.delta + c[1] * self.e + c[2] * self.f)
+
+    def along(self, first: FloatArray) -> FloatArray:
+        """Derivatives along the directions, shape (k, r), from those by (Δ, e, f), shape (k, 3m)."""
+        return np.asarray((first[:, None, :] @ self.directions)[:, 0, :])
 
     def inner(self, a: Combination, b: Combination) -> Jet:
         """The inner product of two combinations, as a function of the 3m coordinates of (Δ, e, f)."""
         u, v = self.combination(a), self.combination(b)
         k, m = u.shape
         first = np.stack([p * v + q * u for p, q in zip(a, b, strict=True)], axis=1).reshape(k, 3 * m)
-        directions = self.directions.reshape(k, 3 * m, -1)
-        constant = np.kron(np.outer(a, b) + np.outer(b, a), np.eye(m))
-        along = np.einsum("kc,kcr->kr", first, directions)
-        return Jet(np.einsum("km,km->k", u, v), first, along, constant @ directions)
+        blocks = np.outer(a, b) + np.outer(b, a)
+        constant = np.einsum("pq,ij->piqj", blocks, np.eye(m)).reshape(3 * m, 3 * m)
+        return Jet(np.einsum("km,km->k", u, v), first, self.along(first), constant @ self.directions)
 
 
 def _shape(mesh: Mesh, p: FloatArray, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -69,12 +69,13 @@ class CouplingPlanes:
     ) -> None:
         """Add entries for the tails and for the heads of the tile's columns to rows of a plane."""
         first = tile.columns.start
-        before = self.mesh.previous - first  # position in the tile of the edge that a vertex is the head of
-        at_tails[:, 1:] += at_heads[:, before[first + 1 :]]
+        for closing in self.mesh.offsets[1:] - 1:
+            # the head of a component's last edge is not the next vertex but the component's first
+            if closing >= first:
+                plane[rows, self.mesh.heads[closing]] += at_heads[:, closing - first]
+                at_heads[:, closing - first] = 0.0
+        at_tails[:, 1:] += at_heads[:, :-1]
         plane[rows, first:] += at_tails
-        # the first column's vertex, or the one that its component's last edge leads back to
-        opening = self.mesh.offsets[self.mesh.component[first]]
-        plane[rows, opening] += at_heads[:, before[opening]]
 
     def symmetric_matrix(self, own: OwnBlocks, factor: float) -> FloatArray:
         """``factor`` times the sum of all blocks, with the transposed ones; shape (n·m, n·m)."""

@@ -18,8 +18,7 @@ from .moments import Moments, moments
 def inverse_square(pairs: EdgePairs) -> Jet:
     """The integral as a jet in (Δ, e, f); edges must not touch."""
     k, m = pairs.delta.shape
-    directions = pairs.directions.reshape(k, 3 * m, -1)
-    curved = directions.shape[2] > 0
+    curved = pairs.directions.shape[2] > 0
     value, first, second = np.zeros(k), np.zeros((k, 3, m)), np.zeros((k if curved else 0, 3, m, 3, m))
     length = np.linalg.norm(pairs.f, axis=1)
     tau = pairs.f / length[:, None]
@@ -31,8 +30,8 @@ def inverse_square(pairs: EdgePairs) -> Jet:
         if curved:
             np.add.at(second, pair, _second(inner, s - 0.5, weight))
     slopes = first.reshape(k, 3 * m)
-    along = np.einsum("kc,kcr->kr", slopes, directions)
-    return Jet(value, slopes, along, second.reshape(-1, 3 * m, 3 * m) @ directions if curved else directions)
+    change = second.reshape(-1, 3 * m, 3 * m) @ pairs.directions if curved else pairs.directions
+    return Jet(value, slopes, pairs.along(slopes), change)
 
 
 class _Inner(NamedTuple):

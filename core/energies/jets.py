@@ -23,7 +23,7 @@ class Jet:
     along
         Derivatives along the directions, shape (k, r).
     second
-        Derivatives of ``first`` along the directions, shape (k, c, r).
+        Derivatives of ``first`` along the directions, shape (k, c, r), or (1, c, r) if they are constant.
     """
 
     value: FloatArray

@@ -12,6 +12,8 @@ g = ℓ_I ℓ_J + ⟨e_I, e_J⟩ its second derivatives are
 Vertices enter through e_I = P(I↑) − P(I↓) and c_I = P(I↑) + P(I↓) = 2 m_I, so ∂c_I = ∂Δ/2 and ∂c_J = −∂Δ/2.
 """
 
+from itertools import product
+
 import numpy as np
 
 from ..curve import Curve
@@ -46,22 +48,21 @@ def _add_tile(edges: Edges, tile: Tile, pairs: Pairs, coupling: CouplingPlanes, 
     n *= s
     alpha, beta, eta, a = _vectors(edges, tile, pairs, n)
     sn, ps, qs, s2 = s * n, pairs.p * s, pairs.q * s, 0.5 * s * s
-    for k in range(len(n)):
-        for j in range(len(n)):
-            ee = s * (tau[k] * sigma[j]) - 2.0 * n[k] * n[j]
-            ec = alpha[k] * n[j] - sn[k] * f[j]  # ∂e_I ∂Δ/2, coordinates k of e_I and j of Δ
-            fc = beta[j] * n[k] - sn[j] * e[k]  # ∂e_J ∂Δ/2, coordinates j of e_J and k of Δ
-            cc = eta[k] * n[j] + n[k] * eta[j] - s2 * (e[k] * f[j] + f[k] * e[j])
-            if k == j:
-                ee += s
-                ec -= qs
-                fc -= ps
-                cc += a
-            own.ec[rows, k, j] += ec.sum(axis=1)
-            own.ec[columns, j, k] -= fc.sum(axis=0)
-            own.cc[rows, k, j] += cc.sum(axis=1)
-            own.cc[columns, k, j] += cc.sum(axis=0)
-            coupling.add(k, j, tile, ee, ec, fc, cc)
+    for k, j in product(range(len(n)), repeat=2):
+        ee = s * (tau[k] * sigma[j]) - 2.0 * n[k] * n[j]
+        ec = alpha[k] * n[j] - sn[k] * f[j]  # ∂e_I ∂Δ/2, coordinates k of e_I and j of Δ
+        fc = beta[j] * n[k] - sn[j] * e[k]  # ∂e_J ∂Δ/2, coordinates j of e_J and k of Δ
+        cc = eta[k] * n[j] + n[k] * eta[j] - s2 * (e[k] * f[j] + f[k] * e[j])
+        if k == j:
+            ee += s
+            ec -= qs
+            fc -= ps
+            cc += a
+        own.ec[rows, k, j] += ec.sum(axis=1)
+        own.ec[columns, j, k] -= fc.sum(axis=0)
+        own.cc[rows, k, j] += cc.sum(axis=1)
+        own.cc[columns, k, j] += cc.sum(axis=0)
+        coupling.add(k, j, tile, ee, ec, fc, cc)
 
 
 def _vectors(

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import BoolArray, FloatArray
+from ..types import FloatArray
 
 CONTACT = 1e-16  # distance of edges, relative to their length, below which they count as that far apart
 _SERIES_TERMS = 14
@@ -29,47 +29,57 @@ def moments(h2: FloatArray, a: FloatArray, b: FloatArray, cubes: bool) -> Moment
 
     A point on the edge counts as being 10⁻¹⁶ of the edge's length away, so that nothing is infinite.
     """
-    h2 = np.maximum(h2, ((b - a) * CONTACT) ** 2)
+    width = b - a
+    h2 = np.maximum(h2, (width * CONTACT) ** 2)
     h = np.sqrt(h2)
-    # if the foot is well outside the edge, nothing may be divided by h
-    outside = a * b > h2
-    safe_h2 = np.where(outside, 1.0, h2)
-    a_out, b_out = np.where(outside, a, 1.0), np.where(outside, b, 2.0)
-    x_a, x_b = np.where(outside, h / a_out, 0.0), np.where(outside, h / b_out, 0.0)
     ra2, rb2 = h2 + a * a, h2 + b * b
+    # if the foot is well outside the edge, differences that are divided by h cancel: there integrals from a and
+    # from b to infinity take their place
+    outside = a * b > h2
+    tails = _Tails.of(h[outside], a[outside], b[outside])
 
-    inverse = _inverse_moment(h, h2, a, b, outside)
+    inverse = np.arctan2(width * h, h2 + a * b) / h
+    inverse[outside] = tails.inverse()
     edge = b / rb2 - a / ra2
-    p_a, p_b = _tail_square(x_a), _tail_square(x_b)
-    m0 = np.where(outside, p_a / a_out**3 - p_b / b_out**3, (inverse + edge) / (2.0 * safe_h2))
-    m1 = 0.5 * (1.0 / ra2 - 1.0 / rb2)
-    m2 = 0.5 * (inverse - edge)
+    m0 = (inverse + edge) / (2.0 * h2)
+    m0[outside] = tails.square()
+    square = (m0, 0.5 * (1.0 / ra2 - 1.0 / rb2), 0.5 * (inverse - edge))
     if not cubes:
-        return Moments(inverse, (m0, m1, m2), ())
-    edge = b / rb2**2 - a / ra2**2
-    tails = _tail_cube(x_a, p_a) / a_out**5 - _tail_cube(x_b, p_b) / b_out**5
-    c0 = np.where(outside, tails, (3.0 * m0 + edge) / (4.0 * safe_h2))
+        return Moments(inverse, square, ())
+    c0 = (3.0 * m0 + b / rb2**2 - a / ra2**2) / (4.0 * h2)
+    c0[outside] = tails.cube()
     c1 = 0.25 * (1.0 / ra2**2 - 1.0 / rb2**2)
     c2 = m0 - h2 * c0
-    return Moments(inverse, (m0, m1, m2), (c0, c1, c2, m1 - h2 * c1, m2 - h2 * c2))
+    return Moments(inverse, square, (c0, c1, c2, square[1] - h2 * c1, square[2] - h2 * c2))
 
 
-def _inverse_moment(h: FloatArray, h2: FloatArray, a: FloatArray, b: FloatArray, outside: BoolArray) -> FloatArray:
-    """L(1, 0) = (arctan(b/h) − arctan(a/h))/h, the angle under which the edge is seen, over h."""
-    width, scalar = b - a, h2 + a * b
-    tangent = width * h / np.where(outside, scalar, 1.0)
-    return np.where(
-        outside,
-        _arctan_ratio(np.where(outside, tangent, 0.0)) * width / np.where(outside, scalar, 1.0),
-        np.arctan2(width * h, scalar) / np.where(outside, 1.0, h),
-    )
+class _Tails(NamedTuple):
+    """L(n, 0) where a and b have one sign and a b > h²; arrays of one dimension."""
 
+    h: FloatArray
+    a: FloatArray
+    b: FloatArray
+    square_a: FloatArray  # a³ ∫_a^∞ dw/(h² + w²)²
+    square_b: FloatArray
 
-def _arctan_ratio(x: FloatArray) -> FloatArray:
-    """arctan(x)/x, also at 0."""
-    small = np.abs(x) < 1e-8
-    safe = np.where(small, 1.0, x)
-    return np.where(small, 1.0, np.arctan(safe) / safe)
+    @classmethod
+    def of(cls, h: FloatArray, a: FloatArray, b: FloatArray) -> "_Tails":
+        return cls(h, a, b, _tail_square(h / a), _tail_square(h / b))
+
+    def inverse(self) -> FloatArray:
+        """arctan(h/a) − arctan(h/b) over h, by the addition theorem."""
+        across = (self.b - self.a) / (self.h * self.h + self.a * self.b)
+        tangent = self.h * across
+        small = np.abs(tangent) < 1e-8
+        safe = np.where(small, 1.0, tangent)
+        return np.asarray(across * np.where(small, 1.0, np.arctan(safe) / safe))
+
+    def square(self) -> FloatArray:
+        return self.square_a / self.a**3 - self.square_b / self.b**3
+
+    def cube(self) -> FloatArray:
+        tail_a, tail_b = _tail_cube(self.h / self.a, self.square_a), _tail_cube(self.h / self.b, self.square_b)
+        return tail_a / self.a**5 - tail_b / self.b**5
 
 
 def _tail_square(x: FloatArray) -> FloatArray:

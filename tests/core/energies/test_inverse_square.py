@@ -37,7 +37,7 @@ def pairs_of(points: Points, directions: np.ndarray | None = None) -> EdgePairs:
     x0, x1, y0, y1 = (p[None] for p in points)
     delta = 0.5 * ((x0 - y0) + (x1 - y1))
     if directions is None:
-        directions = np.empty((1, 3, len(points[0]), 0))
+        directions = np.empty((1, 3 * len(points[0]), 0))
     return EdgePairs(delta, x1 - x0, y1 - y0, directions)
 
 
@@ -72,7 +72,7 @@ def test_derivatives(shape: str, gap: float) -> None:
     velocity = np.random.default_rng(7).normal(size=(4, 3))
     dx0, dx1, dy0, dy1 = velocity
     direction = np.stack([0.5 * ((dx0 - dy0) + (dx1 - dy1)), dx1 - dx0, dy1 - dy0])
-    jet = inverse_square(pairs_of(points, direction[None, :, :, None]))
+    jet = inverse_square(pairs_of(points, direction.reshape(1, -1, 1)))
     step = mp.mpf(gap) / 10**4
 
     def moved(steps: int) -> mp.mpf:
