@@ -39,12 +39,10 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     if vertices is not None and vertices < len(curve):
         raise OptionError(f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more")
     wanted = curve.edge_lengths / target_spacing(curve)
-    if vertices is None:
-        # a little slack, so that a curve that already has the spacing asked for stays as it is
-        pieces = np.maximum(1, np.ceil(wanted - 0.1)).astype(np.intp)
-    else:
-        pieces = _apportion(wanted, vertices)
-    return subdivide(curve, pieces)
+    if vertices is not None:
+        return subdivide(curve, _apportion(wanted, vertices))
+    # a little slack, so that a curve that already has the spacing asked for stays as it is
+    return subdivide(curve, np.maximum(1, np.ceil(wanted - 0.1)).astype(np.intp))
 
 
 def subdivide(curve: Curve, pieces: IntArray) -> Curve:
@@ -86,7 +84,7 @@ def _strand_gaps(curve: Curve, radius: float) -> FloatArray:
 
 
 def _apportion(wanted: FloatArray, total: int) -> IntArray:
-    """Pieces per edge, at least 1 each and ``total`` together, as proportional to ``wanted`` as whole numbers can be."""
+    """Pieces per edge, at least 1 each and ``total`` together, as nearly proportional to ``wanted`` as can be."""
     pieces = np.maximum(1, np.floor(wanted * (total - len(wanted)) / wanted.sum())).astype(np.intp)
     queue = [(-w / p, k) for k, (w, p) in enumerate(zip(wanted, pieces, strict=True))]
     heapq.heapify(queue)

@@ -52,7 +52,9 @@ def test_neighbours_become_nearer_than_strands():
     """Two long parallel strands 1/50 of their length apart."""
     curve = Curve([[0, 0, 0], [10, 0, 0], [10, 0.2, 0], [0, 0.2, 0.0]])
     refined = refine(curve)
-    along = refined.vertices[(refined.vertices[:, 1] == 0) & (refined.vertices[:, 0] > 1) & (refined.vertices[:, 0] < 9)]
+    along = refined.vertices[
+        (refined.vertices[:, 1] == 0) & (refined.vertices[:, 0] > 1) & (refined.vertices[:, 0] < 9)
+    ]
     assert np.diff(np.sort(along[:, 0])).max() < 0.2
 
 

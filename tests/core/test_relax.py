@@ -1,5 +1,7 @@
 """The driver: what it yields, how it ends, and that it does not care for units or place."""
 
+import itertools
+
 import numpy as np
 import pytest
 from mobius_flow.core import (
@@ -35,14 +37,14 @@ def test_every_method_goes_down_feasibly_and_certified(method, name, even_trefoi
     iterates = list(relax(curve, RelaxOptions(method=method, max_iterations=6, vertices=len(curve))))
     energies = [iterate.energy for iterate in iterates]
     if method != "penalty-nesterov":  # momentum may overshoot
-        assert all(b < a for a, b in zip(energies, energies[1:], strict=False))
+        assert all(b < a for a, b in itertools.pairwise(energies))
     assert energies[-1] < energies[0]
     if METHODS[method].penalty is None:
         assert iterates[-1].edge_length_error < 1e-8
-    for before, after in zip(iterates, iterates[1:], strict=False):
+    for before, after in itertools.pairwise(iterates):
         frames = (before.curve.vertices, *after.path)
         assert np.array_equal(frames[-1], after.curve.vertices)
-        assert all(is_free(curve.mesh, a, b) for a, b in zip(frames, frames[1:], strict=False))
+        assert all(is_free(curve.mesh, a, b) for a, b in itertools.pairwise(frames))
         assert after.certified
 
 
