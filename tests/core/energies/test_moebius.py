@@ -42,6 +42,24 @@ def test_hopf_link() -> None:
     assert abs(errors[-1]) < 2e-3
 
 
+def test_concentric_circles() -> None:
+    """In the plane: ∬ cos α/r² over two closed curves vanishes, and ∬ 1/r² is 4π² R/(R² − 1) for radii 1 and R."""
+    counts = np.array([50, 100, 200, 400])
+    polygons = [regular_polygon(int(n), 2).vertices for n in counts]
+    exact = 8 + 2 * 4 * np.pi**2 * 1.8 / (1.8**2 - 1)
+    errors = [abs(ENERGY.value(Curve.from_components([p, 1.8 * p])) - exact) for p in polygons]
+    assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-2, abs=0.1)
+    assert errors[-1] < 2e-4 * exact
+
+
+@pytest.mark.parametrize("n", [5, 30, 200])
+def test_orthogonal_circles_in_four_dimensions(n: int) -> None:
+    """Two circles of the Clifford torus: all tangents are orthogonal to each other and to the chords."""
+    polygon, zero = regular_polygon(n, 2).vertices, np.zeros((n, 2))
+    link = Curve.from_components([np.hstack([polygon, zero]), np.hstack([zero, polygon])])
+    assert ENERGY.value(link) == pytest.approx(8 + 4 * n**2 * np.tan(np.pi / n) ** 2, rel=1e-12)
+
+
 @pytest.mark.parametrize("dimension", [2, 3, 4])
 def test_separate_circles_do_not_see_each_other_far_away(dimension: int) -> None:
     circle = regular_polygon(60, dimension).vertices
