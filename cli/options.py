@@ -1,6 +1,7 @@
 """The options of a relaxation, shared by the subcommands that run one."""
 
 import argparse
+from collections.abc import Iterable
 from dataclasses import fields
 
 from ..core import METHODS, RelaxOptions
@@ -46,5 +47,5 @@ def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     return RelaxOptions(**{field.name: given[field.name] for field in fields(RelaxOptions) if field.name in given})
 
 
-def _choice(names: object, default: str) -> str:
-    return f"one of {', '.join(names)} (default: {default})"  # type: ignore[call-overload]
+def _choice(names: Iterable[str], default: str) -> str:
+    return f"one of {', '.join(names)} (default: {default})"
