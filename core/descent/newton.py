@@ -48,9 +48,10 @@ def lagrangian_hessian_matrix(point: Point) -> FloatArray:
     weight = point.multipliers[: len(ell)] / ell**2
     matrix = point.problem.objective.hessian(point.curve).reshape(n, m, n, m)
     blocks = weight[:, None, None] * (np.eye(m) - 2.0 * tau[:, :, None] * tau[:, None, :])
+    by_vertices = matrix.transpose(0, 2, 1, 3)
     tail, head = mesh.tails, mesh.heads
     for a, b, sign in ((tail, tail, -1.0), (head, head, -1.0), (tail, head, 1.0), (head, tail, 1.0)):
-        np.add.at(matrix, (a, slice(None), b), sign * blocks)
+        np.add.at(by_vertices, (a, b), sign * blocks)
     return matrix.reshape(n * m, n * m)
 
 
