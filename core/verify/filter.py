@@ -49,18 +49,22 @@ def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearanc
 def _overlapping(
     start: FloatArray, end: FloatArray, heads: IntArray, clearance: float
 ) -> Iterator[tuple[IntArray, IntArray]]:
-    """Pairs of edges i, j whose ranges of the first coordinate overlap, a bounded number at a time."""
-    ends = np.stack([start[:, 0], end[:, 0], start[heads, 0], end[heads, 0]])
+    """Pairs of edges i, j whose ranges of coordinates during the leg overlap, a bounded number at a time."""
+    ends = np.stack([start, end, start[heads], end[heads]])
     low, high = ends.min(axis=0) - 4 * clearance, ends.max(axis=0)
-    order = np.argsort(low, kind="stable")
+    order = np.argsort(low[:, 0], kind="stable")
     # In this order edge k overlaps those after it that begin before it ends.
-    count = np.searchsorted(low[order], high[order], side="right") - np.arange(len(order)) - 1
+    count = np.searchsorted(low[order, 0], high[order, 0], side="right") - np.arange(len(order)) - 1
     count = np.maximum(count, 0)
     total = np.concatenate([[0], np.cumsum(count)])
     for first in range(0, int(total[-1]), _PAIRS_AT_ONCE):
         position = np.arange(first, min(first + _PAIRS_AT_ONCE, int(total[-1])))
         k = np.searchsorted(total, position, side="right") - 1
-        yield order[k], order[k + 1 + position - total[k]]
+        i, j = order[k], order[k + 1 + position - total[k]]
+        for axis in range(1, start.shape[1]):
+            overlap = (low[i, axis] <= high[j, axis]) & (low[j, axis] <= high[i, axis])
+            i, j = i[overlap], j[overlap]
+        yield i, j
 
 
 class _Leg:
