@@ -72,11 +72,12 @@ class ClosedBraid:
         CurveError
             If they are too few for the polygon to be the same braid, or too many for any use.
         """
+        least = max(self.detail, vertices or 0)
+        if least > _MOST_VERTICES:
+            raise CurveError(f"{least} vertices are too many; at most {_MOST_VERTICES} are allowed")
         lengths = np.array([_length(ring, self.detail) for ring in self.rings])
         if vertices is None:
-            vertices = max(math.ceil(lengths.sum() / (_EDGE * self.gap)), self.detail)
-        if vertices > _MOST_VERTICES:
-            raise CurveError(f"{vertices} vertices would be needed; at most {_MOST_VERTICES} are allowed")
+            vertices = min(max(math.ceil(lengths.sum() / (_EDGE * self.gap)), self.detail), _MOST_VERTICES)
         counts = _shares(vertices, lengths)
         angles = [_equal_edges(ring, count) for ring, count in zip(self.rings, counts, strict=True)]
         if any(_deviation(ring, theta) >= self.gap / 2 for ring, theta in zip(self.rings, angles, strict=True)):

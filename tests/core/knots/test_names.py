@@ -93,3 +93,9 @@ def test_coarse_polygons_are_the_right_knot_or_refused() -> None:
 def test_words_are_plain_tuples() -> None:
     assert braid_word("granny") == KNOTS["3_1"] + (2, 2, 2)
     assert braid_word("m4_1") == (-1, 2, -1, 2)
+
+
+def test_too_many_vertices() -> None:
+    for name, vertices in (("3_1", 10**9), ("braid(" + ",".join(["1,499"] * 9000) + ")", None)):
+        with pytest.raises(CurveError, match="too many"):
+            knot(name, vertices)

@@ -1,0 +1,28 @@
+"""The inputs that lie beside the project are read as the knots that their names say."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from knot_type import UNKNOT, knot_invariants, linking_number
+from mobius_flow.core.curve.io import read_curve
+from mobius_flow.core.knots import knot
+
+INPUTS = Path(__file__).parents[3].parent / "shared" / "knots"
+SKIPPED = {"unknot_ochiai4"}  # its 57 crossings take knot Floer homology a minute
+FILES = sorted(p for p in INPUTS.glob("*") if p.suffix != ".md" and p.stem not in SKIPPED) if INPUTS.is_dir() else []
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_type(path: Path) -> None:
+    curve = read_curve(path)
+    if path.stem == "link_hopf":
+        assert abs(linking_number(*curve.components)) == 1
+        return
+    name = path.stem.removeprefix("granny_").replace("+", "#")
+    found = knot_invariants(curve.vertices)
+    if name.startswith(("unknot", "freedman")):
+        assert found == UNKNOT
+    else:
+        either = [knot_invariants(knot(name).vertices * np.array([1, 1, z])) for z in (1, -1)]
+        assert found in either
