@@ -6,6 +6,7 @@ from ..types import FloatArray, IntArray
 from .planes import Separation, at_time, closest_chord, relative_motion
 
 _ROUNDS = 20
+_PATIENCE = 1 / 3  # so many pairs per round done are not worth another round: the exact decision is as quick
 _SHORT = 0.01  # a step that adds less than this part of the time reached calls for the exact decision
 _SHARE = 1 - 2.0**-6  # part of the way to the plane's own contact that a step goes, to stay apart for the next plane
 
@@ -34,8 +35,8 @@ def march(start: FloatArray, end: FloatArray, vertices: IntArray, reached: Float
     motion = relative_motion(start, end, vertices[:, active])
     size = np.abs(motion).sum(axis=1)
     t = reached[active]
-    for _ in range(_ROUNDS):
-        if not active.size:
+    for k in range(_ROUNDS):
+        if active.size <= _PATIENCE * k:
             break
         planes = Separation(motion, size, closest_chord(at_time(motion, t)))
         further = np.minimum(t + _SHARE * planes.time_left(t), 1.0)

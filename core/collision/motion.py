@@ -33,8 +33,8 @@ class FreeMotion:
     Attributes
     ----------
     time
-        No two non-neighbour edges meet at any time t in [0, time); 1 if they do not in the whole of [0, 1]. If two
-        edges meet, this is at most 2 % before the contact.
+        No two non-neighbour edges meet at any time t in [0, time], unless time is 0; 1 if the whole motion is free.
+        If two edges meet, this is at most 2 % before the contact.
     pair
         The edges that limit it, None if there are none.
     limit

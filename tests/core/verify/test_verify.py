@@ -162,16 +162,21 @@ def test_refuses_wrong_transitions(tmp_path: Path, kind: str) -> None:
     assert KINDS[kind] in verdict.reason
 
 
-def test_rounding_of_inserted_vertices_is_checked_for_contact(tmp_path: Path) -> None:
-    """Two strands so near that the rounding of inserted vertices is enough to move one through the other."""
-    lower = np.array([[0.0, 0.0, 1.0], [1.0, 0.3, 1.0], [1.0, 0.3, 2.0], [0.0, 0.0, 2.0]])
-    gap = np.array([0.0, 2.0**-50, 0.0])
-    upper = lower + gap
-    first = ((4, 4), [np.concatenate([lower, upper])])
-    bent = np.insert(lower, 1, 0.5 * (lower[0] + lower[1]) + 3 * gap, axis=0)
-    verdict = verify(write(tmp_path / "T.npz", first, ((5, 4), [np.concatenate([bent, upper])])))
-    assert not verdict.accepted
-    assert "meet" in verdict.reason
+@pytest.mark.parametrize("between", [True, False])
+def test_rounding_of_inserted_vertices_is_checked_for_contact(tmp_path: Path, between: bool) -> None:
+    """A strand passes so near that the rounding of an inserted vertex moves the edge through it."""
+    unit = np.array([0.0, 2.0**-50, 0.0])
+    edge = np.array([[0.0, 0.0, 1.0], [1.0, 0.25, 1.0], [1.0, 0.25, 2.0], [0.0, 0.0, 2.0]])
+    inserted = 0.5 * (edge[0] + edge[1]) + 2 * unit
+    through = 0.5 * (edge[0] + edge[1]) + (1 if between else 3) * unit
+    strand = through + np.array([[0.0, 0.0, -0.25], [0.0, 0.0, 0.25], [0.0, 0.5, 0.0]])
+    bent = np.insert(edge, 1, inserted, axis=0)
+    stages = ((4, 3), [np.concatenate([edge, strand])]), ((5, 3), [np.concatenate([bent, strand])])
+    alone = [verify(write(tmp_path / "one.npz", stage)) for stage in stages]
+    assert all(verdict.accepted for verdict in alone)
+    verdict = verify(write(tmp_path / "T.npz", *stages))
+    assert verdict.accepted != between
+    assert between == ("meet" in verdict.reason)
 
 
 def test_stages_may_end_anywhere(tmp_path: Path) -> None:
