@@ -14,7 +14,7 @@ from ..core import METHODS, read_curve
 from ..core.compare import Run, compare
 from ..core.errors import MobiusFlowError, OptionError
 from ..core.files import atomic_write
-from ..core.relax import method_named
+from ..core.setup import method_named
 from . import options as relax_options
 
 if TYPE_CHECKING:

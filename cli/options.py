@@ -37,6 +37,11 @@ def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
         "--edge-lengths", default=defaults.edge_lengths, metavar="L", help=_choice(EDGE_LENGTHS, defaults.edge_lengths)
     )
     group.add_argument("--adaptive", action="store_true", help="split and collapse edges during the run")
+    group.add_argument(
+        "--resolve",
+        action="store_true",
+        help="go on with more vertices while strands end nearer than the mesh resolves",
+    )
     group.add_argument("--stability", action="store_true", help="tell whether a converged curve is a minimum")
     group.add_argument("--escape-saddles", action="store_true", help="and go on downhill from a saddle")
 

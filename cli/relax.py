@@ -32,10 +32,12 @@ def add_to(subparsers: "Subparsers") -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Relax, write everything asked for, and return the exit status."""
-    wanted = relax_options.from_arguments(options)
     output = output_for(options.output)
-    if wanted.adaptive and output.needs_iterates:
-        raise OptionError(f"{options.output}: keyframes need a fixed mesh; leave --adaptive out or write a curve file")
+    wanted = relax_options.from_arguments(options)
+    if (wanted.adaptive or wanted.resolve) and output.needs_iterates:
+        raise OptionError(
+            f"{options.output}: keyframes need a fixed mesh; leave --adaptive and --resolve out, or write a curve file"
+        )
     curve = read_curve(options.input)
     result, iterates, trajectory = _relax(curve, wanted, output, options)
     output.write(options.output, result, iterates)

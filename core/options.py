@@ -38,6 +38,9 @@ class RelaxOptions:
     adaptive
         Split and collapse edges during the run, so that neighbours stay nearer than strands.  The number of vertices
         changes from iterate to iterate, which point keyframes cannot follow.
+    resolve
+        When a curve has converged but strands are nearer than its mesh resolves, go on with half as many vertices
+        more, up to 3.5 times the first number.  A composite knot ends there: its strands pull tight for ever.
     edge_lengths
         Targets ℓ⁰: "equal" within each component, or "keep" those of the refined start.
 
@@ -56,6 +59,7 @@ class RelaxOptions:
     quadrature_points: int = 1
     penalty: float | None = None
     adaptive: bool = False
+    resolve: bool = False
     edge_lengths: str = "equal"
     stability: bool = False
     escape_saddles: bool = False

@@ -1,29 +1,16 @@
 """The one driver: `relax` yields the iterates of a relaxation, `minimize` runs it to its end."""
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
-import numpy as np
-
-from .adaptive import INTERVAL, adapt, graded_problem
 from .collision import check_embedded
-from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
-from .descent import METHODS, Method, NoStep, Point, Problem, State, Step
-from .descent.escape import escape_step
-from .energies import ENERGIES, MoebiusEnergy, Objective
-from .errors import OptionError
+from .energies import MoebiusEnergy
 from .iterate import Iterate, Status
-from .metrics import METRICS, MoebiusMetric
 from .options import RelaxOptions
-from .stability import stability
-from .types import FloatArray
-from .units import Units
-
-_Entry = TypeVar("_Entry")
-LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
+from .run import Run
+from .setup import method_named, start_problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,10 +85,10 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
         If an option does not fit.
     """
     options = RelaxOptions() if options is None else options
-    method = method_named(options.method)
+    method_named(options.method)
     check_embedded(curve)
     refined = refine(curve, options.vertices)
-    return _iterates(start_problem(refined, options), refined, method, options)
+    return Run(start_problem(refined, options), refined, options).iterates()
 
 
 def minimize(
@@ -138,136 +125,3 @@ def minimize(
         method=options.method,
         negative_eigenvalues=last.negative_eigenvalues,
     )
-
-
-def method_named(name: str) -> Method:
-    """Look a method up; an OptionError lists the known ones."""
-    return _named(METHODS, "method", name)
-
-
-def _named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
-    if name not in table:
-        raise OptionError(f"{kind} {name!r} is unknown; choose one of {', '.join(table)}")
-    return table[name]
-
-
-def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
-    """The problem of relaxing a refined curve: its lengths or equal ones, and its barycenter, are prescribed.
-
-    Raises
-    ------
-    OptionError
-        If an option names something unknown, or a method and an energy do not go together.
-    """
-    method = method_named(options.method)
-    units = Units.of(curve)
-    start = curve.with_vertices(units.from_user(curve.vertices))
-    constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
-    objective = Objective(_named(ENERGIES, "energy", options.energy))
-    second_order = method.second_order or options.stability or options.escape_saddles
-    if second_order and not objective.has_hessian:
-        raise OptionError(
-            f"{method.name} with these options needs a second derivative; energy {options.energy} has none"
-        )
-    if (options.stability or options.escape_saddles) and method.penalty is not None:
-        raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
-    metric = method.metric if options.metric is None else _named(METRICS, "metric", options.metric)
-    if options.quadrature_points > 1:
-        if not isinstance(metric, MoebiusMetric):
-            raise OptionError(
-                f"quadrature_points is {options.quadrature_points}; metric {metric.name!r} has no such rule"
-            )
-        metric = MoebiusMetric(options.quadrature_points)
-    penalty = method.penalty
-    if options.penalty is not None:
-        if penalty is None:
-            raise OptionError(f"penalty is {options.penalty}; method {method.name!r} keeps lengths and has no penalty")
-        penalty = options.penalty
-    return Problem(curve.mesh, objective, metric, constraints, units, penalty, extended=metric.name != "l2")
-
-
-def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:
-    if options.edge_lengths == "keep":
-        return start.edge_lengths
-    return np.concatenate([np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices])
-
-
-def _iterates(problem: Problem, start: Curve, method: Method, options: RelaxOptions) -> Iterator[Iterate]:
-    if options.adaptive:
-        problem = graded_problem(problem, start, options.vertices)
-    iterate, point = _first(problem, start, 0)
-    state = State()
-    fresh = False  # whether the mesh has just been refined around edges that were stuck
-    while True:
-        iterate, way_down = _judged(point, iterate, options)
-        yield iterate
-        if iterate.status is not Status.RUNNING:
-            return
-        if way_down is not None:
-            step, state = escape_step(point, *way_down), State()
-        else:
-            step, state = method.step(point, state)
-        stuck = step.limited_by if isinstance(step, NoStep) else None
-        if isinstance(step, NoStep) and (not options.adaptive or stuck is None or fresh):
-            yield replace(iterate, status=Status.STALLED, message=f"stalled: {step.reason}", path=())
-            return
-        if isinstance(step, Step):
-            point = step.point
-            path = tuple(problem.units.to_user(vertices) for vertices in step.path)
-            iterate = _iterate(problem, point, start.with_vertices(path[-1]), iterate.index + 1, step.size, path)
-        fresh = stuck is not None
-        if options.adaptive and (fresh or iterate.index % INTERVAL == 0):
-            change = adapt(problem, iterate.curve, options.vertices, stuck)
-            if change is not None:
-                if isinstance(step, Step):
-                    yield iterate
-                # the last motion on the old mesh, then the same curve on the new one
-                moved = problem.at(problem.units.from_user(change.moved))
-                yield _iterate(
-                    problem, moved, start.with_vertices(change.moved), iterate.index + 1, 0.0, (change.moved,)
-                )
-                problem, start = change.problem, change.curve
-                iterate, point = _first(problem, start, iterate.index + 2)
-                state = State(None, state.last_step)
-
-
-def _first(problem: Problem, curve: Curve, index: int) -> tuple[Iterate, Point]:
-    """The first iterate on a mesh, and its point."""
-    point = problem.at(problem.units.from_user(curve.vertices))
-    return _iterate(problem, point, curve, index, 0.0, ()), point
-
-
-def _iterate(
-    problem: Problem, point: Point, curve: Curve, index: int, step_size: float, path: tuple[FloatArray, ...]
-) -> Iterate:
-    return Iterate(
-        index=index,
-        curve=curve,
-        energy=point.energy,
-        gradient_norm=point.gradient_norm,
-        step_size=step_size,
-        path=path,
-        certified=problem.certifiable,
-        edge_length_error=problem.constraints.length_error(point.curve),
-    )
-
-
-def _judged(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Iterate, tuple[FloatArray, float] | None]:
-    """The iterate with its status, and from a saddle the way down: a direction and its negative curvature."""
-    bound = options.tolerance * np.sqrt(abs(point.energy))
-    feasible = point.problem.penalty is not None or iterate.edge_length_error <= LENGTHS_REACHED
-    way_down = None
-    if iterate.gradient_norm <= bound and feasible:
-        message = f"converged: projected gradient {iterate.gradient_norm:.3g} ≤ {bound:.3g}"
-        iterate = replace(iterate, status=Status.CONVERGED, message=message)
-        if options.stability or options.escape_saddles:
-            found = stability(point)
-            kind = f"; a saddle with index {found.index}" if found.index else "; a minimum"
-            iterate = replace(iterate, negative_eigenvalues=found.index, message=message + kind)
-            if options.escape_saddles and found.index:
-                iterate = replace(iterate, status=Status.RUNNING, message="")
-                way_down = found.directions[0], float(found.eigenvalues[0])
-    if iterate.status is not Status.CONVERGED and iterate.index >= options.max_iterations:
-        message = f"stopped after {iterate.index} iterations, as asked for"
-        iterate = replace(iterate, status=Status.ITERATION_LIMIT, message=message)
-    return iterate, way_down

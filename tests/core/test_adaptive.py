@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
+from mobius_flow.core import Curve, Objective, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
 from mobius_flow.core.curve.remesh import (
     COLLAPSE,
     FEWEST,
@@ -96,6 +96,27 @@ def test_famous_unknot_adaptively(tmp_path):
     assert result.energies[-1] < 4.01
     trajectory.save(tmp_path / "t.npz")
     assert verify(tmp_path / "t.npz").accepted
+
+
+@pytest.mark.parametrize("adaptive", [False, True])
+def test_granny_has_no_minimiser_and_is_told_so(adaptive, tmp_path):
+    """A composite knot's strands pull tight for ever: that is no convergence."""
+    trajectory = Trajectory()
+    options = RelaxOptions(vertices=100, resolve=True, adaptive=adaptive, tolerance=3e-3)
+    result = minimize(shared_knot("granny_3_1+3_1.txt"), options, trajectory.add)
+    assert result.status is Status.STALLED
+    assert "pull tight" in result.message
+    assert result.certified
+    trajectory.save(tmp_path / "t.npz")
+    assert verify(tmp_path / "t.npz").accepted
+
+
+def test_resolve_goes_on_until_strands_are_resolved():
+    result = minimize(shared_knot("3_1.txt"), RelaxOptions(vertices=60, resolve=True))
+    assert result.status is Status.CONVERGED
+    assert len(result.curve) > 60
+    assert Objective().barrier.value(result.curve) == 0
+    assert result.energies[-1] == pytest.approx(74.412, rel=6e-3)
 
 
 def test_one_rule_for_edge_lengths():

@@ -7,7 +7,7 @@ import pytest
 from mobius_flow.core import Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.feasibility import restore
 from mobius_flow.core.descent.newton import lagrangian_hessian, lagrangian_hessian_matrix
-from mobius_flow.core.relax import start_problem
+from mobius_flow.core.setup import start_problem
 from mobius_flow.core.stability import stability
 from mobius_flow.core.taylor import taylor_slope
 from shapes import shared_knot, torus_trefoil

@@ -1,0 +1,70 @@
+"""From a curve and options to the problem that is solved."""
+
+from collections.abc import Mapping
+from typing import TypeVar
+
+import numpy as np
+
+from .constraints import Constraints, weighted_barycenter
+from .curve import Curve
+from .descent import METHODS, Method, Problem
+from .energies import ENERGIES, Objective
+from .errors import OptionError
+from .metrics import METRICS, MoebiusMetric
+from .options import RelaxOptions
+from .types import FloatArray
+from .units import Units
+
+_Entry = TypeVar("_Entry")
+
+
+def method_named(name: str) -> Method:
+    """Look a method up; an OptionError lists the known ones."""
+    return _named(METHODS, "method", name)
+
+
+def _named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
+    if name not in table:
+        raise OptionError(f"{kind} {name!r} is unknown; choose one of {', '.join(table)}")
+    return table[name]
+
+
+def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
+    """The problem of relaxing a refined curve: its lengths or equal ones, and its barycenter, are prescribed.
+
+    Raises
+    ------
+    OptionError
+        If an option names something unknown, or a method and an energy do not go together.
+    """
+    method = method_named(options.method)
+    units = Units.of(curve)
+    start = curve.with_vertices(units.from_user(curve.vertices))
+    constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
+    objective = Objective(_named(ENERGIES, "energy", options.energy))
+    second_order = method.second_order or options.stability or options.escape_saddles
+    if second_order and not objective.has_hessian:
+        raise OptionError(
+            f"{method.name} with these options needs a second derivative; energy {options.energy} has none"
+        )
+    if (options.stability or options.escape_saddles) and method.penalty is not None:
+        raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
+    metric = method.metric if options.metric is None else _named(METRICS, "metric", options.metric)
+    if options.quadrature_points > 1:
+        if not isinstance(metric, MoebiusMetric):
+            raise OptionError(
+                f"quadrature_points is {options.quadrature_points}; metric {metric.name!r} has no such rule"
+            )
+        metric = MoebiusMetric(options.quadrature_points)
+    penalty = method.penalty
+    if options.penalty is not None:
+        if penalty is None:
+            raise OptionError(f"penalty is {options.penalty}; method {method.name!r} keeps lengths and has no penalty")
+        penalty = options.penalty
+    return Problem(curve.mesh, objective, metric, constraints, units, penalty, extended=metric.name != "l2")
+
+
+def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:
+    if options.edge_lengths == "keep":
+        return start.edge_lengths
+    return np.concatenate([np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices])
