@@ -24,8 +24,9 @@ Target = str | os.PathLike[str]
 
 _MOST_KEYS = 1000  # in a .blend; more are of no use to the eye
 _MOST_FILM_KEYS = 200
-_PICTURE = (1280, 720, 24)  # width, height, samples
-_FILM = (640, 360, 8)
+_PICTURE = (960, 540, 16)  # width, height, samples
+_FILM = (640, 360)
+_FILM_WITHOUT_DRIVER = (480, 270, 4)
 
 
 def require_blender() -> None:
@@ -76,7 +77,10 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
     motion, _ = film.recorded(iterates)
     keys = motion.keys(is_free, _MOST_FILM_KEYS)
     scene = _empty_scene()
-    rendering.use_cycles(scene, *_FILM)
+    if rendering.workbench_works():
+        rendering.use_workbench(scene, *_FILM)
+    else:
+        rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER)
     film.compose(scene, keys, film.smooth_frames(keys), motion.start.curve.mesh)
     film.add_pauses(scene)
     _make(path, lambda temporary: rendering.render_movie(scene, temporary, progress))
