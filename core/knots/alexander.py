@@ -1,0 +1,168 @@
+"""A quick signature of a knot type: values of the Alexander polynomial, and linking numbers.
+
+Equal types have equal signatures.  The converse fails for rare pairs, so this catches accidents and proves nothing.
+The polynomial is evaluated at roots of unity modulo a prime from the Wirtinger presentation of a projection; units
+±tᵏ, up to which it is defined, are divided out by taking the smallest associate.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..curve import Curve
+from ..types import FloatArray, IntArray
+
+_PRIME = 2_147_482_681  # below 2³¹, so that products fit 64 bits; 1 more than a multiple of 2·3·5·7
+_ORDERS = (2, 3, 5, 7)
+_ROWS = 128  # of edge pairs looked at together
+
+
+@dataclass(frozen=True)
+class Signature:
+    """What can be told quickly of the type of a knot or link.
+
+    Attributes
+    ----------
+    alexander
+        For each component, the polynomial's values at roots of unity of order 2, 3, 5 and 7 modulo a prime.
+    linking
+        Linking numbers of all pairs of components.
+    """
+
+    alexander: tuple[tuple[int, ...], ...]
+    linking: tuple[int, ...]
+
+    @property
+    def is_trivial(self) -> bool:
+        """Whether nothing tells the curve from separate round circles."""
+        return not any(self.linking) and all(values == _TRIVIAL for values in self.alexander)
+
+
+def signature(curve: Curve) -> Signature:
+    """The signature of a closed polygon in space, from a generic projection."""
+    crossings = _Crossings.of(curve)
+    count = len(curve.mesh.component_sizes)
+    component = curve.mesh.component
+    over, under = component[crossings.over], component[crossings.under]
+    linking = tuple(
+        int(np.sum(crossings.sign[((over == a) & (under == b)) | ((over == b) & (under == a))])) // 2
+        for a in range(count)
+        for b in range(a + 1, count)
+    )
+    return Signature(tuple(_values(crossings.within(over == k, under == k)) for k in range(count)), linking)
+
+
+@dataclass(frozen=True, eq=False)
+class _Crossings:
+    """Crossings of a projection: the edges that pass over and under, where on them, and the signs."""
+
+    over: IntArray
+    under: IntArray
+    over_at: FloatArray
+    under_at: FloatArray
+    sign: IntArray
+
+    @classmethod
+    def of(cls, curve: Curve) -> "_Crossings":
+        points = curve.vertices @ _generic_rotation()
+        rows = [_found(curve, points, first) for first in range(0, len(curve), _ROWS)]
+        over, under, over_at, under_at, sign = np.concatenate(rows, axis=1)
+        return cls(over.astype(np.intp), under.astype(np.intp), over_at, under_at, sign.astype(np.intp))
+
+    def within(self, over: np.ndarray, under: np.ndarray) -> "_Crossings":
+        chosen = over & under
+        fields = (self.over, self.under, self.over_at, self.under_at, self.sign)
+        return _Crossings(*(values[chosen] for values in fields))
+
+
+def _found(curve: Curve, points: FloatArray, first: int) -> FloatArray:
+    """Crossings of a block of edges with later ones, as rows over, under, over_at, under_at, sign."""
+    mesh = curve.mesh
+    i = np.arange(first, min(first + _ROWS, mesh.size))[:, None]
+    j = np.arange(mesh.size)[None, :]
+    start, edge = points[mesh.tails], points[mesh.heads] - points[mesh.tails]
+    apart = start[j] - start[i]
+    wedge = edge[i, 0] * edge[j, 1] - edge[i, 1] * edge[j, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s = (apart[..., 0] * edge[j, 1] - apart[..., 1] * edge[j, 0]) / wedge
+        t = (apart[..., 0] * edge[i, 1] - apart[..., 1] * edge[i, 0]) / wedge
+    neighbours = (mesh.heads[i] == j) | (mesh.heads[j] == i)
+    a, b = np.nonzero((j > i) & ~neighbours & (s > 0) & (s < 1) & (t > 0) & (t < 1))
+    s, t, wedge = s[a, b], t[a, b], wedge[a, b]
+    first_edge, second_edge = a + first, b
+    above = start[first_edge, 2] + s * edge[first_edge, 2] > start[second_edge, 2] + t * edge[second_edge, 2]
+    over, under = np.where(above, first_edge, second_edge), np.where(above, second_edge, first_edge)
+    sign = np.sign(np.where(above, wedge, -wedge))
+    return np.stack([over, under, np.where(above, s, t), np.where(above, t, s), sign]).astype(np.float64)
+
+
+def _values(crossings: _Crossings) -> tuple[int, ...]:
+    """Values of the Alexander polynomial of one component."""
+    count = len(crossings.over)
+    if count < 3:
+        return _TRIVIAL
+    order = np.lexsort((crossings.under_at, crossings.under))
+    ends = np.stack([crossings.under[order], crossings.under_at[order]])
+    incoming = np.empty(count, dtype=np.intp)
+    incoming[order] = np.arange(count)  # arc k ends at the k-th passage below
+    outgoing = (incoming + 1) % count
+    later = (ends[0][None, :] < crossings.over[:, None]) | (
+        (ends[0][None, :] == crossings.over[:, None]) & (ends[1][None, :] < crossings.over_at[:, None])
+    )
+    above = np.count_nonzero(later, axis=1) % count
+    return tuple(_value(q, above, incoming, outgoing, crossings.sign) for q in _ORDERS)
+
+
+def _value(q: int, above: IntArray, incoming: IntArray, outgoing: IntArray, sign: IntArray) -> int:
+    t = _root(q)
+    count = len(above)
+    matrix = np.zeros((count, count), dtype=np.int64)
+    rows = np.arange(count)
+    first, second = np.where(sign > 0, incoming, outgoing), np.where(sign > 0, outgoing, incoming)
+    np.add.at(matrix, (rows, above), 1 - t)
+    np.add.at(matrix, (rows, first), t)
+    np.add.at(matrix, (rows, second), -1)
+    return _smallest_associate(_determinant(matrix[:-1, :-1] % _PRIME), q)
+
+
+def _determinant(matrix: IntArray) -> int:
+    """Determinant modulo the prime, by elimination."""
+    result = 1
+    for k in range(len(matrix)):
+        pivots = np.flatnonzero(matrix[k:, k])
+        if not pivots.size:
+            return 0
+        row = k + int(pivots[0])
+        if row != k:
+            matrix[[k, row]] = matrix[[row, k]]
+            result = -result
+        pivot = int(matrix[k, k])
+        result = result * pivot % _PRIME
+        factors = matrix[k + 1 :, k] * pow(pivot, -1, _PRIME) % _PRIME
+        below = k + 1 + np.flatnonzero(factors)
+        matrix[below, k:] = (matrix[below, k:] - factors[below - k - 1, None] * matrix[k, k:] % _PRIME) % _PRIME
+    return result % _PRIME
+
+
+def _smallest_associate(value: int, q: int) -> int:
+    return min(x for power in _powers(_root(q), q) for x in (value * power % _PRIME, -value * power % _PRIME))
+
+
+def _powers(t: int, q: int) -> Iterator[int]:
+    return (pow(t, k, _PRIME) for k in range(q))
+
+
+def _root(q: int) -> int:
+    """A root of unity of order q modulo the prime."""
+    return next(r for g in range(2, 100) if (r := pow(g, (_PRIME - 1) // q, _PRIME)) != 1)
+
+
+def _generic_rotation() -> FloatArray:
+    """A rotation that no curve made by hand or on a lattice is special to."""
+    q, _ = np.linalg.qr(np.random.default_rng(20211).normal(size=(3, 3)))
+    q[:, 0] *= np.sign(np.linalg.det(q))
+    return np.asarray(q)
+
+
+_TRIVIAL = tuple(_smallest_associate(1, q) for q in _ORDERS)
