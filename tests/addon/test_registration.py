@@ -1,0 +1,78 @@
+"""Registering and unregistering leave Blender as it was."""
+
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+
+def traces():
+    """Everything of ours that Blender knows about."""
+    handlers = [
+        function.__module__
+        for name in dir(bpy.app.handlers)
+        if isinstance(functions := getattr(bpy.app.handlers, name), list)
+        for function in functions
+    ]
+    drawn = [
+        function.__module__
+        for kind in (bpy.types.Menu, bpy.types.Panel, bpy.types.Header)
+        for cls in kind.__subclasses__()
+        for function in getattr(getattr(cls, "draw", None), "_draw_funcs", ())
+    ]
+    kinds = (bpy.types.Operator, bpy.types.Panel, bpy.types.PropertyGroup, bpy.types.Menu, bpy.types.AddonPreferences)
+    classes = [cls.__name__ for kind in kinds for cls in kind.__subclasses__() if cls.is_registered]
+    names = [name for kind in (bpy.types.Scene, bpy.types.WindowManager, bpy.types.Object) for name in dir(kind)]
+    everything = [*handlers, *drawn, *classes, *names, *dir(bpy.types), *dir(bpy.ops.curve)]
+    return sorted(name for name in everything if "mobius" in name.lower())
+
+
+def test_unregistering_leaves_nothing(addon):
+    registered = traces()
+    addon.unregister()
+    try:
+        assert traces() == []
+        assert not hasattr(bpy.types.Scene, "mobius_flow")
+        assert not hasattr(bpy.types, "CURVE_OT_mobius_flow_relax")
+    finally:
+        addon.register()
+    assert traces() == registered
+    assert "mobius_flow" in dir(bpy.types.Scene)
+
+
+def test_settings_are_the_librarys_defaults():
+    from mobius_flow.addon.properties import relax_options
+    from mobius_flow.core import RelaxOptions
+
+    settings = bpy.context.scene.mobius_flow
+    values = {name: getattr(settings, name) for name in settings.bl_rna.properties.keys()}  # noqa: SIM118
+    options = relax_options(values)
+    assert options.tolerance == pytest.approx(RelaxOptions().tolerance)
+    assert options.method == RelaxOptions().method
+    assert options.vertices is None
+
+
+def test_settings_are_saved_with_the_file(tmp_path):
+    bpy.context.scene.mobius_flow.max_keys = 17
+    bpy.context.scene.mobius_flow.method = methods()[-1]
+    method = bpy.context.scene.mobius_flow.method
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert bpy.context.scene.mobius_flow.max_keys == 0
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    assert (bpy.context.scene.mobius_flow.max_keys, bpy.context.scene.mobius_flow.method) == (17, method)
+
+
+def methods():
+    from mobius_flow.core import METHODS
+
+    return list(METHODS)
+
+
+def test_every_setting_says_what_it_does():
+    knot = bpy.ops.curve.mobius_flow_add_knot.get_rna_type().properties
+    own = [
+        each for each in bpy.context.scene.mobius_flow.bl_rna.properties if each.identifier not in ("rna_type", "name")
+    ]
+    for each in [*own, *(knot[name] for name in ("knot", "p", "q", "size", "thickness"))]:
+        assert each.description, each.identifier
+        assert not each.description.endswith("."), each.identifier

@@ -1,0 +1,126 @@
+"""The operator does in Blender what the library does outside."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, in_world, relax, stored, values  # noqa: E402
+from mathutils import Euler, Matrix, Vector  # noqa: E402
+from mobius_flow.core import Curve, RelaxOptions, minimize  # noqa: E402
+from shapes import regular_polygon  # noqa: E402
+
+BOTTOM = {"max_iterations": 25}
+
+
+def expected(components, **options):
+    """The library's result for the same world-space points."""
+    return minimize(Curve.from_components(components), RelaxOptions(**options)).curve.vertices
+
+
+def test_the_result_is_the_librarys():
+    obj = add_trefoil()
+    start = stored(obj.data).astype(np.float64)
+    relax(**BOTTOM)
+    np.testing.assert_array_equal(stored(obj.data), expected([start], **BOTTOM).astype(np.float32))
+
+
+def test_settings_come_from_the_scene_and_the_operators_own_win():
+    obj = add_trefoil()
+    bpy.context.scene.mobius_flow.max_iterations = 3
+    bpy.context.scene.mobius_flow.method = "flow-l2"
+    start = stored(obj.data).astype(np.float64)
+    relax(method="lbfgs")
+    result = expected([start], method="lbfgs", max_iterations=3)
+    np.testing.assert_array_equal(stored(obj.data), result.astype(np.float32))
+    assert bpy.context.scene.mobius_flow.method == "flow-l2"
+
+
+def test_it_relaxes_to_the_circle():
+    rng = np.random.default_rng(5)
+    obj = add_curve([regular_polygon(24).vertices + 0.04 * rng.standard_normal((24, 3))])
+    relax(keyframes="RESULT")
+    points = stored(obj.data).astype(np.float64)
+    distances = np.linalg.norm(points - points.mean(axis=0), axis=1)
+    assert np.ptp(distances) < 1e-2 * distances.mean()
+
+
+@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES", "RESULT"])
+def test_any_transform(keyframes):
+    obj = add_trefoil()
+    obj.parent = parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.matrix_world = Matrix.LocRotScale(Vector((5, -3, 2)), Euler((0.3, -0.8, 1.1)), Vector((0.5, 2, 1)))
+    obj.matrix_world = Matrix.LocRotScale(Vector((1, 2, -7)), Euler((1.2, 0.4, -0.5)), Vector((2, -0.3, 1.5)))
+    bpy.context.view_layer.update()
+    placed = obj.matrix_world.copy()
+    result = expected([in_world(obj, stored(obj.data))], **BOTTOM)
+    relax(keyframes=keyframes, **BOTTOM)
+    assert obj.matrix_world == placed
+    shown = in_world(obj, evaluated(obj, 1 + BOTTOM["max_iterations"]))
+    np.testing.assert_allclose(shown, result, atol=2e-5)
+
+
+def test_a_transform_set_just_before_counts():
+    obj = add_trefoil()
+    obj.scale = (1, 1, 0.2)
+    relax(keyframes="RESULT", **BOTTOM)
+    bpy.context.view_layer.update()
+    flat = add_trefoil()
+    squeezed = stored(flat.data).astype(np.float64) * np.array(obj.scale)
+    np.testing.assert_allclose(in_world(obj, stored(obj.data)), expected([squeezed], **BOTTOM), atol=1e-5)
+
+
+def test_links_keep_their_splines():
+    obj = add_hopf_link(24)
+    start = stored(obj.data).astype(np.float64)
+    relax(**BOTTOM)
+    result = expected([start[:24], start[24:]], **BOTTOM)
+    assert [len(spline.points) for spline in obj.data.splines] == 2 * [len(result) // 2]
+    np.testing.assert_array_equal(stored(obj.data), result.astype(np.float32))
+
+
+def test_refinement_interpolates_what_points_have():
+    obj = add_trefoil(30)
+    (spline,) = obj.data.splines
+    for name, low in (("radius", 0.5), ("tilt", -1.0), ("weight_softbody", 0.1)):
+        spline.points.foreach_set(name, np.linspace(low, low + 0.9, 30).astype(np.float32))
+    before = {name: values(spline, name) for name in ("radius", "tilt", "weight_softbody")}
+    start = stored(obj.data)
+    relax(vertices=100, max_iterations=0, keyframes="RESULT")
+    points = stored(obj.data)
+    assert len(points) == 100
+    old = np.array([np.abs(points - p).max(axis=1).argmin() for p in start])
+    np.testing.assert_array_equal(points[old], start)
+    for name, array in before.items():
+        refined = values(spline, name)
+        np.testing.assert_array_equal(refined[old], array)
+        lengths = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+        along = np.concatenate([[0], np.cumsum(lengths)])
+        linear = np.interp(along[:-1], [*along[old], along[-1]], [*array, array[0]])
+        np.testing.assert_allclose(refined, linear, atol=1e-5)
+
+
+def test_everything_else_stays():
+    obj = add_hopf_link()
+    data = obj.data
+    for name in ("Red", "Blue"):
+        data.materials.append(bpy.data.materials.new(name))
+    data.splines[1].material_index = 1
+    data.splines[0].use_smooth = False
+    data.bevel_depth, data.bevel_resolution, data.resolution_u = 0.125, 3, 5
+    relax(vertices=60, **BOTTOM)
+    assert [slot.name for slot in data.materials] == ["Red", "Blue"]
+    assert [spline.material_index for spline in data.splines] == [0, 1]
+    assert [spline.use_smooth for spline in data.splines] == [False, True]
+    assert all(spline.use_cyclic_u and spline.type == "POLY" for spline in data.splines)
+    assert (data.bevel_depth, data.bevel_resolution, data.resolution_u) == (0.125, 3, 5)
+    assert data.name == obj.name == "Knot"
+
+
+def test_a_curve_can_be_relaxed_again_without_animation():
+    obj = add_trefoil()
+    relax(keyframes="RESULT", max_iterations=2)
+    half_way = stored(obj.data)
+    relax(keyframes="RESULT", max_iterations=2)
+    assert not np.array_equal(stored(obj.data), half_way)
