@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import sampling
+from .live import registry
+
 if TYPE_CHECKING:
     import bpy
 
@@ -14,12 +17,31 @@ _FLATTEST = 1e-6  # smallest ratio of an object's scales that 32-bit matrices ca
 def refusal(context: "bpy.types.Context") -> str | None:
     """Say why the active object cannot be relaxed, or return None if it can.
 
-    Cheap enough for every redraw: only the coordinates of points are left for `exchange.read_curve` to check.
+    Cheap enough for every redraw: only the coordinates of points are left for `exchange.read_curve` to check. Smooth
+    splines are no hindrance here, see `unsampled`.
     """
+    if reason := _running():
+        return reason
     obj = context.active_object
     if obj is None or not obj.select_get():
         return "Select a curve object first"
     return next((reason for check in _CHECKS for reason in check(obj)), None)
+
+
+def unsampled(obj: "bpy.types.Object") -> str | None:
+    """Say which spline must become a polygon first, or return None if there is none: nobody was asked yet."""
+    for k, spline in enumerate(obj.data.splines, 1):
+        if spline.type != "POLY":
+            return (
+                f"Spline {k} of '{obj.name}' is a {sampling.kind(spline)} spline; convert it to Poly first "
+                "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines"
+            )
+    return None
+
+
+def _running() -> str | None:
+    run = registry.current()
+    return f"'{run.name}' is being relaxed; stop that first" if run else None
 
 
 def _object(obj: "bpy.types.Object") -> Iterator[str]:
@@ -52,15 +74,9 @@ def _splines(obj: "bpy.types.Object") -> Iterator[str]:
     if not data.splines:
         yield f"'{obj.name}' has no splines; give it at least one closed poly spline"
     for k, spline in enumerate(data.splines, 1):
-        if spline.type != "POLY":
-            kind = {"BEZIER": "Bézier", "NURBS": "NURBS"}.get(spline.type, spline.type)
-            yield (
-                f"Spline {k} of '{obj.name}' is a {kind} spline; convert it to Poly first "
-                "(Edit Mode, Curve > Set Spline Type > Poly)"
-            )
-        elif not spline.use_cyclic_u:
+        if not spline.use_cyclic_u:
             yield f"Spline {k} of '{obj.name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)"
-        elif len(spline.points) < 3:
+        elif spline.type == "POLY" and len(spline.points) < 3:
             yield f"Spline {k} of '{obj.name}' has fewer than 3 points; a closed curve needs at least 3"
 
 

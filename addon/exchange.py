@@ -7,6 +7,7 @@ import numpy as np
 
 from ..core import Curve, CurveError
 from ..core.types import FloatArray
+from . import sampling
 from .motion import Frame
 from .refinement import Places, places
 
@@ -39,7 +40,7 @@ class Placement:
 
 
 def read_curve(obj: "bpy.types.Object") -> Curve:
-    """Read a curve object's poly splines in world space, one component each.
+    """Read a curve object's splines in world space, one component each; smooth ones as the polygons drawn for them.
 
     Raises
     ------
@@ -47,7 +48,9 @@ def read_curve(obj: "bpy.types.Object") -> Curve:
         If a coordinate is not finite; the message names the point and its spline.
     """
     placement = Placement.of(obj)
-    components = [spline_points(spline).astype(np.float64) for spline in obj.data.splines]
+    smooth = bool(sampling.smooth_splines(obj.data))
+    frames = sampling.sampled(obj) if smooth else [spline_points(spline) for spline in obj.data.splines]
+    components = [frame.astype(np.float64) for frame in frames]
     for k, component in enumerate(components, 1):
         bad = np.flatnonzero(~np.isfinite(component).all(axis=1))
         if bad.size:
@@ -77,9 +80,12 @@ def write_points(data: "bpy.types.Curve", frame: Frame) -> None:
 def insert_points(data: "bpy.types.Curve", original: Curve, refined: Curve) -> None:
     """Give the splines as many points as the refined curve's components have, with values in between.
 
-    All other properties of the splines stay; where the points are is left to `write_points`.
+    Smooth splines become poly splines. All other properties stay; where the points are is left to `write_points`.
     """
-    for spline, place in zip(data.splines, places(original, refined), strict=True):
+    sizes = original.mesh.component_sizes
+    for spline, size, place in zip(data.splines, sizes, places(original, refined), strict=True):
+        if spline.type != "POLY":
+            sampling.make_poly(spline, size)
         if len(spline.points) < len(place.edge):
             _insert_points(spline, place)
 

@@ -1,6 +1,6 @@
 """Motion written into curve data: absolute shape keys with one F-curve, or an F-curve for every coordinate."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any
@@ -39,12 +39,15 @@ class KeyOptions:
         Scene frames from one iterate to the next.
     max_keys
         Wanted number of keys, see `Motion.keys`.
+    fit_bevel
+        Draw the curve as the thickest tube that does not touch itself, at every key.
     """
 
     output: Output = Output.SHAPE_KEYS
     start_frame: float = 1.0
     frames_per_iterate: float = 1.0
     max_keys: int | None = None
+    fit_bevel: bool = False
 
     def scene_frames(self, keys: Keys) -> FloatArray:
         """Scene frame of each key; shape (keys,)."""
@@ -53,7 +56,26 @@ class KeyOptions:
 
 def write(obj: "bpy.types.Object", keys: Keys, options: KeyOptions) -> None:
     """Write keys to a curve object that has as many points as they have vertices, and neither keys nor animation."""
-    _WRITERS[options.output](obj, keys, options.scene_frames(keys))
+    for _ in writing(obj, keys, options):
+        pass
+
+
+def writing(
+    obj: "bpy.types.Object", keys: Keys, options: KeyOptions, radii: FloatArray | None = None
+) -> Iterator[None]:
+    """Do as `write` does in short pieces; ``radii`` are the relative radii of the tube at the keys."""
+    yield from _WRITERS[options.output](obj, keys, options.scene_frames(keys), radii)
+
+
+def erase(obj: "bpy.types.Object") -> None:
+    """Remove what an unfinished `writing` has left: there were neither shape keys nor an action before."""
+    import bpy
+
+    owners = [owner for owner in (obj.data.shape_keys, obj.data) if owner and owner.animation_data]
+    actions = [owner.animation_data.action for owner in owners if owner.animation_data.action]
+    obj.shape_key_clear()
+    for action in actions:
+        bpy.data.actions.remove(action)
 
 
 def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None) -> None:
@@ -72,6 +94,13 @@ def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, ra
     radii
         Radius of all points at each key; None keeps what the points have.
     """
+    for _ in _shape_keys(obj, keys, frames, radii):
+        pass
+
+
+def _shape_keys(
+    obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None
+) -> Iterator[None]:
     data = obj.data
     write_points(data, keys.keys[-1].points)
     for k, key in enumerate(keys.keys):
@@ -86,17 +115,17 @@ def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, ra
         block.data.foreach_set("co", key.points.ravel())
         if radii is not None:
             block.data.foreach_set("radius", np.full(len(key.points), radii[k], dtype=np.float32))
+        yield
     data.shape_keys.use_relative = False
     data.shape_keys.eval_time = 0
     curves = _FCurves(data.shape_keys, f"{obj.name} Relaxation")
     curves.add("eval_time", 0, frames, np.arange(len(frames), dtype=np.float64))
 
 
-def write_fcurves(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> None:
-    """Write keys as one F-curve for every coordinate of every point, for exporters that know no shape keys.
-
-    Parameters are those of `write_shape_keys`.
-    """
+def _fcurves(
+    obj: "bpy.types.Object", keys: Keys, frames: FloatArray, _radii: FloatArray | None = None
+) -> Iterator[None]:
+    """One F-curve for every coordinate of every point, for exporters that know no shape keys."""
     write_points(obj.data, keys.keys[-1].points)
     curves = _FCurves(obj.data, f"{obj.name} Relaxation")
     values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
@@ -105,17 +134,22 @@ def write_fcurves(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> No
     for path, point in zip(paths, values, strict=True):
         for axis in range(3):
             curves.add(path, axis, frames, point[axis])
+        yield
 
 
-def write_result(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> None:
-    """Write the last key alone, without animation."""
+def _result(
+    obj: "bpy.types.Object", keys: Keys, _frames: FloatArray, _radii: FloatArray | None = None
+) -> Iterator[None]:
+    """The last key alone, without animation."""
     write_points(obj.data, keys.keys[-1].points)
+    yield
 
 
-_WRITERS: dict[Output, Callable[["bpy.types.Object", Keys, FloatArray], None]] = {
-    Output.SHAPE_KEYS: write_shape_keys,
-    Output.FCURVES: write_fcurves,
-    Output.RESULT: write_result,
+_Writer = Callable[["bpy.types.Object", Keys, FloatArray, FloatArray | None], Iterator[None]]
+_WRITERS: dict[Output, _Writer] = {
+    Output.SHAPE_KEYS: _shape_keys,
+    Output.FCURVES: _fcurves,
+    Output.RESULT: _result,
 }
 
 

@@ -3,24 +3,33 @@
 from typing import Any
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from ..core import MobiusFlowError
-from .checks import refusal
+from . import bevel
+from .checks import refusal, unsampled
 from .exchange import new_curve_data, write_points
+from .live.operators import LiveRelax
 from .properties import SETTINGS, key_options, relax_options, settings
 from .session import Session
 
 
-class CURVE_OT_mobius_flow_relax(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+class CURVE_OT_mobius_flow_relax(LiveRelax, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
     """Relax the active curve without letting it pass through itself, and keep the motion as keyframes"""
 
     bl_idname = "curve.mobius_flow_relax"
     bl_label = "Relax"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
     # For scripts; what is not given comes from the scene's settings, and nothing is remembered from run to run.
-    __annotations__ = settings({"SKIP_SAVE", "HIDDEN"})
+    __annotations__ = {
+        **settings({"SKIP_SAVE", "HIDDEN"}),
+        "sample_splines": BoolProperty(
+            name="Sample Splines",
+            description="Replace Bézier and NURBS splines by the polygons drawn for them",
+            options={"SKIP_SAVE", "HIDDEN"},
+        ),
+    }
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -33,9 +42,9 @@ class CURVE_OT_mobius_flow_relax(bpy.types.Operator):  # noqa: N801 - Blender's 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job."""
         context.view_layer.update()  # a script may have moved the object just before
-        values = self._values(context)
+        values = self.values(context)
         try:
-            if reason := refusal(context):
+            if reason := refusal(context) or self._unasked(context):
                 raise MobiusFlowError(reason)
             report = Session(context.active_object, relax_options(values), key_options(values)).run()
         except MobiusFlowError as error:
@@ -44,10 +53,14 @@ class CURVE_OT_mobius_flow_relax(bpy.types.Operator):  # noqa: N801 - Blender's 
         self.report({"INFO"} if report.clean else {"WARNING"}, report.sentence)
         return {"FINISHED"}
 
-    def _values(self, context: bpy.types.Context) -> dict[str, Any]:
+    def values(self, context: bpy.types.Context) -> dict[str, Any]:
+        """The settings: those given to the operator, and the scene's."""
         scene = context.scene.mobius_flow
         given = self.properties.is_property_set
         return {name: getattr(self if given(name) else scene, name) for name in SETTINGS}
+
+    def _unasked(self, context: bpy.types.Context) -> str | None:
+        return None if self.sample_splines else unsampled(context.active_object)
 
 
 class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noqa: N801
@@ -69,6 +82,9 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
     p: IntProperty(name="p", description="How often the curve goes round the torus", default=2, soft_min=2)
     q: IntProperty(name="q", description="How often the curve goes through the torus", default=3, soft_min=2)
     size: FloatProperty(name="Size", description="Half of the knot's width", default=1.0, min=1e-4, unit="LENGTH")
+    fit_bevel: BoolProperty(
+        name="Fit Tube", description="Make the tube as thick as it can be without touching itself", default=True
+    )
     thickness: FloatProperty(
         name="Thickness", description="Radius of the tube; 0 for none", default=0.0, min=0.0, unit="LENGTH"
     )
@@ -92,8 +108,11 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
         low, high = curve.vertices.min(axis=0), curve.vertices.max(axis=0)
         scale = 2 * self.size / (high - low).max()
         data = new_curve_data(name, curve.mesh.component_sizes)
-        data.bevel_depth = self.thickness
-        write_points(data, (scale * (curve.vertices - 0.5 * (low + high))).astype("f4"))
+        vertices = scale * (curve.vertices - 0.5 * (low + high))
+        if self.fit_bevel:
+            self.thickness = bevel.fitting_radius(curve.with_vertices(vertices))
+        bevel.fit(data, self.thickness)
+        write_points(data, vertices.astype("f4"))
         object_data_add(context, data, operator=self)
         return {"FINISHED"}
 
@@ -104,5 +123,10 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
         layout.prop(self, "kind")
         for name in ("knot",) if self.kind == "TABLE" else ("p", "q"):
             layout.prop(self, name)
-        for name in ("size", "thickness", "align", "location", "rotation"):
+        layout.prop(self, "size")
+        layout.prop(self, "fit_bevel")
+        row = layout.row()
+        row.enabled = not self.fit_bevel
+        row.prop(self, "thickness")
+        for name in ("align", "location", "rotation"):
             layout.prop(self, name)

@@ -5,11 +5,15 @@ import textwrap
 import bpy
 
 from .checks import refusal
+from .live import registry
+from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_stop
+from .live.run import Run
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
+from .session import State
 
 
 class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
-    """Settings and the Relax button; when it is disabled, the reason stands below it."""
+    """Settings, the buttons, and how the relaxation goes; when Relax is disabled, the reason stands below it."""
 
     bl_label = "Möbius Flow"
     bl_category = "Möbius Flow"
@@ -26,10 +30,12 @@ class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming s
         _column(layout, settings, "keyframes")
         if settings.keyframes != "RESULT":
             _column(layout, settings, "start_frame", "frames_per_iterate", "max_keys")
-        layout.operator(CURVE_OT_mobius_flow_relax.bl_idname, icon="CURVE_NCIRCLE")
-        reason = refusal(context)
-        if reason:
-            _lines(layout, reason)
+        layout.prop(settings, "fit_bevel")
+        _buttons(layout, context)
+        if run := registry.latest():
+            _progress(layout, run)
+        elif context.active_object and context.active_object.type == "CURVE":
+            _value(layout, "Tube radius", f"{context.active_object.data.bevel_depth:.4g}")
         layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
 
 
@@ -38,14 +44,53 @@ def add_menu_entry(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, icon="CURVE_NCIRCLE")
 
 
+def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    run = registry.current()
+    column = layout.column(align=True)
+    column.scale_y = 1.3
+    column.operator(CURVE_OT_mobius_flow_relax.bl_idname, icon="PLAY")
+    row = column.row(align=True)
+    paused = run is not None and run.state is State.PAUSED
+    text, icon = ("Resume", "PLAY") if paused else ("Pause", "PAUSE")
+    row.operator(CURVE_OT_mobius_flow_pause.bl_idname, text=text, icon=icon)
+    row.operator(CURVE_OT_mobius_flow_stop.bl_idname, icon="SNAP_FACE")
+    reason = refusal(context)
+    if reason and run is None:
+        _lines(layout, reason)
+
+
+def _progress(layout: bpy.types.UILayout, run: Run) -> None:
+    """What is known of the run that is going on, or of the last one."""
+    box = layout.box().column(align=True)
+    _value(box, run.name, run.state.value.capitalize())
+    if run.last is not None:
+        _value(box, "Energy", f"{run.last.energy:.4f}")
+        _value(box, "Iteration", f"{run.last.index}")
+        _value(box, "Step", f"{run.last.step_size:.3g}")
+        proved = run.last.certified if run.report is None else run.report.certified
+        _value(box, "Certified", "free of contact" if proved else "no")
+    if run.report is not None and run.report.radius is not None:
+        _value(box, "Tube radius", f"{run.report.radius:.4g}")
+    if run.message:
+        _lines(box, run.message, icon="ERROR" if run.failed else "INFO")
+
+
+def _value(layout: bpy.types.UILayout, name: str, text: str) -> None:
+    split = layout.split(factor=0.4)
+    left = split.row()
+    left.alignment = "RIGHT"
+    left.label(text=name)
+    split.label(text=text)
+
+
 def _column(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, *names: str) -> None:
     column = layout.column(align=True)
     for name in names:
         column.prop(settings, name)
 
 
-def _lines(layout: bpy.types.UILayout, sentence: str, width: int = 38) -> None:
+def _lines(layout: bpy.types.UILayout, sentence: str, width: int = 38, icon: str = "INFO") -> None:
     """Labels do not wrap by themselves."""
     column = layout.column(align=True)
     for k, line in enumerate(textwrap.wrap(sentence, width)):
-        column.label(text=line, icon="NONE" if k else "INFO")
+        column.label(text=line, icon="NONE" if k else icon)

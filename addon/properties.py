@@ -4,7 +4,7 @@ import zlib
 from typing import Any
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..core import METHODS, RelaxOptions
 from .keyframes import KeyOptions, Output
@@ -95,6 +95,12 @@ def settings(options: set[str]) -> dict[str, Any]:
             min=0,
             options=options,
         ),
+        "fit_bevel": BoolProperty(
+            name="Fit Tube",
+            description="Draw the curve as the thickest round tube that does not touch itself, if it has a round bevel",
+            default=True,
+            options=options,
+        ),
     }
 
 
@@ -124,4 +130,5 @@ def key_options(values: dict[str, Any]) -> KeyOptions:
         start_frame=values["start_frame"],
         frames_per_iterate=values["frames_per_iterate"],
         max_keys=values["max_keys"] or None,
+        fit_bevel=values["fit_bevel"],
     )

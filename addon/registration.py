@@ -3,6 +3,8 @@
 import bpy
 from bpy.props import PointerProperty
 
+from .live import handlers
+from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_sample, CURVE_OT_mobius_flow_stop
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
 from .panel import VIEW3D_PT_mobius_flow, add_menu_entry
 from .properties import MobiusFlowSettings
@@ -10,6 +12,9 @@ from .properties import MobiusFlowSettings
 _CLASSES = (
     MobiusFlowSettings,
     CURVE_OT_mobius_flow_relax,
+    CURVE_OT_mobius_flow_pause,
+    CURVE_OT_mobius_flow_stop,
+    CURVE_OT_mobius_flow_sample,
     CURVE_OT_mobius_flow_add_knot,
     VIEW3D_PT_mobius_flow,
 )
@@ -28,10 +33,12 @@ def register() -> None:
         raise
     bpy.types.Scene.mobius_flow = PointerProperty(type=MobiusFlowSettings)
     bpy.types.VIEW3D_MT_curve_add.append(add_menu_entry)
+    handlers.register()
 
 
 def unregister() -> None:
-    """Remove all of it."""
+    """Remove all of it; what is running ends first."""
+    handlers.unregister()
     bpy.types.VIEW3D_MT_curve_add.remove(add_menu_entry)
     del bpy.types.Scene.mobius_flow
     for cls in reversed(_CLASSES):

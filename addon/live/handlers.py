@@ -1,0 +1,58 @@
+"""What happens to a live relaxation when a file is loaded or saved, or somebody undoes."""
+
+from typing import Any
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import registry
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _load_pre(*_: Any) -> None:
+    if run := registry.current():
+        run.cancel(f"A file was loaded; the relaxation of '{run.name}' has ended")
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _undo_pre(*_: Any) -> None:
+    """The curve must be as undo knows it, and pointers into the file are about to become invalid."""
+    if run := registry.current():
+        run.cancel(f"Undone; the relaxation of '{run.name}' has ended")
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _save_pre(*_: Any) -> None:
+    if run := registry.current():
+        run.set_aside()
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _save_post(*_: Any) -> None:
+    if run := registry.current():
+        run.put_forward()
+
+
+_HANDLERS = {
+    "load_pre": _load_pre,
+    "undo_pre": _undo_pre,
+    "redo_pre": _undo_pre,
+    "save_pre": _save_pre,
+    "save_post": _save_post,
+    "save_post_fail": _save_post,
+}
+
+
+def register() -> None:
+    """Listen."""
+    for name, handler in _HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister() -> None:
+    """End what is running, and listen no more."""
+    if run := registry.current():
+        run.cancel("Möbius Flow was disabled; the curve is as it was")
+    registry.forget()
+    for name, handler in _HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)

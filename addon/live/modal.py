@@ -1,0 +1,92 @@
+"""The event loop of a live relaxation: what the timer, Esc, Enter and the undo keys do, and what is shown meanwhile."""
+
+import bpy
+
+from ..session import State
+from .run import Run
+
+_INTERVAL = 1 / 60  # seconds; one iterate each time, so that every one is seen
+_TYPING = {"CONSOLE", "TEXT_EDITOR"}  # keys pressed over these are theirs
+_PASS = {"PASS_THROUGH"}
+
+
+class Loop:
+    """A timer in a window and a line in its status bar, for as long as a run goes on.
+
+    Parameters
+    ----------
+    run
+        The run.
+    context
+        Where it was started.
+    """
+
+    def __init__(self, run: Run, context: bpy.types.Context) -> None:
+        self.run = run
+        self._manager = context.window_manager
+        self._timer = self._manager.event_timer_add(_INTERVAL, window=context.window)
+        run.on_end = self.close
+
+    def handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Do what an event asks for; most are none of a relaxation's business, and Blender stays usable."""
+        handled = _PASS
+        if self.run.state.over:
+            pass  # ended by a handler, such as the one for undo
+        elif event.type == "TIMER":
+            self.run.tick()
+        elif event.value == "PRESS" and not bpy.app.is_job_running("RENDER") and not _typing(context, event):
+            handled = self._key(event)
+        self._show(context)
+        if self.run.state.over:
+            return {"FINISHED"} if self.run.state is State.DONE else {"CANCELLED"}
+        return handled
+
+    def _key(self, event: bpy.types.Event) -> set[str]:
+        if event.type == "ESC" or (event.type == "Z" and (event.ctrl or event.oskey) and not event.shift):
+            self.run.cancel()
+        elif event.type in {"RET", "NUMPAD_ENTER"}:
+            self.run.keep()
+        else:
+            return _PASS
+        return {"RUNNING_MODAL"}
+
+    def close(self) -> None:
+        """Take the timer and the line in the status bar away; the run calls this when it ends."""
+        if self._timer is not None:
+            self._manager.event_timer_remove(self._timer)
+            self._timer = None
+        for workspace in bpy.data.workspaces:
+            workspace.status_text_set(None)
+
+    def _show(self, context: bpy.types.Context) -> None:
+        if not self.run.state.over and context.workspace is not None:
+            context.workspace.status_text_set(status_line(self.run))
+        redraw_panels(context.window_manager)
+
+
+def status_line(run: Run) -> str:
+    """What the status bar says."""
+    if run.state is State.FINISHING:
+        return f"{run.name}: proving and writing keys   |   Esc: put the curve back"
+    where = f"iterate {run.last.index}, energy {run.last.energy:.4f}" if run.last else "starting"
+    paused = "paused at " if run.state is State.PAUSED else ""
+    return f"{run.name}: {paused}{where}   |   Enter: keep this shape   |   Esc: put the curve back"
+
+
+def redraw_panels(manager: bpy.types.WindowManager) -> None:
+    """Draw the sidebars anew."""
+    for window in manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                for region in area.regions:
+                    if region.type == "UI":
+                        region.tag_redraw()
+
+
+def _typing(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Whether the mouse is over an editor that takes text."""
+    screen = context.window.screen if context.window else None
+    x, y = event.mouse_x, event.mouse_y
+    return screen is not None and any(
+        area.type in _TYPING and 0 <= x - area.x < area.width and 0 <= y - area.y < area.height for area in screen.areas
+    )

@@ -1,0 +1,136 @@
+"""The live half of the Relax operator, and the buttons for a run that is going on."""
+
+from typing import Any
+
+import bpy
+
+from ...core import MobiusFlowError
+from .. import sampling
+from ..checks import refusal
+from ..properties import key_options, relax_options
+from ..session import State
+from . import registry
+from .modal import Loop, redraw_panels
+from .run import Run
+
+_NOTHING = "Nothing is being relaxed"
+
+
+class LiveRelax:
+    """What the Relax operator does in a window: `invoke` starts a worker, `modal` shows what it finds."""
+
+    loop: Loop | None = None
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Relax the active curve live; ask first if smooth splines have to become polygons."""
+        if bpy.app.background or context.window is None:
+            return set(self.execute(context))
+        context.view_layer.update()
+        obj = context.active_object
+        values = self.values(context)
+        if sampling.smooth_splines(obj.data) and not self.sample_splines:
+            return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
+        return self.begin(context, values)
+
+    def begin(self, context: bpy.types.Context, values: dict[str, Any]) -> set[str]:
+        """Start the run and its event loop."""
+        try:
+            if reason := refusal(context):
+                raise MobiusFlowError(reason)
+            run = Run(context.active_object, relax_options(values), key_options(values))
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.loop = Loop(run, context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Handle an event."""
+        assert self.loop is not None, "invoke makes it"
+        result = self.loop.handle(context, event)
+        run = self.loop.run
+        if run.state is State.DONE and run.report is not None:
+            _go_to_last_frame(context.scene, run.report.last_frame if run.report.keys > 1 else None)
+            self.report({"INFO"} if run.report.clean and not run.failed else {"WARNING"}, run.message)
+        elif run.state.over:
+            self.report({"ERROR"} if run.failed else {"INFO"}, run.message)
+        return result
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender gives up the operator: its window or its file is closed."""
+        if self.loop is not None:
+            self.loop.run.cancel("The window was closed; the curve is as it was")
+
+
+def _go_to_last_frame(scene: bpy.types.Scene, frame: float | None) -> None:
+    """Keep showing the shape that was kept."""
+    if frame is not None:
+        whole = int(frame // 1)
+        scene.frame_set(whole, subframe=frame - whole)
+
+
+class CURVE_OT_mobius_flow_pause(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+    """Pause the relaxation, or go on with it"""
+
+    bl_idname = "curve.mobius_flow_pause"
+    bl_label = "Pause"
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        """Whether there is something to pause."""
+        run = registry.current()
+        busy = run is not None and run.state is State.FINISHING
+        cls.poll_message_set("The relaxation is over; its keys are being written" if busy else _NOTHING)
+        return run is not None and not busy
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Pause or resume."""
+        run = registry.current()
+        assert run is not None, "poll looks for it"
+        if run.state is State.PAUSED:
+            run.resume()
+        else:
+            run.pause()
+        redraw_panels(context.window_manager)
+        return {"FINISHED"}
+
+
+class CURVE_OT_mobius_flow_stop(bpy.types.Operator):  # noqa: N801
+    """Stop the relaxation and keep the shape it has now"""
+
+    bl_idname = "curve.mobius_flow_stop"
+    bl_label = "Stop"
+
+    poll = CURVE_OT_mobius_flow_pause.poll
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Stop; the event loop writes the result."""
+        run = registry.current()
+        assert run is not None, "poll looks for it"
+        run.keep()
+        redraw_panels(context.window_manager)
+        return {"FINISHED"}
+
+
+class CURVE_OT_mobius_flow_sample(bpy.types.Operator):  # noqa: N801
+    """Ask whether smooth splines may become polygons, then relax"""
+
+    bl_idname = "curve.mobius_flow_sample"
+    bl_label = "Sample and Relax"
+    bl_options = {"INTERNAL"}  # noqa: RUF012 - read by Blender
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Ask."""
+        self.question = sampling.question(context.active_object)
+        return set(context.window_manager.invoke_props_dialog(self, width=420))
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Show the question."""
+        self.layout.label(text=self.question, icon="QUESTION")
+        self.layout.label(text="For more or fewer points change the curve's Resolution Preview U.")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Relax with the answer."""
+        bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT", sample_splines=True)
+        return {"FINISHED"}
