@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Build the Blender extension: one zip for each platform, with SciPy's wheels for every Python that Blender has there.
+
+    tools/build_extension.py [--platform linux-x64] [--output dist] [--wheels DIR]
+
+Wheels are fetched by pip and never committed. The zip is made and validated by Blender's own command-line tool: that
+of the `bpy` module where it is installed, otherwise that of `blender`.
+"""
+
+import argparse
+import importlib.util
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SCIPY = "1.16.3"  # has wheels for Python 3.11 (Blender 4.2 to 5.0), 3.13 (from 5.1) and 3.14 (Debian's)
+# Platforms: those of Blender, the tags of the wheels, and the Pythons
+PLATFORMS = {
+    "linux-x64": (("manylinux2014_x86_64", "manylinux_2_17_x86_64"), ("3.11", "3.13", "3.14")),
+    "windows-x64": (("win_amd64",), ("3.11", "3.13")),
+    "macos-arm64": (("macosx_12_0_arm64",), ("3.11", "3.13")),
+    "macos-x64": (("macosx_10_14_x86_64",), ("3.11", "3.13")),
+}
+
+
+def main() -> int:
+    """Build what the command line asks for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--platform", action="append", choices=PLATFORMS, help="default: all")
+    parser.add_argument("--output", type=Path, default=ROOT / "dist")
+    parser.add_argument("--wheels", type=Path, default=ROOT / "build" / "wheels", help="where wheels are kept")
+    options = parser.parse_args()
+    options.output.mkdir(parents=True, exist_ok=True)
+    for platform in options.platform or PLATFORMS:
+        print(build(platform, options.output.resolve(), options.wheels.resolve()))
+    return 0
+
+
+def build(platform: str, output: Path, wheels: Path) -> Path:
+    """Build and validate the zip of one platform and return its path."""
+    version = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))["version"]
+    target = output / f"mobius_flow-{version}-{platform.replace('-', '_')}.zip"
+    with tempfile.TemporaryDirectory() as room:
+        stage = Path(room) / "mobius_flow"
+        _stage(stage, platform, fetch_wheels(platform, wheels))
+        _blender("build", "--source-dir", str(stage), "--output-filepath", str(target))
+    _blender("validate", str(target))
+    return target
+
+
+def fetch_wheels(platform: str, wheels: Path) -> list[Path]:
+    """Fetch SciPy's wheels for all Pythons of a platform, unless they are there already."""
+    tags, pythons = PLATFORMS[platform]
+    return [_wheel(python, tags, wheels) for python in pythons]
+
+
+def _wheel(python: str, tags: tuple[str, ...], wheels: Path) -> Path:
+    pattern = f"scipy-{SCIPY}-cp{python.replace('.', '')}-cp*"
+    found = [path for path in wheels.glob(pattern) if any(tag in path.name for tag in tags)]
+    if found:
+        return found[0]
+    wanted = [argument for tag in tags for argument in ("--platform", tag)]
+    command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--only-binary", ":all:"]
+    subprocess.run(
+        [*command, "--python-version", python, *wanted, "--dest", str(wheels), f"scipy=={SCIPY}"], check=True
+    )
+    return next(path for path in wheels.glob(pattern) if any(tag in path.name for tag in tags))
+
+
+def _stage(stage: Path, platform: str, wheels: list[Path]) -> None:
+    """Copy what git knows of, so that nothing private or left over gets into the zip, and add the wheels."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    for name in filter(None, listed.split("\0")):
+        if (ROOT / name).is_file():
+            (stage / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, stage / name)
+    (stage / "wheels").mkdir()
+    for wheel in wheels:
+        shutil.copy2(wheel, stage / "wheels")
+    manifest = stage / "blender_manifest.toml"
+    lines = manifest.read_text(encoding="utf-8").split("\n[", 1)  # values belong before the first table
+    names = ",\n".join(f'  "./wheels/{wheel.name}"' for wheel in wheels)
+    lines[0] += f'\nplatforms = ["{platform}"]\nwheels = [\n{names},\n]\n'
+    manifest.write_text("\n[".join(lines), encoding="utf-8")
+
+
+def _blender(*arguments: str) -> None:
+    """Run a subcommand of Blender's extension tool."""
+    spec = importlib.util.find_spec("bpy")
+    places = spec.submodule_search_locations if spec else None
+    tools = [path for place in places or () for path in Path(place).glob("*/scripts/addons_core/bl_pkg/cli/*_ext.py")]
+    command = [sys.executable, str(tools[0])] if tools else ["blender", "--command", "extension"]
+    done = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
+    if done.returncode:
+        sys.exit(done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
