@@ -23,7 +23,7 @@ def refusal(context: "bpy.types.Context") -> str | None:
     if reason := _running():
         return reason
     obj = context.active_object
-    if obj is None or not obj.select_get():
+    if obj is None or (obj.visible_get() and not obj.select_get()):  # hiding deselects
         return "Select a curve object first"
     return next((reason for check in _CHECKS for reason in check(obj)), None)
 

@@ -10,7 +10,7 @@ import heapq
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..errors import OptionError
+from ..errors import CurveError, OptionError
 from ..types import FloatArray, IntArray
 from .curve import Curve
 from .distances import arc_distance_of_pairs
@@ -18,6 +18,7 @@ from .mesh import Mesh
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
+MOST_VERTICES = 1_000_000  # that the rule may ask for
 SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
 
 
@@ -35,6 +36,8 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     ------
     OptionError
         If fewer vertices are asked for than the curve has: corners are never cut.
+    CurveError
+        If the rule wants more vertices than a computer can hold: strands, or points, are too near for the length.
     """
     if vertices is not None and vertices < len(curve):
         raise OptionError(f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more")
@@ -42,7 +45,13 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     if vertices is not None:
         return subdivide(curve, _apportion(wanted, vertices))
     # a little slack, so that a curve that already has the spacing asked for stays as it is
-    return subdivide(curve, np.maximum(1, np.ceil(wanted - 0.1)).astype(np.intp))
+    pieces = np.maximum(1, np.ceil(wanted - 0.1))
+    if not pieces.sum() <= MOST_VERTICES:
+        raise CurveError(
+            f"strands are so near to each other that a curve so long would need {pieces.sum():.3g} vertices; "
+            "move them apart, or ask for a number of vertices"
+        )
+    return subdivide(curve, pieces.astype(np.intp))
 
 
 def subdivide(curve: Curve, pieces: IntArray) -> Curve:

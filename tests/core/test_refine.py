@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, OptionError
+from mobius_flow.core import Curve, CurveError, OptionError
 from mobius_flow.core.curve.refine import DEFAULT_VERTICES, refine, subdivide
 from shapes import hopf_link, regular_polygon, shared_knot
 
@@ -70,3 +70,10 @@ def test_subdivide_places_equal_parts():
     curve = regular_polygon(4)
     fine = subdivide(curve, np.array([1, 2, 3, 1]))
     np.testing.assert_allclose(fine.edge_lengths, np.sqrt(2) / np.array([1, 2, 2, 3, 3, 3, 1]))
+
+
+def test_a_gap_far_below_the_length_is_refused():
+    """The rule would want more vertices than fit anywhere."""
+    near = Curve.from_components([regular_polygon(9).vertices, regular_polygon(9).vertices + np.array([0, 0, 1e-9])])
+    with pytest.raises(CurveError, match="vertices; move them apart"):
+        refine(near)

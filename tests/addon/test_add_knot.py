@@ -1,0 +1,66 @@
+"""Knots from the Add menu."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import contents, sentence, stored  # noqa: E402
+from mobius_flow.core import Curve  # noqa: E402
+from mobius_flow.core.collision import check_embedded  # noqa: E402
+from mobius_flow.core.knots import knot  # noqa: E402
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [({}, "3_1"), ({"knot": "4_1"}, "4_1"), ({"kind": "TORUS", "p": 2, "q": 5}, "T(2,5)"), ({"knot": "L2a1"}, "L2a1")],
+)
+def test_a_knot_is_added(options, name):
+    bpy.context.scene.cursor.location = (3, 2, 1)
+    assert bpy.ops.curve.mobius_flow_add_knot(**options, size=2.5) == {"FINISHED"}
+    obj = bpy.context.object
+    library = knot(name)
+    assert (obj.name, obj.type, obj.select_get()) == (name, "CURVE", True)
+    assert tuple(obj.location) == (3, 2, 1)
+    assert tuple(len(spline.points) for spline in obj.data.splines) == library.mesh.component_sizes
+    assert all(spline.use_cyclic_u and spline.type == "POLY" for spline in obj.data.splines)
+    points = stored(obj.data).astype(np.float64)
+    assert np.ptp(points, axis=0).max() == pytest.approx(5)
+    np.testing.assert_allclose(points.max(axis=0) + points.min(axis=0), 0, atol=1e-6)
+    sizes = [len(spline.points) for spline in obj.data.splines]
+    check_embedded(Curve.from_components(np.split(points, np.cumsum(sizes)[:-1])))
+
+
+def test_a_torus_link_has_its_components():
+    bpy.ops.curve.mobius_flow_add_knot(kind="TORUS", p=4, q=6)
+    assert len(bpy.context.object.data.splines) == 2
+
+
+def test_a_tube():
+    bpy.ops.curve.mobius_flow_add_knot(fit_bevel=False, thickness=0.125)
+    assert bpy.context.object.data.bevel_depth == 0.125
+
+
+def test_an_added_knot_can_be_relaxed():
+    bpy.ops.curve.mobius_flow_add_knot()
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=2) == {"FINISHED"}
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"knot": "nonsense"}, {"knot": ""}, {"kind": "TORUS", "p": 0, "q": 3}, {"kind": "TORUS", "p": 10**6, "q": 7}],
+)
+def test_what_is_no_knot_is_refused(options):
+    before = contents()
+    with pytest.raises(RuntimeError) as error:
+        bpy.ops.curve.mobius_flow_add_knot(**options)
+    assert len(sentence(error.value)) > 10
+    assert contents() == before
+
+
+def test_not_in_edit_mode():
+    bpy.ops.curve.mobius_flow_add_knot()
+    bpy.ops.object.mode_set(mode="EDIT")
+    with pytest.raises(RuntimeError, match="Object Mode"):
+        bpy.ops.curve.mobius_flow_add_knot()
+    bpy.ops.object.mode_set(mode="OBJECT")
