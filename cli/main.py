@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ..core.errors import MobiusFlowError
-from . import compare, energy, knot, methods, relax, verify
+from . import bench, compare, energy, knot, methods, relax, verify
 
-COMMANDS = (relax, energy, verify, compare, knot, methods)
+COMMANDS = (relax, energy, verify, compare, knot, bench, methods)
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Curve
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 
 _PRIME = 2_147_482_681  # below 2³¹, so that products fit 64 bits; 1 more than a multiple of 2·3·5·7
 _ORDERS = (2, 3, 5, 7)
@@ -70,7 +70,7 @@ class _Crossings:
         over, under, over_at, under_at, sign = np.concatenate(rows, axis=1)
         return cls(over.astype(np.intp), under.astype(np.intp), over_at, under_at, sign.astype(np.intp))
 
-    def within(self, over: np.ndarray, under: np.ndarray) -> "_Crossings":
+    def within(self, over: BoolArray, under: BoolArray) -> "_Crossings":
         chosen = over & under
         fields = (self.over, self.under, self.over_at, self.under_at, self.sign)
         return _Crossings(*(values[chosen] for values in fields))
@@ -94,7 +94,8 @@ def _found(curve: Curve, points: FloatArray, first: int) -> FloatArray:
     above = start[first_edge, 2] + s * edge[first_edge, 2] > start[second_edge, 2] + t * edge[second_edge, 2]
     over, under = np.where(above, first_edge, second_edge), np.where(above, second_edge, first_edge)
     sign = np.sign(np.where(above, wedge, -wedge))
-    return np.stack([over, under, np.where(above, s, t), np.where(above, t, s), sign]).astype(np.float64)
+    columns = [over, under, np.where(above, s, t), np.where(above, t, s), sign]
+    return np.array(columns, dtype=np.float64)
 
 
 def _values(crossings: _Crossings) -> tuple[int, ...]:

@@ -1,0 +1,61 @@
+"""The hard-curve bench: knots, links and unknots from the project's own generators, relaxed and identified."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from .curve import Curve
+from .iterate import Iterate
+from .knots import hard_unknot, knot, rope, scramble, spiral, torus_knot
+from .knots.alexander import signature
+from .options import RelaxOptions
+from .relax import Result, minimize
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """What became of one curve: its result, and whether its signature is the same before and after."""
+
+    name: str
+    vertices_given: int
+    result: Result
+    same_type: bool
+    trivial: bool
+
+
+def uneven(curve: Curve, ratio: float, seed: int) -> Curve:
+    """The same polygon with vertices added on its edges so that edge lengths differ by ``ratio``."""
+    rng = np.random.default_rng(seed)
+    pieces = []
+    for vertex, edge in zip(curve.vertices, curve.edge_vectors, strict=True):
+        cuts = np.array([0.0]) if rng.random() > 0.1 else np.array([0.0, 1.0 / ratio])
+        pieces.append(vertex + cuts[:, None] * edge)
+    return Curve(np.concatenate(pieces))
+
+
+KNOTS: Mapping[str, Callable[[], Curve]] = MappingProxyType(
+    {
+        **{f"unknot-{c}": (lambda c=c: hard_unknot(c, seed=c)) for c in (20, 40, 60, 100, 141)},
+        "unknot-scrambled": lambda: scramble(knot("0_1"), seed=11),
+        "unknot-spiral": lambda: spiral(6.0),
+        "unknot-rope": lambda: rope(6.0, 0.02),
+        "unknot-edges-1000": lambda: uneven(hard_unknot(20, seed=3), 1000.0, seed=5),
+        **{name: (lambda name=name: knot(name)) for name in ("3_1", "6_2", "7_7", "8_19", "9_35", "10_132")},
+        "4_1-scrambled": lambda: scramble(knot("4_1"), seed=7),
+        "torus-3-5": lambda: torus_knot(3, 5),
+        **{name: (lambda name=name: knot(name)) for name in ("L2a1", "L5a1", "L6a4")},
+    }
+)
+"""Every curve of the bench, by name."""
+
+
+def bench(names: list[str], options: RelaxOptions, callback: Callable[[Iterate], None] | None = None) -> Iterator[Row]:
+    """Relax the named curves one by one."""
+    for name in names:
+        curve = KNOTS[name]()
+        before = signature(curve)
+        result = minimize(curve, options, callback)
+        after = signature(result.curve)
+        yield Row(name, len(curve), result, before == after, after.is_trivial)
