@@ -35,7 +35,7 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
         if not a.size:
             continue
         squares = squared_distances(points, np.stack([tails[a], heads[a], tails[b], heads[b]]))
-        k = int(squares.argmin())
+        k = int(np.argmin(squares))
         if squares[k] < best:
             best, pair = float(squares[k]), (int(tails[a[k]]), int(tails[b[k]]))
     return float(np.ldexp(np.sqrt(best), unit)), pair
@@ -61,5 +61,5 @@ def _some_gap(curve: Curve, points: FloatArray) -> float:
     i, j = i[apart], j[apart]
     if not i.size:
         return np.inf
-    bound = squared_distances(points, np.stack([i, heads[i], j, heads[j]])).min()
+    bound = np.min(squared_distances(points, np.stack([i, heads[i], j, heads[j]])))
     return float(bound) * (1 + 1e-12)  # so that rounding cannot exclude the pair itself
