@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 
 import numpy as np
@@ -37,15 +38,15 @@ def uneven(curve: Curve, ratio: float, seed: int) -> Curve:
 
 KNOTS: Mapping[str, Callable[[], Curve]] = MappingProxyType(
     {
-        **{f"unknot-{c}": (lambda c=c: hard_unknot(c, seed=c)) for c in (20, 40, 60, 100, 141)},
+        **{f"unknot-{c}": partial(hard_unknot, c, seed=c) for c in (20, 40, 60, 100, 141)},
         "unknot-scrambled": lambda: scramble(knot("0_1"), seed=11),
         "unknot-spiral": lambda: spiral(6.0),
         "unknot-rope": lambda: rope(6.0, 0.02),
         "unknot-edges-1000": lambda: uneven(hard_unknot(20, seed=3), 1000.0, seed=5),
-        **{name: (lambda name=name: knot(name)) for name in ("3_1", "6_2", "7_7", "8_19", "9_35", "10_132")},
+        **{name: partial(knot, name) for name in ("3_1", "6_2", "7_7", "8_19", "9_35", "10_132")},
         "4_1-scrambled": lambda: scramble(knot("4_1"), seed=7),
         "torus-3-5": lambda: torus_knot(3, 5),
-        **{name: (lambda name=name: knot(name)) for name in ("L2a1", "L5a1", "L6a4")},
+        **{name: partial(knot, name) for name in ("L2a1", "L5a1", "L6a4")},
     }
 )
 """Every curve of the bench, by name."""

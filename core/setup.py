@@ -9,13 +9,14 @@ from .constraints import Constraints, weighted_barycenter
 from .curve import Curve
 from .descent import METHODS, Method, Problem
 from .energies import ENERGIES, Objective
-from .errors import OptionError
+from .errors import CurveError, OptionError
 from .metrics import METRICS, MoebiusMetric
 from .options import RelaxOptions
 from .types import FloatArray
 from .units import Units
 
 _Entry = TypeVar("_Entry")
+MOST_VERTICES = 12_000  # some six matrices of so many rows make 7 GB
 
 
 def method_named(name: str) -> Method:
@@ -34,10 +35,17 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
 
     Raises
     ------
+    CurveError
+        If the curve has more vertices than dense matrices can have rows.
     OptionError
         If an option names something unknown, or a method and an energy do not go together.
     """
     method = method_named(options.method)
+    if len(curve) > MOST_VERTICES:
+        raise CurveError(
+            f"the curve has {len(curve)} vertices; dense matrices of more than {MOST_VERTICES} rows do not fit into "
+            "memory; thin the curve out or relax its components apart"
+        )
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))

@@ -10,7 +10,7 @@ import heapq
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..errors import CurveError, OptionError
+from ..errors import OptionError
 from ..types import FloatArray, IntArray
 from .curve import Curve
 from .distances import arc_distance_of_pairs
@@ -18,7 +18,8 @@ from .mesh import Mesh
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
-MOST_VERTICES = 1_000_000  # that the rule may ask for
+MOST_VERTICES = 1000  # per component, unless the curve has half as many: more are too slow to be of use
+COMPONENTS = 10  # that get so many each; more share what ten would have
 SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
 
 
@@ -36,22 +37,13 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     ------
     OptionError
         If fewer vertices are asked for than the curve has: corners are never cut.
-    CurveError
-        If the rule wants more vertices than a computer can hold: strands, or points, are too near for the length.
     """
     if vertices is not None and vertices < len(curve):
         raise OptionError(f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more")
-    wanted = curve.edge_lengths / target_spacing(curve)
+    spacing = target_spacing(curve)
     if vertices is not None:
-        return subdivide(curve, _apportion(wanted, vertices))
-    # a little slack, so that a curve that already has the spacing asked for stays as it is
-    pieces = np.maximum(1, np.ceil(wanted - 0.1))
-    if not pieces.sum() <= MOST_VERTICES:
-        raise CurveError(
-            f"strands are so near to each other that a curve so long would need {pieces.sum():.3g} vertices; "
-            "move them apart, or ask for a number of vertices"
-        )
-    return subdivide(curve, pieces.astype(np.intp))
+        return subdivide(curve, _apportion(curve.edge_lengths / spacing, vertices))
+    return subdivide(curve, _affordable_pieces(curve, spacing))
 
 
 def subdivide(curve: Curve, pieces: IntArray) -> Curve:
@@ -69,7 +61,7 @@ def target_spacing(curve: Curve, vertices: int | None = None) -> FloatArray:
     ``vertices`` is the count without gaps, by default 200 per component.  Gaps wider than that length, or than the
     longest edge, do not matter and are not looked for.
     """
-    base = curve.length / (vertices or DEFAULT_VERTICES * len(curve.mesh.component_sizes))
+    base = curve.length / (vertices or DEFAULT_VERTICES * _sharers(curve))
     pieces = np.ceil(SAMPLES_PER_SPACING * curve.edge_lengths / base).astype(np.intp)
     samples = subdivide(curve, pieces)
     spacing = np.full(len(curve), base)
@@ -90,6 +82,25 @@ def _strand_gaps(curve: Curve, radius: float) -> FloatArray:
     for end in (i, j):
         np.minimum.at(gaps, end[other], distance[other])
     return gaps
+
+
+def _sharers(curve: Curve) -> int:
+    return min(COMPONENTS, len(curve.mesh.component_sizes))
+
+
+def _affordable_pieces(curve: Curve, spacing: FloatArray) -> IntArray:
+    """Pieces per edge for the spacing wanted, or for the finest one that is not too many vertices in all.
+
+    Where gaps are too narrow for that, the barrier's exact energies and an adaptive mesh have to do.
+    """
+    most = max(2 * len(curve), MOST_VERTICES * _sharers(curve))
+    floor = 0.0
+    while True:
+        # a little slack, so that a curve that already has the spacing asked for stays as it is
+        pieces = np.maximum(1.0, np.ceil(curve.edge_lengths / np.maximum(spacing, floor) - 0.1))
+        if pieces.sum() <= most:
+            return np.asarray(pieces.astype(np.intp))
+        floor = 1.2 * max(floor, float(spacing.min()), curve.length / (100.0 * most))
 
 
 def _apportion(wanted: FloatArray, total: int) -> IntArray:
