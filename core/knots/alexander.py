@@ -72,8 +72,8 @@ class _Crossings:
 
     def within(self, over: BoolArray, under: BoolArray) -> "_Crossings":
         chosen = over & under
-        fields = (self.over, self.under, self.over_at, self.under_at, self.sign)
-        return _Crossings(*(values[chosen] for values in fields))
+        at = (self.over_at[chosen], self.under_at[chosen])
+        return _Crossings(self.over[chosen], self.under[chosen], *at, self.sign[chosen])
 
 
 def _found(curve: Curve, points: FloatArray, first: int) -> FloatArray:
