@@ -25,6 +25,7 @@ def main() -> None:
         os.dup2(2, 1)  # whatever a library prints must not get in between
         for reply in job.messages(message):
             wire.write(out, reply)
+    os._exit(0)  # the thread still reads
 
 
 def _load_package(root: Path) -> None:
@@ -40,7 +41,8 @@ def _load_package(root: Path) -> None:
 
 def _end_with_blender() -> None:
     """Blender never writes again: the input ends when Blender closes it, crashes or is killed."""
-    sys.stdin.buffer.read()
+    while os.read(0, 1024):
+        pass
     os._exit(0)
 
 

@@ -26,20 +26,26 @@ class Loop:
         self._manager = context.window_manager
         self._timer = self._manager.event_timer_add(_INTERVAL, window=context.window)
         run.on_end = self.close
+        self._show(context)
 
     def handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Do what an event asks for; most are none of a relaxation's business, and Blender stays usable."""
-        handled = _PASS
+        handled, before = _PASS, self._seen()
         if self.run.state.over:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":
             self.run.tick()
         elif event.value == "PRESS" and not bpy.app.is_job_running("RENDER") and not _typing(context, event):
             handled = self._key(event)
-        self._show(context)
+        if self._seen() != before:
+            self._show(context)
         if self.run.state.over:
             return {"FINISHED"} if self.run.state is State.DONE else {"CANCELLED"}
         return handled
+
+    def _seen(self) -> tuple[object, ...]:
+        """What is shown depends on nothing else."""
+        return self.run.state, self.run.last
 
     def _key(self, event: bpy.types.Event) -> set[str]:
         if event.type == "ESC" or (event.type == "Z" and (event.ctrl or event.oskey) and not event.shift):
@@ -55,13 +61,15 @@ class Loop:
         if self._timer is not None:
             self._manager.event_timer_remove(self._timer)
             self._timer = None
-        for workspace in bpy.data.workspaces:
-            workspace.status_text_set(None)
+        for window in self._manager.windows:
+            # Blender takes the place from the context, and crashes where there is none
+            with bpy.context.temp_override(window=window):
+                window.workspace.status_text_set(None)
 
     def _show(self, context: bpy.types.Context) -> None:
-        if not self.run.state.over and context.workspace is not None:
+        if not self.run.state.over and context.window is not None:
             context.workspace.status_text_set(status_line(self.run))
-        redraw_panels(context.window_manager)
+        redraw_views(context.window_manager)
 
 
 def status_line(run: Run) -> str:
@@ -73,14 +81,12 @@ def status_line(run: Run) -> str:
     return f"{run.name}: {paused}{where}   |   Enter: keep this shape   |   Esc: put the curve back"
 
 
-def redraw_panels(manager: bpy.types.WindowManager) -> None:
-    """Draw the sidebars anew."""
+def redraw_views(manager: bpy.types.WindowManager) -> None:
+    """Draw the 3D views and their sidebars anew: points moved by Python do not do that by themselves."""
     for window in manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
-                for region in area.regions:
-                    if region.type == "UI":
-                        region.tag_redraw()
+                area.tag_redraw()
 
 
 def _typing(context: bpy.types.Context, event: bpy.types.Event) -> bool:

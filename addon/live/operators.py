@@ -10,7 +10,7 @@ from ..checks import refusal
 from ..properties import key_options, relax_options
 from ..session import State
 from . import registry
-from .modal import Loop, redraw_panels
+from .modal import Loop, redraw_views
 from .run import Run
 
 _NOTHING = "Nothing is being relaxed"
@@ -92,7 +92,7 @@ class CURVE_OT_mobius_flow_pause(bpy.types.Operator):  # noqa: N801 - Blender's 
             run.resume()
         else:
             run.pause()
-        redraw_panels(context.window_manager)
+        redraw_views(context.window_manager)
         return {"FINISHED"}
 
 
@@ -109,7 +109,7 @@ class CURVE_OT_mobius_flow_stop(bpy.types.Operator):  # noqa: N801
         run = registry.current()
         assert run is not None, "poll looks for it"
         run.keep()
-        redraw_panels(context.window_manager)
+        redraw_views(context.window_manager)
         return {"FINISHED"}
 
 

@@ -1,0 +1,96 @@
+"""A user's hands: mouse and keys in the first window, and what can be seen there."""
+
+import importlib
+from typing import Any
+
+import bpy
+from case import Steps, until
+
+_KEYS = {"RETURN": "RET"}
+
+
+def window() -> bpy.types.Window:
+    """The first window."""
+    return bpy.context.window_manager.windows[0]
+
+
+def view() -> bpy.types.Area:
+    """The 3D view."""
+    return next(area for area in window().screen.areas if area.type == "VIEW_3D")
+
+
+def region(kind: str) -> bpy.types.Region:
+    """A region of the 3D view."""
+    return next(region for region in view().regions if region.type == kind)
+
+
+def addon(module: str = "") -> Any:
+    """A module of the installed extension, such as ``live.registry``."""
+    return importlib.import_module(f"bl_ext.user_default.mobius_flow.addon.{module}".rstrip("."))
+
+
+def move(x: int, y: int) -> Steps:
+    """Move the mouse; buttons notice it only if it moves over them."""
+    for dx in (1, 0):
+        window().event_simulate(type="MOUSEMOVE", value="NOTHING", x=x + dx, y=y)
+        yield
+
+
+def click(x: int, y: int) -> Steps:
+    """Click with the left button."""
+    yield from move(x, y)
+    for value in ("PRESS", "RELEASE"):
+        window().event_simulate(type="LEFTMOUSE", value=value, x=x, y=y)
+        yield
+
+
+def key(name: str, over: tuple[int, int] | None = None, **modifiers: bool) -> Steps:
+    """Press a key with the mouse over a place, by default the middle of the 3D view."""
+    main = region("WINDOW")
+    x, y = over or (main.x + main.width // 2, main.y + main.height // 2)
+    yield from move(x, y)
+    for value in ("PRESS", "RELEASE"):
+        window().event_simulate(type=_KEYS.get(name, name), value=value, x=x, y=y, **modifiers)
+        yield
+
+
+def open_sidebar() -> Steps:
+    """Show Möbius Flow's tab, and give it room."""
+    view().spaces.active.show_region_ui = True
+    yield
+    sidebar = region("UI")
+
+    def shown() -> bool:
+        try:
+            sidebar.active_panel_category = "Möbius Flow"
+        except TypeError:  # not drawn yet
+            return False
+        return str(sidebar.active_panel_category) == "Möbius Flow"
+
+    yield from until(shown, "the sidebar's tab")
+    sidebar.tag_redraw()
+    for _ in range(4):
+        yield
+
+
+def button(operator: str) -> Steps:
+    """Find a button of the sidebar with the mouse and click it; an operator such as ``curve.mobius_flow_relax``."""
+    sidebar = region("UI")
+    ys = range(sidebar.y + sidebar.height - 10, sidebar.y + 10, -10)
+    for share, y in [(share, y) for share in (0.33, 0.7) for y in ys]:
+        x = sidebar.x + int(share * sidebar.width)
+        yield from move(x, y)
+        if f"bpy.ops.{operator}(" in _under_mouse(sidebar):
+            yield from click(x, y)
+            return
+    raise AssertionError(f"no button for {operator}")
+
+
+def _under_mouse(sidebar: bpy.types.Region) -> str:
+    """The Python command of the button under the mouse, as Blender's own context menu copies it."""
+    with bpy.context.temp_override(window=window(), area=view(), region=sidebar):
+        if not bpy.ops.ui.copy_python_command_button.poll():
+            return ""
+        bpy.context.window_manager.clipboard = ""
+        bpy.ops.ui.copy_python_command_button()
+    return str(bpy.context.window_manager.clipboard)

@@ -1,0 +1,75 @@
+"""A knot to relax, and what is going on with it."""
+
+from typing import Any
+
+import bpy
+import numpy as np
+from case import Steps, until
+from hands import addon, open_sidebar, region, view, window
+
+
+def empty() -> None:
+    """Start from an empty file."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+
+def knot(name: str = "5_2", vertices: int = 300) -> bpy.types.Object:
+    """Add a knot and look at it."""
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=view()):
+        bpy.ops.curve.mobius_flow_add_knot(knot=name)
+    bpy.context.scene.mobius_flow.vertices = vertices
+    bpy.ops.ed.undo_push(message="Knot added")
+    return bpy.context.active_object
+
+
+def clear() -> None:
+    """Remove what the factory's file has."""
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+
+
+def ready(name: str = "5_2", vertices: int = 300) -> Steps:
+    """A knot, selected, and the sidebar open."""
+    clear()
+    knot(name, vertices)
+    yield from open_sidebar()
+    with bpy.context.temp_override(window=window(), area=view(), region=region("WINDOW")):
+        bpy.ops.view3d.view_selected()
+    yield
+
+
+def obj() -> bpy.types.Object:
+    """The knot; found anew every time, as undo makes it anew."""
+    return bpy.context.view_layer.objects.active
+
+
+def points() -> np.ndarray:
+    """All coordinates of the knot, bit for bit."""
+    return np.array([p.co[:] for spline in obj().data.splines for p in spline.points], dtype=np.float32)
+
+
+def run() -> Any:
+    """The run that is going on, or None."""
+    return addon("live.registry").current()
+
+
+def state() -> str:
+    """How the latest run is, or 'none'."""
+    latest = addon("live.registry").latest()
+    return latest.state.value if latest else "none"
+
+
+def iterate() -> int:
+    """Number of the iterate that is shown, -1 before the first."""
+    latest = addon("live.registry").latest()
+    return latest.last.index if latest and latest.last else -1
+
+
+def reaches(index: int) -> Steps:
+    """Wait until an iterate is shown."""
+    yield from until(lambda: iterate() >= index, f"iterate {index}")
+
+
+def is_(wanted: str) -> Steps:
+    """Wait until the run is in a state."""
+    yield from until(lambda: state() == wanted, f"the run to be {wanted}, not {state()}")
