@@ -1,5 +1,6 @@
 """What `relax` can write, by suffix: curve files, and keyframed or rendered scenes where Blender's module is there."""
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,20 +9,21 @@ from types import MappingProxyType
 from ..addon import export
 from ..core import Iterate, MobiusFlowError, Result, write_curve
 from ..core.curve.io import FORMATS
+from .progress import show_frames
 
-Writer = Callable[[str, Result, Sequence[Iterate]], None]
+Writer = Callable[[str, Result, Sequence[Iterate], bool], None]
 
 
 @dataclass(frozen=True)
 class Output:
-    """One kind of output: how it is written and what it needs."""
+    """One kind of output: how it is written (and whether progress may be shown), and what it needs."""
 
     write: Writer
     needs_iterates: bool = False
     check: Callable[[], None] = lambda: None
 
 
-def _write_curve(path: str, result: Result, iterates: Sequence[Iterate]) -> None:
+def _write_curve(path: str, result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
     write_curve(path, result.curve)
 
 
@@ -30,17 +32,21 @@ def _need_blender() -> None:
 
 
 def _blender_writer(function: str) -> Writer:
-    def write(path: str, result: Result, iterates: Sequence[Iterate]) -> None:
+    def write(path: str, result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
         getattr(export, function)(path, iterates)
 
     return write
+
+
+def _write_movie(path: str, result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
+    export.write_movie(path, iterates, show_frames if shown else None)
 
 
 OUTPUTS: Mapping[str, Output] = MappingProxyType(
     {suffix: Output(_write_curve) for suffix in FORMATS}
     | {
         ".blend": Output(_blender_writer("write_blend"), needs_iterates=True, check=_need_blender),
-        ".mp4": Output(_blender_writer("write_movie"), needs_iterates=True, check=_need_blender),
+        ".mp4": Output(_write_movie, needs_iterates=True, check=_need_blender),
         ".png": Output(_blender_writer("write_still"), needs_iterates=True, check=_need_blender),
     }
 )
@@ -57,10 +63,18 @@ def output_for(path: str) -> Output:
     target = Path(path)
     if target.suffix.lower() not in OUTPUTS:
         raise MobiusFlowError(f"{path}: unknown suffix {target.suffix!r}; outputs end in {', '.join(OUTPUTS)}")
+    check_place(path)
+    output = OUTPUTS[target.suffix.lower()]
+    output.check()
+    return output
+
+
+def check_place(path: str) -> None:
+    """Raise a MobiusFlowError unless a file can be there, before hours of work are put into it."""
+    target = Path(path)
     if not target.parent.is_dir():
         raise MobiusFlowError(f"{path}: the directory {target.parent} does not exist")
     if target.is_dir():
         raise MobiusFlowError(f"{path}: is a directory; name a file")
-    output = OUTPUTS[target.suffix.lower()]
-    output.check()
-    return output
+    if not os.access(target if target.exists() else target.parent, os.W_OK):
+        raise MobiusFlowError(f"{path}: is write-protected")

@@ -1,6 +1,7 @@
 """The progress of a relaxation on a terminal, with tqdm where it is installed."""
 
 import math
+import sys
 from types import TracebackType
 from typing import Any
 
@@ -42,3 +43,8 @@ class Progress:
         self._bar.set_postfix_str(
             f"iteration {iterate.index}, energy {iterate.energy:.6g}, gradient {iterate.gradient_norm:.2g}"
         )
+
+
+def show_frames(done: int, total: int) -> None:
+    """Show on one line how far a film is."""
+    print(f"\rrendering frame {done} of {total}", end="\n" if done == total else "", file=sys.stderr, flush=True)

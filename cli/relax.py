@@ -9,7 +9,7 @@ from ..core import Curve, Iterate, RelaxOptions, Result, Status, Trajectory, min
 from ..core.errors import MobiusFlowError, OptionError
 from ..core.files import atomic_write
 from . import options as relax_options
-from .outputs import OUTPUTS, Output, output_for
+from .outputs import OUTPUTS, Output, check_place, output_for
 from .progress import Progress
 
 if TYPE_CHECKING:
@@ -33,6 +33,9 @@ def add_to(subparsers: "Subparsers") -> None:
 def run(options: argparse.Namespace) -> int:
     """Relax, write everything asked for, and return the exit status."""
     output = output_for(options.output)
+    for extra in (options.report, options.trajectory):
+        if extra is not None:
+            check_place(extra)
     wanted = relax_options.from_arguments(options)
     if (wanted.adaptive or wanted.resolve) and output.needs_iterates:
         raise OptionError(
@@ -40,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
         )
     curve = read_curve(options.input)
     result, iterates, trajectory = _relax(curve, wanted, output, options)
-    output.write(options.output, result, iterates)
+    output.write(options.output, result, iterates, not options.quiet and sys.stderr.isatty())
     if options.report is not None:
         _write_report(options.report, result)
     if options.trajectory is not None:

@@ -4,9 +4,12 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from .collision import check_embedded
 from .curve import Curve, refine
 from .energies import MoebiusEnergy
+from .errors import CurveError
 from .iterate import Iterate, Status
 from .options import RelaxOptions
 from .run import Run
@@ -88,7 +91,10 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     method_named(options.method)
     check_embedded(curve)
     refined = refine(curve, options.vertices)
-    return Run(start_problem(refined, options), refined, options).iterates()
+    try:
+        return Run(start_problem(refined, options), refined, options).iterates()
+    except np.linalg.LinAlgError as error:
+        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; move near strands apart") from error
 
 
 def minimize(

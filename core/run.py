@@ -7,7 +7,7 @@ import numpy as np
 
 from .adaptive import INTERVAL, adapt, graded_problem
 from .curve import Curve, refine
-from .descent import Point, Problem, State, Step
+from .descent import NoStep, Point, Problem, State, Step
 from .descent.escape import escape_step
 from .energies.near_pairs import near_pairs
 from .iterate import Iterate, Status
@@ -56,10 +56,7 @@ class Run:
             yield iterate
             if iterate.status is not Status.RUNNING:
                 return
-            if way_down is not None:
-                step, self._state = escape_step(self._point, *way_down), State()
-            else:
-                step, self._state = self._method.step(self._point, self._state)
+            step, self._state = self._step(way_down)
             if isinstance(step, Step):
                 self._accept(step)
                 if self._options.adaptive and self._iterate.index % INTERVAL == 0:
@@ -73,6 +70,19 @@ class Run:
                 return
             yield from self._adapt(step.limited_by)
             just_refined = True
+
+    def _step(self, way_down: tuple[FloatArray, float] | None) -> tuple[Step | NoStep, State]:
+        """The next step; one whose end is too degenerate to go on from is none."""
+        try:
+            if way_down is not None:
+                step, state = escape_step(self._point, *way_down), State()
+            else:
+                step, state = self._method.step(self._point, self._state)
+            if isinstance(step, Step):
+                step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
+        except np.linalg.LinAlgError as error:
+            return NoStep(f"the curve has become too degenerate: {error}"), self._state
+        return step, state
 
     def _begin(self, problem: Problem, curve: Curve, index: int) -> None:
         """Start on a mesh."""

@@ -21,6 +21,8 @@ from ..types import FloatArray
 from .local import lumped_mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
+NEAREST = 0.01  # times ℓ_I + ℓ_J: nearer pairs count as that far, or 1/r⁴ would leave no digits to the others
+
 
 @dataclass(frozen=True)
 class MoebiusMetric:
@@ -72,7 +74,9 @@ def _weights(curve: Curve, t_i: float, t_j: float) -> tuple[FloatArray, FloatArr
     inverse, density = np.empty((n, n)), np.empty((n, n))
     x, y = points_at(curve, t_i), points_at(curve, t_j)
     for rows in row_blocks(mesh):
-        s = 1.0 / excluding_neighbours(squared_distances(x[rows], y), mesh, rows)
+        nearest = NEAREST * (ell[rows, None] + ell[None, :])
+        r2 = np.maximum(squared_distances(x[rows], y), nearest**2)
+        s = 1.0 / excluding_neighbours(r2, mesh, rows)
         rho = excluding_neighbours(arc_distances(curve, t_i, t_j, rows), mesh, rows)
         np.multiply(s, ell[rows, None] * ell[None, :], out=inverse[rows])
         s -= 1.0 / (rho * rho)

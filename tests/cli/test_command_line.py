@@ -129,6 +129,13 @@ def test_bad_outputs_are_refused_before_the_work(out, trefoil, tmp_path, capsys)
     assert capsys.readouterr().err.count("\n") == 1
 
 
+@pytest.mark.parametrize("option", ["--report", "--trajectory"])
+def test_places_are_checked_before_the_work(option, trefoil, tmp_path, capsys):
+    assert run("relax", trefoil, tmp_path / "o.txt", option, tmp_path / "no" / "such") == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert not (tmp_path / "o.txt").exists()
+
+
 def test_missing_input(tmp_path, capsys):
     assert run("energy", tmp_path / "none.txt") == 2
     assert "none.txt" in capsys.readouterr().err

@@ -190,3 +190,22 @@ def test_curves_that_touch_are_refused_with_the_place():
     eight = np.stack([np.sin(t), np.sin(2 * t), 0 * t], axis=1)
     with pytest.raises(CurveError, match="edge"):
         relax(Curve(eight))
+
+
+def test_strands_a_billionth_apart():
+    """Two coaxial circles that nearly touch: downhill and certified as far as the digits reach, then a reason."""
+    circle = regular_polygon(40).vertices
+    link = Curve.from_components([circle, circle + np.array([0, 0, 1e-9])])
+    iterates = list(relax(link, RelaxOptions(vertices=80, max_iterations=8)))
+    energies = [iterate.energy for iterate in iterates]
+    assert np.isfinite(energies).all()
+    assert energies[-1] < energies[0]
+    assert iterates[-1].certified
+    assert iterates[-1].status is not Status.CONVERGED
+    assert iterates[-1].message
+
+
+def test_triangles():
+    result = minimize(Curve([[0, 0, 0], [1, 0, 0], [0, 1, 0]]))
+    assert result.status is Status.CONVERGED
+    assert result.energies[-1] == pytest.approx(4, abs=1e-4)
