@@ -8,7 +8,7 @@ import numpy as np
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve
 from .descent import METHODS, Method, Problem
-from .energies import ENERGIES, Objective
+from .energies import ENERGIES, Barrier, MoebiusEnergy, Objective
 from .errors import CurveError, OptionError
 from .metrics import METRICS, MoebiusMetric
 from .options import RelaxOptions
@@ -49,7 +49,8 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
-    objective = Objective(_named(ENERGIES, "energy", options.energy))
+    energy = _named(ENERGIES, "energy", options.energy)
+    objective = Objective(energy, Barrier(replaces_midpoint=isinstance(energy, MoebiusEnergy)))
     second_order = method.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:
         raise OptionError(

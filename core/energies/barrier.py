@@ -8,6 +8,7 @@ q = 1 and 0 from q = 9/4, so B is one C² function of the vertices and vanishes 
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,10 +25,19 @@ NEAR = 1.0  # of q, where the cutoff leaves 1; it reaches 0 at FAR
 
 @dataclass(frozen=True)
 class Barrier:
-    """B, the difference between exact and midpoint energy over near pairs of edges."""
+    """B, the difference between exact and midpoint energy over near pairs of edges.
 
-    name = "barrier"
-    description = "exact minus midpoint energy of near pairs of edges"
+    Parameters
+    ----------
+    replaces_midpoint
+        Whether the midpoint contributions are subtracted, as is right for the default energy that contains them.
+        Other energies do not: theirs is Σ χ W_exact, a positive barrier on top of what they say themselves.
+    """
+
+    replaces_midpoint: bool = True
+
+    name: ClassVar[str] = "barrier"
+    description: ClassVar[str] = "exact minus midpoint energy of near pairs of edges"
 
     def value(self, curve: Curve) -> float:
         """B; 0 when strands are further apart than edges are long."""
@@ -37,7 +47,7 @@ class Barrier:
         """B and its derivative with respect to the vertices, shape (n, m)."""
         total, derivative = 0.0, np.zeros_like(curve.vertices)
         for i, j in _blocks(curve, 4096):
-            jet = _contributions(EdgePairs.of(curve, i, j))
+            jet = self._contributions(EdgePairs.of(curve, i, j))
             total += float(jet.value.sum())
             derivative += scatter_first(curve.mesh, i, j, jet.first)
         return 2.0 * total, 2.0 * derivative  # unordered pairs are listed, the sum is over ordered ones
@@ -52,7 +62,7 @@ class Barrier:
         for i, j in _blocks(curve, 16384):
             # the jets' matrices, many of 3m × 3m for each pair, should stay in the processor's cache
             parts = [slice(first, first + 128) for first in range(0, len(i), 128)]
-            second = [_contributions(EdgePairs.of(curve, i[s], j[s]).with_coordinates()).second for s in parts]
+            second = [self._contributions(EdgePairs.of(curve, i[s], j[s]).with_coordinates()).second for s in parts]
             total = total + scatter_second(curve.mesh, i, j, 2.0 * np.concatenate(second))
         return total
 
@@ -60,9 +70,16 @@ class Barrier:
         """D²B v for ``v`` of shape (n, m); shape (n, m)."""
         product = np.zeros_like(v)
         for i, j in _blocks(curve, 4096):
-            jet = _contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v))
+            jet = self._contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v))
             product += scatter_first(curve.mesh, i, j, jet.second[:, :, 0])
         return 2.0 * product
+
+    def _contributions(self, pairs: EdgePairs) -> Jet:
+        """χ (W_exact − W_mid) of pairs of edges."""
+        w = Contributions(pairs)
+        q = w.closeness()
+        excess = w.exact() - w.midpoint() if self.replaces_midpoint else w.exact()
+        return q.compose(*cutoff(q.value)) * excess
 
 
 def _blocks(curve: Curve, size: int) -> Iterator[tuple[IntArray, IntArray]]:
@@ -70,13 +87,6 @@ def _blocks(curve: Curve, size: int) -> Iterator[tuple[IntArray, IntArray]]:
     i, j = near_pairs(curve)
     for first in range(0, len(i), size):
         yield i[first : first + size], j[first : first + size]
-
-
-def _contributions(pairs: EdgePairs) -> Jet:
-    """χ (W_exact − W_mid) of pairs of edges."""
-    w = Contributions(pairs)
-    q = w.closeness()
-    return q.compose(*cutoff(q.value)) * (w.exact() - w.midpoint())
 
 
 def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -194,3 +194,15 @@ def test_every_energy_in_every_metric_goes_down(energy, metric):
     energies = minimize(torus_trefoil(60), options).energies
     assert len(energies) == 4
     assert all(b < a for a, b in itertools.pairwise(energies))
+
+
+@pytest.mark.parametrize("energy", ["edge", "vertex", "tangent-point"])
+def test_every_objective_is_a_barrier(energy):
+    """A strand that comes near another between its quadrature points costs energy that grows without bound."""
+    objective = point_at(torus_trefoil(60), energy=energy).problem.objective
+    values = []
+    for gap in (1e-2, 1e-4, 1e-6):
+        first = [[0, 0, 0], [1, 0, 0], [1, 3, 0], [-1, 3, 0], [-1, 0, 0]]
+        second = [[0.3, -0.6, gap], [0.5, 0.4, gap], [0.5, 0.4, 3], [3, 0.4, 3], [3, -0.6, 3], [0.3, -0.6, 3]]
+        values.append(objective.value(Curve.from_components([first, second])))
+    assert values[0] + 10 < values[1] < values[2] - 10

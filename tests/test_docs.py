@@ -1,0 +1,46 @@
+"""The documents keep up with the program."""
+
+import re
+from pathlib import Path
+
+import pytest
+from mobius_flow.core import METHODS
+from mobius_flow.core.energies import ENERGIES
+from mobius_flow.core.metrics import METRICS
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
+
+
+def test_every_method_has_a_page():
+    table = (ROOT / "docs/methods/README.md").read_text(encoding="utf-8")
+    pages = re.findall(r"\]\((\S+?\.md)\) \| (.*) \|", table)
+    named = [name for _, names in pages for name in re.findall(r"`([\w-]+)`", names)]
+    assert sorted(named) == sorted(METHODS)
+
+
+def test_metrics_and_energies_are_described():
+    flows = (ROOT / "docs/methods/flow.md").read_text(encoding="utf-8")
+    assert all(f"`{name}`" in flows for name in METRICS)
+    energies = (ROOT / "docs/energies.md").read_text(encoding="utf-8")
+    assert all(f"`{name}`" in energies for name in ENERGIES)
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_links_lead_somewhere(document):
+    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", document.read_text(encoding="utf-8")):
+        if not target.startswith("http"):
+            assert (document.parent / target).exists(), target
+
+
+def test_the_readme_example_runs():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    example = re.search(r"```python\n(from mobius_flow.core.*?)```", readme, re.DOTALL)
+    assert example is not None
+    exec(compile(example.group(1), "README.md", "exec"), {})
+
+
+def test_the_readme_has_both_commands():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for marker in ("main command", "test command"):
+        assert re.search(rf"<!-- {marker} -->\n\n    \S", readme)
