@@ -1,7 +1,7 @@
 """Knot type of a closed polygon, for tests: Alexander polynomial, genus, fibredness and τ by knot Floer homology.
 
-Genus 0 means the unknot; τ tells mirror images apart. The polygon is first shortened by vertex removals over
-free triangles, so messy polygons with hundreds of vertices are fine as long as their knot is small.
+Genus 0 means the unknot; τ tells mirror images apart. Messy polygons are simplified first, so hundreds of
+vertices and crossings are fine as long as the knot is small.
 """
 
 from collections.abc import Sequence
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from knot_diagrams import Diagram, Points, diagram, jones, linking_number
+from knot_moves import simplified
 
 __all__ = [
     "UNKNOT",
@@ -23,6 +24,7 @@ __all__ = [
 ]
 
 _FEW = 20  # crossings that need no simplification
+_MANY = 150  # crossings from which on it pays to shorten the polygon first
 
 
 @dataclass(frozen=True)
@@ -65,9 +67,11 @@ def knot_invariants(points: npt.ArrayLike) -> KnotInvariants:
 
 
 def small_diagram(components: Sequence[npt.ArrayLike]) -> Diagram:
-    """Give a diagram with few crossings: two views of the polygons as they are, or many of the shortened ones."""
+    """Give a diagram with few crossings: of the polygons as they are if they are simple, else of simpler ones."""
     found = diagram(components, projections=2)
-    return found if len(found.signs) <= _FEW else diagram(shortened(components))
+    if len(found.signs) > _MANY or (len(found.signs) > _FEW and len(components) > 1):
+        found = diagram(shortened(components))
+    return simplified(found, _FEW) if len(components) == 1 else found
 
 
 def pairwise_linking(components: Sequence[npt.ArrayLike]) -> dict[tuple[int, int], int]:
@@ -123,14 +127,14 @@ def _leaves_plane(triangle: Points, point: Points) -> bool:
     a, b, c = triangle
     size = np.abs(triangle - a).max() + np.abs(point - a).max()
     volume = np.dot(np.cross(b - a, c - a), point - a)
-    return bool(abs(volume) > 1e-9 * size**3) or bool(np.linalg.norm(np.cross(b - a, c - a)) < 1e-12 * size**2)
+    return bool(abs(volume) > 1e-13 * size**3) or bool(np.linalg.norm(np.cross(b - a, c - a)) < 1e-12 * size**2)
 
 
 def _meets(triangle: Points, tails: Points, heads: Points) -> npt.NDArray[np.bool_]:
     """Which segments (k, 3) meet the triangle, or come so near that rounding might decide."""
     a, b, c = triangle
     size = np.ptp(np.concatenate([triangle, tails, heads]), axis=0).max()
-    slack = 1e-9 * size**3
+    slack = 1e-13 * size**3
     normal = np.cross(b - a, c - a)
     below, above = (tails - a) @ normal, (heads - a) @ normal
     apart = ((below > slack) & (above > slack)) | ((below < -slack) & (above < -slack))
