@@ -1,6 +1,7 @@
 """The documents keep up with the program."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -44,3 +45,10 @@ def test_the_readme_has_both_commands():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     for marker in ("main command", "test command"):
         assert re.search(rf"<!-- {marker} -->\n\n    \S", readme)
+
+
+def test_every_package_is_installed():
+    listed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["packages"]
+    rooms = [path.parent for room in ("core", "cli", "addon") for path in (ROOT / room).rglob("__init__.py")]
+    found = ["mobius_flow", *(".".join(["mobius_flow", *room.relative_to(ROOT).parts]) for room in rooms)]
+    assert sorted(listed) == sorted(found)
