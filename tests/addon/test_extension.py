@@ -1,0 +1,135 @@
+"""The extension's zip: what is in it, and that it works in a clean Blender with nothing else installed."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+ROOT = Path(__file__).resolve().parents[2]
+PLATFORM = "linux-x64"
+slow = pytest.mark.skipif(
+    os.environ.get("MOBIUS_FLOW_SLOW") != "1" or not sys.platform.startswith("linux"),
+    reason="fetches SciPy's wheels for Linux; asked for by MOBIUS_FLOW_SLOW=1",
+)
+
+
+@pytest.fixture(scope="module")
+def builder():
+    """The script that builds the zip, as a module."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("the zip is built from what git knows of")
+    spec = importlib.util.spec_from_file_location("build_extension", ROOT / "tools" / "build_extension.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def empty_wheels(builder, tmp_path_factory):
+    """Wheels with the right names and nothing in them, so that none is fetched."""
+    room = tmp_path_factory.mktemp("wheels")
+    for tags, pythons in builder.PLATFORMS.values():
+        for python in pythons:
+            cp = f"cp{python.replace('.', '')}"
+            (room / f"scipy-{builder.SCIPY}-{cp}-{cp}-{tags[0]}.whl").touch()
+    return room
+
+
+def names_in(path):
+    with zipfile.ZipFile(path) as archive:
+        return archive.namelist()
+
+
+def test_only_what_blender_runs_is_in_the_zip(builder, empty_wheels, tmp_path):
+    names = names_in(builder.build(PLATFORM, tmp_path, empty_wheels))
+    top = {name.split("/")[0] for name in names if not name.endswith("/")}
+    assert top == {"__init__.py", "blender_manifest.toml", "LICENSE", "README.md", "addon", "core", "wheels"}
+    files = [name for name in names if not name.endswith("/")]
+    assert all(name.endswith(".py") for name in files if name.startswith(("addon/", "core/")))
+    assert not [name for name in files if "__pycache__" in name or Path(name).name.startswith(".")]
+    wheels = [name for name in files if name.startswith("wheels/")]
+    assert len(wheels) == len(builder.PLATFORMS[PLATFORM][1])
+    assert all(name.startswith("wheels/scipy-") for name in wheels)
+
+
+def test_every_module_is_in_the_zip(builder, empty_wheels, tmp_path):
+    names = names_in(builder.build(PLATFORM, tmp_path, empty_wheels))
+    tracked = subprocess.run(
+        ["git", "ls-files", "addon", "core"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split()
+    assert {name for name in names if name.endswith(".py")} >= {name for name in tracked if (ROOT / name).is_file()}
+
+
+def test_each_platform_has_its_own_wheels(builder, empty_wheels, tmp_path):
+    for platform, (tags, pythons) in builder.PLATFORMS.items():
+        with zipfile.ZipFile(builder.build(platform, tmp_path, empty_wheels)) as archive:
+            manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())
+            assert {"./" + name for name in archive.namelist() if name.endswith(".whl")} == set(manifest["wheels"])
+        assert manifest["platforms"] == [platform]
+        assert len(manifest["wheels"]) == len(pythons)
+        assert all(any(tag in wheel for tag in tags) for wheel in manifest["wheels"])
+
+
+def test_the_manifest_itself_names_no_wheels():
+    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    assert "wheels" not in manifest
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert project["project"]["version"] == manifest["version"]
+
+
+INSTALL = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import bpy
+for name in ("scipy", "mobius_flow"):
+    try:
+        __import__(name)
+    except ImportError:
+        continue
+    sys.exit(f"{name} is not hidden")
+bpy.ops.extensions.package_install_files(filepath=sys.argv[2], repo="user_default", enable_on_install=True)
+bpy.ops.curve.mobius_flow_add_knot(knot="3_1")
+count = len(bpy.context.object.data.splines[0].points)
+assert bpy.ops.curve.mobius_flow_relax(max_iterations=5) == {"FINISHED"}
+assert len(bpy.context.object.data.shape_keys.key_blocks) >= 5
+import scipy
+print("relaxed", count, scipy.__file__)
+name = next(name for name in bpy.context.preferences.addons.keys() if name.endswith("mobius_flow"))
+bpy.ops.preferences.addon_disable(module=name)
+assert not hasattr(bpy.types.Scene, "mobius_flow")
+"""
+
+
+def blender_alone(room):
+    """A directory with links to Blender's module and all that is installed beside it but SciPy and us."""
+    room.mkdir()
+    hidden = ("scipy", "mobius", "__editable__", "_mobius", "__pycache__")
+    for path in Path(np.__file__).parents[1].iterdir():
+        if not path.name.startswith(hidden) and path.suffix != ".pth":
+            (room / path.name).symlink_to(path)
+    return room
+
+
+@slow
+def test_it_works_in_a_clean_profile(builder, tmp_path):
+    archive = builder.build(PLATFORM, tmp_path, ROOT / "build" / "wheels")
+    profile = tmp_path / "profile"
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", INSTALL, str(blender_alone(tmp_path / "site")), str(archive)],
+        env=os.environ | {"BLENDER_USER_RESOURCES": str(profile)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    (line,) = [line for line in done.stdout.splitlines() if line.startswith("relaxed")]
+    assert str(profile) in line
+    assert "Traceback" not in done.stderr
