@@ -2,8 +2,7 @@
 
 A strand that only passes over what it meets can be lifted off and laid down along any other way between its
 ends; the shortest one is found among the faces of the diagram. With ways of equal length taken by lot, this
-brings most hard diagrams down (the "pass moves" of Burton, Chang, Löffler et al., *Hard diagrams of the
-unknot*, 2023).
+brings most hard diagrams down (pass moves, as SnapPy's link simplification uses them).
 """
 
 from collections import deque
