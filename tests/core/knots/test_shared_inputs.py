@@ -9,8 +9,7 @@ from mobius_flow.core.curve.io import read_curve
 from mobius_flow.core.knots import knot
 
 INPUTS = Path(__file__).parents[3].parent / "shared" / "knots"
-SKIPPED = {"unknot_ochiai2", "unknot_ochiai3", "unknot_ochiai4"}  # too many crossings for knot Floer homology
-FILES = sorted(p for p in INPUTS.glob("*") if p.suffix != ".md" and p.stem not in SKIPPED) if INPUTS.is_dir() else []
+FILES = sorted(path for path in INPUTS.glob("*") if path.suffix != ".md") if INPUTS.is_dir() else []
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
