@@ -24,9 +24,9 @@ Target = str | os.PathLike[str]
 
 _MOST_KEYS = 1000  # in a .blend; more are of no use to the eye
 _MOST_FILM_KEYS = 200
-_PICTURE = (960, 540, 16)  # width, height, samples
+_PICTURE = (800, 450, 8)  # width, height, samples
 _FILM = (640, 360)
-_FILM_WITHOUT_DRIVER = (480, 270, 4)
+_FILM_WITHOUT_DRIVER = (384, 216, 2)
 
 
 def require_blender() -> None:
@@ -81,6 +81,7 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
         rendering.use_workbench(scene, *_FILM)
     else:
         rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER)
+        rendering.skip_frames(scene)
     film.compose(scene, keys, film.smooth_frames(keys), motion.start.curve.mesh)
     film.add_pauses(scene)
     _make(path, lambda temporary: rendering.render_movie(scene, temporary, progress))

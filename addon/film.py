@@ -9,7 +9,7 @@ import numpy as np
 from ..core import Iterate, MobiusFlowError
 from ..core.curve import Mesh
 from ..core.types import FloatArray
-from . import stage, tube
+from . import camera, stage, tube
 from .exchange import new_curve_data, write_points
 from .keyframes import write_shape_keys
 from .motion import Keys, Motion
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 _BEVEL_RESOLUTION = 7
 _SHOWN = 40  # keys looked at when the camera is placed
 _SHORTEST = 120  # frames of a keyframed relaxation, if its iterates can be spread over them
-_FRAMES_PER_KEY = 8
-_FILM = (72, 144)  # frames of a film in motion
-_PAUSE = 10  # frames before the motion begins
-_END = 20  # frames after it
+_FRAMES_PER_KEY = 6
+_FILM = (60, 96)  # frames of a film in motion
+_PAUSE = 6  # frames before the motion begins
+_END = 12  # frames after it
 _EVENNESS = 0.7  # 1 for constant speed, 0 for the same time for every iterate
 _FAR = 8.0  # a curve further from the origin, in its own sizes, gets its own origin: 32 bits are few
 _SIZES = (1e-3, 1e3)  # between these Blender works well
@@ -62,9 +62,14 @@ def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
     Raises
     ------
     MobiusFlowError
-        If the curve is not in the plane or in space.
+        If the curve is not in the plane or in space, or its number of vertices changes.
     """
     start = iterates[0].curve
+    if any(iterate.curve.mesh != start.mesh for iterate in iterates):
+        raise MobiusFlowError(
+            "the number of vertices changes during this run, which keyframes cannot follow; "
+            "leave adaptive and resolve out"
+        )
     if start.dimension > 3:
         raise MobiusFlowError(f"the curve has {start.dimension} coordinates; Blender shows curves in 2 or 3 dimensions")
     origin = Origin.of(spatial(start.vertices))
@@ -87,7 +92,8 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
         write_points(data, points[0])
     stage.colour(data)
     shown = np.concatenate(points[:: -(-len(points) // _SHOWN)] + points[-1:]).astype(np.float64)
-    stage.build(scene, stage.Stage.around(shown, points[-1].astype(np.float64), float(radii.max())), shown)
+    ground = stage.Stage.around(shown, points[-1].astype(np.float64))
+    camera.follow(scene, ground, stage.build(scene, ground), points, radii, frames)
     if origin is not None:
         _put(scene, origin)
     scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
@@ -108,9 +114,11 @@ def _put(scene: "bpy.types.Scene", origin: Origin) -> None:
     """Move and scale everything in a scene from the curve's coordinates to the world's."""
     if origin.scale == 1.0 and not origin.location.any():
         return
-    for obj in scene.objects:
-        obj.location = origin.location + origin.scale * np.array(obj.location)
-        obj.scale = 3 * [origin.scale]
+    objects = list(scene.objects)
+    root = stage.add(scene, "Stage", None)
+    root.location, root.scale = origin.location, 3 * [origin.scale]
+    for obj in objects:
+        obj.parent = root
         if obj.type == "LIGHT":
             obj.data.energy *= origin.scale**2
         elif obj.type == "CAMERA":

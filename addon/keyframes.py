@@ -118,7 +118,7 @@ def _shape_keys(
         yield
     data.shape_keys.use_relative = False
     data.shape_keys.eval_time = 0
-    curves = _FCurves(data.shape_keys, f"{obj.name} Relaxation")
+    curves = FCurves(data.shape_keys, f"{obj.name} Relaxation")
     curves.add("eval_time", 0, frames, np.arange(len(frames), dtype=np.float64))
 
 
@@ -127,7 +127,7 @@ def _fcurves(
 ) -> Iterator[None]:
     """One F-curve for every coordinate of every point, for exporters that know no shape keys."""
     write_points(obj.data, keys.keys[-1].points)
-    curves = _FCurves(obj.data, f"{obj.name} Relaxation")
+    curves = FCurves(obj.data, f"{obj.name} Relaxation")
     values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
     sizes = [len(spline.points) for spline in obj.data.splines]
     paths = [f"splines[{s}].points[{p}].co" for s, size in enumerate(sizes) for p in range(size)]
@@ -153,7 +153,7 @@ _WRITERS: dict[Output, _Writer] = {
 }
 
 
-class _FCurves:
+class FCurves:
     """The F-curves of a new action on a datablock, in all versions of Blender."""
 
     def __init__(self, block: "bpy.types.ID", name: str) -> None:
