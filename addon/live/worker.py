@@ -93,7 +93,10 @@ class Worker:
         if self.process is not None:
             self.process.kill()
             self.process.wait()
-            # its streams belong to the thread, which may be using them
+            # its streams belong to the thread, which may be using them, or waiting for room in the queue
+            with contextlib.suppress(queue.Empty):
+                while True:
+                    self._queue.get_nowait()
         self._thread.join(timeout=2 * _PATIENCE if self.process is not None else 0.0)
 
     def _feed(self) -> None:

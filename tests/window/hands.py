@@ -56,7 +56,8 @@ def key(name: str, over: tuple[int, int] | None = None, **modifiers: bool) -> St
 
 def open_sidebar() -> Steps:
     """Show Möbius Flow's tab, and give it room."""
-    view().spaces.active.show_region_ui = True
+    with bpy.context.temp_override(window=window(), area=view()):  # after loading a file there is no window otherwise
+        view().spaces.active.show_region_ui = True
     yield
     sidebar = region("UI")
 

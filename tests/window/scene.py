@@ -8,18 +8,12 @@ from case import Steps, until
 from hands import addon, open_sidebar, region, view, window
 
 
-def empty() -> None:
-    """Start from an empty file."""
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-
-
-def knot(name: str = "5_2", vertices: int = 300) -> bpy.types.Object:
+def knot(name: str = "5_2", vertices: int = 300) -> None:
     """Add a knot and look at it."""
-    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=view()):
+    window().scene.mobius_flow.vertices = vertices
+    with bpy.context.temp_override(window=window(), area=view()):
         bpy.ops.curve.mobius_flow_add_knot(knot=name)
-    bpy.context.scene.mobius_flow.vertices = vertices
-    bpy.ops.ed.undo_push(message="Knot added")
-    return bpy.context.active_object
+        bpy.ops.ed.undo_push(message="Knot added")
 
 
 def clear() -> None:
@@ -40,7 +34,7 @@ def ready(name: str = "5_2", vertices: int = 300) -> Steps:
 
 def obj() -> bpy.types.Object:
     """The knot; found anew every time, as undo makes it anew."""
-    return bpy.context.view_layer.objects.active
+    return window().view_layer.objects.active
 
 
 def points() -> np.ndarray:

@@ -6,15 +6,15 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, key
-from scene import points, reaches, ready, run, state
+from hands import key
+from scene import obj, points, reaches, ready, run, state
 
 FILE = os.path.join(os.environ["ROOM"], "saved.blend")
 
 
 def relax() -> Steps:
-    bpy.ops.ed.undo_push(message="Before")
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        bpy.ops.ed.undo_push(message="Before")
         assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
     yield from reaches(2)
 
@@ -43,8 +43,8 @@ def undo() -> None:
 
 
 def rename() -> None:
-    bpy.context.active_object.name = "Renamed"
-    bpy.context.active_object.data.name = "Renamed too"
+    obj().name = "Renamed"
+    obj().data.name = "Renamed too"
 
 
 def case() -> Steps:
@@ -75,14 +75,14 @@ def case() -> Steps:
     assert run().name == "Renamed"
     with bpy.data.libraries.load(FILE) as (_, loaded):
         loaded.curves = ["Renamed too"]
-    saved = next(data for data in bpy.data.curves if data != bpy.context.active_object.data)
+    saved = next(data for data in bpy.data.curves if data != obj().data)
     assert len(saved.splines[0].points) == len(before), "what is saved is the curve as it was"
     bpy.data.curves.remove(saved)
     yield from key("ESC")
     yield from ended("Esc after a new name, another frame and saving")
     assert np.array_equal(points(), before)
 
-    yield from interrupted("a new point", lambda: bpy.context.active_object.data.splines[0].points.add(1), False)
+    yield from interrupted("a new point", lambda: obj().data.splines[0].points.add(1), False)
     assert state() == "lost"
     undo()
     yield
@@ -100,8 +100,8 @@ def case() -> Steps:
     assert np.array_equal(points(), before)
 
     yield from relax()
-    data = bpy.context.active_object.data
-    bpy.data.objects.remove(bpy.context.active_object)
+    data = obj().data
+    bpy.data.objects.remove(obj())
     yield from ended("removal by a script")
     assert state() == "lost"
     assert np.array_equal(np.array([p.co[:] for p in data.splines[0].points], dtype=np.float32), before)
@@ -147,6 +147,3 @@ def left_over() -> list[str]:
     return [
         f.__module__ for handlers in lists if isinstance(handlers, list) for f in handlers if "mobius" in f.__module__
     ]
-
-
-__all__ = ["addon", "case"]
