@@ -14,6 +14,7 @@ from .refinement import Places, places
 if TYPE_CHECKING:
     import bpy
 
+_FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
 _POINT_VALUES = ("radius", "tilt", "weight_softbody")
 
 
@@ -45,16 +46,17 @@ def read_curve(obj: "bpy.types.Object") -> Curve:
     Raises
     ------
     CurveError
-        If a coordinate is not finite; the message names the point and its spline.
+        If a coordinate is not finite, or as good as infinite; the message names the point and its spline.
     """
     placement = Placement.of(obj)
     smooth = bool(sampling.smooth_splines(obj.data))
     frames = sampling.sampled(obj) if smooth else [spline_points(spline) for spline in obj.data.splines]
     components = [frame.astype(np.float64) for frame in frames]
     for k, component in enumerate(components, 1):
-        bad = np.flatnonzero(~np.isfinite(component).all(axis=1))
+        bad = np.flatnonzero(~(np.abs(component) < _FAR).all(axis=1))
         if bad.size:
-            raise CurveError(f"Point {bad[0] + 1} of spline {k} of '{obj.name}' is not finite; repair or delete it")
+            point = f"Point {bad[0] + 1} of spline {k} of '{obj.name}'"
+            raise CurveError(f"{point} is not finite, or further away than anything; repair or delete it")
     return Curve.from_components([placement.to_world(component) for component in components])
 
 

@@ -173,7 +173,7 @@ def touching_components():
 
 def absurdly_far():
     add_hopf_link().data.splines[1].points[2].co[0] = np.inf  # which Blender clamps to the largest number
-    return "vertices"
+    return "Point 3 of spline 2 of 'Knot' is not finite, or further away"
 
 
 CASES = [
