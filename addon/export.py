@@ -26,7 +26,7 @@ _MOST_KEYS = 1000  # in a .blend; more are of no use to the eye
 _MOST_FILM_KEYS = 200
 _PICTURE = (800, 450, 8)  # width, height, samples
 _FILM = (640, 360)
-_FILM_WITHOUT_DRIVER = (384, 216, 2)
+_FILM_WITHOUT_DRIVER = (384, 216, 2, "BALANCED")
 
 
 def require_blender() -> None:

@@ -27,7 +27,7 @@ bpy.ops.render.render(write_still=True)
 """
 
 
-def use_cycles(scene: "bpy.types.Scene", width: int, height: int, samples: int) -> None:
+def use_cycles(scene: "bpy.types.Scene", width: int, height: int, samples: int, denoising: str = "HIGH") -> None:
     """Set a scene up for Cycles, which unlike the other engines needs no graphics driver."""
     cycles = scene.cycles
     scene.render.engine = "CYCLES"
@@ -38,8 +38,7 @@ def use_cycles(scene: "bpy.types.Scene", width: int, height: int, samples: int) 
     cycles.adaptive_threshold = 0.05
     cycles.max_bounces = 3
     cycles.use_denoising = True
-    if hasattr(cycles, "denoising_quality"):  # Blender 4.2 and later; four times as fast as the best
-        cycles.denoising_quality = "FAST"
+    cycles.denoising_quality = denoising
 
 
 def use_workbench(scene: "bpy.types.Scene", width: int, height: int) -> None:
