@@ -93,6 +93,8 @@ def _blender(*arguments: str) -> None:
     spec = importlib.util.find_spec("bpy")
     places = spec.submodule_search_locations if spec else None
     tools = [path for place in places or () for path in Path(place).glob("*/scripts/addons_core/bl_pkg/cli/*_ext.py")]
+    if not tools and not shutil.which("blender"):
+        sys.exit("neither the bpy module nor blender is installed; pip install bpy")
     command = [sys.executable, str(tools[0])] if tools else ["blender", "--command", "extension"]
     done = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
     if done.returncode:

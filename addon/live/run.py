@@ -18,7 +18,7 @@ from ..keyframes import KeyOptions
 from ..motion import Frame
 from ..session import Prepared, Report, Session, State
 from . import registry
-from .snapshot import Snapshot, shape
+from .snapshot import Snapshot, outside_edit_mode, shape
 from .worker import Worker, WorkerError
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ class Run:
         try:
             self._prepared = self._session.prepare()
         except _NobodyWaitsError:
-            pass
+            return
         except BaseException:
             self._fault = True
             raise
@@ -197,12 +197,12 @@ class Run:
     def _restore(self) -> None:
         """Put back what was there, even if the object is gone and its data is not, unless someone else changed it."""
         data, obj = self.data, self.object
-        if data is None:
+        if data is None or shape(data) != self._shape:
             return
-        if obj is not None and self._writing is not None and obj.data == data:
-            keyframes.erase(obj)
-        if shape(data) == self._shape:
-            _outside_edit_mode(obj, lambda: self._snapshot.restore(data))
+        with outside_edit_mode(obj):
+            if obj is not None and obj.data == data and self._writing is not None:
+                keyframes.erase(obj)
+            self._snapshot.restore(data)
 
     def set_aside(self) -> None:
         """Put the curve back for a moment, because the file is being saved."""
@@ -245,17 +245,3 @@ class Run:
         if data.shape_keys and self._writing is None:
             return f"'{self.name}' was given shape keys; its relaxation has ended"
         return None
-
-
-def _outside_edit_mode(obj: "bpy.types.Object | None", restore: Callable[[], None]) -> None:
-    """Restore the curve; if it has just been opened for editing, close it and open it again."""
-    import bpy
-
-    mode = obj.mode if obj is not None else "OBJECT"
-    if mode == "OBJECT":
-        restore()
-        return
-    bpy.ops.object.mode_set(mode="OBJECT")
-    restore()
-    bpy.ops.object.mode_set(mode=mode)
-    bpy.ops.ed.undo_push(message="Relaxation Ended")

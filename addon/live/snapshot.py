@@ -1,5 +1,7 @@
 """All splines of a curve as they are, to be put back bit for bit."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -73,6 +75,21 @@ class Snapshot:
 def shape(data: "bpy.types.Curve") -> list[tuple[str, int]]:
     """Type and number of points of every spline."""
     return [(spline.type, len(_points(spline))) for spline in data.splines]
+
+
+@contextmanager
+def outside_edit_mode(obj: "bpy.types.Object | None") -> Iterator[None]:
+    """Change a curve that may just have been opened for editing: close it, and open it again afterwards."""
+    import bpy
+
+    mode = obj.mode if obj is not None else "OBJECT"
+    if mode == "OBJECT":
+        yield
+        return
+    bpy.ops.object.mode_set(mode="OBJECT")
+    yield
+    bpy.ops.object.mode_set(mode=mode)
+    bpy.ops.ed.undo_push(message="Relaxation Ended")
 
 
 def _points(spline: "bpy.types.Spline") -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import key
+from hands import key, window
 from scene import obj, points, reaches, ready, run, state
 
 FILE = os.path.join(os.environ["ROOM"], "saved.blend")
@@ -88,6 +88,8 @@ def case() -> Steps:
     yield
     assert np.array_equal(points(), before)
 
+    yield from rendering(before)
+
     yield from relax()
     yield from key("X")
     yield from key("RET")
@@ -122,6 +124,31 @@ def case() -> Steps:
     assert np.array_equal(points(), before)
     assert not left_over()
     yield from picture("interruptions-disabled")
+
+
+def rendering(before: np.ndarray) -> Steps:
+    """Nothing moves while Blender renders; then the run goes on."""
+    scene = window().scene
+    bpy.context.preferences.view.render_display_type = "NONE"
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = 64
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    scene.camera.location.z = 9.0
+    scene.collection.objects.link(scene.camera)
+    yield from relax()
+    with bpy.context.temp_override(window=window()):
+        assert bpy.ops.render.render("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    index, looks = run().last.index, 0
+    while bpy.app.is_job_running("RENDER"):
+        assert run().last.index == index
+        looks += 1
+        yield
+    print("MEASURED looks at a curve being rendered:", looks, flush=True)
+    assert looks > 1
+    yield from reaches(index + 2)
+    yield from key("ESC")
+    yield from ended("Esc after rendering")
+    assert np.array_equal(points(), before)
 
 
 def close_second_window() -> None:
