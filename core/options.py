@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from .errors import OptionError
 
-EDGE_LENGTHS = ("equal", "keep")
+EDGE_LENGTHS = ("auto", "equal", "keep")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +42,8 @@ class RelaxOptions:
         When a curve has converged but strands are nearer than its mesh resolves, go on with half as many vertices
         more, up to 3.5 times the first number.  A composite knot ends there: its strands pull tight for ever.
     edge_lengths
-        Targets ℓ⁰: "equal" within each component, or "keep" those of the refined start.
+        Targets ℓ⁰: "equal" within each component, "keep" those of the refined start, or "auto": equal unless they differ
+        by more than 10:1, where evening them out would crumple the curve.
 
     Raises
     ------
@@ -60,7 +61,7 @@ class RelaxOptions:
     penalty: float | None = None
     adaptive: bool = False
     resolve: bool = False
-    edge_lengths: str = "equal"
+    edge_lengths: str = "auto"
     stability: bool = False
     escape_saddles: bool = False
 
@@ -75,7 +76,7 @@ class RelaxOptions:
             raise OptionError(f"quadrature_points is {self.quadrature_points}; it must be 1 or more")
         if self.penalty is not None and not (math.isfinite(self.penalty) and self.penalty > 0):
             raise OptionError(f"penalty is {self.penalty}; it must be a finite number above 0")
-        if self.adaptive and self.edge_lengths != "equal":
+        if self.adaptive and self.edge_lengths != "auto":
             raise OptionError("an adaptive mesh makes its own edge_lengths; leave one of the two options out")
         if self.edge_lengths not in EDGE_LENGTHS:
             raise OptionError(f"edge_lengths is {self.edge_lengths!r}; choose one of {', '.join(EDGE_LENGTHS)}")

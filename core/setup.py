@@ -16,6 +16,7 @@ from .types import FloatArray
 from .units import Units
 
 _Entry = TypeVar("_Entry")
+EVEN_RATIO = 10.0  # of edge lengths, up to which they are evened out unless told otherwise
 MOST_VERTICES = 12_000  # some six matrices of so many rows make 7 GB
 
 
@@ -74,6 +75,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
 
 
 def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:
-    if options.edge_lengths == "keep":
+    uneven = start.edge_lengths.max() > EVEN_RATIO * start.edge_lengths.min()
+    if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and uneven):
         return start.edge_lengths
     return np.concatenate([np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices])
