@@ -1,6 +1,5 @@
 """What the paper and the README claim about the methods."""
 
-import itertools
 
 import numpy as np
 import pytest
