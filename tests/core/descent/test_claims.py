@@ -1,6 +1,5 @@
 """What the paper and the README claim about the methods."""
 
-
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, OptionError, RelaxOptions, Status, minimize, relax
