@@ -4,6 +4,7 @@ Blender runs this file by its path, with its own Python. The package is loaded u
 Blender it is called something like ``bl_ext.user_default.mobius_flow``, which a plain Python cannot import.
 """
 
+import contextlib
 import importlib
 import importlib.util
 import os
@@ -21,7 +22,7 @@ def main() -> None:
     job = importlib.import_module(f"{_PACKAGE}.addon.live.job")
     message = wire.read(sys.stdin.buffer)
     threading.Thread(target=_end_with_blender, daemon=True).start()
-    with os.fdopen(os.dup(1), "wb") as out:
+    with contextlib.suppress(BrokenPipeError), os.fdopen(os.dup(1), "wb") as out:
         os.dup2(2, 1)  # whatever a library prints must not get in between
         for reply in job.messages(message):
             wire.write(out, reply)
