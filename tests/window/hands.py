@@ -24,6 +24,11 @@ def region(kind: str) -> bpy.types.Region:
     return next(region for region in view().regions if region.type == kind)
 
 
+def here() -> Any:
+    """The context of the 3D view; after loading a file there is no window otherwise."""
+    return bpy.context.temp_override(window=window(), area=view(), region=region("WINDOW"))
+
+
 def addon(module: str = "") -> Any:
     """A module of the installed extension, such as ``live.registry``."""
     return importlib.import_module(f"bl_ext.user_default.mobius_flow.addon.{module}".rstrip("."))
@@ -56,7 +61,7 @@ def key(name: str, over: tuple[int, int] | None = None, **modifiers: bool) -> St
 
 def open_sidebar() -> Steps:
     """Show Möbius Flow's tab, and give it room."""
-    with bpy.context.temp_override(window=window(), area=view()):  # after loading a file there is no window otherwise
+    with here():
         view().spaces.active.show_region_ui = True
     yield
     sidebar = region("UI")

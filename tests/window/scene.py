@@ -5,13 +5,13 @@ from typing import Any
 import bpy
 import numpy as np
 from case import Steps, until
-from hands import addon, open_sidebar, region, view, window
+from hands import addon, here, open_sidebar, window
 
 
 def knot(name: str = "5_2", vertices: int = 300) -> None:
     """Add a knot and look at it."""
     window().scene.mobius_flow.vertices = vertices
-    with bpy.context.temp_override(window=window(), area=view()):
+    with here():
         bpy.ops.curve.mobius_flow_add_knot(knot=name)
         bpy.ops.ed.undo_push(message="Knot added")
 
@@ -27,7 +27,7 @@ def ready(name: str = "5_2", vertices: int = 300) -> Steps:
     clear()
     knot(name, vertices)
     yield from open_sidebar()
-    with bpy.context.temp_override(window=window(), area=view(), region=region("WINDOW")):
+    with here():
         bpy.ops.view3d.view_selected()
     yield
 

@@ -1,15 +1,15 @@
-"""A Bézier circle is sampled after asking; a keyed curve is refused in one sentence."""
+"""A Bézier circle is sampled after asking, and undo brings it back."""
 
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import button, key, open_sidebar, view, window
+from hands import button, here, key, open_sidebar, window
 from scene import clear, is_, obj, points, run
 
 
 def case() -> Steps:
     clear()
-    with bpy.context.temp_override(window=window(), area=view()):
+    with here():
         bpy.ops.curve.primitive_bezier_circle_add()
         for point in obj().data.splines[0].bezier_points:
             point.co[2] = 0.3 * point.co[0] ** 2

@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 from case import Steps, until
-from hands import addon
+from hands import addon, here
 from scene import is_, reaches, ready, run, state
 
 TICK = 0.05  # seconds
@@ -38,7 +38,7 @@ def measured(ticks: list[float]) -> Any:
 
 
 def relax() -> None:
-    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+    with here():
         assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
 
 
@@ -62,7 +62,7 @@ def case() -> Steps:
         )
         assert max(ticks) < TICK
         assert stop < REACTION
-        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        with here():
             bpy.ops.ed.undo()
         yield
         relax()
