@@ -4,7 +4,7 @@ import bpy
 from case import Steps, picture
 from hands import here, key
 from interruption import is_whole, over, relax, undo
-from scene import points, ready, reaches
+from scene import points, reaches, ready
 
 
 def case() -> Steps:
