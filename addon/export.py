@@ -15,7 +15,8 @@ from ..core import Iterate, MobiusFlowError
 from ..core.collision import is_free
 from ..core.files import atomic_write
 from . import film, rendering
-from .rendering import Progress
+from .movie import Progress, render_movie
+from .termination import tidy_termination
 
 if TYPE_CHECKING:
     import bpy
@@ -26,7 +27,7 @@ _MOST_KEYS = 1000  # in a .blend; more are of no use to the eye
 _MOST_FILM_KEYS = 200
 _PICTURE = (800, 450, 8)  # width, height, samples
 _FILM = (640, 360)
-_FILM_WITHOUT_DRIVER = (384, 216, 2, "BALANCED")
+_FILM_WITHOUT_DRIVER = (384, 216, 3)
 
 
 def require_blender() -> None:
@@ -77,14 +78,15 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
     motion, _ = film.recorded(iterates)
     keys = motion.keys(is_free, _MOST_FILM_KEYS)
     scene = _empty_scene()
-    if rendering.workbench_works():
+    drawn = rendering.workbench_works()
+    if drawn:
         rendering.use_workbench(scene, *_FILM)
     else:
-        rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER)
+        rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER, draft=True)
         rendering.skip_frames(scene)
     film.compose(scene, keys, film.smooth_frames(keys), motion.start.curve.mesh)
     film.add_pauses(scene)
-    _make(path, lambda temporary: rendering.render_movie(scene, temporary, progress))
+    _make(path, lambda temporary: render_movie(scene, temporary, progress, oversampling=2 if drawn else 1))
     return keys.certified
 
 
@@ -118,7 +120,11 @@ def _save(path: Path) -> None:
 def _make(path: Target, write: Callable[[Path], None]) -> None:
     """Let Blender write a file in a directory of its own, and move it to its place when it is whole."""
     try:
-        with atomic_write(path) as temporary, tempfile.TemporaryDirectory(dir=temporary.parent) as room:
+        with (
+            tidy_termination(),
+            atomic_write(path) as temporary,
+            tempfile.TemporaryDirectory(dir=temporary.parent) as room,
+        ):
             made = Path(room) / temporary.name.lstrip(".")
             write(made)
             shutil.copymode(temporary, made)

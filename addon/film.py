@@ -139,10 +139,13 @@ def steady_frames(keys: Keys) -> FloatArray:
 
 
 def smooth_frames(keys: Keys) -> FloatArray:
-    """Scene frames of keys for a short film in which the curve moves about evenly."""
+    """Scene frames of keys for a short film in which the curve moves about evenly; they leave room for `add_pauses`.
+
+    A scene cannot begin before frame 0.
+    """
     points = np.array([key.points for key in keys.keys], dtype=np.float64)
     ways = np.sqrt(np.square(np.diff(points, axis=0)).sum(axis=2).mean(axis=1))
     share = ways / ways.sum() if ways.sum() else np.full(len(ways), 1 / len(ways))
     even = np.diff([key.time for key in keys.keys]) / (keys.keys[-1].time - keys.keys[0].time)
     moving = np.clip(_FRAMES_PER_KEY * len(ways), *_FILM)
-    return 1.0 + moving * np.concatenate([[0.0], np.cumsum(_EVENNESS * share + (1 - _EVENNESS) * even)])
+    return 1.0 + _PAUSE + moving * np.concatenate([[0.0], np.cumsum(_EVENNESS * share + (1 - _EVENNESS) * even)])

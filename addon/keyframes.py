@@ -153,6 +153,20 @@ _WRITERS: dict[Output, _Writer] = {
 }
 
 
+def all_fcurves() -> Iterator["bpy.types.FCurve"]:
+    """Yield the F-curves of all actions in the file."""
+    import bpy
+
+    for action in bpy.data.actions:
+        if not hasattr(action, "slots"):  # Blender 4.3 and before
+            yield from action.fcurves
+            continue
+        for layer in action.layers:
+            for strip in layer.strips:
+                for channels in strip.channelbags:
+                    yield from channels.fcurves
+
+
 class FCurves:
     """The F-curves of a new action on a datablock, in all versions of Blender."""
 

@@ -105,7 +105,7 @@ def test_a_picture(tmp_path, tiny, iterates, capfd):
     assert os.listdir(tmp_path) == ["a.png"]
 
 
-def test_a_film(tmp_path, tiny, iterates):
+def test_a_film(tmp_path, tiny, iterates, capfd):
     seen = []
     assert export.write_movie(tmp_path / "a.mp4", iterates, lambda *counts: seen.append(counts))
     scene = bpy.context.scene
@@ -114,7 +114,17 @@ def test_a_film(tmp_path, tiny, iterates):
     clip = bpy.data.movieclips.load(str(tmp_path / "a.mp4"))
     assert (tuple(clip.size), clip.frame_duration) == (TINY[:2], count)
     assert os.listdir(tmp_path) == ["a.mp4"]
-    assert not bpy.app.handlers.render_post
+    assert capfd.readouterr().out == ""
+
+
+def test_a_film_rests_before_and_after(iterates):
+    motion, _ = film.recorded(iterates)
+    keys = motion.keys(lambda *_: True)
+    frames = film.smooth_frames(keys)
+    scene = bpy.context.scene
+    film.compose(scene, keys, frames, motion.start.curve.mesh)
+    film.add_pauses(scene)
+    assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (film._PAUSE, film._END)
 
 
 def test_workbench_is_set_up():
@@ -152,11 +162,11 @@ def test_a_missing_directory(tmp_path, tiny, iterates, write):
 
 @pytest.mark.parametrize("function", ["_save", "render_still", "render_movie"])
 def test_what_blender_cannot_write_leaves_the_old_file(tmp_path, tiny, iterates, monkeypatch, function):
-    def fail(*_arguments):
+    def fail(*_arguments, **_options):
         raise RuntimeError("Error: no space left\n")
 
     name = {"_save": "write_blend", "render_still": "write_still", "render_movie": "write_movie"}[function]
-    monkeypatch.setattr(export if function == "_save" else rendering, function, fail)
+    monkeypatch.setattr(rendering if function == "render_still" else export, function, fail)
     target = tmp_path / "a.blend"
     target.write_text("old")
     with pytest.raises(MobiusFlowError, match="no space left"):
