@@ -46,8 +46,8 @@ def _running() -> str | None:
 
 def _object(obj: "bpy.types.Object") -> Iterator[str]:
     if obj.type != "CURVE":
-        kind = obj.type.replace("_", " ").lower()
-        yield f"'{obj.name}' is a {kind}; select a curve object, or convert it with Object > Convert > Curve"
+        kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
+        yield f"'{obj.name}' is of type {kind}; select a curve object, or convert it with Object > Convert > Curve"
     elif obj.mode != "OBJECT":
         yield f"'{obj.name}' is being edited; go back to Object Mode first"
     elif not obj.visible_get():

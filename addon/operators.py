@@ -83,10 +83,16 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
     q: IntProperty(name="q", description="How often the curve goes through the torus", default=3, soft_min=2)
     size: FloatProperty(name="Size", description="Half of the knot's width", default=1.0, min=1e-4, unit="LENGTH")
     fit_bevel: BoolProperty(
-        name="Fit Tube", description="Make the tube as thick as it can be without touching itself", default=True
+        name="Fit Tube",
+        description="Make the tube as thick as it can be without touching itself, rather than of a given Thickness",
+        default=True,
     )
     thickness: FloatProperty(
-        name="Thickness", description="Radius of the tube; 0 for none", default=0.0, min=0.0, unit="LENGTH"
+        name="Thickness",
+        description="Radius of the tube; 0 for none. In a script, to give it turns Fit Tube off",
+        default=0.0,
+        min=0.0,
+        unit="LENGTH",
     )
 
     @classmethod
@@ -109,12 +115,17 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
         scale = 2 * self.size / (high - low).max()
         data = new_curve_data(name, curve.mesh.component_sizes)
         vertices = scale * (curve.vertices - 0.5 * (low + high))
+        self.fit_bevel = self._fits()  # so that doing it again does the same
         if self.fit_bevel:
             self.thickness = bevel.fitting_radius(curve.with_vertices(vertices))
         bevel.fit(data, self.thickness)
         write_points(data, vertices.astype("f4"))
         object_data_add(context, data, operator=self)
         return {"FINISHED"}
+
+    def _fits(self) -> bool:
+        given = self.properties.is_property_set
+        return self.fit_bevel and (given("fit_bevel") or not given("thickness"))
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Show the name or the torus parameters, not both."""

@@ -1,5 +1,8 @@
 """Knots from the Add menu."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -36,9 +39,29 @@ def test_a_torus_link_has_its_components():
     assert len(bpy.context.object.data.splines) == 2
 
 
-def test_a_tube():
-    bpy.ops.curve.mobius_flow_add_knot(fit_bevel=False, thickness=0.125)
-    assert bpy.context.object.data.bevel_depth == 0.125
+def thickness(**options):
+    """How thick the tube of a trefoil is drawn."""
+    bpy.ops.curve.mobius_flow_add_knot(**options)
+    return bpy.context.object.data.bevel_depth
+
+
+@pytest.mark.parametrize("given", [0.125, 0.0])
+def test_a_given_thickness_is_taken(given):
+    assert thickness(thickness=given) == thickness(fit_bevel=False, thickness=given) == given
+
+
+def test_a_fitted_tube_has_the_thickness_it_needs():
+    fitted = thickness()
+    assert fitted > 0.125
+    assert thickness(fit_bevel=True, thickness=0.125) == fitted
+
+
+def test_the_readme_script_runs():
+    readme = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+    script = re.search(r"```python\n(bpy\.ops.*?)```", readme, re.DOTALL)
+    exec(compile(script.group(1), "README.md", "exec"), {"bpy": bpy})
+    assert bpy.context.object.name == "5_1"
+    assert bpy.context.object.data.shape_keys
 
 
 def test_an_added_knot_can_be_relaxed():

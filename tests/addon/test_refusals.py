@@ -57,22 +57,22 @@ def mesh():
     data = bpy.data.meshes.new("Mesh")
     data.from_pydata(torus_trefoil(9).vertices.tolist(), [], [])
     show(bpy.data.objects.new("Mesh", data))
-    return "'Mesh' is a mesh"
+    return "'Mesh' is of type Mesh"
 
 
 def empty():
     show(bpy.data.objects.new("Axes", None))
-    return "'Axes' is a empty"
+    return "'Axes' is of type Empty"
 
 
 def text():
     show(bpy.data.objects.new("Words", bpy.data.curves.new("Words", "FONT")))
-    return "'Words' is a font"
+    return "'Words' is of type Text"
 
 
 def surface():
     show(bpy.data.objects.new("Sheet", bpy.data.curves.new("Sheet", "SURFACE")))
-    return "'Sheet' is a surface"
+    return "'Sheet' is of type Surface"
 
 
 def hidden():
