@@ -108,9 +108,7 @@ class Run:
 
     def tick(self) -> None:
         """Do a little: take in one iterate, or write some keys. Nothing moves while Blender renders."""
-        import bpy
-
-        if self.state.over or bpy.app.is_job_running("RENDER"):
+        if self.state.over or self.waits:
             return
         try:
             if reason := self._lost():
@@ -197,7 +195,7 @@ class Run:
     def _restore(self) -> None:
         """Put back what was there, even if the object is gone and its data is not, unless someone else changed it."""
         data, obj = self.data, self.object
-        if data is None or shape(data) != self._shape:
+        if data is None or shape(data) != self._shape or self._foreign_keys(data):
             return
         with outside_edit_mode(obj):
             if obj is not None and obj.data == data and self._writing is not None:
@@ -215,6 +213,13 @@ class Run:
         if self._frame is not None and data is not None and self._writing is None and not self.state.over:
             self._session.insert_points(data)
             write_points(data, self._frame)
+
+    @property
+    def waits(self) -> bool:
+        """Whether Blender renders the curve, which must not move then."""
+        import bpy
+
+        return not self.state.over and bool(bpy.app.is_job_running("RENDER"))
 
     # -- what it works on ---------------------------------------------------------------------------------------
 
@@ -242,6 +247,10 @@ class Run:
             return f"'{self.name}' is being edited; its relaxation has ended, and the curve is as it was"
         if shape(data) != self._shape:
             return f"Points of '{self.name}' were added or removed; its relaxation has ended"
-        if data.shape_keys and self._writing is None:
+        if self._foreign_keys(data):
             return f"'{self.name}' was given shape keys; its relaxation has ended"
         return None
+
+    def _foreign_keys(self, data: "bpy.types.Curve") -> bool:
+        """Whether somebody gave the curve shape keys: they fit the points it has now."""
+        return data.shape_keys is not None and self._writing is None

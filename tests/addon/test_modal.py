@@ -176,6 +176,21 @@ def test_one_at_a_time(operator):
     assert "is being relaxed; stop that first" in second.reports[0][1]
 
 
+def test_another_object_has_to_wait(operator):
+    obj = add_trefoil()
+    before = Snapshot(obj.data)
+    operator.start()
+    operator.reach(1)
+    other = add_hopf_link()
+    untouched = Snapshot(other.data)
+    second = Operator()
+    assert second.start() == {"CANCELLED"}
+    assert second.reports == [({"ERROR"}, f"'{obj.name}' is being relaxed; stop that first")]
+    operator.event("ESC")
+    restored(obj, before)
+    restored(other, untouched)
+
+
 def test_a_bad_curve_is_refused_untouched(operator):
     points = torus_trefoil(30).vertices.copy()
     points[3] = points[2]
@@ -215,6 +230,18 @@ def test_topology_change_leaves_what_somebody_made(operator):
     count = len(obj.data.splines[0].points)
     assert operator.event() == {"CANCELLED"}
     assert len(obj.data.splines[0].points) == count
+
+
+def test_shape_keys_of_somebody_else_are_left_alone(operator):
+    obj = add_trefoil()
+    operator.start()
+    operator.reach(1)
+    obj.shape_key_add(name="Mine")
+    shown, key = stored(obj.data), keys(obj)
+    assert operator.event() == {"CANCELLED"}
+    assert operator.run.state is State.LOST
+    np.testing.assert_array_equal(stored(obj.data), shown)
+    np.testing.assert_array_equal(keys(obj), key)
 
 
 def test_edit_mode(operator):
