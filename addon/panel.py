@@ -1,9 +1,8 @@
 """The sidebar panel and the entry in the Add menu."""
 
-import textwrap
-
 import bpy
 
+from . import labels
 from .checks import refusal
 from .live import registry
 from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_stop
@@ -33,7 +32,7 @@ class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming s
         layout.prop(settings, "fit_bevel")
         _buttons(layout, context)
         if run := registry.latest():
-            _progress(layout, run)
+            _progress(layout, context, run)
         elif context.active_object and context.active_object.type == "CURVE":
             _value(layout, "Tube radius", f"{context.active_object.data.bevel_depth:.4g}")
         layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
@@ -55,14 +54,14 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     row.operator(CURVE_OT_mobius_flow_pause.bl_idname, text=text, icon=icon)
     row.operator(CURVE_OT_mobius_flow_stop.bl_idname, icon="SNAP_FACE")
     reason = refusal(context)
-    if reason and run is None:
-        _lines(layout, reason)
+    if reason and (run is None or context.active_object != run.object):
+        labels.sentence(layout, context, reason)
 
 
-def _progress(layout: bpy.types.UILayout, run: Run) -> None:
+def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:
     """What is known of the run that is going on, or of the last one."""
     box = layout.box().column(align=True)
-    _value(box, run.name, run.state.value.capitalize())
+    _value(box, run.name, "Waiting for the render" if run.waits else run.state.value.capitalize())
     if run.last is not None:
         _value(box, "Energy", f"{run.last.energy:.4f}")
         _value(box, "Iteration", f"{run.last.index}")
@@ -72,7 +71,7 @@ def _progress(layout: bpy.types.UILayout, run: Run) -> None:
     if run.report is not None and run.report.radius is not None:
         _value(box, "Tube radius", f"{run.report.radius:.4g}")
     if run.message:
-        _lines(box, run.message, icon="ERROR" if run.failed else "INFO")
+        labels.sentence(box, context, run.message, icon="ERROR" if run.failed else "INFO")
 
 
 def _value(layout: bpy.types.UILayout, name: str, text: str) -> None:
@@ -87,10 +86,3 @@ def _column(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, *name
     column = layout.column(align=True)
     for name in names:
         column.prop(settings, name)
-
-
-def _lines(layout: bpy.types.UILayout, sentence: str, width: int = 38, icon: str = "INFO") -> None:
-    """Labels do not wrap by themselves."""
-    column = layout.column(align=True)
-    for k, line in enumerate(textwrap.wrap(sentence, width)):
-        column.label(text=line, icon="NONE" if k else icon)

@@ -77,7 +77,7 @@ def settings(options: set[str]) -> dict[str, Any]:
             options=options,
         ),
         "frames_per_iterate": FloatProperty(
-            name="Frames per Iterate",
+            name="Frames/Iterate",
             description="Number of frames from one iterate to the next",
             default=_KEY_DEFAULTS.frames_per_iterate,
             min=0.1,

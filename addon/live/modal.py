@@ -25,19 +25,20 @@ class Loop:
         self.run = run
         self._manager = context.window_manager
         self._timer = self._manager.event_timer_add(_INTERVAL, window=context.window)
+        self._shown: tuple[object, ...] = ()
         run.on_end = self.close
         self._show(context)
 
     def handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Do what an event asks for; most are none of a relaxation's business, and Blender stays usable."""
-        handled, before = _PASS, self._seen()
+        handled = _PASS
         if self.run.state.over:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":
             self.run.tick()
-        elif event.value == "PRESS" and not bpy.app.is_job_running("RENDER") and not _typing(context, event):
+        elif event.value == "PRESS" and not self.run.waits and not _typing(context, event):
             handled = self._key(event)
-        if self._seen() != before:
+        if self._seen() != self._shown:
             self._show(context)
         if self.run.state.over:
             return {"FINISHED"} if self.run.state is State.DONE else {"CANCELLED"}
@@ -45,7 +46,7 @@ class Loop:
 
     def _seen(self) -> tuple[object, ...]:
         """What is shown depends on nothing else."""
-        return self.run.state, self.run.last
+        return self.run.state, self.run.last, self.run.waits
 
     def _key(self, event: bpy.types.Event) -> set[str]:
         if event.type == "ESC" or (event.type == "Z" and (event.ctrl or event.oskey) and not event.shift):
@@ -67,6 +68,7 @@ class Loop:
                 window.workspace.status_text_set(None)
 
     def _show(self, context: bpy.types.Context) -> None:
+        self._shown = self._seen()
         if not self.run.state.over and context.window is not None:
             context.workspace.status_text_set(status_line(self.run))
         redraw_views(context.window_manager)
@@ -74,6 +76,8 @@ class Loop:
 
 def status_line(run: Run) -> str:
     """What the status bar says."""
+    if run.waits:
+        return f"{run.name}: waiting for the render"
     if run.state is State.FINISHING:
         return f"{run.name}: proving and writing keys   |   Esc: put the curve back"
     where = f"iterate {run.last.index}, energy {run.last.energy:.4f}" if run.last else "starting"

@@ -27,6 +27,11 @@ def ready(name: str = "5_2", vertices: int = 300) -> Steps:
     clear()
     knot(name, vertices)
     yield from open_sidebar()
+    yield from look()
+
+
+def look() -> Steps:
+    """Look at the knot as it is now."""
     with here():
         bpy.ops.view3d.view_selected()
     yield

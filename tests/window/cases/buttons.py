@@ -3,7 +3,7 @@
 import numpy as np
 from case import Steps, picture, until
 from hands import button, key
-from scene import is_, iterate, obj, points, reaches, ready, run, state
+from scene import is_, iterate, look, obj, points, reaches, ready, run, state
 
 
 def case() -> Steps:
@@ -27,6 +27,7 @@ def case() -> Steps:
     assert not np.array_equal(points(), still)
     yield from is_("done")
     assert run() is None
+    yield from look()
     yield from picture("buttons-4-stopped", differs_from="buttons-1-ready")
     assert obj().data.shape_keys is not None
     yield from key("Z", ctrl=True)
