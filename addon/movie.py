@@ -34,6 +34,11 @@ def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None
         Gets the number of frames done and of all frames.
     oversampling
         A pixel of the film is the mean of so many times so many rendered ones.
+
+    Raises
+    ------
+    OSError, RuntimeError
+        If the film cannot be written.
     """
     with tempfile.TemporaryDirectory(dir=path.parent) as room, _kept(scene):
         made = Path(room) / path.name
@@ -93,6 +98,21 @@ def _encode(scene: "bpy.types.Scene", pictures: Sequence[Path], path: Path) -> N
             bpy.ops.render.render(animation=True, scene=reel.name)
     finally:
         bpy.data.scenes.remove(reel)
+    if _length(path) != len(pictures):
+        raise OSError(rendering.NOT_WHOLE)
+
+
+def _length(path: Path) -> int:
+    """Count a film's frames; Blender does not notice when it cannot write all of them."""
+    import bpy
+
+    try:
+        clip = bpy.data.movieclips.load(str(path))
+    except RuntimeError:
+        return 0
+    length = int(clip.frame_duration)
+    bpy.data.movieclips.remove(clip)
+    return length
 
 
 def _splice(reel: "bpy.types.Scene", pictures: Sequence[Path]) -> None:

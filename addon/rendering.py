@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import bpy
 
 FRAME_RATE = 24
+NOT_WHOLE = "Blender did not write it to the end; is the disk full?"
 _PATIENCE = 60  # seconds
 _TRIAL = """
 import bpy
@@ -88,7 +89,13 @@ def workbench_works() -> bool:
 
 
 def render_still(scene: "bpy.types.Scene", path: Path, compression: int = 15) -> None:
-    """Render the current frame to a PNG; ``compression`` is in percent."""
+    """Render the current frame to a PNG; ``compression`` is in percent.
+
+    Raises
+    ------
+    OSError
+        If the file is not whole, which Blender does not notice.
+    """
     import bpy
 
     settings = scene.render.image_settings
@@ -100,6 +107,8 @@ def render_still(scene: "bpy.types.Scene", path: Path, compression: int = 15) ->
     scene.render.use_file_extension = False
     with quiet():
         bpy.ops.render.render(write_still=True, scene=scene.name)
+    if path.read_bytes()[-8:-4] != b"IEND":
+        raise OSError(NOT_WHOLE)
 
 
 @contextmanager

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -140,6 +141,27 @@ def test_stopped_while_it_is_encoded(tmp_path, scene, monkeypatch):
         movie.render_movie(scene, tmp_path / "a.mp4")
     assert os.listdir(tmp_path) == []
     assert state(scene) == before
+
+
+@pytest.mark.parametrize("suffix", [".png", ".mp4"])
+def test_a_full_disk_is_noticed(tmp_path, scene, monkeypatch, suffix):
+    """Blender's operator says it has written what is only half there."""
+    quiet = rendering.quiet
+
+    @contextmanager
+    def half_written():
+        with quiet():
+            yield
+        for path in tmp_path.rglob(f"*{suffix}"):
+            os.truncate(path, path.stat().st_size // 2)
+
+    before = state(scene)
+    monkeypatch.setattr(rendering, "quiet", half_written)
+    with pytest.raises(OSError, match="disk full"):
+        movie.render_movie(scene, tmp_path / "a.mp4")
+    assert os.listdir(tmp_path) == []
+    assert state(scene) == before
+    assert not bpy.data.movieclips
 
 
 def _film_until(stop, scene, path):
