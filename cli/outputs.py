@@ -1,6 +1,7 @@
 """What `relax` can write, by suffix: curve files, and keyframed or rendered scenes where Blender's module is there."""
 
 import os
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,7 +40,12 @@ def _blender_writer(function: str) -> Writer:
 
 
 def _write_movie(path: str, result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
-    export.write_movie(path, iterates, show_frames if shown else None)
+    try:
+        export.write_movie(path, iterates, show_frames if shown else None)
+    except KeyboardInterrupt:
+        if shown:
+            print(file=sys.stderr)  # the line with the progress has no end yet
+        raise
 
 
 OUTPUTS: Mapping[str, Output] = MappingProxyType(

@@ -43,11 +43,12 @@ def run(options: argparse.Namespace) -> int:
         )
     curve = read_curve(options.input)
     result, iterates, trajectory = _relax(curve, wanted, output, options)
-    output.write(options.output, result, iterates, not options.quiet and sys.stderr.isatty())
     if options.report is not None:
         _write_report(options.report, result)
     if options.trajectory is not None:
         trajectory.save(options.trajectory)
+    # last, since a film takes a minute, in which it may be interrupted
+    output.write(options.output, result, iterates, not options.quiet and sys.stderr.isatty())
     if not options.quiet:
         print(_summary(result), file=sys.stderr)
     return EXIT_STATUS[result.status]

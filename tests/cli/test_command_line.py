@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 import pytest
-from mobius_flow.cli import main
+from mobius_flow.cli import main, outputs
 from mobius_flow.core import METHODS, read_curve, write_curve
 from shapes import regular_polygon, torus_trefoil
 
@@ -79,6 +79,20 @@ def test_interrupt_writes_the_best_curve(trefoil, tmp_path):
     assert process.wait(30) == 130
     assert json.loads(report.read_text())["status"] == "interrupted"
     assert len(read_curve(out)) == 300
+
+
+def test_an_interrupted_film_keeps_report_and_trajectory(trefoil, tmp_path, monkeypatch, capsys):
+    def interrupted(*_arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
+    monkeypatch.setattr(outputs.export, "write_movie", interrupted)
+    report, trajectory = tmp_path / "r.json", tmp_path / "t.npz"
+    extras = ["--report", report, "--trajectory", trajectory, "--max-iterations", "2"]
+    assert run("relax", trefoil, tmp_path / "film.mp4", *extras) == 130
+    assert json.loads(report.read_text())["status"] == "iteration_limit"
+    assert run("verify", trajectory) == 0
+    assert capsys.readouterr().err == "mobius-flow: interrupted\n"
 
 
 BAD = {
