@@ -21,8 +21,8 @@ _COMPRESSION = 5  # percent: the pictures live for a minute
 def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None = None, oversampling: int = 1) -> None:
     """Render all frames to an MP4 that plays everywhere.
 
-    Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand. Then too nothing is left
-    behind and the scene is as before. A frame in which nothing has moved is the frame before again.
+    Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand, or after the seconds in which
+    the frames are put together. Then too nothing is left behind and the scene is as before. A frame in which nothing has moved is the frame before again.
 
     Parameters
     ----------
