@@ -22,7 +22,8 @@ def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None
     """Render all frames to an MP4 that plays everywhere.
 
     Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand, or after the seconds in which
-    the frames are put together. Then too nothing is left behind and the scene is as before. A frame in which nothing has moved is the frame before again.
+    the frames are put together. Then too nothing is left behind and the scene is as before. A frame in which nothing
+    has moved is the frame before again.
 
     Parameters
     ----------
@@ -40,7 +41,7 @@ def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None
     OSError, RuntimeError
         If the film cannot be written.
     """
-    with tempfile.TemporaryDirectory(dir=path.parent) as room, _kept(scene):
+    with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room, _kept(scene):
         made = Path(room) / path.name
         size = scene.render.resolution_percentage
         scene.render.resolution_percentage = size * oversampling
