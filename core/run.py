@@ -9,8 +9,10 @@ from .adaptive import INTERVAL, adapt, graded_problem
 from .curve import Curve, refine
 from .descent import NoStep, Point, Problem, State, Step
 from .descent.escape import escape_step
+from .energies import MoebiusEnergy
 from .energies.near_pairs import near_pairs
 from .iterate import Iterate, Status
+from .knots.composite import knotted_ball
 from .options import RelaxOptions
 from .setup import method_named, start_problem
 from .stability import stability
@@ -18,6 +20,8 @@ from .types import FloatArray
 
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
 FINER = 1.5  # factor of the number of vertices when a converged curve is not resolved
+COMPOSITE_KNOT = 140.0  # less energy than any composite: two trefoils (74.4 each) less a circle make 144.8,
+COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
 FINEST = 3.5  # factor of that number at which strands are said to pull tight for ever
 
 
@@ -47,6 +51,8 @@ class Run:
         just_refined = False  # around edges that were stuck: once is enough
         while True:
             iterate, way_down = _judged(self._point, self._iterate, self._options)
+            if iterate.status is Status.CONVERGED:
+                iterate = _unless_composite(iterate)
             if iterate.status is Status.CONVERGED and _unresolved(iterate):
                 if self._options.resolve and len(iterate.curve) < FINEST * self._first_count:
                     yield replace(iterate, status=Status.RUNNING, message="")
@@ -124,10 +130,7 @@ class Run:
     def _tight(self, iterate: Iterate) -> Iterate:
         """What to say of a converged curve whose strands are nearer than its mesh resolves."""
         if self._options.resolve:
-            message = (
-                f"stalled: strands pull tight, nearer than {len(iterate.curve)} vertices resolve; a composite knot has "
-                "no minimiser and does so for ever"
-            )
+            message = f"stalled: strands pull tight, nearer than {len(iterate.curve)} vertices resolve"
             return replace(iterate, status=Status.STALLED, message=message)
         note = "; strands are nearer than this mesh resolves, and finer ones give less energy (option resolve goes on)"
         return replace(iterate, message=iterate.message + note)
@@ -148,6 +151,22 @@ class Run:
             certified=point.problem.certifiable,
             edge_length_error=point.problem.constraints.length_error(point.curve),
         )
+
+
+def _unless_composite(iterate: Iterate) -> Iterate:
+    """The converged iterate; stalled if its curve is composite, for then only the mesh keeps it from going on."""
+    components = len(iterate.curve.mesh.component_sizes)
+    if MoebiusEnergy().value(iterate.curve) < (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK):
+        return iterate
+    ball = knotted_ball(iterate.curve)
+    if ball is None:
+        return iterate
+    place = ", ".join(f"{x:.3g}" for x in ball.center)
+    message = (
+        "stalled: strands pull tight, and would do so for ever: the curve is composite, knotted both inside and "
+        f"outside the ball of radius {ball.radius:.3g} around ({place}), and has no shape of least energy"
+    )
+    return replace(iterate, status=Status.STALLED, message=message)
 
 
 def _unresolved(iterate: Iterate) -> bool:

@@ -1,0 +1,164 @@
+"""Is a curve composite?  A ball that it enters and leaves once, knotted inside and knotted outside, proves so.
+
+No composite knot has a shape of least Möbius energy: as such a ball shrinks, the energy falls towards the sum of the
+two parts' energies less the circle's 4 and never gets there.  A relaxation makes such balls round, so round ones are
+looked for: lifted to the paraboloid (x, |x|²), balls are half spaces, and a ball round an arc is a separating plane.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from scipy.optimize import linprog
+
+from ..curve import Curve
+from ..types import BoolArray, FloatArray
+from .alexander import signature
+
+_ARCS = 24  # arcs of a knot begin and end at multiples of this fraction of it; in links, of fewer per component
+_SHORTEST = 1 / 8  # arc, as a fraction of its component
+_SAMPLES = 120  # vertices that balls are looked for with
+_MARGIN = 1e-6  # of the separating plane, for a curve of size 1
+_MOST_COMPONENTS = 4  # each of the others may lie inside or outside
+_OUTER_PATH = 16  # edges of the path around a ball
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """A round ball.
+
+    Attributes
+    ----------
+    center
+        Shape (3,), in the curve's units.
+    radius
+        In the curve's units.
+    """
+
+    center: FloatArray
+    radius: float
+
+    def contains(self, points: FloatArray) -> BoolArray:
+        """Whether points, shape (n, 3), lie inside."""
+        return np.asarray(np.linalg.norm(points - self.center, axis=1) < self.radius)
+
+
+def knotted_ball(curve: Curve) -> Ball | None:
+    """A ball whose sphere meets the curve in two points, both parts being knotted or linked; None if none is found.
+
+    A ball proves that the curve is composite.  None proves nothing: parts may have a trivial Alexander polynomial, or
+    lie in no round ball.
+
+    Parameters
+    ----------
+    curve
+        Closed polygons in space; None is returned for more than four components.
+    """
+    if curve.dimension != 3 or len(curve.mesh.component_sizes) > _MOST_COMPONENTS:
+        return None
+    middle = curve.vertices.mean(axis=0)
+    size = float(np.abs(curve.vertices - middle).max())
+    normal = curve.with_vertices((curve.vertices - middle) / size)
+    for inside in _arcs(curve):
+        ball = _ball(normal, inside)
+        if ball is not None and _is_knotted(normal, ball):
+            return Ball(middle + size * ball.center, size * ball.radius)
+    return None
+
+
+def _arcs(curve: Curve) -> Iterator[BoolArray]:
+    """Masks of vertices: an arc of one component, and any of the others as a whole."""
+    slices = curve.mesh.slices
+    for cut, part in enumerate(slices):
+        size = part.stop - part.start
+        others = [s for k, s in enumerate(slices) if k != cut]
+        arcs = max(int(1 / _SHORTEST), _ARCS // len(slices))
+        starts = np.unique(np.arange(arcs) * size // arcs)
+        lengths = np.unique(np.arange(int(_SHORTEST * arcs), arcs // 2 + 1) * size // arcs)
+        for length, first, chosen in product(lengths[::-1], starts, product((False, True), repeat=len(others))):
+            inside = np.zeros(len(curve), dtype=bool)
+            inside[part] = (np.arange(size) - first) % size < length
+            for other, within in zip(others, chosen, strict=True):
+                inside[other] = within
+            yield inside
+
+
+def _ball(curve: Curve, inside: BoolArray) -> Ball | None:
+    """The ball with one part of the vertices inside and the other outside that leaves most room between, if any."""
+    sample = np.arange(0, len(curve), max(1, len(curve) // _SAMPLES))
+    x = curve.vertices[sample]
+    side = np.where(inside[sample], 1.0, -1.0)
+    lifted = side[:, None] * np.column_stack([x, (x**2).sum(axis=1), np.ones(len(x))])
+    found = linprog(
+        [0.0] * 5 + [-1.0],
+        A_ub=np.column_stack([lifted, np.ones(len(x))]),
+        b_ub=np.zeros(len(x)),
+        bounds=[(-1.0, 1.0)] * 5 + [(0.0, 1.0)],
+    )
+    if found.x is None or found.x[5] < _MARGIN or abs(found.x[3]) < _MARGIN:
+        return None
+    normal, bend, offset = found.x[:3], found.x[3], found.x[4]
+    center = -normal / (2.0 * bend)
+    return Ball(center, float(np.sqrt(max(center @ center - offset / bend, 0.0))))
+
+
+def _is_knotted(curve: Curve, ball: Ball) -> bool:
+    """Whether the sphere cuts two edges, once each, and both parts, closed up, are knotted or linked."""
+    inside = ball.contains(curve.vertices)
+    mesh = curve.mesh
+    first, last = inside[mesh.tails], inside[mesh.heads]
+    cut = np.flatnonzero(first != last)
+    outer = ~first & ~last
+    if len(cut) != 2 or mesh.component[cut[0]] != mesh.component[cut[1]]:
+        return False
+    if outer.any() and _distances(curve, ball.center)[outer].min() <= ball.radius:
+        return False
+    entry, exit_ = cut if last[cut[0]] else cut[::-1]
+    ends = [_crossing(curve, edge, ball) for edge in (entry, exit_)]
+    chord = np.array(ends)
+    within = _part(curve, inside, int(mesh.heads[entry]), _around(ball, *chord[::-1]))
+    without = _part(curve, ~inside, int(mesh.heads[exit_]), chord)
+    return not (signature(within).is_trivial or signature(without).is_trivial)
+
+
+def _distances(curve: Curve, point: FloatArray) -> FloatArray:
+    """Distance of each edge from a point."""
+    start, edge = curve.vertices[curve.mesh.tails], curve.edge_vectors
+    s = np.clip(np.einsum("ij,ij->i", point - start, edge) / curve.edge_lengths**2, 0.0, 1.0)
+    return np.asarray(np.linalg.norm(start + s[:, None] * edge - point, axis=1))
+
+
+def _crossing(curve: Curve, edge: np.intp, ball: Ball) -> FloatArray:
+    """Where an edge with one end inside meets the sphere."""
+    start = curve.vertices[curve.mesh.tails[edge]] - ball.center
+    vector = curve.edge_vectors[edge]
+    roots = np.roots([vector @ vector, 2.0 * start @ vector, start @ start - ball.radius**2]).real
+    s = roots[np.argmin(np.abs(roots - 0.5))]
+    return np.asarray(ball.center + start + s * vector)
+
+
+def _part(curve: Curve, chosen: BoolArray, begin: int, closing: FloatArray) -> Curve:
+    """The arc of chosen vertices that begins at one of them, closed up, and whole components that are chosen."""
+    parts = []
+    for k, part in enumerate(curve.mesh.slices):
+        if k == curve.mesh.component[begin]:
+            ring = np.roll(np.arange(part.start, part.stop), part.start - begin)
+            parts.append(np.concatenate([curve.vertices[ring[chosen[ring]]], closing]))
+        elif chosen[part].all():
+            parts.append(curve.vertices[part])
+    return Curve.from_components(parts)
+
+
+def _around(ball: Ball, a: FloatArray, b: FloatArray) -> FloatArray:
+    """Points of a path from a to b, both on the sphere, outside the ball: a polygon round a great circle."""
+    u = (a - ball.center) / ball.radius
+    v = (b - ball.center) / ball.radius
+    across = v - (u @ v) * u
+    if np.linalg.norm(across) < _MARGIN:  # opposite ends: any great circle will do
+        across = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
+    across /= np.linalg.norm(across)
+    angles = np.linspace(0.0, np.arccos(np.clip(u @ v, -1.0, 1.0)), _OUTER_PATH + 1)
+    outer = 1.01 * ball.radius / np.cos(np.pi / (2 * _OUTER_PATH))
+    circle = ball.center + outer * (np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * across)
+    return np.concatenate([a[None], circle, b[None]])
