@@ -14,6 +14,7 @@ from mobius_flow.core import METHODS, Curve, MobiusFlowError, RelaxOptions, rela
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import KNOTS, braid_closure, hard_unknot, knot, scramble
 from mobius_flow.core.knots.alexander import signature
+from mobius_flow.core.options import EDGE_LENGTHS
 
 # slow ones and those that change the mesh come up less often
 COMMON = ("lbfgs", "cg", "flow-moebius", "flow-h1", "flow-l2", "flow-h2", "penalty-lbfgs", "penalty-nesterov")
@@ -44,15 +45,18 @@ def random_curve(rng: np.random.Generator) -> Curve:
     return curve.with_vertices(scale * (curve.vertices + shift))
 
 
-def random_options(rng: np.random.Generator) -> RelaxOptions:
-    """Options of every kind."""
+def random_options(rng: np.random.Generator, given: int) -> RelaxOptions:
+    """Options of every kind for a curve of so many vertices; mostly coarse meshes, which are quick and harder."""
     method = str(rng.choice(COMMON if rng.random() < 0.8 else list(METHODS)))
     energies = [name for name in ENERGIES if not METHODS[method].second_order or name == "moebius"]
+    adaptive = bool(rng.random() < 0.2)
     return RelaxOptions(
         method=method,
         energy=str(rng.choice(energies)) if rng.random() < 0.2 else "moebius",
-        adaptive=bool(rng.random() < 0.2),
+        adaptive=adaptive,
         resolve=bool(rng.random() < 0.1),
+        vertices=int(given * rng.uniform(1.0, 2.0)) if rng.random() < 0.8 else None,
+        edge_lengths="auto" if adaptive else str(rng.choice(EDGE_LENGTHS)),
         max_iterations=int(rng.integers(1, 9)),
     )
 
@@ -61,7 +65,7 @@ def flow(rng: np.random.Generator) -> str:
     """Run one flow and say how it went: "ok", "refused", "type", "nan" or "exception"."""
     try:
         curve = random_curve(rng)
-        iterates = list(relax(curve, random_options(rng)))
+        iterates = list(relax(curve, random_options(rng, len(curve))))
     except MobiusFlowError:
         return "refused"
     numbers = [value for i in iterates for value in (i.energy, i.gradient_norm, *i.curve.vertices[0])]
