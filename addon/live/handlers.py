@@ -6,6 +6,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import registry
+from .modal import clear_status
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -54,5 +55,7 @@ def unregister() -> None:
     if run := registry.current():
         run.cancel("Möbius Flow was disabled; the curve is as it was")
     registry.forget()
+    if bpy.app.timers.is_registered(clear_status):
+        bpy.app.timers.unregister(clear_status)
     for name, handler in _HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)

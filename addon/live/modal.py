@@ -26,6 +26,7 @@ class Loop:
         self._manager = context.window_manager
         self._timer = self._manager.event_timer_add(_INTERVAL, window=context.window)
         self._shown: tuple[object, ...] = ()
+        self._abandoned = False
         run.on_end = self.close
         self._show(context)
 
@@ -62,16 +63,29 @@ class Loop:
         if self._timer is not None:
             self._manager.event_timer_remove(self._timer)
             self._timer = None
-        for window in self._manager.windows:
-            # Blender takes the place from the context, and crashes where there is none
-            with bpy.context.temp_override(window=window):
-                window.workspace.status_text_set(None)
+        if self._abandoned:  # the place in the context is about to go, and must not be changed under Blender's feet
+            bpy.app.timers.register(clear_status)
+        else:
+            clear_status()
+
+    def abandon(self) -> None:
+        """Blender is closing the window of the run, or its file."""
+        self._abandoned = True
+        self.run.cancel("The window was closed; the curve is as it was")
 
     def _show(self, context: bpy.types.Context) -> None:
         self._shown = self._seen()
         if not self.run.state.over and context.window is not None:
             context.workspace.status_text_set(status_line(self.run))
         redraw_views(context.window_manager)
+
+
+def clear_status() -> None:
+    """Give the status bars of all windows back to Blender."""
+    for window in bpy.context.window_manager.windows:
+        # Blender takes the place from the context, and crashes where there is none
+        with bpy.context.temp_override(window=window):
+            window.workspace.status_text_set(None)
 
 
 def status_line(run: Run) -> str:

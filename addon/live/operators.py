@@ -60,7 +60,7 @@ class LiveRelax:
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender gives up the operator: its window or its file is closed."""
         if self.loop is not None:
-            self.loop.run.cancel("The window was closed; the curve is as it was")
+            self.loop.abandon()
 
 
 def _go_to_last_frame(scene: bpy.types.Scene, frame: float | None) -> None:
