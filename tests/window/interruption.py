@@ -56,12 +56,15 @@ def workers() -> list[str]:
 def listening() -> list[str]:
     """Operators of ours that still get the events of a window."""
     windows = bpy.context.window_manager.windows
-    return [
-        operator.bl_idname
-        for window in windows
-        for operator in window.modal_operators
-        if operator is not None and "mobius_flow" in operator.bl_idname.lower()  # None: it was just taken out
-    ]
+    names = [_name(operator) for window in windows for operator in window.modal_operators]
+    return [name for name in names if "mobius_flow" in name.lower()]
+
+
+def _name(operator: bpy.types.Operator | None) -> str:
+    try:
+        return str(operator.bl_idname)
+    except (AttributeError, ValueError):  # just taken out by Blender: nothing, or an empty shell in 4.3
+        return ""
 
 
 def handlers() -> list[str]:

@@ -45,7 +45,7 @@ def camera() -> None:
     scene = window().scene
     bpy.context.preferences.view.render_display_type = "NONE"
     scene.render.engine = "CYCLES"
-    scene.cycles.samples = 64
+    scene.cycles.samples, scene.cycles.use_denoising = 64, False  # not every build can denoise
     scene.render.resolution_percentage = 50
     scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     scene.camera.location.z = 9.0
