@@ -1,6 +1,6 @@
 """A descent method: a direction, found in a metric, and a step search.  Adding one is a file and a registry line."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -86,7 +86,7 @@ class LineSearchMethod:
             natural = min(self.direction.natural_step, 1.0 if np.isinf(longest) else longest)
             step = wolfe_step(point, direction, natural, np.inf)
         if isinstance(step, NoStep) and state.memory is not None:
-            return self.step(point, replace(state, memory=None))
+            return self.step(point, State())
         if isinstance(step, Step):
             state = State(memory, step.size)
         return step, state

@@ -21,7 +21,8 @@ from ..types import FloatArray
 from .local import lumped_mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
-NEAREST = 0.01  # times ℓ_I + ℓ_J: nearer pairs count as that far, or 1/r⁴ would leave no digits to the others
+NEAREST = 0.01  # times ℓ_I + ℓ_J: nearer pairs count as far as they are along the curve.  Their 1/r⁴ would leave no digits
+# to the others, and forbid the very motion that brings strands apart
 
 
 @dataclass(frozen=True)
@@ -75,9 +76,11 @@ def _weights(curve: Curve, t_i: float, t_j: float) -> tuple[FloatArray, FloatArr
     x, y = points_at(curve, t_i), points_at(curve, t_j)
     for rows in row_blocks(mesh):
         nearest = NEAREST * (ell[rows, None] + ell[None, :])
-        r2 = np.maximum(squared_distances(x[rows], y), nearest**2)
+        rho = arc_distances(curve, t_i, t_j, rows)
+        r2 = squared_distances(x[rows], y)
+        r2 = np.where(r2 < nearest**2, rho * rho, r2)
         s = 1.0 / excluding_neighbours(r2, mesh, rows)
-        rho = excluding_neighbours(arc_distances(curve, t_i, t_j, rows), mesh, rows)
+        rho = excluding_neighbours(rho, mesh, rows)
         np.multiply(s, ell[rows, None] * ell[None, :], out=inverse[rows])
         s -= 1.0 / (rho * rho)
         np.multiply(s, inverse[rows], out=density[rows])
