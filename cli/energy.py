@@ -8,6 +8,7 @@ from ..core import read_curve
 from ..core.collision import check_embedded
 from ..core.energies import ENERGIES
 from ..core.errors import OptionError
+from ..core.units import check_units
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -27,6 +28,7 @@ def run(options: argparse.Namespace) -> int:
     if options.energy not in ENERGIES:
         raise OptionError(f"energy {options.energy!r} is unknown; choose one of {', '.join(ENERGIES)}")
     curve = read_curve(options.input)
+    check_units(curve)
     check_embedded(curve)
     value = ENERGIES[options.energy].value(curve)
     print(json.dumps({"name": options.energy, "energy": value}) if options.json else repr(value))

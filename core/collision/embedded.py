@@ -9,6 +9,8 @@ from .boxes import BoxTree, Level
 from .exact import first_contact
 from .planes import ROUNDING, Separation, closest_chord, relative_motion
 
+NEAREST = 2.0**-48  # distance of neighbours, relative to the curve's size, below which they are the same up to rounding
+
 
 def check_embedded(curve: Curve) -> None:
     """Raise unless the curve is embedded: no repeated points, no doubled-back edges, no edges that touch or cross.
@@ -30,7 +32,10 @@ def check_embedded(curve: Curve) -> None:
 
 def _check_repeated(curve: Curve) -> None:
     heads = curve.mesh.heads
-    same = np.flatnonzero((curve.vertices == curve.vertices[heads]).all(axis=1))
+    unit = int(np.frexp(np.abs(curve.vertices).max())[1]) + 1  # differences of scaled coordinates don't overflow
+    points = np.ldexp(curve.vertices, -unit)
+    nearest = NEAREST * np.ptp(points, axis=0).max()
+    same = np.flatnonzero((np.abs(points[heads] - points) <= nearest).all(axis=1))
     if same.size:
         component, k, n = _place(curve.mesh, int(same[0]))
         raise CurveError(

@@ -66,6 +66,7 @@ def target_spacing(curve: Curve, vertices: int | None = None) -> FloatArray:
     samples = subdivide(curve, pieces)
     spacing = np.full(len(curve), base)
     gaps = _strand_gaps(samples, min(base, float(curve.edge_lengths.max())))
+    gaps = np.maximum(gaps, np.finfo(np.float64).eps * base)  # rounded sample points may coincide
     near = gaps < np.inf
     np.minimum.at(spacing, np.repeat(np.arange(len(curve)), pieces)[near], gaps[near])
     return spacing
