@@ -1,8 +1,8 @@
 """Read trajectory files frame by frame, trusting nothing in them.
 
-A file is a zip archive of .npy arrays, as numpy.savez writes it: ``stage_000``, ``stage_001``, … each (k, n, m) float64
-in C order, and ``component_sizes_000``, … with the numbers of vertices of the components. Only one frame is in memory
-at a time, and memory is taken only for data that the file really has.
+A file is a zip archive of .npy arrays, as numpy.savez writes it: ``stage_000``, ``stage_001``, … each (k, n, m) and
+float64, and ``component_sizes_000``, … with the numbers of vertices of the components. Only one frame is in memory at a
+time (in Fortran order, one stage of bounded size), and memory is taken only for data that the file really has.
 """
 
 import ast
@@ -20,6 +20,7 @@ from ..types import FloatArray
 
 _MAX_HEADER = 1000
 _MAX_FRAME = 1 << 28  # bytes: eleven million vertices in space
+_MAX_FORTRAN = 1 << 28  # bytes of a whole stage in Fortran order, whose frames are scattered over it
 _MAX_SIZES = 1 << 24  # bytes
 _DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError)
 
@@ -49,7 +50,9 @@ def stages(path: Path | str) -> Iterator[Stage]:
         with zipfile.ZipFile(path) as archive:
             for number in range(_count(archive)):
                 yield _stage(archive, number)
-    except _DAMAGE as error:
+    except TrajectoryError:
+        raise
+    except (*_DAMAGE, ValueError) as error:  # ValueError: a path with a null character
         raise TrajectoryError(f"the file cannot be read: {error}") from error
 
 
@@ -66,7 +69,7 @@ def _stage(archive: zipfile.ZipFile, number: int) -> Stage:
     sizes = _component_sizes(archive, f"component_sizes_{number:03d}")
     name = f"stage_{number:03d}"
     file = archive.open(f"{name}.npy")
-    shape, dtype = _header(file, name)
+    shape, dtype, fortran = _header(file, name)
     if dtype != np.dtype("<f8") or len(shape) != 3:
         raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be (k, n, m) of float64")
     k, n, m = shape
@@ -76,14 +79,17 @@ def _stage(archive: zipfile.ZipFile, number: int) -> Stage:
         raise TrajectoryError(f"{name} has shape {shape}; frames there must be, in dimension 2 or 3")
     if n * m * 8 > _MAX_FRAME:
         raise TrajectoryError(f"{name} has {n} vertices, more than this program takes")
-    return Stage(name, sizes, _frames(file, name, k, (n, m)))
+    if fortran and k * n * m * 8 > _MAX_FORTRAN:
+        raise TrajectoryError(f"{name} is in Fortran order and large; write it with numpy.ascontiguousarray")
+    frames = _scattered_frames(file, name, (k, n, m)) if fortran else _frames(file, name, k, (n, m))
+    return Stage(name, sizes, frames)
 
 
 def _component_sizes(archive: zipfile.ZipFile, name: str) -> tuple[int, ...]:
     if f"{name}.npy" not in archive.namelist():
         raise TrajectoryError(f"{name} is missing")
     with archive.open(f"{name}.npy") as file:
-        shape, dtype = _header(file, name)
+        shape, dtype, _ = _header(file, name)
         if dtype.kind not in "iu" or len(shape) != 1 or not 0 < shape[0] * dtype.itemsize <= _MAX_SIZES:
             raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be a list of whole numbers")
         data = _exactly(file, shape[0] * dtype.itemsize, name)
@@ -93,8 +99,8 @@ def _component_sizes(archive: zipfile.ZipFile, name: str) -> tuple[int, ...]:
     return sizes
 
 
-def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], "np.dtype[np.generic]"]:
-    """Shape and type of an array, from a .npy header of bounded length."""
+def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], "np.dtype[np.generic]", bool]:
+    """Shape and type of an array, and whether it is in Fortran order, from a .npy header of bounded length."""
     magic = _exactly(file, 8, name)
     if magic not in (b"\x93NUMPY\x01\x00", b"\x93NUMPY\x02\x00"):
         raise TrajectoryError(f"{name} is not an array in NumPy's format 1.0 or 2.0")
@@ -107,21 +113,37 @@ def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], "np.dtype[np.g
         dtype = np.dtype(str(header["descr"]))
     except (ValueError, SyntaxError, TypeError, KeyError, MemoryError, RecursionError) as error:
         raise TrajectoryError(f"{name} has a header that cannot be read") from error
-    if min(shape, default=0) < 0 or (fortran and len(shape) > 1):
-        raise TrajectoryError(f"{name} has a negative shape or is in Fortran order; neither is read")
-    return shape, dtype
+    if min(shape, default=0) < 0:
+        raise TrajectoryError(f"{name} has a negative shape")
+    return shape, dtype, fortran
 
 
 def _frames(file: IO[bytes], name: str, count: int, shape: tuple[int, int]) -> Iterator[FloatArray]:
     with file:
         for k in range(count):
             data = _exactly(file, 8 * shape[0] * shape[1], name)
-            frame = np.frombuffer(data, "<f8").reshape(shape).astype(np.float64)
-            if not np.isfinite(frame).all():
-                raise TrajectoryError(f"{name}, frame {k}: a coordinate is not finite")
-            yield frame
-        if file.read(1):
-            raise TrajectoryError(f"{name} is longer than its header says")
+            yield _finite(np.frombuffer(data, "<f8").reshape(shape), name, k)
+        _check_end(file, name)
+
+
+def _scattered_frames(file: IO[bytes], name: str, shape: tuple[int, int, int]) -> Iterator[FloatArray]:
+    """The frames of an array in Fortran order, in which the number of the frame runs fastest."""
+    with file:
+        data = _exactly(file, 8 * shape[0] * shape[1] * shape[2], name)
+        _check_end(file, name)
+    for k, frame in enumerate(np.frombuffer(data, "<f8").reshape(shape, order="F")):
+        yield _finite(frame, name, k)
+
+
+def _finite(frame: FloatArray, name: str, k: int) -> FloatArray:
+    if not np.isfinite(frame).all():
+        raise TrajectoryError(f"{name}, frame {k}: a coordinate is not finite")
+    return np.array(frame, dtype=np.float64, order="C")
+
+
+def _check_end(file: IO[bytes], name: str) -> None:
+    if file.read(1):
+        raise TrajectoryError(f"{name} is longer than its header says")
 
 
 def _exactly(file: IO[bytes], count: int, name: str) -> bytes:

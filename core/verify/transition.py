@@ -82,9 +82,11 @@ def straightened(polygon: FloatArray, kept: Sequence[int]) -> tuple[dict[int, Po
 
 def _onto_edge(p: FloatArray, u: FloatArray, v: FloatArray) -> tuple[Point, Fraction]:
     """A point of the edge from u to v near p, and its parameter there, which is rounded to a double."""
-    d = v - u
+    points = np.stack([p, u, v])
+    points = np.ldexp(points, -1 - int(np.frexp(np.abs(points).max())[1]))  # so that differences don't overflow
+    d, q = points[2] - points[1], points[0] - points[1]
     scale = float(np.abs(d).max()) or 1.0
-    d, q = d / scale, (p - u) / scale
+    d, q = d / scale, q / scale
     parameter = Fraction(float(d @ q / max(float(d @ d), np.finfo(np.float64).tiny)))
     ends = [(Fraction(x), Fraction(y)) for x, y in zip(u.tolist(), v.tolist(), strict=True)]
     return [x + parameter * (y - x) for x, y in ends], parameter
