@@ -60,6 +60,6 @@ def _some_gap(curve: Curve, points: FloatArray) -> float:
     apart = heads[j] != i  # a triangle has no such edges
     i, j = i[apart], j[apart]
     if not i.size:
-        return np.inf
+        return 4.0 * len(points)  # of coordinates within ±1; finite, since the boxes' padding is infinitely far
     bound = np.min(squared_distances(points, np.stack([i, heads[i], j, heads[j]])))
     return float(bound) * (1 + 1e-12)  # so that rounding cannot exclude the pair itself

@@ -75,6 +75,14 @@ def test_many_triangles() -> None:
     assert gap == pytest.approx(0.5)
 
 
+def test_triangles_whose_tree_has_padding() -> None:
+    """Triangles give no first bound, and the empty boxes that make numbers even are no pairs of edges."""
+    for count in (11, 75):
+        shifts = np.stack([3.0 * (np.arange(count) % 9), 3.0 * (np.arange(count) // 9), np.zeros(count)], axis=1)
+        curve = Curve((np.eye(3) + shifts[:, None]).reshape(-1, 3), Mesh((3,) * count))
+        assert minimal_gap(curve)[0] == pytest.approx(3 / np.sqrt(2))
+
+
 def test_four_dimensions_are_refused() -> None:
     with pytest.raises(ValueError, match="dimension 4"):
         minimal_gap(regular_polygon(6, dimension=4))
