@@ -58,17 +58,21 @@ def _relax(
     curve: Curve, wanted: RelaxOptions, output: Output, options: argparse.Namespace
 ) -> tuple[Result, list[Iterate], Trajectory]:
     iterates: list[Iterate] = []
-    trajectory = Trajectory()
+    recorded = output.needs_iterates or options.trajectory is not None
     with Progress(wanted, shown=not options.quiet and sys.stderr.isatty()) as progress:
 
         def on_iterate(iterate: Iterate) -> None:
-            progress.update(iterate)
-            if output.needs_iterates:
+            if recorded:
                 iterates.append(iterate)
-            if options.trajectory is not None:
-                trajectory.add(iterate)
+            progress.update(iterate)
 
-        return minimize(curve, wanted, on_iterate), iterates, trajectory
+        result = minimize(curve, wanted, on_iterate)
+    if recorded and not (iterates and iterates[-1].curve is result.curve):
+        iterates.append(result.last)  # the interrupt came before it was recorded
+    trajectory = Trajectory()
+    for iterate in iterates:
+        trajectory.add(iterate)
+    return result, iterates, trajectory
 
 
 def _write_report(path: str, result: Result) -> None:

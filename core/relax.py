@@ -41,6 +41,8 @@ class Result:
         Name of the method.
     negative_eigenvalues
         Of the Lagrangian's Hessian, if asked for: 0 at a minimum.
+    last
+        The last iterate.
     """
 
     curve: Curve
@@ -52,6 +54,7 @@ class Result:
     edge_length_error: float
     method: str
     negative_eigenvalues: int | None
+    last: Iterate
 
     def report(self) -> dict[str, object]:
         """The result as the plain values that ``--report`` writes."""
@@ -140,7 +143,7 @@ def minimize(
 ) -> Result:
     """Relax a curve to the end and return the result; a keyboard interrupt keeps the curve reached so far.
 
-    ``callback`` gets every iterate.  Raises as `relax` does.
+    ``callback`` gets every iterate, unless an interrupt cuts it short.  Raises as `relax` does.
     """
     options = RelaxOptions() if options is None else options
     started = time.perf_counter()
@@ -168,4 +171,5 @@ def minimize(
         edge_length_error=last.edge_length_error,
         method=options.method,
         negative_eigenvalues=last.negative_eigenvalues,
+        last=last,
     )

@@ -1,0 +1,139 @@
+"""Runs that are interrupted keep the best curve; processes that are killed leave no half-written file."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, minimize, read_curve, write_curve
+from mobius_flow.core.verify import verify
+from shapes import regular_polygon, torus_trefoil
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals")
+
+ENDLESS = ["--tolerance", "1e-30", "--vertices", "120", "--method", "flow-l2", "--max-iterations", "1000000"]
+TALKATIVE = """
+import sys
+from mobius_flow.cli import main
+from mobius_flow.cli.progress import Progress
+Progress.update = lambda self, iterate: iterate.index == 2 and print("running", flush=True)
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.fixture
+def trefoil(tmp_path: Path) -> Path:
+    path = tmp_path / "trefoil.txt"
+    write_curve(path, torus_trefoil(60))
+    return path
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_keeps_curve_report_and_trajectory(trefoil: Path, tmp_path: Path, number: signal.Signals) -> None:
+    out, report, trajectory = tmp_path / "o.txt", tmp_path / "r.json", tmp_path / "t.npz"
+    arguments = ["relax", trefoil, out, "--report", report, "--trajectory", trajectory, *ENDLESS]
+    command = [sys.executable, "-c", TALKATIVE, *map(str, arguments)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "running\n"
+        process.send_signal(number)
+        _, error = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert error.startswith("interrupted: the curve reached so far is kept")
+    assert error.count("\n") == 1
+    assert json.loads(report.read_text())["status"] == "interrupted"
+    verdict = verify(trajectory)
+    assert verdict.accepted
+    assert verdict.legs >= 2
+    with np.load(trajectory) as archive:
+        assert np.array_equal(archive["stage_000"][-1], read_curve(out).vertices)
+    assert sorted(os.listdir(tmp_path)) == ["o.txt", "r.json", "t.npz", "trefoil.txt"]
+
+
+@pytest.mark.parametrize("before", [False, True])
+def test_an_interrupt_while_an_iterate_is_recorded(
+    trefoil: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: bool
+) -> None:
+    """Curve and trajectory end with the same frame, wherever in the bookkeeping the interrupt comes."""
+    out, trajectory = tmp_path / "o.txt", tmp_path / "t.npz"
+
+    def interrupting(curve: Curve, options: RelaxOptions, callback: Callable[[Iterate], None]) -> Result:
+        def wrapped(iterate: Iterate) -> None:
+            if not (before and iterate.index == 3):
+                callback(iterate)
+            if iterate.index == 3:
+                raise KeyboardInterrupt
+
+        return minimize(curve, options, wrapped)
+
+    monkeypatch.setattr("mobius_flow.cli.relax.minimize", interrupting)
+    assert main(["relax", str(trefoil), str(out), "--trajectory", str(trajectory), "--quiet", *ENDLESS]) == 130
+    with np.load(trajectory) as archive:
+        assert len(archive["stage_000"]) >= 4
+        assert np.array_equal(archive["stage_000"][-1], read_curve(out).vertices)
+    assert verify(trajectory).accepted
+
+
+def test_the_handler_is_put_back(trefoil: Path) -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    assert main(["energy", str(trefoil)]) == 0
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+ENDLESS_WRITES = """
+import sys
+from mobius_flow.cli.relax import _write_report
+from mobius_flow.core import Trajectory, RelaxOptions, minimize, read_curve, relax, write_curve
+kind, source, target = sys.argv[1:]
+curve = read_curve(source)
+if kind == "trajectory":
+    trajectory = Trajectory()
+    for iterate in relax(curve, RelaxOptions(vertices=len(curve), max_iterations=2, edge_lengths="keep")):
+        trajectory.add(iterate)
+    write = lambda: trajectory.save(target)
+elif kind == "report":
+    result = minimize(curve, RelaxOptions(vertices=len(curve), max_iterations=0))
+    write = lambda: _write_report(target, result)
+else:
+    write = lambda: write_curve(target, curve)
+write()
+print("written", flush=True)
+while True:
+    write()
+"""
+TARGETS = {
+    "columns": "a.txt",
+    "obj": "a.obj",
+    "vect": "a.vect",
+    "json": "a.json",
+    "report": "r.json",
+    "trajectory": "t.npz",
+}
+
+
+@pytest.mark.parametrize("kind", TARGETS)
+def test_a_kill_while_writing_leaves_a_whole_file(tmp_path: Path, kind: str) -> None:
+    """The process writes the same file over and over, and is killed at odd moments."""
+    source, target = tmp_path / "source.txt", tmp_path / TARGETS[kind]
+    curve = regular_polygon(300)
+    write_curve(source, curve)
+    for pause in (0.0007, 0.0053, 0.0111):
+        command = [sys.executable, "-c", ENDLESS_WRITES, kind, str(source), str(target)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "written\n"
+            with pytest.raises(subprocess.TimeoutExpired):
+                process.wait(pause)
+            process.kill()
+        if kind == "report":
+            assert json.loads(target.read_text())["vertices"] == len(curve)
+        elif kind == "trajectory":
+            assert verify(target).accepted
+        else:
+            assert np.array_equal(read_curve(target).vertices, curve.vertices)
