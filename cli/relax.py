@@ -3,6 +3,7 @@
 import argparse
 import json
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..core import Curve, Iterate, RelaxOptions, Result, Status, Trajectory, minimize, read_curve
@@ -43,15 +44,28 @@ def run(options: argparse.Namespace) -> int:
         )
     curve = read_curve(options.input)
     result, iterates, trajectory = _relax(curve, wanted, output, options)
+    failures = []
     if options.report is not None:
-        _write_report(options.report, result)
+        failures += _failure(lambda: _write_report(options.report, result))
     if options.trajectory is not None:
-        trajectory.save(options.trajectory)
+        failures += _failure(lambda: trajectory.save(options.trajectory))
     # last, since a film takes a minute, in which it may be interrupted
-    output.write(options.output, result, iterates, not options.quiet and sys.stderr.isatty())
+    shown = not options.quiet and sys.stderr.isatty()
+    failures += _failure(lambda: output.write(options.output, result, iterates, shown))
+    if failures:
+        raise MobiusFlowError("; ".join(failures))
     if not options.quiet:
         print(_summary(result), file=sys.stderr)
     return EXIT_STATUS[result.status]
+
+
+def _failure(write: Callable[[], None]) -> list[str]:
+    """Write something, and return why that failed: the other outputs are written all the same."""
+    try:
+        write()
+    except MobiusFlowError as error:
+        return [str(error)]
+    return []
 
 
 def _relax(

@@ -1,6 +1,7 @@
 """The certified path of a relaxation as a file that others can check."""
 
 import os
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +44,10 @@ class Trajectory:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the trajectory as .npz, whole or not at all; a MobiusFlowError says why it cannot be."""
         try:
-            with atomic_write(path) as temporary, temporary.open("wb") as stream:
-                np.savez_compressed(stream, **self.arrays())
+            with atomic_write(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+                # as numpy.savez_compressed does, which leaves the archive open, and loud, when the disk is full
+                for name, array in self.arrays().items():
+                    with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                        np.lib.format.write_array(member, array, allow_pickle=False)
         except OSError as error:
             raise MobiusFlowError(f"{Path(path)}: cannot be written: {error.strerror or error}") from error
