@@ -1,5 +1,6 @@
 """Disks that are full or read-only, and places where no file can be: one sentence, and the old file stays."""
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -40,9 +41,9 @@ def disk(tmp_path: Path) -> Iterator[Path]:
 
 
 def fill(disk: Path) -> None:
-    with (disk / "full").open("wb", buffering=0) as stream, pytest.raises(OSError, match="No space"):
-        while True:
-            stream.write(b"x" * 512)
+    with contextlib.suppress(OSError), (disk / "full").open("wb", buffering=0) as stream:
+        while stream.write(b"x" * 512):
+            pass
 
 
 def error_of(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:

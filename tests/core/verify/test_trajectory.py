@@ -3,6 +3,7 @@
 import io
 import json
 import struct
+import tracemalloc
 import zipfile
 from pathlib import Path
 
@@ -75,6 +76,73 @@ def test_refuses_wrong_files(tmp_path: Path) -> None:
     assert "cannot be read" in verify(tmp_path / "none.npz").reason
     (tmp_path / "text.npz").write_text(json.dumps({"stage_000": []}))
     assert "cannot be read" in verify(tmp_path / "text.npz").reason
+
+
+def test_fortran_order_is_the_same_trajectory(tmp_path: Path) -> None:
+    """As numpy.savez writes a transposed array."""
+    frames = np.stack([regular_polygon(8).vertices * k for k in (1.0, 1.1, 1.3)])
+    for change in (1.0, -1.0):  # the second one moves half of the octagon through the rest
+        frames[2, :4] *= change
+        verdicts = []
+        for name, array in (("C", frames), ("F", np.asfortranarray(frames))):
+            np.savez(tmp_path / f"{name}.npz", stage_000=array, component_sizes_000=np.array([8]))
+            verdicts.append(verify(tmp_path / f"{name}.npz"))
+        assert verdicts[0] == verdicts[1]
+        assert verdicts[0].accepted == (change > 0)
+    frames[1, 2, 0] = np.nan
+    np.savez(tmp_path / "F.npz", stage_000=np.asfortranarray(frames), component_sizes_000=np.array([8]))
+    assert "stage_000, frame 1: a coordinate is not finite" in verify(tmp_path / "F.npz").reason
+
+
+def test_pickles_and_other_types_are_refused(tmp_path: Path) -> None:
+    frames, sizes = np.ones((1, 4, 3)), np.array([4])
+    kinds = {
+        "objects": {"stage_000": frames.astype(object), "component_sizes_000": sizes},
+        "structures": {"stage_000": np.zeros((1, 4, 3), dtype=[("x", "<f8")]), "component_sizes_000": sizes},
+        "sizes that are objects": {"stage_000": frames, "component_sizes_000": sizes.astype(object)},
+        "single precision": {"stage_000": frames.astype(np.float32), "component_sizes_000": sizes},
+        "text": {"stage_000": frames.astype(str), "component_sizes_000": sizes},
+        "complex": {"stage_000": frames.astype(complex), "component_sizes_000": sizes},
+    }
+    for kind, arrays in kinds.items():
+        np.savez(tmp_path / "T.npz", **arrays)
+        verdict = verify(tmp_path / "T.npz")
+        assert not verdict.accepted, kind
+        assert verdict.reason.startswith(("stage_000 ", "component_sizes_000 ")), kind
+        assert "\n" not in verdict.reason
+
+
+@pytest.mark.parametrize("fortran", [False, True])
+@pytest.mark.parametrize("claimed", [10**9, 2**62])
+def test_claims_and_bombs_take_no_memory(tmp_path: Path, fortran: bool, claimed: int) -> None:
+    """Claims of many frames or vertices, with 64 MB of zeros that compress to nothing."""
+    zeros, vertices = bytes(1 << 26), struct.pack("<q", claimed)
+    for shape, sizes in (((claimed, 4, 3), SIZES), ((1, claimed, 3), npy((1,), vertices, "<i8"))):
+        path = tmp_path / "T.npz"
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+            file.writestr("stage_000.npy", npy(shape, zeros, fortran=fortran))
+            file.writestr("component_sizes_000.npy", sizes)
+        tracemalloc.start()
+        verdict = verify(path)
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert not verdict.accepted
+        assert peak < 1 << 23
+
+
+def test_paths_that_are_no_files(tmp_path: Path) -> None:
+    for path in (tmp_path, tmp_path / "none", "a\0b", ""):
+        assert "cannot be read" in verify(path).reason
+
+
+@pytest.mark.parametrize("scale", [1e300, 1.5e308, 1e-300])
+def test_numbers_near_the_end_of_the_range(tmp_path: Path, scale: float) -> None:
+    square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    fine = np.stack([square, 0.5 * (square + np.roll(square, -1, axis=0))], axis=1).reshape(-1, 3)
+    arrays = {"stage_000": scale * square[None], "component_sizes_000": np.array([4])}
+    arrays |= {"stage_001": scale * np.stack([fine, 0.5 * fine]), "component_sizes_001": np.array([8])}
+    np.savez(tmp_path / "T.npz", **arrays)
+    assert verify(tmp_path / "T.npz").accepted
 
 
 def test_damaged_files_never_crash_it(tmp_path: Path) -> None:
