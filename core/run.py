@@ -7,15 +7,19 @@ import numpy as np
 
 from .adaptive import INTERVAL, adapt, graded_problem
 from .curve import Curve, refine
-from .descent import NoStep, Point, Problem, State, Step
+from .curve.distances import arc_distance_of_pairs
+from .curve.refine import STRAND_RATIO
+from .descent import NoStep, Point, Problem, Step
 from .descent.escape import escape_step
 from .energies import MoebiusEnergy
 from .energies.near_pairs import near_pairs
 from .iterate import Iterate, Status
 from .knots.composite import knotted_ball
 from .options import RelaxOptions
+from .parting import separate_parts, split
 from .setup import method_named, start_problem
 from .stability import stability
+from .stepping import Stepper
 from .types import FloatArray
 
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
@@ -40,11 +44,10 @@ class Run:
 
     def __init__(self, problem: Problem, start: Curve, options: RelaxOptions) -> None:
         self._options = options
-        self._method = method_named(options.method)
         self._vertices = options.vertices
         self._first_count = len(start)
         self._begin(graded_problem(problem, start, options.vertices) if options.adaptive else problem, start, 0)
-        self._state = State()
+        self._stepper = Stepper(method_named(options.method))
 
     def iterates(self) -> Iterator[Iterate]:
         """Yield the start and every accepted step; the last iterate has a status other than RUNNING."""
@@ -62,9 +65,11 @@ class Run:
             yield iterate
             if iterate.status is not Status.RUNNING:
                 return
-            step, self._state = self._step(way_down)
+            step = self._step(way_down)
             if isinstance(step, Step):
                 self._accept(step)
+                if self._iterate.index % INTERVAL == 0:
+                    self._hold_parts()
                 if self._options.adaptive and self._iterate.index % INTERVAL == 0:
                     yield from self._adapt(None)
                 just_refined = False
@@ -77,18 +82,12 @@ class Run:
             yield from self._adapt(step.limited_by)
             just_refined = True
 
-    def _step(self, way_down: tuple[FloatArray, float] | None) -> tuple[Step | NoStep, State]:
-        """The next step; one whose end is too degenerate to go on from is none."""
-        try:
-            if way_down is not None:
-                step, state = escape_step(self._point, *way_down), State()
-            else:
-                step, state = self._method.step(self._point, self._state)
-            if isinstance(step, Step):
-                step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
-        except np.linalg.LinAlgError as error:
-            return NoStep(f"the curve has become too degenerate: {error}"), self._state
-        return step, state
+    def _step(self, way_down: tuple[FloatArray, float] | None) -> Step | NoStep:
+        """The next step, from a saddle along the way down."""
+        if way_down is None:
+            return self._stepper.step(self._point)
+        self._stepper.restart()
+        return escape_step(self._point, *way_down)
 
     def _begin(self, problem: Problem, curve: Curve, index: int) -> None:
         """Start on a mesh."""
@@ -115,7 +114,20 @@ class Run:
         # the last motion on the old mesh, then the same curve on the new one
         yield self._described(moved, curve, index + 1, 0.0, (change.moved,))
         self._begin(change.problem, change.curve, index + 2)
-        self._state = State(None, self._state.last_step)
+        self._stepper.forget()
+
+    def _hold_parts(self) -> None:
+        """Keep parts that are not linked from drifting apart for ever, once they are far from each other."""
+        constraints = self._problem.constraints
+        if self._problem.penalty is not None:
+            return
+        parts = separate_parts(self._iterate.curve)
+        if max(parts) > max(constraints.parts or (0,)):
+            constraints = constraints.of_parts(self._point.curve, parts)
+            self._problem = replace(self._problem, constraints=constraints)
+            self._point = self._problem.at(self._point.vertices)
+            self._iterate = replace(self._iterate, gradient_norm=self._point.gradient_norm)
+            self._stepper.forget()
 
     def _make_finer(self) -> None:
         """Go on with more vertices on the same curve."""
@@ -125,14 +137,14 @@ class Run:
         if self._options.adaptive:
             problem = graded_problem(problem, curve, self._vertices)
         self._begin(problem, curve, self._iterate.index + 1)
-        self._state = State()
+        self._stepper.restart()
 
     def _tight(self, iterate: Iterate) -> Iterate:
         """What to say of a converged curve whose strands are nearer than its mesh resolves."""
         if self._options.resolve:
             message = f"stalled: strands pull tight, nearer than {len(iterate.curve)} vertices resolve"
             return replace(iterate, status=Status.STALLED, message=message)
-        note = "; strands are nearer than this mesh resolves, and finer ones give less energy (option resolve goes on)"
+        note = "; strands are nearer than this mesh resolves, and with more vertices there is less energy to reach"
         return replace(iterate, message=iterate.message + note)
 
     def _advice(self) -> str:
@@ -170,8 +182,11 @@ def _unless_composite(iterate: Iterate) -> Iterate:
 
 
 def _unresolved(iterate: Iterate) -> bool:
-    """Whether strands are so near that the barrier still acts."""
-    return len(near_pairs(iterate.curve)[0]) > 0
+    """Whether strands, not merely edges of very different lengths, are so near that the barrier still acts."""
+    curve = iterate.curve
+    i, j = near_pairs(curve)
+    distance = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)
+    return bool(np.any(arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance))
 
 
 def _judged(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Iterate, tuple[FloatArray, float] | None]:
@@ -181,6 +196,13 @@ def _judged(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Iter
     way_down = None
     if iterate.gradient_norm <= bound and feasible:
         message = f"converged: projected gradient {iterate.gradient_norm:.3g} ≤ {bound:.3g}"
+        parts = point.problem.constraints.parts
+        if parts is not None:
+            alone = sum(MoebiusEnergy().value(part) for part in split(iterate.curve, parts))
+            message += (
+                "; parts that are not linked, which would drift apart for ever, are held in their places; the sum of "
+                f"their own energies is {alone:.6g}"
+            )
         iterate = replace(iterate, status=Status.CONVERGED, message=message)
         if options.stability or options.escape_saddles:
             found = stability(point)

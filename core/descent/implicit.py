@@ -14,7 +14,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..constraints import ConstraintDerivative
 from ..metrics import Metric, MoebiusMetric
 from ..saddle import SaddleSolver
 from .feasibility import restore
@@ -49,7 +48,7 @@ class ImplicitFlow:
         share = 1.0
         limited_by = None
         for _ in range(MAX_TRIALS):
-            solver = SaddleSolver(point.saddle.matrix / tau + preconditioner, ConstraintDerivative.at(point.curve))
+            solver = SaddleSolver(point.saddle.matrix / tau + preconditioner, point.saddle.constraints)
             trial = _backward_euler(point, tau, share, solver)
             if trial is not None:
                 slope = float(np.sum(point.derivative * (trial.vertices - point.vertices)))

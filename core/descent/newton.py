@@ -24,7 +24,8 @@ def energy_hessian(point: Point) -> LinearMap:
 def lagrangian_hessian(point: Point) -> LinearMap:
     """v ↦ (D²E − Σ λ_I D²Φ_I) v, with λ from (41).
 
-    The barycenter's multipliers vanish, because the energy does not change under translations.
+    The barycenter's multipliers vanish, because the energy does not change under translations.  (Where parts of a link
+    have a barycenter each, they are the small force between parts that are far away; it is left out.)
     """
     of_energy = energy_hessian(point)
     ell, mesh = point.curve.edge_lengths, point.problem.mesh

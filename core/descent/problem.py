@@ -67,7 +67,7 @@ class Problem:
         """The factorised system (41) of [RS21] at a curve."""
         matrix = self.metric.matrix(curve)
         if self.penalty is None:
-            return SaddleSolver(matrix, ConstraintDerivative.at(curve))
+            return SaddleSolver(matrix, self.constraints.derivative(curve))
         # without extension the constraints' part must vanish: infinitely compliant
         weight = self.penalty if self.extended else np.finfo(np.float64).tiny
         return SaddleSolver(matrix, ConstraintDerivative.of_lengths(curve), 1.0 / (weight * self.constraints.lengths))

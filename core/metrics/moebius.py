@@ -21,8 +21,9 @@ from ..types import FloatArray
 from .local import lumped_mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
-NEAREST = 0.01  # times ℓ_I + ℓ_J: nearer pairs count as far as they are along the curve.  Their 1/r⁴ would leave no digits
-# to the others, and forbid the very motion that brings strands apart
+# Nearer pairs than this, times ℓ_I + ℓ_J, count as far as they are along the curve.  Their 1/r⁴ would leave no digits
+# to the others, and forbid the very motion that brings strands apart.
+NEAREST = 0.01
 
 
 @dataclass(frozen=True)

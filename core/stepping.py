@@ -1,0 +1,82 @@
+"""Steps by the method asked for, and by another one where that cannot go on: never stuck while there is a way."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .collision import minimal_gap
+from .descent import METHODS, Method, NoStep, Point, State, Step
+
+HELPER = METHODS["flow-h3-2"]  # its metric does not see how near strands are, and so does not hold them together
+NEARLY_TOUCHING = 0.05  # times ℓ_I + ℓ_J, the gap below which it is asked first
+HELPS = 10  # steps it takes when the other method finds none
+PROGRESS = 1e-6  # relative decrease of energy without which asking it again is no use
+
+
+class Stepper:
+    """A method with its memory, and how far another one has to help out.
+
+    Parameters
+    ----------
+    method
+        The method asked for.
+    """
+
+    def __init__(self, method: Method) -> None:
+        self._method = self._last = method
+        self._state = State()
+        self._helps = 0  # steps that the helper is still to take
+        self._helped_at = np.inf  # energy at which it was asked last
+
+    def forget(self) -> None:
+        """Forget the method's memory, because the curve or its mesh has changed."""
+        self._state = State(None, self._state.last_step)
+
+    def restart(self) -> None:
+        """Forget the last step's size too."""
+        self._state = State()
+
+    def step(self, point: Point) -> Step | NoStep:
+        """Take a step; the helper takes it if strands nearly touch, or if the method finds none.
+
+        The step's point belongs to the same problem.
+        """
+        if not self._may_help(point):
+            return self._by(self._method, point)
+        if self._helps or _nearly_touching(point):
+            self._helps = max(0, self._helps - 1)
+            return self._by(HELPER, point)
+        step = self._by(self._method, point)
+        if isinstance(step, NoStep) and point.energy < (1.0 - PROGRESS) * self._helped_at:
+            self._helps, self._helped_at = HELPS, point.energy
+            helped = self._by(HELPER, point)
+            return helped if isinstance(helped, Step) else step
+        return step
+
+    def _may_help(self, point: Point) -> bool:
+        return point.problem.penalty is None and self._method is not HELPER
+
+    def _by(self, method: Method, point: Point) -> Step | NoStep:
+        if method is not self._last:
+            self._last = method
+            self.restart()
+        problem = point.problem
+        if method is HELPER and problem.metric is not HELPER.metric:
+            point = replace(problem, metric=HELPER.metric).at(point.vertices)
+        try:
+            step, self._state = method.step(point, self._state)
+            if isinstance(step, Step):
+                if step.point.problem is not problem:
+                    step = replace(step, point=problem.at(step.point.vertices))
+                step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
+        except np.linalg.LinAlgError as error:
+            return NoStep(f"the curve has become too degenerate: {error}")
+        return step
+
+
+def _nearly_touching(point: Point) -> bool:
+    """Whether strands are so near that J_C would hold them together."""
+    if not point.problem.certifiable:
+        return False
+    gap, pair = minimal_gap(point.curve)
+    return pair is not None and gap < NEARLY_TOUCHING * float(point.curve.edge_lengths[list(pair)].sum())

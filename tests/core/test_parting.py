@@ -1,0 +1,124 @@
+"""Parts of a link that are not linked are held in place once they are far apart, and only then."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, RelaxOptions, Status, minimize
+from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.knots import knot
+from mobius_flow.core.metrics import METRICS
+from mobius_flow.core.parting import separate_parts
+from mobius_flow.core.saddle import SaddleSolver
+
+
+def ring(center, radius=1.0, size=12):
+    t = 2 * np.pi * np.arange(size) / size
+    return np.array(center) + radius * np.column_stack([np.cos(t), np.sin(t), 0 * t])
+
+
+def rings(*xs, radius=1.0):
+    return Curve.from_components([ring([x, 0, 0], radius) for x in xs])
+
+
+def test_far_parts_are_told_apart():
+    assert separate_parts(rings(0, 4)) == (0, 1)
+    assert separate_parts(rings(0, 2.9)) == (0, 0)
+    assert separate_parts(rings(0, 9, 2.5, 11)) == (0, 1, 0, 1)
+    assert separate_parts(knot("3_1")) == (0,)
+    assert separate_parts(knot("L2a1")) == (0, 0)
+
+
+def test_a_large_part_keeps_small_ones_that_it_could_go_round():
+    """A chain of small rings through a large one: every two small balls are far apart, the balls of chains are not."""
+    large = ring([0, 0, 0], 5.0, 40)
+    small = [ring([5.0 + x, 0.0, 0.0], 0.1) for x in (-4.0, 0.0, 4.0)]
+    assert separate_parts(Curve.from_components([large, *small])) == (0, 0, 0, 0)
+
+
+def test_very_many_parts_are_one():
+    assert set(separate_parts(rings(*(4.0 * k for k in range(60))))) == {0}
+
+
+@pytest.fixture
+def parted():
+    rng = np.random.default_rng(4)
+    curve = rings(0, 5, 10)
+    curve = curve.with_vertices(curve.vertices + 0.1 * rng.normal(size=curve.vertices.shape))
+    return curve, Constraints(1.1 * curve.edge_lengths, np.zeros(3)).of_parts(curve, (0, 1, 1))
+
+
+def test_barycenters_of_parts_add_up(parted):
+    curve, constraints = parted
+    both = weighted_barycenter(curve, constraints.parts).reshape(2, 3)
+    np.testing.assert_allclose(both.sum(axis=0), weighted_barycenter(curve))
+    np.testing.assert_allclose(constraints.residual(curve)[len(curve) :], 0)
+
+
+def test_taylor_of_parts(parted):
+    curve, constraints = parted
+    u = np.random.default_rng(5).normal(size=curve.vertices.shape)
+    linear = constraints.derivative(curve).apply(u)
+    start = constraints.residual(curve)
+    steps = 2.0 ** -np.arange(3, 9)
+    errors = [
+        np.linalg.norm(constraints.residual(curve.with_vertices(curve.vertices + t * u)) - start - t * linear)
+        for t in steps
+    ]
+    assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(2, abs=0.1)
+
+
+def test_solver_with_parts_against_dense_matrix(parted):
+    curve, constraints = parted
+    derivative = constraints.derivative(curve)
+    n, m = curve.vertices.shape
+    matrix = METRICS["moebius"].matrix(curve)
+    rows = np.stack([derivative.apply(unit.reshape(n, m)) for unit in np.eye(n * m)], axis=1)
+    assert rows.shape == (n + 6, n * m)
+    dense = np.block([[np.kron(matrix, np.eye(m)), rows.T], [rows, np.zeros((n + 6, n + 6))]])
+    covector = np.random.default_rng(6).normal(size=(n, m))
+    expected = np.linalg.solve(dense, np.concatenate([covector.ravel(), np.zeros(n + 6)]))
+    u, multipliers = SaddleSolver(matrix, derivative).gradient(covector)
+    np.testing.assert_allclose(u.ravel(), expected[: n * m], atol=1e-8 * np.abs(expected).max())
+    np.testing.assert_allclose(derivative.apply_transpose(multipliers).ravel(), rows.T @ multipliers, atol=1e-8)
+
+
+def test_one_part_is_the_usual_constraint():
+    curve = knot("L2a1")
+    usual, one = ConstraintDerivative.at(curve), ConstraintDerivative.at(curve, (0, 0))
+    np.testing.assert_array_equal(usual.barycenter, one.barycenter)
+
+
+@pytest.mark.parametrize("method", ["lbfgs", "flow-moebius", "trust-region"])
+def test_unlinked_circles_come_to_rest(method):
+    """They used to drift apart until the iterations were used up."""
+    curve = Curve.from_components([ring([0, 0, 0], 1.0, 40), ring([0.2, 0, 0.1], 1.0, 40)])
+    result = minimize(curve, RelaxOptions(method=method, vertices=80))
+    assert result.status is Status.CONVERGED
+    assert "not linked" in result.message
+    assert float(result.message.split()[-1]) == pytest.approx(8, rel=1e-2)
+    assert result.certified
+    assert np.abs(result.curve.vertices).max() < 20
+    for component in result.curve.components:
+        edges = np.linalg.norm(component - np.roll(component, 1, axis=0), axis=1)
+        radius = np.linalg.norm(component - component.mean(axis=0), axis=1)
+        assert radius.std() < 1e-2 * radius.mean()
+        assert edges.std() < 1e-9
+
+
+def test_linked_components_are_not_held():
+    result = minimize(knot("L2a1"), RelaxOptions(vertices=120))
+    assert "not linked" not in result.message
+    assert result.energies[-1] < 48
+
+
+@pytest.mark.parametrize("method", ["lbfgs", "cg", "flow-moebius"])
+def test_strands_a_billionth_apart_come_apart(method):
+    t = 2 * np.pi * np.arange(60) / 60
+    eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 0.5e-9 * np.sin(t)]))
+    result = minimize(eight, RelaxOptions(method=method, vertices=100))
+    assert result.status is Status.CONVERGED
+    assert result.certified
+    assert result.energies[-1] < 4.02
+    circles = Curve.from_components([ring([0, 0, 0], 1.0, 40), ring([0, 0, 1e-9], 1.0, 40)])
+    result = minimize(circles, RelaxOptions(method=method, vertices=80))
+    assert result.status is Status.CONVERGED
+    assert result.energies[-1] < 15

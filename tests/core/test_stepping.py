@@ -1,0 +1,73 @@
+"""Another method helps out where the one asked for finds no step, or strands nearly touch."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import METHODS, Curve, RelaxOptions
+from mobius_flow.core.descent import NoStep, Step
+from mobius_flow.core.knots import knot
+from mobius_flow.core.setup import start_problem
+from mobius_flow.core.stepping import HELPER, HELPS, Stepper
+
+
+class Stubborn:
+    """A method that never finds a step, and counts how often it is asked."""
+
+    name, description, penalty, second_order = "stubborn", "finds no step", None, False
+    metric = METHODS["lbfgs"].metric
+
+    def __init__(self):
+        self.asked = 0
+
+    def step(self, point, state):
+        self.asked += 1
+        return NoStep("it never does"), state
+
+
+@pytest.fixture
+def point():
+    curve = knot("3_1")
+    problem = start_problem(curve, RelaxOptions())
+    return problem.at(problem.units.from_user(curve.vertices))
+
+
+def test_the_helper_goes_on_where_a_method_is_stuck(point):
+    method = Stubborn()
+    stepper = Stepper(method)
+    for _ in range(HELPS + 1):
+        step = stepper.step(point)
+        assert isinstance(step, Step)
+        assert step.point.problem is point.problem
+        assert step.point.energy < point.energy
+        point = step.point
+    assert method.asked == 1
+
+
+def test_it_is_not_asked_twice_in_vain(point):
+    stepper = Stepper(Stubborn())
+    for _ in range(HELPS + 1):
+        stepper.step(point)  # the same point again and again: no progress
+    step = stepper.step(point)
+    assert isinstance(step, NoStep)
+    assert step.reason == "it never does"
+
+
+def test_strands_that_nearly_touch_are_for_the_helper():
+    t = 2 * np.pi * np.arange(60) / 60
+    eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 0.5e-3 * np.sin(t)]))
+    problem = start_problem(eight, RelaxOptions())
+    point = problem.at(problem.units.from_user(eight.vertices))
+    method = Stubborn()
+    step = Stepper(method).step(point)
+    assert isinstance(step, Step)
+    assert method.asked == 0
+
+
+def test_the_helper_and_penalised_problems_get_no_help(point):
+    class StubbornHelper(Stubborn):
+        penalty = 10.0
+
+    curve = knot("3_1")
+    problem = start_problem(curve, RelaxOptions(method="penalty-lbfgs"))
+    penalised = problem.at(problem.units.from_user(curve.vertices))
+    assert isinstance(Stepper(StubbornHelper()).step(penalised), NoStep)
+    assert isinstance(Stepper(HELPER).step(point), Step)
