@@ -9,7 +9,8 @@ import numpy as np
 
 from .curve import Curve
 from .iterate import Iterate
-from .knots import hard_unknot, knot, rope, scramble, spiral, torus_knot
+from .knots import KNOTS as TABLE
+from .knots import braid_word, hard_unknot, knot, lattice_closure, rope, scramble, spiral, torus_knot, unknot_word
 from .knots.alexander import signature
 from .options import RelaxOptions
 from .relax import Result, minimize
@@ -36,26 +37,44 @@ def uneven(curve: Curve, ratio: float, seed: int) -> Curve:
     return Curve(np.concatenate(pieces))
 
 
-KNOTS: Mapping[str, Callable[[], Curve]] = MappingProxyType(
+def lattice(name: str) -> Curve:
+    """A knot or link of the table as a coarse polygon on the cubic lattice."""
+    return lattice_closure(braid_word(name))
+
+
+def lattice_unknot(crossings: int) -> Curve:
+    """A hard unknot as a coarse polygon on the cubic lattice."""
+    return lattice_closure(unknot_word(crossings, seed=crossings))
+
+
+Curves = Mapping[str, Callable[[], Curve]]
+
+KNOTS: Curves = MappingProxyType(
     {
-        **{f"unknot-{c}": partial(hard_unknot, c, seed=c) for c in (20, 40, 60, 100, 141)},
+        **{f"unknot-{c}": partial(hard_unknot, c, seed=c) for c in (20, 60, 100)},
+        **{f"unknot-lattice-{c}": partial(lattice_unknot, c) for c in (20, 40, 60, 80, 100, 120, 141)},
         "unknot-scrambled": lambda: scramble(knot("0_1"), seed=11),
         "unknot-spiral": lambda: spiral(6.0),
         "unknot-rope": lambda: rope(6.0, 0.02),
         "unknot-edges-1000": lambda: uneven(hard_unknot(20, seed=3), 1000.0, seed=5),
-        **{name: partial(knot, name) for name in ("3_1", "6_2", "7_7", "8_19", "9_35", "10_132")},
+        **{name: partial(lattice, name) for name in ("3_1", "6_2", "7_7", "8_19", "9_35", "10_132")},
         "4_1-scrambled": lambda: scramble(knot("4_1"), seed=7),
         "torus-3-5": lambda: torus_knot(3, 5),
-        **{name: partial(knot, name) for name in ("L2a1", "L5a1", "L6a4")},
+        **{name: partial(lattice, name) for name in ("L2a1", "L5a1", "L6a4")},
     }
 )
-"""Every curve of the bench, by name."""
+"""Curves that are hard each in its own way."""
+
+PRIMES: Curves = MappingProxyType({name: partial(lattice, name) for name in TABLE if name != "0_1"})
+"""Every prime knot to ten crossings and the links of the table, as coarse lattice polygons."""
+
+SETS: Mapping[str, Curves] = MappingProxyType({"knots": KNOTS, "primes": PRIMES})
 
 
-def bench(names: list[str], options: RelaxOptions, callback: Callable[[Iterate], None] | None = None) -> Iterator[Row]:
-    """Relax the named curves one by one."""
-    for name in names:
-        curve = KNOTS[name]()
+def bench(curves: Curves, options: RelaxOptions, callback: Callable[[Iterate], None] | None = None) -> Iterator[Row]:
+    """Relax curves one by one."""
+    for name, make in curves.items():
+        curve = make()
         before = signature(curve)
         result = minimize(curve, options, callback)
         after = signature(result.curve)

@@ -2,6 +2,7 @@
 
 from .closures import braid_closure
 from .contacts import rope, spiral
+from .lattice import lattice_closure
 from .names import UnknownKnotError, braid_word, knot
 from .scrambles import scramble
 from .table import ALIASES, KNOTS
@@ -16,6 +17,7 @@ __all__ = [
     "braid_word",
     "hard_unknot",
     "knot",
+    "lattice_closure",
     "rope",
     "scramble",
     "spiral",
