@@ -1,11 +1,48 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
 import math
-from dataclasses import dataclass
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from numbers import Integral, Real
+from types import MappingProxyType
+
+import numpy as np
 
 from .errors import OptionError
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What a value may be, and how to say so."""
+
+    types: type | tuple[type, ...]
+    noun: str
+
+
+_INTEGER = _Kind(Integral, "a whole number")
+_REAL = _Kind(Real, "a number")
+_NAME = _Kind(str, "a name")
+_BOOL = _Kind((bool, np.bool_), "True or False")
+_KINDS: Mapping[str, tuple[bool, _Kind]] = MappingProxyType(  # whether None is allowed, and what else
+    {
+        "method": (False, _NAME),
+        "max_iterations": (False, _INTEGER),
+        "tolerance": (False, _REAL),
+        "vertices": (True, _INTEGER),
+        "energy": (False, _NAME),
+        "metric": (True, _NAME),
+        "quadrature_points": (False, _INTEGER),
+        "penalty": (True, _REAL),
+        "adaptive": (False, _BOOL),
+        "resolve": (False, _BOOL),
+        "edge_lengths": (False, _NAME),
+        "stability": (False, _BOOL),
+        "escape_saddles": (False, _BOOL),
+    }
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,6 +103,7 @@ class RelaxOptions:
     escape_saddles: bool = False
 
     def __post_init__(self) -> None:
+        self._check_types()
         if self.max_iterations < 0:
             raise OptionError(f"max_iterations is {self.max_iterations}; it must be 0 or more")
         if not (math.isfinite(self.tolerance) and self.tolerance > 0):
@@ -80,3 +118,15 @@ class RelaxOptions:
             raise OptionError("an adaptive mesh makes its own edge_lengths; leave one of the two options out")
         if self.edge_lengths not in EDGE_LENGTHS:
             raise OptionError(f"edge_lengths is {self.edge_lengths!r}; choose one of {', '.join(EDGE_LENGTHS)}")
+
+    def _check_types(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            optional, kind = _KINDS[field.name]
+            if value is None and optional:
+                continue
+            # bool is a kind of int, but no number; NumPy's numbers are welcome
+            if not isinstance(value, kind.types) or (isinstance(value, bool) and kind is not _BOOL):
+                raise OptionError(f"{field.name} is {value!r:.40}; it must be {kind.noun}")
+            if kind is _REAL and isinstance(value, int) and abs(value) > sys.float_info.max:
+                raise OptionError(f"{field.name} is too large; it must be a finite number above 0")

@@ -9,11 +9,11 @@ import numpy as np
 from .collision import check_embedded, minimal_gap
 from .curve import Curve, refine
 from .energies import MoebiusEnergy
-from .errors import CurveError
+from .errors import CurveError, OptionError
 from .iterate import Iterate, Status
 from .options import RelaxOptions
 from .run import Run
-from .setup import method_named, start_problem
+from .setup import MOST_VERTICES, method_named, start_problem
 from .units import check_units
 
 NEAREST_STRANDS = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
@@ -95,6 +95,8 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     """
     options = RelaxOptions() if options is None else options
     method_named(options.method)
+    if options.vertices is not None and options.vertices > MOST_VERTICES:
+        raise OptionError(f"vertices is {options.vertices}; dense matrices have at most {MOST_VERTICES} rows")
     check_units(curve)
     check_embedded(curve)
     refined = _embedded_refinement(curve, options.vertices)

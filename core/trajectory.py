@@ -48,6 +48,6 @@ class Trajectory:
                 # as numpy.savez_compressed does, which leaves the archive open, and loud, when the disk is full
                 for name, array in self.arrays().items():
                     with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
-                        np.lib.format.write_array(member, array, allow_pickle=False)
+                        np.lib.format.write_array(member, array, allow_pickle=False)  # type: ignore[no-untyped-call]
         except OSError as error:
             raise MobiusFlowError(f"{Path(path)}: cannot be written: {error.strerror or error}") from error
