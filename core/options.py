@@ -11,6 +11,7 @@ import numpy as np
 
 from .errors import OptionError
 
+MOST_QUADRATURE_POINTS = 16  # work grows with the square
 EDGE_LENGTHS = ("auto", "equal", "keep")
 
 
@@ -110,8 +111,10 @@ class RelaxOptions:
             raise OptionError(f"tolerance is {self.tolerance}; it must be a finite number above 0")
         if self.vertices is not None and self.vertices < 3:
             raise OptionError(f"vertices is {self.vertices}; it must be 3 or more")
-        if self.quadrature_points < 1:
-            raise OptionError(f"quadrature_points is {self.quadrature_points}; it must be 1 or more")
+        if not 1 <= self.quadrature_points <= MOST_QUADRATURE_POINTS:
+            raise OptionError(
+                f"quadrature_points is {self.quadrature_points!s:.40}; it must be from 1 to {MOST_QUADRATURE_POINTS}"
+            )
         if self.penalty is not None and not (math.isfinite(self.penalty) and self.penalty > 0):
             raise OptionError(f"penalty is {self.penalty}; it must be a finite number above 0")
         if self.adaptive and self.edge_lengths != "auto":

@@ -157,6 +157,7 @@ VALUES: dict[str, st.SearchStrategy[object]] = {
 @example(wanted={"tolerance": 10**400})
 @example(wanted={"vertices": 100.5})
 @example(wanted={"method": []})
+@example(wanted={"quadrature_points": 10**30})
 @settings(max_examples=300, deadline=None)
 def test_any_options_are_valid_or_refused_in_one_sentence(wanted: dict[str, object]) -> None:
     try:
