@@ -1,10 +1,11 @@
 """Unlinked parts of a link would drift apart for ever: once they are far enough apart each is held in place."""
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 
 from .constraints import Parts
 from .curve import Curve
-from .types import FloatArray, IntArray
+from .types import BoolArray, FloatArray, IntArray
 
 APART = 1.0  # gap between the balls around two parts, in radii of the larger one
 MOST_PARTS = 50  # each has rows of its own in the linear systems
@@ -16,18 +17,13 @@ def separate_parts(curve: Curve) -> Parts:
     Disjoint balls prove that parts are not linked.  All is one part if there would be very many.
     """
     components = len(curve.mesh.component_sizes)
-    part = np.arange(components)
-    while True:
-        centers, radii = _balls(curve, part)
-        near = _near(centers, radii)
-        if near is None:
+    part, count = np.arange(components), components
+    while count > 1:
+        fewer, merged = connected_components(_near(*_balls(curve, part)), directed=False)
+        if fewer == count:
             break
-        first, second = near
-        part[part == second] = first
-        part = np.unique(part, return_inverse=True)[1]
-    if part.max() >= MOST_PARTS:
-        return (0,) * components
-    return tuple(part.tolist())
+        part, count = merged[part], fewer
+    return tuple(part.tolist()) if count <= MOST_PARTS else (0,) * components
 
 
 def split(curve: Curve, parts: Parts) -> list[Curve]:
@@ -50,9 +46,7 @@ def _balls(curve: Curve, part: IntArray) -> tuple[FloatArray, FloatArray]:
     return np.array(centers), np.array(radii)
 
 
-def _near(centers: FloatArray, radii: FloatArray) -> tuple[int, int] | None:
-    """Two parts whose balls are not far enough apart, the first the lower number."""
+def _near(centers: FloatArray, radii: FloatArray) -> BoolArray:
+    """Which balls are not far enough from each other to be parts; shape (p, p)."""
     distance = np.linalg.norm(centers[:, None] - centers[None, :], axis=2)
-    wanted = radii[:, None] + radii[None, :] + APART * np.maximum(radii[:, None], radii[None, :])
-    pairs = np.argwhere(np.triu(distance < wanted, 1))
-    return None if not len(pairs) else (int(pairs[0, 0]), int(pairs[0, 1]))
+    return np.asarray(distance < radii[:, None] + radii[None, :] + APART * np.maximum(radii[:, None], radii[None, :]))

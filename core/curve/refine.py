@@ -19,6 +19,7 @@ from .mesh import Mesh
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
 MOST_VERTICES = 1000  # per component, unless the curve has half as many: more are too slow to be of use
+MOST_ALTOGETHER = 5000  # unless the curve has more: dense matrices of so many rows take a minute a step
 COMPONENTS = 10  # that get so many each; more share what ten would have
 SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
 
@@ -94,7 +95,7 @@ def _affordable_pieces(curve: Curve, spacing: FloatArray) -> IntArray:
 
     Where gaps are too narrow for that, the barrier's exact energies and an adaptive mesh have to do.
     """
-    most = max(2 * len(curve), MOST_VERTICES * _sharers(curve))
+    most = max(len(curve), min(max(2 * len(curve), MOST_VERTICES * _sharers(curve)), MOST_ALTOGETHER))
     floor = 0.0
     while True:
         # a little slack, so that a curve that already has the spacing asked for stays as it is

@@ -83,3 +83,10 @@ def test_narrow_gaps_cost_no_more_than_can_be_afforded(gap):
 def test_many_components_share_the_vertices():
     link = Curve.from_components([regular_polygon(5).vertices + np.array([0, 0, 3.0 * k]) for k in range(1000)])
     assert len(refine(link)) < 8000
+
+
+def test_thousands_of_components_get_no_more_than_can_be_solved_with():
+    """1,500 near pentagons keep their vertices: twice as many would be too many for dense matrices."""
+    pentagon = regular_polygon(5).vertices
+    near = Curve.from_components([pentagon + [2.1 * (k % 40), 2.1 * (k // 40), 0] for k in range(1500)])
+    assert len(refine(near)) == len(near)
