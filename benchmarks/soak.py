@@ -32,7 +32,7 @@ def random_curve(rng: np.random.Generator) -> Curve:
     elif kind == 2:
         curve = knot(str(rng.choice([name for name in KNOTS if name[0] in "34567L"])))
     elif kind == 3:
-        curve = scramble(knot(str(rng.choice(["0_1", "3_1", "4_1"]))), seed=int(rng.integers(1 << 30)))
+        curve = scramble(knot(str(rng.choice(["0_1", "3_1", "4_1"])), 60), seed=int(rng.integers(1 << 30)), moves=600)
     elif kind == 4:
         strands = int(rng.integers(2, 5))
         word = rng.choice([-1, 1], size=int(rng.integers(2, 9))) * rng.integers(
@@ -92,6 +92,8 @@ def main() -> int:
         counts[outcome] += 1
         if outcome not in ("ok", "refused"):
             print(f"flow {seed}: {outcome}", flush=True)
+        if (k + 1) % 100 == 0:
+            print(f"{k + 1} flows: {dict(counts)}", flush=True)
     seconds = time.perf_counter() - started
     print(
         f"{arguments.flows} flows in {seconds:.0f} s: {counts['type']} type changes, {counts['nan']} NaNs, "

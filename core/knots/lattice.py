@@ -70,4 +70,4 @@ def _corners(path: IntArray) -> IntArray:
     """The vertices of a closed lattice path at which it turns."""
     path = path[np.any(path != np.roll(path, -1, axis=0), axis=1)]
     before, after = path - np.roll(path, 1, axis=0), np.roll(path, -1, axis=0) - path
-    return path[np.any(np.sign(before) != np.sign(after), axis=1)]
+    return np.asarray(path[np.any(np.sign(before) != np.sign(after), axis=1)])
