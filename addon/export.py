@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 from ..core import Iterate, MobiusFlowError
 from ..core.collision import is_free
 from ..core.files import atomic_write
+from ..core.termination import termination_raises
 from . import film, rendering
 from .movie import Progress, render_movie
-from .termination import tidy_termination
 
 if TYPE_CHECKING:
     import bpy
@@ -28,6 +28,7 @@ _MOST_FILM_KEYS = 200
 _PICTURE = (800, 450, 8)  # width, height, samples
 _FILM = (640, 360)
 _FILM_WITHOUT_DRIVER = (384, 216, 3)
+_TERMINATED = 143  # the status that a shell gives to a process ended by SIGTERM
 
 
 def require_blender() -> None:
@@ -121,7 +122,7 @@ def _make(path: Target, write: Callable[[Path], None]) -> None:
     """Let Blender write a file in a directory of its own, and move it to its place when it is whole."""
     try:
         with (
-            tidy_termination(),
+            termination_raises(SystemExit(_TERMINATED)),
             atomic_write(path) as temporary,
             tempfile.TemporaryDirectory(dir=temporary.parent) as room,
         ):

@@ -3,15 +3,12 @@
 import argparse
 import logging
 import os
-import signal
 import sys
-import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from types import FrameType
+from collections.abc import Sequence
 from typing import NoReturn
 
 from ..core.errors import MobiusFlowError
+from ..core.termination import termination_raises
 from . import bench, compare, energy, knot, methods, relax, verify
 
 COMMANDS = (relax, energy, verify, compare, knot, bench, methods)
@@ -40,7 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     logging.basicConfig(format="mobius-flow: %(message)s", level=logging.WARNING, stream=sys.stderr)
     try:
         options = parser().parse_args(arguments)
-        with _termination_interrupts():
+        with termination_raises(KeyboardInterrupt()):  # so that the best curve is kept, as with Ctrl-C
             return int(options.run(options))
     except SystemExit as ended:
         return int(ended.code or 0)
@@ -54,21 +51,3 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # the reader of our output has left; point stdout elsewhere so that Python's exit is quiet too
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
-
-
-@contextmanager
-def _termination_interrupts() -> Iterator[None]:
-    """Let SIGTERM interrupt like Ctrl-C, so that the best curve is kept; someone else's handler is left alone."""
-    here = threading.current_thread() is threading.main_thread()
-    if not here or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        yield
-        return
-    signal.signal(signal.SIGTERM, _interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-
-def _interrupt(_number: int, _frame: FrameType | None) -> NoReturn:
-    raise KeyboardInterrupt

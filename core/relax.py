@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .collision import check_embedded, minimal_gap
-from .curve import Curve, refine
+from .curve import Curve
 from .energies import MoebiusEnergy
 from .errors import CurveError, OptionError
 from .iterate import Iterate, Status
 from .options import RelaxOptions
 from .run import Run
-from .setup import MOST_VERTICES, method_named, start_problem
+from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
 from .units import check_units
 
 NEAREST_STRANDS = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
@@ -99,26 +99,12 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
         raise OptionError(f"vertices is {options.vertices}; dense matrices have at most {MOST_VERTICES} rows")
     check_units(curve)
     check_embedded(curve)
-    refined = _embedded_refinement(curve, options.vertices)
+    refined = embedded_refinement(curve, options.vertices)
     _check_gap(refined)
     try:
         return Run(start_problem(refined, options), refined, options).iterates()
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; move near strands apart") from error
-
-
-def _embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
-    """The refined curve; refuses one whose new vertices, rounded to doubles, are no longer apart."""
-    refined = refine(curve, vertices)
-    if len(refined) > len(curve):
-        try:
-            check_embedded(refined)
-        except CurveError as error:
-            raise CurveError(
-                f"so far from the origin there are too few digits for the vertices to be inserted ({error}); "
-                "move the curve nearer to it"
-            ) from error
-    return refined
 
 
 def _check_gap(curve: Curve) -> None:

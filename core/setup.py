@@ -5,8 +5,9 @@ from typing import TypeVar
 
 import numpy as np
 
+from .collision import check_embedded
 from .constraints import Constraints, weighted_barycenter
-from .curve import Curve
+from .curve import Curve, refine
 from .descent import METHODS, Method, Problem
 from .energies import ENERGIES, Barrier, MoebiusEnergy, Objective
 from .errors import CurveError, OptionError
@@ -29,6 +30,26 @@ def _named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
     if name not in table:
         raise OptionError(f"{kind} {name!r} is unknown; choose one of {', '.join(table)}")
     return table[name]
+
+
+def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
+    """The refined curve.
+
+    Raises
+    ------
+    CurveError
+        If the new vertices, rounded to doubles, are no longer apart.
+    """
+    refined = refine(curve, vertices)
+    if len(refined) > len(curve):
+        try:
+            check_embedded(refined)
+        except CurveError as error:
+            raise CurveError(
+                f"so far from the origin there are too few digits for the vertices to be inserted ({error}); "
+                "move the curve nearer to it"
+            ) from error
+    return refined
 
 
 def start_problem(curve: Curve, options: RelaxOptions) -> Problem:

@@ -215,9 +215,9 @@ def test_a_signal_ends_it_tidily(tmp_path, number, status):
 
 
 def test_termination_is_as_before_afterwards(tmp_path):
-    from mobius_flow.addon.termination import tidy_termination
+    from mobius_flow.core.termination import termination_raises
 
     before = signal.getsignal(signal.SIGTERM)
-    with tidy_termination():
+    with termination_raises(SystemExit(143)):
         assert signal.getsignal(signal.SIGTERM) is not before
     assert signal.getsignal(signal.SIGTERM) is before

@@ -88,5 +88,5 @@ def test_many_components_share_the_vertices():
 def test_thousands_of_components_get_no_more_than_can_be_solved_with():
     """1,500 near pentagons keep their vertices: twice as many would be too many for dense matrices."""
     pentagon = regular_polygon(5).vertices
-    near = Curve.from_components([pentagon + [2.1 * (k % 40), 2.1 * (k // 40), 0] for k in range(1500)])
+    near = Curve.from_components([pentagon + np.array([2.1 * (k % 40), 2.1 * (k // 40), 0]) for k in range(1500)])
     assert len(refine(near)) == len(near)

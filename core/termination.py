@@ -5,11 +5,12 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import NoReturn
 
 
 @contextmanager
-def tidy_termination() -> Iterator[None]:
-    """Let SIGTERM raise SystemExit in a block, so that temporary files are removed; by default it ends the process.
+def termination_raises(error: BaseException) -> Iterator[None]:
+    """Let SIGTERM, which by default ends the process, raise an exception in a block, so that things can be tidied up.
 
     Someone else's handler is left alone, and so are threads other than the main one: they get no signals.
     """
@@ -17,12 +18,12 @@ def tidy_termination() -> Iterator[None]:
     if not here or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
         yield
         return
-    signal.signal(signal.SIGTERM, _leave)
+
+    def leave(_number: int, _frame: FrameType | None) -> NoReturn:
+        raise error
+
+    signal.signal(signal.SIGTERM, leave)
     try:
         yield
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-
-def _leave(number: int, _frame: FrameType | None) -> None:
-    raise SystemExit(128 + number)  # the status that a shell gives to a process ended by this signal
