@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from .constraints import Parts
 from .curve import Curve
 from .curve.distances import arc_distance_of_pairs
 from .curve.refine import STRAND_RATIO
@@ -11,13 +12,15 @@ from .descent import Point
 from .energies import MoebiusEnergy
 from .energies.near_pairs import near_pairs
 from .iterate import Iterate, Status
-from .knots.composite import knotted_ball
+from .knots.composite import Ball, knotted_ball
 from .options import RelaxOptions
 from .parting import split
 from .stability import stability
 from .types import FloatArray
 
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
+# energies that do not change with size, and so gain by letting one part of a composite shrink for ever
+CONFORMAL = frozenset({"moebius", "vertex", "edge", "moebius-k2", "moebius-k3"})
 COMPOSITE_KNOT = 140.0  # less energy than any composite: two trefoils (74.4 each) less a circle make 144.8,
 COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
 
@@ -44,28 +47,35 @@ def judged(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Itera
             if options.escape_saddles and found.index:
                 iterate = replace(iterate, status=Status.RUNNING, message="")
                 way_down = found.directions[0], float(found.eigenvalues[0])
-    if iterate.status is Status.CONVERGED:
-        iterate = _unless_composite(iterate)
-    elif iterate.index >= options.max_iterations:
+    if iterate.status is Status.CONVERGED and options.energy in CONFORMAL:
+        iterate = _unless_composite(iterate, point.problem.constraints.parts)
+    if iterate.status is Status.RUNNING and iterate.index >= options.max_iterations:
         message = f"stopped after {iterate.index} iterations, as asked for"
         iterate = replace(iterate, status=Status.ITERATION_LIMIT, message=message)
     return iterate, way_down
 
 
-def _unless_composite(iterate: Iterate) -> Iterate:
-    """The converged iterate; stalled if its curve is composite, for then only the mesh keeps it from going on."""
-    components = len(iterate.curve.mesh.component_sizes)
-    if MoebiusEnergy().value(iterate.curve) < (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK):
+def _unless_composite(iterate: Iterate, parts: Parts | None) -> Iterate:
+    """The converged iterate; stalled if a part of it is composite, for then only the mesh keeps it from going on."""
+    curves = [iterate.curve] if parts is None else split(iterate.curve, parts)
+    balls = [ball for curve in curves if (ball := _cutting_ball(curve)) is not None]
+    if not balls:
         return iterate
-    ball = knotted_ball(iterate.curve)
-    if ball is None:
-        return iterate
+    ball = balls[0]
     place = ", ".join(f"{x:.3g}" for x in ball.center)
     message = (
         "stalled: strands pull tight, and would do so for ever: the curve is composite, knotted both inside and "
         f"outside the ball of radius {ball.radius:.3g} around ({place}), and has no shape of least energy"
     )
     return replace(iterate, status=Status.STALLED, message=message)
+
+
+def _cutting_ball(curve: Curve) -> Ball | None:
+    """A ball that proves a curve composite, looked for only where there is energy enough for that."""
+    components = len(curve.mesh.component_sizes)
+    if MoebiusEnergy().value(curve) < (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK):
+        return None
+    return knotted_ball(curve)
 
 
 def unresolved(curve: Curve) -> bool:

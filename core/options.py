@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
 from types import MappingProxyType
+from typing import cast
 
 import numpy as np
 
@@ -131,5 +132,5 @@ class RelaxOptions:
             # bool is a kind of int, but no number; NumPy's numbers are welcome
             if not isinstance(value, kind.types) or (isinstance(value, bool) and kind is not _BOOL):
                 raise OptionError(f"{field.name} is {value!r:.40}; it must be {kind.noun}")
-            if kind is _REAL and isinstance(value, int) and abs(value) > sys.float_info.max:
-                raise OptionError(f"{field.name} is too large; it must be a finite number above 0")
+            if kind in (_REAL, _INTEGER) and abs(cast(float, value)) > sys.float_info.max:
+                raise OptionError(f"{field.name} is too large for a number of this program")

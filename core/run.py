@@ -44,6 +44,13 @@ class Run:
 
     def iterates(self) -> Iterator[Iterate]:
         """Yield the start and every accepted step; the last iterate has a status other than RUNNING."""
+        try:
+            yield from self._iterates()
+        except np.linalg.LinAlgError as error:
+            message = f"stalled: the curve has become too degenerate: {error}"
+            yield replace(self._iterate, status=Status.STALLED, message=message, path=())
+
+    def _iterates(self) -> Iterator[Iterate]:
         just_refined = False  # around edges that were stuck: once is enough
         while True:
             iterate, way_down = judged(self._point, self._iterate, self._options)
@@ -67,6 +74,10 @@ class Run:
                     yield from self._adapt(None)
                 just_refined = False
                 continue
+            if way_down is not None:
+                message = f"converged: a saddle with index {iterate.negative_eigenvalues}; no way down was found"
+                yield replace(iterate, status=Status.CONVERGED, message=message, path=())
+                return
             stuck = self._options.adaptive and step.limited_by is not None and not just_refined
             just_refined = stuck and (yield from self._adapt(step.limited_by))
             if not just_refined:
@@ -107,9 +118,10 @@ class Run:
         curve = self._start.with_vertices(change.moved)
         index = self._iterate.index
         # the last motion on the old mesh, then the same curve on the new one
-        yield self._described(moved, curve, index + 1, 0.0, (change.moved,))
+        self._iterate = self._described(moved, curve, index + 1, 0.0, (change.moved,))
+        yield self._iterate
         self._begin(change.problem, change.curve, index + 2)
-        self._stepper.forget()
+        self._stepper.restart()
         return True
 
     def _hold_parts(self) -> None:
@@ -123,21 +135,26 @@ class Run:
             self._problem = replace(self._problem, constraints=constraints)
             self._point = self._problem.at(self._point.vertices)
             self._iterate = replace(self._iterate, gradient_norm=self._point.gradient_norm)
-            self._stepper.forget()
+            self._stepper.restart()
 
     def _finer(self) -> tuple[Problem, Curve] | None:
         """The problem and the same curve with more vertices, if that is wanted and possible."""
         curve = self._iterate.curve
         if not self._options.resolve or len(curve) >= FINEST * self._first_count:
             return None
-        self._vertices = int(np.ceil(FINER * len(curve)))
+        vertices = int(np.ceil(FINER * len(curve)))
         try:
-            curve = embedded_refinement(curve, self._vertices)
+            curve = embedded_refinement(curve, vertices)
+            problem = start_problem(curve, self._options)
         except CurveError:
-            return None  # too far from the origin for more digits
-        problem = start_problem(curve, self._options)
+            return None  # more than can be solved with, or too far from the origin for more digits
         if self._options.adaptive:
-            problem = graded_problem(problem, curve, self._vertices)
+            problem = graded_problem(problem, curve, vertices)
+        parts = self._problem.constraints.parts
+        if parts is not None:
+            own_units = curve.with_vertices(problem.units.from_user(curve.vertices))
+            problem = replace(problem, constraints=problem.constraints.of_parts(own_units, parts))
+        self._vertices = vertices
         return problem, curve
 
     def _tight(self, iterate: Iterate) -> Iterate:

@@ -6,9 +6,10 @@ import numpy as np
 
 from .collision import minimal_gap
 from .descent import METHODS, Method, NoStep, Point, State, Step
+from .descent.search import FEASIBLE
 
 HELPER = METHODS["flow-h3-2"]  # its metric does not see how near strands are, and so does not hold them together
-NEARLY_TOUCHING = 0.05  # times ℓ_I + ℓ_J, the gap below which it is asked first
+NEARLY_TOUCHING = 0.01  # times ℓ_I + ℓ_J, the gap below which it is asked first
 HELPS = 10  # steps it takes when the other method finds none
 PROGRESS = 1e-6  # relative decrease of energy without which asking it again is no use
 
@@ -28,13 +29,10 @@ class Stepper:
         self._helps = 0  # steps that the helper is still to take
         self._helped_at = np.inf  # energy at which it was asked last
 
-    def forget(self) -> None:
-        """Forget the method's memory, because the curve or its mesh has changed."""
-        self._state = State(None, self._state.last_step)
-
     def restart(self) -> None:
-        """Forget the last step's size too."""
-        self._state = State()
+        """Forget everything, because the mesh, the constraints or the curve is another one."""
+        self._state = State(None, self._state.last_step)
+        self._helps, self._helped_at = 0, np.inf
 
     def step(self, point: Point) -> Step | NoStep:
         """Take a step; the helper takes it if strands nearly touch, or if the method finds none.
@@ -43,9 +41,12 @@ class Stepper:
         """
         if not self._may_help(point):
             return self._by(self._method, point)
-        if self._helps or _nearly_touching(point):
+        if self._helps or (_on_constraints(point) and _nearly_touching(point)):
             self._helps = max(0, self._helps - 1)
-            return self._by(HELPER, point)
+            step = self._by(HELPER, point)
+            if isinstance(step, Step):
+                return step
+            self._helps = 0
         step = self._by(self._method, point)
         if isinstance(step, NoStep) and point.energy < (1.0 - PROGRESS) * self._helped_at:
             self._helps, self._helped_at = HELPS, point.energy
@@ -58,8 +59,7 @@ class Stepper:
 
     def _by(self, method: Method, point: Point) -> Step | NoStep:
         if method is not self._last:
-            self._last = method
-            self.restart()
+            self._last, self._state = method, State()
         problem = point.problem
         if method is HELPER and problem.metric is not HELPER.metric:
             point = replace(problem, metric=HELPER.metric).at(point.vertices)
@@ -72,6 +72,11 @@ class Stepper:
         except np.linalg.LinAlgError as error:
             return NoStep(f"the curve has become too degenerate: {error}")
         return step
+
+
+def _on_constraints(point: Point) -> bool:
+    """Whether lengths are reached; before that J_C must see strands, or evening edges out presses them together."""
+    return float(np.max(np.abs(point.residual))) <= FEASIBLE
 
 
 def _nearly_touching(point: Point) -> bool:

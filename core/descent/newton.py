@@ -22,15 +22,11 @@ def energy_hessian(point: Point) -> LinearMap:
 
 
 def lagrangian_hessian(point: Point) -> LinearMap:
-    """v ↦ (D²E − Σ λ_I D²Φ_I) v, with λ from (41).
-
-    The barycenter's multipliers vanish, because the energy does not change under translations.  (Where parts of a link
-    have a barycenter each, they are the small force between parts that are far away; it is left out.)
-    """
+    """v ↦ (D²E − Σ λ_I D²Φ_I) v on tangent vectors v, with λ from (41)."""
     of_energy = energy_hessian(point)
     ell, mesh = point.curve.edge_lengths, point.problem.mesh
     tau = point.curve.edge_vectors / ell[:, None]
-    weight = (point.multipliers[: len(ell)] / ell**2)[:, None]
+    weight = _curvature_weights(point)[:, None]
 
     def apply(v: FloatArray) -> FloatArray:
         # D² log ℓ (v, ·) = (Δv − 2 ⟨τ, Δv⟩ τ)/ℓ²
@@ -46,7 +42,7 @@ def lagrangian_hessian_matrix(point: Point) -> FloatArray:
     ell, mesh = point.curve.edge_lengths, point.problem.mesh
     n, m = point.vertices.shape
     tau = point.curve.edge_vectors / ell[:, None]
-    weight = point.multipliers[: len(ell)] / ell**2
+    weight = _curvature_weights(point)
     matrix = point.problem.objective.hessian(point.curve).reshape(n, m, n, m)
     blocks = weight[:, None, None] * (np.eye(m) - 2.0 * tau[:, :, None] * tau[:, None, :])
     by_vertices = matrix.transpose(0, 2, 1, 3)
@@ -54,6 +50,22 @@ def lagrangian_hessian_matrix(point: Point) -> FloatArray:
     for a, b, sign in ((tail, tail, -1.0), (head, head, -1.0), (tail, head, 1.0), (head, tail, 1.0)):
         np.add.at(by_vertices, (a, b), sign * blocks)
     return matrix.reshape(n * m, n * m)
+
+
+def _curvature_weights(point: Point) -> FloatArray:
+    """The factor of |Δv_I|² in Σ λ D²Φ (v, v) for tangent v, of which ⟨τ_I, Δv_I⟩ = 0; shape (n,).
+
+    D² log ℓ_I has the factor 1/ℓ_I², D²(Σ ℓ_I m_I) = Σ m_I D²ℓ_I the factor m_I/ℓ_I.  The barycenter's multipliers
+    vanish if it is that of the whole curve, because the energy does not change under translations.
+    """
+    curve = point.curve
+    ell, n = curve.edge_lengths, len(curve)
+    parts = np.asarray(point.problem.constraints.parts or (0,) * len(curve.mesh.component_sizes))
+    forces = point.multipliers[n:].reshape(-1, curve.dimension)
+    if not len(forces):
+        return np.asarray(point.multipliers[:n] / ell**2)
+    along = np.einsum("ij,ij->i", forces[parts[curve.mesh.component]], curve.midpoints)
+    return np.asarray(point.multipliers[:n] / ell**2 + along / ell)
 
 
 def projected_conjugate_gradient(

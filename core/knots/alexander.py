@@ -36,7 +36,7 @@ class Signature:
     @property
     def is_trivial(self) -> bool:
         """Whether nothing tells the curve from separate round circles."""
-        return not any(self.linking) and all(values == _TRIVIAL for values in self.alexander)
+        return not any(self.linking) and all(values == TRIVIAL for values in self.alexander)
 
 
 def signature(curve: Curve) -> Signature:
@@ -102,7 +102,7 @@ def _values(crossings: _Crossings) -> tuple[int, ...]:
     """Values of the Alexander polynomial of one component."""
     count = len(crossings.over)
     if count < 3:
-        return _TRIVIAL
+        return TRIVIAL
     order = np.lexsort((crossings.under_at, crossings.under))
     ends = np.stack([crossings.under[order], crossings.under_at[order]])
     incoming = np.empty(count, dtype=np.intp)
@@ -166,4 +166,4 @@ def _generic_rotation() -> FloatArray:
     return np.asarray(q)
 
 
-_TRIVIAL = tuple(_smallest_associate(1, q) for q in _ORDERS)
+TRIVIAL = tuple(_smallest_associate(1, q) for q in _ORDERS)

@@ -14,7 +14,7 @@ from scipy.optimize import linprog
 
 from ..curve import Curve
 from ..types import BoolArray, FloatArray
-from .alexander import signature
+from .alexander import TRIVIAL, signature
 
 _ARCS = 24  # arcs of a knot begin and end at multiples of this fraction of it; in links, of fewer per component
 _SHORTEST = 1 / 8  # arc, as a fraction of its component
@@ -119,7 +119,14 @@ def _is_knotted(curve: Curve, ball: Ball) -> bool:
     chord = np.array(ends)
     within = _part(curve, inside, int(mesh.heads[entry]), _around(ball, *chord[::-1]))
     without = _part(curve, ~inside, int(mesh.heads[exit_]), chord)
-    return not (signature(within).is_trivial or signature(without).is_trivial)
+    return _first_is_knotted(within) and _first_is_knotted(without)
+
+
+def _first_is_knotted(curve: Curve) -> bool:
+    """Whether the first component is knotted, or linked with another."""
+    found = signature(curve)
+    others = len(curve.mesh.component_sizes) - 1  # pairs with the first component are listed first
+    return found.alexander[0] != TRIVIAL or any(found.linking[:others])
 
 
 def _distances(curve: Curve, point: FloatArray) -> FloatArray:
@@ -139,12 +146,12 @@ def _crossing(curve: Curve, edge: np.intp, ball: Ball) -> FloatArray:
 
 
 def _part(curve: Curve, chosen: BoolArray, begin: int, closing: FloatArray) -> Curve:
-    """The arc of chosen vertices that begins at one of them, closed up, and whole components that are chosen."""
-    parts = []
+    """The arc of chosen vertices that begins at one of them, closed up, and then whole components that are chosen."""
+    parts: list[FloatArray] = []
     for k, part in enumerate(curve.mesh.slices):
         if k == curve.mesh.component[begin]:
             ring = np.roll(np.arange(part.start, part.stop), part.start - begin)
-            parts.append(np.concatenate([curve.vertices[ring[chosen[ring]]], closing]))
+            parts.insert(0, np.concatenate([curve.vertices[ring[chosen[ring]]], closing]))
         elif chosen[part].all():
             parts.append(curve.vertices[part])
     return Curve.from_components(parts)

@@ -6,6 +6,7 @@ time (in Fortran order, one stage of bounded size), and memory is taken only for
 """
 
 import ast
+import operator
 import struct
 import zipfile
 import zlib
@@ -109,7 +110,7 @@ def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], "np.dtype[np.g
         raise TrajectoryError(f"{name} has a header of {length} bytes, which is too long")
     try:
         header = ast.literal_eval(_exactly(file, length, name).decode("latin1"))
-        shape, fortran = tuple(map(int, header["shape"])), bool(header["fortran_order"])
+        shape, fortran = tuple(map(operator.index, header["shape"])), bool(header["fortran_order"])
         dtype = np.dtype(str(header["descr"]))
     except (ValueError, SyntaxError, TypeError, KeyError, MemoryError, RecursionError) as error:
         raise TrajectoryError(f"{name} has a header that cannot be read") from error

@@ -6,6 +6,7 @@ in the same order. Moving it exactly onto the edge must then be free of contact:
 rational numbers where necessary. So each of the two is isotopic to the common polygon, hence to the other.
 """
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
 
@@ -73,9 +74,9 @@ def straightened(polygon: FloatArray, kept: Sequence[int]) -> tuple[dict[int, Po
         for k in range(a + 1, b):
             place, at = _onto_edge(polygon[k % n], polygon[a % n], polygon[b % n])
             change = max(abs(x - Fraction(y)) for x, y in zip(place, polygon[k % n].tolist(), strict=True))
-            largest = max(largest, float(change) * (1 + 1e-12))
-            if not (parameter < at < 1 and float(change) <= _allowed(polygon[[k % n, a % n, b % n]])):
+            if not (parameter < at < 1 and change <= Fraction(_allowed(polygon[[k % n, a % n, b % n]]))):
                 raise DifferentCurveError(f"vertex {k % n} of the component is not on the edge between its neighbours")
+            largest = max(largest, float(change) * (1 + 1e-12))
             moved[k % n], parameter = place, at
     return moved, largest
 
@@ -86,10 +87,14 @@ def _onto_edge(p: FloatArray, u: FloatArray, v: FloatArray) -> tuple[Point, Frac
     points = np.ldexp(points, -1 - int(np.frexp(np.abs(points).max())[1]))  # so that differences don't overflow
     d, q = points[2] - points[1], points[0] - points[1]
     scale = float(np.abs(d).max()) or 1.0
-    d, q = d / scale, q / scale
-    parameter = Fraction(float(d @ q / max(float(d @ d), np.finfo(np.float64).tiny)))
+    with np.errstate(over="ignore", invalid="ignore"):
+        d, q = d / scale, q / scale
+        parameter = float(d @ q / max(float(d @ d), np.finfo(np.float64).tiny))
+    if not math.isfinite(parameter):
+        raise DifferentCurveError("an edge with vertices on it is too short to tell where they are")
+    at = Fraction(parameter)
     ends = [(Fraction(x), Fraction(y)) for x, y in zip(u.tolist(), v.tolist(), strict=True)]
-    return [x + parameter * (y - x) for x, y in ends], parameter
+    return [x + at * (y - x) for x, y in ends], at
 
 
 def _allowed(points: FloatArray) -> float:

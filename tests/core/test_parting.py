@@ -1,13 +1,19 @@
 """Parts of a link that are not linked are held in place once they are far apart, and only then."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.descent.feasibility import restore
+from mobius_flow.core.descent.newton import lagrangian_hessian
 from mobius_flow.core.knots import knot
+from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.metrics import METRICS
 from mobius_flow.core.parting import separate_parts
 from mobius_flow.core.saddle import SaddleSolver
+from mobius_flow.core.setup import start_problem
 
 
 def ring(center, radius=1.0, size=12):
@@ -122,3 +128,38 @@ def test_strands_a_billionth_apart_come_apart(method):
     result = minimize(circles, RelaxOptions(method=method, vertices=80))
     assert result.status is Status.CONVERGED
     assert result.energies[-1] < 15
+
+
+def test_second_derivative_along_held_parts():
+    """Against differences of energies along a path on the constraints."""
+    curve = Curve.from_components([ring([0, 0, 0], 1.0, 24), ring([5.0, 0.3, 0.2], 1.0, 24)])
+    problem = start_problem(curve, RelaxOptions())
+    vertices = problem.units.from_user(curve.vertices)
+    vertices = vertices + 0.02 * np.random.default_rng(8).normal(size=vertices.shape)
+    start = curve.with_vertices(vertices)
+    constraints = Constraints(start.edge_lengths, np.zeros(3)).of_parts(start, (0, 1))
+    problem = replace(problem, constraints=constraints)
+    point = problem.at(vertices)
+    v = point.saddle.project(np.random.default_rng(9).normal(size=vertices.shape))
+    # the Lagrangian's slope along tangents vanishes only at critical points: the path's own bend is what (42) adds
+    expected = float(np.sum(v * lagrangian_hessian(point)(v)))
+    errors = []
+    for h in (2e-3, 1e-3):
+        ahead, behind = (restore(point, vertices + sign * h * v, 0 * point.residual) for sign in (1.0, -1.0))
+        bend = ahead.vertices + behind.vertices - 2 * vertices
+        along = np.sum((point.derivative - point.saddle.constraints.apply_transpose(point.multipliers)) * bend)
+        errors.append((ahead.energy - 2 * point.energy + behind.energy - along) / h**2 - expected)
+    assert abs(errors[1]) < 1e-3 * abs(expected)
+    assert abs(errors[1]) < 0.3 * abs(errors[0])
+
+
+def test_parts_are_judged_one_by_one():
+    """Two split Hopf links, and a trefoil far from a ring: neither is composite."""
+    hopf = [ring([0, 0, 0]), ring([0, 0, 0])[:, [0, 2, 1]] + [1.0, 0, 0]]
+    two = Curve.from_components([*hopf, *(c + np.array([8.0, 0, 0]) for c in hopf)])
+    assert knotted_ball(two) is None
+    trefoil = knot("3_1").components[0]
+    assert knotted_ball(Curve.from_components([trefoil, trefoil + np.array([20.0, 0, 0])])) is None
+    result = minimize(two, RelaxOptions(vertices=80))
+    assert result.status is Status.CONVERGED
+    assert "not linked" in result.message

@@ -15,8 +15,11 @@ from mobius_flow.core import (
     Trajectory,
     minimize,
     relax,
+    setup,
 )
 from mobius_flow.core.collision import is_free
+from mobius_flow.core.energies import ENERGIES
+from mobius_flow.core.judgement import CONFORMAL
 from shapes import hopf_link, regular_polygon, shared_knot, torus_trefoil
 
 SHORT = RelaxOptions(max_iterations=5)
@@ -220,3 +223,18 @@ def test_noisy_circles_do_not_crumple(seed):
     assert result.status is Status.CONVERGED
     assert result.energies[-1] < 4.01
     assert result.edge_length_error < 1e-6
+
+
+def test_a_mesh_that_cannot_be_finer_ends_the_run_in_good_order(monkeypatch):
+    monkeypatch.setattr(setup, "MOST_VERTICES", 130)
+    result = minimize(shared_knot("3_1.txt"), RelaxOptions(vertices=100, resolve=True))
+    assert len(result.curve) == 100
+    assert result.status in (Status.CONVERGED, Status.STALLED)
+
+
+@pytest.mark.parametrize("name", ENERGIES)
+def test_only_energies_that_ignore_size_can_call_a_knot_composite(name):
+    curve = torus_trefoil(60)
+    energy = ENERGIES[name]
+    value, larger = (energy.value_and_derivative(curve.with_vertices(s * curve.vertices))[0] for s in (1.0, 2.0))
+    assert (name in CONFORMAL) == (abs(larger / value - 1.0) < 1e-9)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import METHODS, Curve, RelaxOptions
+from mobius_flow.core import METHODS, Curve, RelaxOptions, stepping
 from mobius_flow.core.descent import NoStep, Step
 from mobius_flow.core.knots import knot
 from mobius_flow.core.setup import start_problem
@@ -53,13 +53,28 @@ def test_it_is_not_asked_twice_in_vain(point):
 
 def test_strands_that_nearly_touch_are_for_the_helper():
     t = 2 * np.pi * np.arange(60) / 60
-    eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 0.5e-3 * np.sin(t)]))
-    problem = start_problem(eight, RelaxOptions())
+    eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 1e-5 * np.sin(t)]))
+    problem = start_problem(eight, RelaxOptions(edge_lengths="keep"))
     point = problem.at(problem.units.from_user(eight.vertices))
     method = Stubborn()
     step = Stepper(method).step(point)
     assert isinstance(step, Step)
     assert method.asked == 0
+
+
+def test_where_the_helper_finds_nothing_the_method_is_asked(point, monkeypatch):
+    monkeypatch.setattr(stepping, "HELPER", Stubborn())
+    monkeypatch.setattr(stepping, "_nearly_touching", lambda point: True)
+    assert isinstance(Stepper(METHODS["lbfgs"]).step(point), Step)
+
+
+def test_energies_of_another_mesh_are_not_compared(point):
+    stepper = Stepper(Stubborn())
+    for _ in range(HELPS + 1):
+        stepper.step(point)
+    assert isinstance(stepper.step(point), NoStep)
+    stepper.restart()
+    assert isinstance(stepper.step(point), Step)
 
 
 def test_the_helper_and_penalised_problems_get_no_help(point):

@@ -156,3 +156,23 @@ def test_damaged_files_never_crash_it(tmp_path: Path) -> None:
             broken[at] = rng.integers(256)
         path.write_bytes(broken if rng.random() < 0.8 else broken[: rng.integers(len(data))])
         assert isinstance(verify(path), Verdict)
+
+
+def test_edges_too_short_to_place_vertices_on(tmp_path: Path) -> None:
+    square = np.array([[0.0, 0, 0], [1e-320, 0, 0], [1, 1, 0], [0, 1, 0]])
+    finer = np.insert(square, 1, [[0.5, 0.5, 0]], axis=0)
+    sizes = {"component_sizes_000": [4], "component_sizes_001": [5]}
+    np.savez(tmp_path / "T.npz", stage_000=square[None], stage_001=finer[None], **sizes)
+    assert not verify(tmp_path / "T.npz").accepted
+
+
+@pytest.mark.parametrize("shape", ["(1e400, 4, 3)", "(1.9, 4, 3)", "('1', 4, 3)"])
+def test_shapes_that_are_no_whole_numbers(tmp_path: Path, shape: str) -> None:
+    header = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}".encode()
+    array = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + bytes(8 * 12)
+    sizes = io.BytesIO()
+    np.save(sizes, np.array([4]))
+    with zipfile.ZipFile(tmp_path / "T.npz", "w") as archive:
+        archive.writestr("stage_000.npy", array)
+        archive.writestr("component_sizes_000.npy", sizes.getvalue())
+    assert "header" in verify(tmp_path / "T.npz").reason
