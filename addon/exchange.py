@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     import bpy
 
 _FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
-_POINT_VALUES = ("radius", "tilt", "weight_softbody")
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +92,7 @@ def insert_points(data: "bpy.types.Curve", original: Curve, refined: Curve) -> N
 
 
 def _insert_points(spline: "bpy.types.Spline", place: Places) -> None:
-    values = {name: np.empty(len(spline.points), dtype=np.float32) for name in _POINT_VALUES}
+    values = {name: np.empty(len(spline.points), dtype=np.float32) for name in sampling.POINT_VALUES}
     for name, array in values.items():
         spline.points.foreach_get(name, array)
     spline.points.add(len(place.edge) - len(spline.points))

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import bpy
 
 _KINDS = {"BEZIER": "Bézier", "NURBS": "NURBS"}
-_VALUES = ("radius", "tilt", "weight_softbody")
+POINT_VALUES = ("radius", "tilt", "weight_softbody")
 
 
 def kind(spline: "bpy.types.Spline") -> str:
@@ -69,7 +69,7 @@ def _loops(mesh: "bpy.types.Mesh") -> list[Frame]:
 def make_poly(spline: "bpy.types.Spline", count: int) -> None:
     """Turn a smooth spline into a polygon of so many points, with its values in between; places are left open."""
     points = spline.bezier_points if spline.type == "BEZIER" else spline.points
-    values = {name: np.empty(len(points), dtype=np.float32) for name in _VALUES}
+    values = {name: np.empty(len(points), dtype=np.float32) for name in POINT_VALUES}
     for name, array in values.items():
         points.foreach_get(name, array)
     spline.type = "POLY"

@@ -19,8 +19,13 @@ class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one line."""
 
     def error(self, message: str) -> NoReturn:
-        print(f"{self.prog}: {message} (see {self.prog} --help)", file=sys.stderr)
+        print(one_line(f"{self.prog}: {message} (see {self.prog} --help)"), file=sys.stderr)
         raise SystemExit(BAD_INPUT)
+
+
+def one_line(text: str) -> str:
+    """A sentence in which names with line ends, or what no terminal can show, are written with backslashes."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -42,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SystemExit as ended:
         return int(ended.code or 0)
     except MobiusFlowError as error:
-        print(f"mobius-flow: {error}", file=sys.stderr)
+        print(one_line(f"mobius-flow: {error}"), file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print("mobius-flow: interrupted", file=sys.stderr)

@@ -58,10 +58,9 @@ def judged(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Itera
 def _unless_composite(iterate: Iterate, parts: Parts | None) -> Iterate:
     """The converged iterate; stalled if a part of it is composite, for then only the mesh keeps it from going on."""
     curves = [iterate.curve] if parts is None else split(iterate.curve, parts)
-    balls = [ball for curve in curves if (ball := _cutting_ball(curve)) is not None]
-    if not balls:
+    ball = next((ball for curve in curves if (ball := _cutting_ball(curve)) is not None), None)
+    if ball is None:
         return iterate
-    ball = balls[0]
     place = ", ".join(f"{x:.3g}" for x in ball.center)
     message = (
         "stalled: strands pull tight, and would do so for ever: the curve is composite, knotted both inside and "

@@ -3,10 +3,10 @@
 import math
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from numbers import Integral, Real
 from types import MappingProxyType
-from typing import cast
+from typing import cast, get_args, get_type_hints
 
 import numpy as np
 
@@ -16,33 +16,12 @@ MOST_QUADRATURE_POINTS = 16  # work grows with the square
 EDGE_LENGTHS = ("auto", "equal", "keep")
 
 
-@dataclass(frozen=True)
-class _Kind:
-    """What a value may be, and how to say so."""
-
-    types: type | tuple[type, ...]
-    noun: str
-
-
-_INTEGER = _Kind(Integral, "a whole number")
-_REAL = _Kind(Real, "a number")
-_NAME = _Kind(str, "a name")
-_BOOL = _Kind((bool, np.bool_), "True or False")
-_KINDS: Mapping[str, tuple[bool, _Kind]] = MappingProxyType(  # whether None is allowed, and what else
+_KINDS: Mapping[type, tuple[tuple[type, ...], str]] = MappingProxyType(  # what a value may be; NumPy's are welcome
     {
-        "method": (False, _NAME),
-        "max_iterations": (False, _INTEGER),
-        "tolerance": (False, _REAL),
-        "vertices": (True, _INTEGER),
-        "energy": (False, _NAME),
-        "metric": (True, _NAME),
-        "quadrature_points": (False, _INTEGER),
-        "penalty": (True, _REAL),
-        "adaptive": (False, _BOOL),
-        "resolve": (False, _BOOL),
-        "edge_lengths": (False, _NAME),
-        "stability": (False, _BOOL),
-        "escape_saddles": (False, _BOOL),
+        int: ((Integral,), "a whole number"),
+        float: ((Real,), "a number"),
+        str: ((str,), "a name"),
+        bool: ((bool, np.bool_), "True or False"),
     }
 )
 
@@ -124,13 +103,14 @@ class RelaxOptions:
             raise OptionError(f"edge_lengths is {self.edge_lengths!r}; choose one of {', '.join(EDGE_LENGTHS)}")
 
     def _check_types(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            optional, kind = _KINDS[field.name]
-            if value is None and optional:
+        for name, hint in get_type_hints(type(self)).items():
+            value = getattr(self, name)
+            kinds = get_args(hint) or (hint,)  # of "int | None" both
+            if value is None and type(None) in kinds:
                 continue
-            # bool is a kind of int, but no number; NumPy's numbers are welcome
-            if not isinstance(value, kind.types) or (isinstance(value, bool) and kind is not _BOOL):
-                raise OptionError(f"{field.name} is {value!r:.40}; it must be {kind.noun}")
-            if kind in (_REAL, _INTEGER) and abs(cast(float, value)) > sys.float_info.max:
-                raise OptionError(f"{field.name} is too large for a number of this program")
+            types, noun = _KINDS[kinds[0]]
+            # bool is a kind of int, but no number
+            if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
+                raise OptionError(f"{name} is {value!r:.40}; it must be {noun}")
+            if isinstance(value, Real) and abs(cast(float, value)) > sys.float_info.max:
+                raise OptionError(f"{name} is too large for a number of this program")

@@ -44,11 +44,15 @@ class Run:
 
     def iterates(self) -> Iterator[Iterate]:
         """Yield the start and every accepted step; the last iterate has a status other than RUNNING."""
+        seen = -1
         try:
-            yield from self._iterates()
+            for iterate in self._iterates():
+                seen = iterate.index
+                yield iterate
         except np.linalg.LinAlgError as error:
             message = f"stalled: the curve has become too degenerate: {error}"
-            yield replace(self._iterate, status=Status.STALLED, message=message, path=())
+            path = () if self._iterate.index == seen else self._iterate.path
+            yield replace(self._iterate, status=Status.STALLED, message=message, path=path)
 
     def _iterates(self) -> Iterator[Iterate]:
         just_refined = False  # around edges that were stuck: once is enough

@@ -1,5 +1,6 @@
 """The live half of the Relax operator, and the buttons for a run that is going on."""
 
+from collections.abc import Callable
 from typing import Any
 
 import bpy
@@ -70,47 +71,55 @@ def _go_to_last_frame(scene: bpy.types.Scene, frame: float | None) -> None:
         scene.frame_set(whole, subframe=frame - whole)
 
 
-class CURVE_OT_mobius_flow_pause(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
-    """Pause the relaxation, or go on with it"""
+class _RunButton:
+    """A button for the run that is going on."""
 
-    bl_idname = "curve.mobius_flow_pause"
-    bl_label = "Pause"
+    poll_message_set: Callable[[str], None]
 
     @classmethod
     def poll(cls, _context: bpy.types.Context) -> bool:
-        """Whether there is something to pause."""
+        """Whether there is a run that still computes."""
         run = registry.current()
         busy = run is not None and run.state is State.FINISHING
         cls.poll_message_set("The relaxation is over; its keys are being written" if busy else _NOTHING)
         return run is not None and not busy
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Pause or resume."""
+        """Do what the button says."""
         run = registry.current()
         assert run is not None, "poll looks for it"
+        self.act(run)
+        redraw_views(context.window_manager)
+        return {"FINISHED"}
+
+    def act(self, run: Run) -> None:
+        """What the button does."""
+        raise NotImplementedError
+
+
+class CURVE_OT_mobius_flow_pause(_RunButton, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+    """Pause the relaxation, or go on with it"""
+
+    bl_idname = "curve.mobius_flow_pause"
+    bl_label = "Pause"
+
+    def act(self, run: Run) -> None:
+        """Pause or resume."""
         if run.state is State.PAUSED:
             run.resume()
         else:
             run.pause()
-        redraw_views(context.window_manager)
-        return {"FINISHED"}
 
 
-class CURVE_OT_mobius_flow_stop(bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_stop(_RunButton, bpy.types.Operator):  # noqa: N801
     """Stop the relaxation and keep the shape it has now"""
 
     bl_idname = "curve.mobius_flow_stop"
     bl_label = "Stop"
 
-    poll = CURVE_OT_mobius_flow_pause.poll
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, run: Run) -> None:
         """Stop; the event loop writes the result."""
-        run = registry.current()
-        assert run is not None, "poll looks for it"
         run.keep()
-        redraw_views(context.window_manager)
-        return {"FINISHED"}
 
 
 class CURVE_OT_mobius_flow_sample(bpy.types.Operator):  # noqa: N801

@@ -166,3 +166,9 @@ def test_reading_a_wrong_suffix(tmp_path, capsys):
     (tmp_path / "a.npy").rename(path)
     assert run("energy", path) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_names_with_line_ends_stay_on_one_line(capsys):
+    for arguments in (["relax", "a.txt", "b\nc"], ["energy", "no\nfile.txt"], ["no\ncommand"]):
+        assert main(arguments) == 2
+        assert capsys.readouterr().err.count("\n") == 1
