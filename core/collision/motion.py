@@ -45,12 +45,17 @@ class FreeMotion:
     pair: tuple[int, int] | None = None
     limit: Limit = Limit.NONE
 
+    @property
+    def proved(self) -> bool:
+        """Whether the whole motion is proved free of contact."""
+        return self.limit is Limit.NONE
+
 
 def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray) -> FreeMotion:
     """Prove as much as possible of the motion (1−t) start + t end, t in [0, 1], free of contact.
 
-    Neighbour edges are not tested: before they fold onto each other, one of them meets the edge after the other.
-    (Only a triangle can turn inside out, which in space changes nothing.)
+    Neighbour edges are not tested: when they fold onto each other, one of them meets the edge after the other. In
+    triangles, which have no such edges, each vertex is tested against the opposite edge.
 
     Parameters
     ----------
@@ -81,9 +86,10 @@ def _search(mesh: Mesh, start: FloatArray, end: FloatArray, *, exhaustive: bool)
     size = np.maximum(np.abs(start).max(), np.abs(end).max())
     if not np.isfinite(size):  # NumPy's maximum, unlike Python's, is NaN if one is
         return FreeMotion(0.0, None, Limit.NOT_FINITE)
-    # A power of two changes no digit, but keeps products away from overflow and underflow.
+    # A power of two keeps products away from overflow and underflow. It changes no digit, but of the smallest numbers,
+    # by less than the planes' margins: exact decisions are about the numbers as they were given.
     unit = -np.frexp(size)[1]
-    search = _Search(mesh, np.ldexp(start.T, unit, order="C"), np.ldexp(end.T, unit, order="C"))
+    search = _Search(mesh, np.ldexp(start.T, unit, order="C"), np.ldexp(end.T, unit, order="C"), (start, end))
     for vertices, reached in search.batches():
         search.take(vertices, reached)
         if search.pair is not None and not exhaustive:
@@ -94,8 +100,8 @@ def _search(mesh: Mesh, start: FloatArray, end: FloatArray, *, exhaustive: bool)
 class _Search:
     """The earliest contact so far, and what remains to be looked at."""
 
-    def __init__(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> None:
-        self.mesh, self.start, self.end = mesh, start, end
+    def __init__(self, mesh: Mesh, start: FloatArray, end: FloatArray, given: tuple[FloatArray, FloatArray]) -> None:
+        self.mesh, self.start, self.end, self.given = mesh, start, end, given
         self.limit = 1.0  # proved free up to here, as far as pairs have been looked at
         self.contact = np.inf  # the earliest contact found by an exact decision
         self.pair: tuple[int, int] | None = None
@@ -107,8 +113,7 @@ class _Search:
 
     def batches(self) -> Iterator[tuple[IntArray, FloatArray]]:
         """Yield pairs of edges that can meet before the limit: their vertices and the time each is surely free."""
-        if len(self.start) == 2:
-            yield from self._triangles()
+        yield self._triangles()
         tree = BoxTree.build(self.mesh, self.start, self.end)
         soon = self._soon()
         for after, until in ((-1.0, soon), (soon, 1.0)) if soon < 1 else ((-1.0, 1.0),):
@@ -138,12 +143,12 @@ class _Search:
                 enter, _ = contact_window(tree.levels[-1].gaps(a, b))
                 yield np.stack([tails[a], heads[a], tails[b], heads[b]]), _EARLY_START * enter
 
-    def _triangles(self) -> Iterator[tuple[IntArray, FloatArray]]:
-        """In the plane: each vertex of a triangle, as an edge of no length, against the opposite edge."""
+    def _triangles(self) -> tuple[IntArray, FloatArray]:
+        """Each vertex of a triangle, as an edge of no length, against the opposite edge."""
         sizes = np.asarray(self.mesh.component_sizes)
         first = self.mesh.offsets[:-1][sizes == 3]
         u, v, w = (np.concatenate([first + (k + c) % 3 for c in range(3)]) for k in range(3))
-        yield np.stack([u, u, v, w]), np.zeros(len(u))
+        return np.stack([u, u, v, w]), np.zeros(len(u))
 
     def take(self, vertices: IntArray, reached: FloatArray) -> None:
         """March pairs and lower the limit to the earliest time that cannot be passed."""
@@ -160,7 +165,8 @@ class _Search:
 
     def _decide(self, vertices: IntArray, reached: float) -> float:
         """The time up to which one pair is free by exact arithmetic, infinite if it never meets."""
-        contact = first_contact(self.start[:, vertices].T, self.end[:, vertices].T, reached)
+        start, end = self.given
+        contact = first_contact(start[vertices], end[vertices], reached)
         if contact is None:
             return np.inf
         self.contact = min(self.contact, contact)

@@ -1,16 +1,17 @@
 """Check that a trajectory is an isotopy: no two non-neighbour edges ever meet, and stages fit together.
 
 Why this is enough: if two neighbour edges fold onto each other, or an edge shrinks to a point, then an edge meets the
-one after its neighbour at the same moment, in every polygon of 4 or more vertices. (A triangle in space can turn inside
-out within a thin neighbourhood of itself; in the plane its corners are tested against the opposite edges.) So a motion
-free of such contact is a motion through embedded polygons.
+one after its neighbour at the same moment, in every polygon of 4 or more vertices. A triangle, which has no such edges,
+is one as long as no vertex lies on the opposite edge. So a motion free of such contact is a motion through embedded
+polygons, all frames included.
 
 This package shares no code with ``core.collision``, which the program uses to find its steps.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ import numpy as np
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .segments import Point, meet
-from .trajectory import TrajectoryError, stages
+from .trajectory import TrajectoryError, count_legs, stages
 from .transition import DifferentCurveError, common_vertices, straightened
 
 
@@ -57,11 +58,12 @@ class Verdict:
 
 
 class ContactError(Exception):
-    """Two edges meet."""
+    """Two edges meet, or a vertex x₀ = x₁ of a triangle the opposite edge; edges have the numbers of their tails."""
 
-    def __init__(self, reason: str, edges: tuple[int, int]) -> None:
-        super().__init__(reason)
-        self.edges = edges
+    def __init__(self, x0: int, x1: int, y0: int, _y1: int) -> None:
+        self.edges = x0, y0
+        edges = f"edges {x0 + 1} and {y0 + 1} (counted from 1) meet"
+        super().__init__(f"a triangle collapses at vertex {x0 + 1}" if x0 == x1 else edges)
 
 
 @dataclass
@@ -69,11 +71,18 @@ class _Progress:
     stages: int = 0
     legs: int = 0
     frame: int | None = None
+    tell: Callable[[int], None] = lambda legs: None
 
 
-def verify(path: Path | str) -> Verdict:
-    """Check a trajectory file; damaged files and failed checks give a verdict that is not accepted."""
+def verify(path: Path | str, callback: Callable[[int, int], None] | None = None) -> Verdict:
+    """Check a trajectory file; damaged files and failed checks give a verdict that is not accepted.
+
+    ``callback`` is called after every leg with the number of legs checked and, by its headers, of those in the file.
+    """
     progress = _Progress()
+    if callback is not None:
+        legs = count_legs(path)
+        progress.tell = lambda done: callback(done, legs)
     try:
         _check_file(path, progress)
     except TrajectoryError as error:
@@ -101,6 +110,7 @@ def _check_file(path: Path | str, progress: _Progress) -> None:
             progress.legs += 1
             _check_leg(last, frame, heads)
             last, progress.frame = frame, progress.frame + 1
+            progress.tell(progress.legs)
 
 
 def _heads(sizes: Sequence[int]) -> IntArray:
@@ -113,14 +123,7 @@ def _heads(sizes: Sequence[int]) -> IntArray:
 
 def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray) -> None:
     """Raise if two edges meet while the vertices go from start to end."""
-    first, last = _exact_points(start), _exact_points(end)
-    _check_pairs(doubtful_pairs(start, end, heads).T.tolist(), heads, first, last)
-    if start.shape[1] == 2:
-        # A triangle's vertex, as an edge of no length, and the edge opposite.
-        for k in np.flatnonzero(heads[heads[heads]] == np.arange(len(heads))).tolist():
-            corners = [k, k, int(heads[k]), int(heads[heads[k]])]
-            if meet([first(v) for v in corners], [last(v) for v in corners]):
-                raise ContactError(f"a triangle collapses at vertex {k + 1}", (k, int(heads[k])))
+    _check_pairs(doubtful_pairs(start, end, heads), _exact_points(start), _exact_points(end))
 
 
 def _check_transition(old: FloatArray, old_sizes: Sequence[int], new: FloatArray, new_sizes: Sequence[int]) -> None:
@@ -145,17 +148,14 @@ def _check_straightening(points: FloatArray, sizes: Sequence[int], kept: Sequenc
     if change > 0:
         heads, here = _heads(sizes), _exact_points(points)
         doubtful = doubtful_pairs(points, points, heads, clearance=change)
-        _check_pairs(doubtful.T.tolist(), heads, here, lambda k: moved.get(k) or here(k))
+        _check_pairs(doubtful, here, lambda k: moved.get(k) or here(k))
 
 
-def _check_pairs(
-    pairs: Sequence[tuple[int, int]], heads: IntArray, first: Callable[[int], Point], last: Callable[[int], Point]
-) -> None:
-    """Decide pairs exactly; raise if one meets."""
-    for i, j in pairs:
-        corners = [i, int(heads[i]), j, int(heads[j])]
+def _check_pairs(batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]) -> None:
+    """Decide pairs, given by their vertices, shapes (4, pairs), exactly; raise at the first that meets."""
+    for corners in chain.from_iterable(batch.T.tolist() for batch in batches):
         if meet([first(k) for k in corners], [last(k) for k in corners]):
-            raise ContactError(f"edges {i + 1} and {j + 1} (counted from 1) meet", (i, j))
+            raise ContactError(*corners)
 
 
 def _exact_points(points: FloatArray) -> Callable[[int], Point]:

@@ -1,6 +1,7 @@
 """Sort out the pairs of edges that certainly don't meet during a leg, in floating-point numbers with error bounds."""
 
 from collections.abc import Callable, Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -10,12 +11,15 @@ from ..types import BoolArray, FloatArray, IntArray
 # of coordinates are exact up to 2^-53, and there are fewer than 16 roundings after them.
 ROUNDING = 2.0**-48
 UNDERFLOW = 1e-290
-_PAIRS_AT_ONCE = 1 << 16
+_PAIRS_AT_ONCE = 1 << 14
 _HALVINGS = 5
 
 
-def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float = 0.0) -> IntArray:
-    """Return the pairs of non-neighbour edges that are not proved apart while vertices go from start to end.
+def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float = 0.0) -> Iterator[IntArray]:
+    """Yield the pairs of edges that are not proved apart while vertices go from start to end.
+
+    Edges that are no neighbours, and in triangles, which have none of these, each vertex, as an edge of no length, with
+    the opposite edge.
 
     Parameters
     ----------
@@ -26,32 +30,36 @@ def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearanc
     clearance
         Stay apart even if every coordinate of every vertex is wrong by this much.
 
-    Returns
-    -------
-    Array of shape (2, pairs).
+    Yields
+    ------
+    The vertices x₀, x₁, y₀, y₁ of a bounded number of pairs; shape (4, pairs).
     """
     exponent = -int(np.frexp(max(np.abs(start).max(), np.abs(end).max()))[1])
-    start, end, clearance = np.ldexp(start, exponent), np.ldexp(end, exponent), float(np.ldexp(clearance, exponent))
-    doubtful = [np.empty((2, 0), dtype=np.intp)]
-    for i, j in _overlapping(start, end, heads, clearance):
-        strangers = (heads[i] != j) & (heads[j] != i)
-        pairs = np.stack([i[strangers], j[strangers]])
-        leg = _Leg(start, end, heads, pairs, clearance)
+    start, end = np.ldexp(start, exponent), np.ldexp(end, exponent)
+    if clearance:
+        clearance = max(float(np.ldexp(clearance, exponent)), UNDERFLOW)
+    for vertices in chain([_triangles(heads)], _overlapping(start, end, heads, clearance)):
+        leg = _Leg(start, end, vertices, clearance)
         # Cheap things first; each looks at what is left over by the one before.
         leg.drop(leg.apart_along_axis)
         leg.drop(leg.apart_by_planes)
         if clearance == 0.0:
             leg.drop(leg.nowhere_coplanar)
-        doubtful.append(leg.pairs)
-    return np.concatenate(doubtful, axis=1)
+        if leg.vertices.size:
+            yield leg.vertices
 
 
-def _overlapping(
-    start: FloatArray, end: FloatArray, heads: IntArray, clearance: float
-) -> Iterator[tuple[IntArray, IntArray]]:
-    """Pairs of edges i, j whose ranges of coordinates during the leg overlap, a bounded number at a time."""
+def _triangles(heads: IntArray) -> IntArray:
+    """Each vertex of a triangle, twice, and the ends of the opposite edge; shape (4, pairs)."""
+    k = np.flatnonzero(heads[heads[heads]] == np.arange(len(heads)))
+    return np.stack([k, k, heads[k], heads[heads[k]]])
+
+
+def _overlapping(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float) -> Iterator[IntArray]:
+    """Edges that are no neighbours and whose ranges of coordinates during the leg overlap; shapes (4, pairs)."""
     ends = np.stack([start, end, start[heads], end[heads]])
     low, high = ends.min(axis=0) - 4 * clearance, ends.max(axis=0)
+    low, high = (np.roll(x, -int(np.ptp(low, axis=0).argmax()), axis=1) for x in (low, high))  # the widest axis first
     order = np.argsort(low[:, 0], kind="stable")
     # In this order edge k overlaps those after it that begin before it ends.
     count = np.searchsorted(low[order, 0], high[order, 0], side="right") - np.arange(len(order)) - 1
@@ -61,28 +69,29 @@ def _overlapping(
         position = np.arange(first, min(first + _PAIRS_AT_ONCE, int(total[-1])))
         k = np.searchsorted(total, position, side="right") - 1
         i, j = order[k], order[k + 1 + position - total[k]]
+        keep = (heads[i] != j) & (heads[j] != i)
         for axis in range(1, start.shape[1]):
-            overlap = (low[i, axis] <= high[j, axis]) & (low[j, axis] <= high[i, axis])
-            i, j = i[overlap], j[overlap]
-        yield i, j
+            keep &= (low[i, axis] <= high[j, axis]) & (low[j, axis] <= high[i, axis])
+        i, j = i[keep], j[keep]
+        yield np.stack([i, heads[i], j, heads[j]])
 
 
 class _Leg:
     """Pairs of edges during one leg, and ways to prove them apart."""
 
-    def __init__(self, start: FloatArray, end: FloatArray, heads: IntArray, pairs: IntArray, clearance: float) -> None:
-        self.pairs, self.clearance = pairs, clearance
-        (i, j), points = pairs, np.stack([start, end])
-        ends = [points[:, k] for k in (i, heads[i], j, heads[j])]
+    def __init__(self, start: FloatArray, end: FloatArray, vertices: IntArray, clearance: float) -> None:
+        self.vertices, self.clearance = vertices, clearance
+        ends = np.stack([start, end])[:, vertices].swapaxes(0, 1)  # (4, 2, pairs, m)
         # x_i − y_j at both times: shape (2, 4, pairs, m)
         self.corners = np.stack([x - y for x in ends[:2] for y in ends[2:]], axis=1)
         self.edges = np.stack([ends[1] - ends[0], ends[3] - ends[2]], axis=1)
 
     def drop(self, proved: Callable[[], BoolArray]) -> None:
         """Forget the pairs that are proved apart."""
-        if self.pairs.size:
+        if self.vertices.size:
             left = ~proved()
-            self.pairs, self.corners, self.edges = self.pairs[:, left], self.corners[:, :, left], self.edges[:, :, left]
+            self.vertices = self.vertices[:, left]
+            self.corners, self.edges = self.corners[:, :, left], self.edges[:, :, left]
 
     def apart_along_axis(self) -> BoolArray:
         """Whether one edge stays above the other along a coordinate axis."""
@@ -92,7 +101,7 @@ class _Leg:
 
     def apart_by_planes(self) -> BoolArray:
         """Whether fixed planes separate the edges, each for a part of the time."""
-        proved = np.ones(self.pairs.shape[1], dtype=bool)
+        proved = np.ones(self.vertices.shape[1], dtype=bool)
         self._plane_parts(np.arange(len(proved)), 0.0, 1.0, _HALVINGS, proved)
         return proved
 
@@ -121,9 +130,9 @@ class _Leg:
     def nowhere_coplanar(self) -> BoolArray:
         """Whether det(D, e, f) has no zero in [0, 1]: all its Bernstein coefficients have one sign."""
         if self.corners.shape[-1] == 2:
-            return np.zeros(self.pairs.shape[1], dtype=bool)
+            return np.zeros(self.vertices.shape[1], dtype=bool)
         vectors = [np.stack([self.corners[t, 0], *self.edges[t]]) for t in (0, 1)]
-        sums, errors = np.zeros((4, self.pairs.shape[1])), np.full((4, self.pairs.shape[1]), UNDERFLOW)
+        sums, errors = np.zeros((4, self.vertices.shape[1])), np.full((4, self.vertices.shape[1]), UNDERFLOW)
         for p in (0, 1):
             for q in (0, 1):
                 for r in (0, 1):

@@ -28,7 +28,12 @@ class Root:
         return Root(self.polynomial, middle, self.high)
 
     def sign_of(self, q: Polynomial) -> int:
-        """Sign of the polynomial ``q`` at the root, exactly."""
+        """Sign of the polynomial ``q`` at the root, exactly.
+
+        It is 0 if and only if both have a common divisor with a root in the interval, for ours is the only root there.
+        Otherwise ``q`` has a neighbourhood of the root without roots, which the interval comes to lie in, but for its
+        open lower end; so ``q`` has at the upper end the sign it has at the root.
+        """
         if not q:
             return 0
         if count_roots(gcd(self.polynomial, q), self.low, self.high):
@@ -36,7 +41,7 @@ class Root:
         root = self
         while count_roots(q, root.low, root.high):
             root = root.halved()
-        return sign_at(q, root.high)  # q has no root between the root and here
+        return sign_at(q, root.high)
 
 
 ZERO = Root((0, 1), Fraction(-1), Fraction(0))
@@ -47,7 +52,7 @@ def roots(p: Polynomial) -> list[Root]:
     """The different roots of a non-zero polynomial in [0, 1], in ascending order, each in an interval of its own."""
     if len(p) < 2 or _one_sign(p):
         return []
-    p = _primitive(_quotient(p, gcd(p, derivative(p))))  # square-free
+    p = square_free(p)
     found, work = [], [(Fraction(-1, 2**20), Fraction(1))]
     while work:
         low, high = work.pop()
@@ -61,15 +66,26 @@ def roots(p: Polynomial) -> list[Root]:
 
 
 def count_roots(p: Polynomial, low: Fraction, high: Fraction) -> int:
-    """Number of different roots in (low, high], by Sturm's theorem."""
+    """Number of different roots in (low, high] of a non-zero polynomial, by Sturm's theorem.
+
+    The theorem is about the square-free part: where an end of the interval is a multiple root of p itself, all of p's
+    own chain vanishes there, and counts nothing.
+    """
     if len(p) < 2:
         return 0
     chain = _sturm_chain(p)
     return _changes([sign_at(q, low) for q in chain]) - _changes([sign_at(q, high) for q in chain])
 
 
+def square_free(p: Polynomial) -> Polynomial:
+    """The polynomial, up to a constant factor, that has the roots of a non-zero p, each of them once."""
+    return _primitive(_quotient(p, gcd(p, derivative(p))))
+
+
 @lru_cache(maxsize=256)
 def _sturm_chain(p: Polynomial) -> tuple[Polynomial, ...]:
+    """Sturm's chain of the square-free part of a polynomial that is not constant."""
+    p = square_free(p)
     chain = [p, derivative(p)]
     while chain[-1]:
         chain.append(_primitive(tuple(-c for c in _remainder(chain[-2], chain[-1]))))

@@ -1,10 +1,20 @@
 """Whether two moving segments meet: decided exactly, for any rational end points.
 
-Segments x(s) = x₀ + s e and y(r) = y₀ + r f, s, r in [0, 1], with end points linear in time t in [0, 1]; D = x₀ − y₀.
-If det(D, e, f) is not the zero polynomial, they can meet only at its roots. If it is, they stay coplanar; if they meet
-at all, then at the start, or for the first time with an end of one on the other: at a root of |f × (x_i − y₀)|² or
-|e × (y_j − x₀)|² or, if such a polynomial vanishes, of |x_i − y_j|². At each of these times, algebraic numbers, the
-segments are tested for a common point by signs of polynomials.
+Segments x(s) = x₀ + s e and y(r) = y₀ + r f, s, r in [0, 1], with end points linear in time t in [0, 1]; D = x₀ − y₀;
+either may have no length. They are tested for a common point, by signs of polynomials at algebraic numbers, at finitely
+many times, among which is the first contact t* if there is one:
+
+1. det(D, e, f) is not the zero polynomial. A common point makes D, e, f dependent, so t* is one of its roots.
+2. It is zero: the segments are coplanar all the time (in the plane always). If t* > 0, an end of one lies on the other
+   at t*: segments that are not parallel and cross inside both would have crossed shortly before; parallel ones
+   overlap in a segment or a point whose ends are ends of theirs. Let the end be p and the other segment y.
+   a. |f × (p − y₀)|² is not zero: t* is one of its roots.
+   b. It is zero: p is on y's line all the time. Were p inside y at t*, y having a length, p would have been inside
+      shortly before. So p is at an end of y at t*, a root of |p − y_j|² (which is not zero, as then t* = 0).
+   So t* is 0 or a root of one of the polynomials of a and b that are not zero.
+
+A common point itself is found so: if e × f ≠ 0, there is at most one pair (s, r) of Cramer's rule, a common point if
+⟨D, e × f⟩ = 0 and s and r are in [0, 1]. If e × f = 0, an end of one must lie on the other, as in 2.
 """
 
 import math

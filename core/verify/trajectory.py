@@ -20,9 +20,10 @@ import numpy as np
 from ..types import FloatArray
 
 _MAX_HEADER = 1000
-_MAX_FRAME = 1 << 28  # bytes: eleven million vertices in space
+_MAX_FRAME = 1 << 25  # bytes: over a million vertices in space
 _MAX_FORTRAN = 1 << 28  # bytes of a whole stage in Fortran order, whose frames are scattered over it
 _MAX_SIZES = 1 << 24  # bytes
+_PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # what NumPy writes
 _DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError)
 
 
@@ -57,6 +58,20 @@ def stages(path: Path | str) -> Iterator[Stage]:
         raise TrajectoryError(f"the file cannot be read: {error}") from error
 
 
+def count_legs(path: Path | str) -> int:
+    """Number of legs in a file by the headers of its stages, as far as these can be read."""
+    legs = 0
+    try:
+        with zipfile.ZipFile(path) as archive:
+            for number in range(_count(archive)):
+                with _member(archive, f"stage_{number:03d}") as file:
+                    (frames, *_), _, _ = _header(file, f"stage_{number:03d}")
+                    legs += max(frames - 1, 0)
+    except (*_DAMAGE, ValueError):
+        pass
+    return legs
+
+
 def _count(archive: zipfile.ZipFile) -> int:
     names = archive.namelist()
     found = sorted(name for name in names if name.startswith("stage_"))
@@ -69,7 +84,7 @@ def _count(archive: zipfile.ZipFile) -> int:
 def _stage(archive: zipfile.ZipFile, number: int) -> Stage:
     sizes = _component_sizes(archive, f"component_sizes_{number:03d}")
     name = f"stage_{number:03d}"
-    file = archive.open(f"{name}.npy")
+    file = _member(archive, name)
     shape, dtype, fortran = _header(file, name)
     if dtype != np.dtype("<f8") or len(shape) != 3:
         raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be (k, n, m) of float64")
@@ -87,9 +102,7 @@ def _stage(archive: zipfile.ZipFile, number: int) -> Stage:
 
 
 def _component_sizes(archive: zipfile.ZipFile, name: str) -> tuple[int, ...]:
-    if f"{name}.npy" not in archive.namelist():
-        raise TrajectoryError(f"{name} is missing")
-    with archive.open(f"{name}.npy") as file:
+    with _member(archive, name) as file:
         shape, dtype, _ = _header(file, name)
         if dtype.kind not in "iu" or len(shape) != 1 or not 0 < shape[0] * dtype.itemsize <= _MAX_SIZES:
             raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be a list of whole numbers")
@@ -98,6 +111,14 @@ def _component_sizes(archive: zipfile.ZipFile, name: str) -> tuple[int, ...]:
     if min(sizes) < 3:
         raise TrajectoryError(f"{name} has a component with {min(sizes)} vertices; a closed polygon has 3 or more")
     return sizes
+
+
+def _member(archive: zipfile.ZipFile, name: str) -> IO[bytes]:
+    if f"{name}.npy" not in archive.namelist():
+        raise TrajectoryError(f"{name} is missing")
+    if archive.getinfo(f"{name}.npy").compress_type not in _PACKED:
+        raise TrajectoryError(f"{name} is packed by a method that NumPy does not use; write it with numpy.savez")
+    return archive.open(f"{name}.npy")
 
 
 def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], "np.dtype[np.generic]", bool]:

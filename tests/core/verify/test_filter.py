@@ -5,11 +5,17 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from mobius_flow.core import Mesh
-from mobius_flow.core.verify.filter import doubtful_pairs
-from motions import KINDS, Motion, Rng, pair_contacts, placed
+from mobius_flow.core.types import IntArray
+from mobius_flow.core.verify import filter as leg_filter
+from motions import KINDS, Array, Motion, Rng, pair_contacts, placed
 from shapes import torus_trefoil
 
 HEADS = Mesh((4,)).heads
+
+
+def doubtful_pairs(start: Array, end: Array, heads: IntArray, clearance: float = 0.0) -> Array:
+    """All of them, each by the vertices of its edges; shape (4, pairs)."""
+    return np.concatenate([np.empty((4, 0)), *leg_filter.doubtful_pairs(start, end, heads, clearance)], axis=1)
 
 
 def pairs_that_meet(motion: Motion) -> set[tuple[int, int]]:
@@ -24,7 +30,7 @@ def test_pairs_that_meet_stay(kind: Callable[[Rng, int], Motion], m: int) -> Non
     rng, left, free = np.random.default_rng(21), 0, 0
     for _ in range(15):
         motion = placed(rng, kind(rng, m))
-        doubtful = {(min(p), max(p)) for p in doubtful_pairs(*motion, HEADS).T.tolist()}
+        doubtful = {(min(p), max(p)) for p in doubtful_pairs(*motion, HEADS)[[0, 2]].T.tolist()}
         contacts = pairs_that_meet(motion)
         assert doubtful >= contacts
         left, free = left + len(doubtful - contacts), free + 2 - len(contacts)
@@ -51,4 +57,4 @@ def test_all_pairs_are_looked_at() -> None:
     """With everything at one place nothing can be dropped."""
     points = np.zeros((30, 3))
     pairs = doubtful_pairs(points, points, Mesh((30,)).heads)
-    assert pairs.shape == (2, 30 * 27 // 2)
+    assert pairs.shape == (4, 30 * 27 // 2)

@@ -7,6 +7,7 @@ import pytest
 from mobius_flow.core.verify.polynomials import (
     ZERO,
     Polynomial,
+    Root,
     add,
     count_roots,
     derivative,
@@ -14,6 +15,7 @@ from mobius_flow.core.verify.polynomials import (
     multiply,
     roots,
     sign_at,
+    square_free,
     subtract,
 )
 
@@ -91,3 +93,24 @@ def test_zero() -> None:
     assert ZERO.sign_of((0, 1)) == 0
     assert ZERO.sign_of((3, 1)) == 1
     assert ZERO.sign_of(()) == 0
+
+
+@pytest.mark.parametrize("power", [1, 2, 3])
+@pytest.mark.parametrize("end", [Fraction(0), Fraction(1, 2)])
+def test_multiple_roots_at_the_ends_of_the_interval(end: Fraction, power: int) -> None:
+    """Of two roots, one of them multiple and at an end: the lower end does not count, the upper one does."""
+    inside = minus(Fraction(1, 4))
+    q = product(inside, *[minus(end)] * power)
+    assert count_roots(q, Fraction(0), Fraction(1, 2)) == (1 if end == 0 else 2)
+    root = Root(minus(Fraction(1, 3)), Fraction(0), Fraction(1, 2))
+    assert root.sign_of(q) == sign_at(q, Fraction(1, 3))
+    root = Root(inside, Fraction(0), Fraction(1, 2))
+    assert root.sign_of(q) == 0
+    assert root.sign_of(product(*[minus(end)] * power)) == (1 if end == 0 else (-1) ** power)
+
+
+@pytest.mark.parametrize("powers", [(1, 1), (2, 1), (1, 3), (2, 2)])
+def test_square_free(powers: tuple[int, int]) -> None:
+    p, q = (-1, 3), (1, 0, 5)
+    found = square_free(product(*[p] * powers[0], *[q] * powers[1]))
+    assert found in (product(p, q), multiply((-1,), product(p, q)))

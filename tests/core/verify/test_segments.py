@@ -1,9 +1,11 @@
 """The exact decision about two moving segments: cases known by hand, and fine sampling."""
 
+import os
 from fractions import Fraction
 
 import numpy as np
 import pytest
+from degenerate_motions import crossing_shadows
 from mobius_flow.core.verify.segments import meet, meetings
 from motions import narrowed
 
@@ -61,6 +63,14 @@ def test_contact_at_an_irrational_time() -> None:
     start, end = [[0, -1], [2, -1], [0, 0], [0, 0]], [[0, -1], [2, 3], [1, 0], [1, 0]]
     found = list(meetings(exact(start), exact(end)))
     assert {root.sign_of((-1, 0, 2)) for root in found} == {0}
+
+
+def test_edges_that_meet_beside_a_multiple_root() -> None:
+    """The polynomials have multiple roots where roots are told apart; MOBIUS_FLOW_SHADOWS=3000 makes more of them."""
+    rng = np.random.default_rng(617)
+    for _ in range(int(os.environ.get("MOBIUS_FLOW_SHADOWS", "300"))):
+        start, end = crossing_shadows(rng)
+        assert meet(exact(start.tolist()), exact(end.tolist())), (start.tolist(), end.tolist())
 
 
 def test_random_motions_against_sampling() -> None:

@@ -88,14 +88,16 @@ def test_refuses_a_single_frame_that_touches_itself(tmp_path: Path) -> None:
     assert (verdict.accepted, verdict.edges, verdict.frame) == (False, (0, 2), 0)
 
 
-def test_triangle_that_turns_inside_out(tmp_path: Path) -> None:
+def test_a_triangle_may_turn_over_but_not_collapse(tmp_path: Path) -> None:
     triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 1.0]])
     flipped = triangle * [1, -1]
     verdict = verify(write(tmp_path / "T.npz", ((3,), [triangle, flipped])))
     assert not verdict.accepted
     assert "triangle collapses" in verdict.reason
     lifted = [np.concatenate([p, np.zeros((3, 1))], axis=1) for p in (triangle, flipped)]
-    assert verify(write(tmp_path / "S.npz", ((3,), lifted))).accepted
+    assert not verify(write(tmp_path / "S.npz", ((3,), lifted))).accepted
+    upright = lifted[0][:, [0, 2, 1]]
+    assert verify(write(tmp_path / "S.npz", ((3,), [lifted[0], upright, lifted[1]]))).accepted
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e4])
