@@ -4,14 +4,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .collision import free_motion, minimal_gap
+from .collision import FreeMotion, survives_rounding
 from .curve import Curve
 from .curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
 from .descent import Problem
 from .types import FloatArray
 
 INTERVAL = 5  # accepted steps between two looks at the mesh
-ROUNDING_GAP = 1e-10  # of the coordinates: nearer strands are not remeshed, new vertices being rounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,14 +20,17 @@ class Adapted:
     Attributes
     ----------
     moved
-        Vertices of the old mesh after those to be removed have moved onto the chords of their neighbours.
+        The curve on the old mesh after the vertices to be removed have moved onto the chords of their neighbours.
+    proof
+        What is proved of that motion.
     curve
         The new polygon, in the user's units.
     problem
         The same problem on it.
     """
 
-    moved: FloatArray
+    moved: Curve
+    proof: FreeMotion
     curve: Curve
     problem: Problem
 
@@ -60,20 +62,20 @@ def adapt(problem: Problem, curve: Curve, vertices: int | None, stuck: tuple[int
             spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
     elif not needs_remesh(curve, spacing):
         return None
-    if problem.certifiable and minimal_gap(curve)[0] <= ROUNDING_GAP * np.abs(curve.vertices).max():
+    change, proof = _proved(problem, curve, vertices, spacing)
+    if not (survives_rounding(change.moved) and survives_rounding(change.curve)):
         return None
-    change = _proved(curve, vertices, spacing)
-    return Adapted(change.moved.vertices, change.curve, _on(problem, change.curve, change.lengths))
+    return Adapted(change.moved, proof, change.curve, _on(problem, change.curve, change.lengths))
 
 
-def _proved(curve: Curve, vertices: int | None, spacing: FloatArray) -> Remeshed:
-    """The change of mesh with as many collapses as are proved free of contact."""
+def _proved(problem: Problem, curve: Curve, vertices: int | None, spacing: FloatArray) -> tuple[Remeshed, FreeMotion]:
+    """The change of mesh with as many collapses as are free of contact, and the proof."""
     removable = superfluous(curve, spacing)
     while True:
         change = remesh(curve, vertices, removable, spacing)
-        free = free_motion(curve.mesh, curve.vertices, change.moved.vertices) if curve.dimension <= 3 else None
-        if free is None or free.time == 1.0 or not len(removable):
-            return change
+        free = problem.free_motion(curve.vertices, change.moved.vertices)
+        if free.time == 1.0 or not len(removable):
+            return change, free
         assert free.pair is not None
         ends = [curve.mesh.tails[e] for e in free.pair] + [curve.mesh.heads[e] for e in free.pair]
         guilty = np.isin(removable, ends)

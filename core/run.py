@@ -39,6 +39,7 @@ class Run:
         self._options = options
         self._vertices = options.vertices
         self._first_count = len(start)
+        self._certified = problem.certifiable  # an embedded start, and so far no motion
         self._begin(graded_problem(problem, start, options.vertices) if options.adaptive else problem, start, 0)
         self._stepper = Stepper(method_named(options.method))
 
@@ -98,15 +99,15 @@ class Run:
 
     def _begin(self, problem: Problem, curve: Curve, index: int) -> None:
         """Start on a mesh."""
-        self._problem, self._start = problem, curve
-        self._point = problem.at(problem.units.from_user(curve.vertices))
-        self._iterate = self._described(self._point, curve, index, 0.0, ())
+        self._problem = problem
+        self._point = problem.at_curve(curve)
+        self._iterate = self._described(self._point, index, 0.0, ())
 
     def _accept(self, step: Step) -> None:
         self._point = step.point
-        path = tuple(self._problem.units.to_user(vertices) for vertices in step.path)
-        curve = self._start.with_vertices(path[-1])
-        self._iterate = self._described(step.point, curve, self._iterate.index + 1, step.size, path)
+        self._certified &= step.certified
+        path = tuple(leg.end.placed for leg in step.legs)
+        self._iterate = self._described(step.point, self._iterate.index + 1, step.size, path)
 
     def _adapt(self, stuck: tuple[int, int] | None) -> Generator[Iterate, None, bool]:
         """Change the mesh where needed; yield the iterates of the old one that nobody has seen yet.
@@ -118,11 +119,11 @@ class Run:
             return False
         if stuck is None:
             yield self._iterate
-        moved = self._problem.at(self._problem.units.from_user(change.moved))
-        curve = self._start.with_vertices(change.moved)
+        self._certified &= change.proof.proved
+        moved = self._problem.at_curve(change.moved)
         index = self._iterate.index
         # the last motion on the old mesh, then the same curve on the new one
-        self._iterate = self._described(moved, curve, index + 1, 0.0, (change.moved,))
+        self._iterate = self._described(moved, index + 1, 0.0, (moved.placed,))
         yield self._iterate
         self._begin(change.problem, change.curve, index + 2)
         self._stepper.restart()
@@ -137,7 +138,7 @@ class Run:
         if max(parts) > max(constraints.parts or (0,)):
             constraints = constraints.of_parts(self._point.curve, parts)
             self._problem = replace(self._problem, constraints=constraints)
-            self._point = self._problem.at(self._point.vertices)
+            self._point = self._point.within(self._problem)
             self._iterate = replace(self._iterate, gradient_norm=self._point.gradient_norm)
             self._stepper.restart()
 
@@ -172,16 +173,14 @@ class Run:
     def _advice(self) -> str:
         return "" if self._options.adaptive else "; more vertices or an adaptive mesh may help"
 
-    def _described(
-        self, point: Point, curve: Curve, index: int, step_size: float, path: tuple[FloatArray, ...]
-    ) -> Iterate:
+    def _described(self, point: Point, index: int, step_size: float, path: tuple[FloatArray, ...]) -> Iterate:
         return Iterate(
             index=index,
-            curve=curve,
+            curve=Curve(point.placed, point.problem.mesh),
             energy=point.energy,
             gradient_norm=point.gradient_norm,
             step_size=step_size,
             path=path,
-            certified=point.problem.certifiable,
+            certified=self._certified,
             edge_length_error=point.problem.constraints.length_error(point.curve),
         )

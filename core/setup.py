@@ -5,7 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from .collision import check_embedded
+from .collision import survives_rounding
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
 from .descent import METHODS, Method, Problem
@@ -38,17 +38,14 @@ def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
     Raises
     ------
     CurveError
-        If the new vertices, rounded to doubles, are no longer apart.
+        If the new vertices, rounded to doubles, might not be on their edges for all that matters.
     """
     refined = refine(curve, vertices)
-    if len(refined) > len(curve):
-        try:
-            check_embedded(refined)
-        except CurveError as error:
-            raise CurveError(
-                f"so far from the origin there are too few digits for the vertices to be inserted ({error}); "
-                "move the curve nearer to it"
-            ) from error
+    if len(refined) > len(curve) and not survives_rounding(refined):
+        raise CurveError(
+            "the curve is so far from the origin, or has strands so near to each other, that there are too few digits "
+            "for vertices to be inserted; move it nearer to the origin, or its strands apart"
+        )
     return refined
 
 

@@ -62,12 +62,11 @@ class Stepper:
             self._last, self._state = method, State()
         problem = point.problem
         if method is HELPER and problem.metric is not HELPER.metric:
-            point = replace(problem, metric=HELPER.metric).at(point.vertices)
+            point = point.within(replace(problem, metric=HELPER.metric))
         try:
             step, self._state = method.step(point, self._state)
             if isinstance(step, Step):
-                if step.point.problem is not problem:
-                    step = replace(step, point=problem.at(step.point.vertices))
+                step = step.within(problem)
                 step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
         except np.linalg.LinAlgError as error:
             return NoStep(f"the curve has become too degenerate: {error}")

@@ -3,5 +3,6 @@
 from .embedded import check_embedded
 from .gap import minimal_gap
 from .motion import FreeMotion, Limit, free_motion, is_free
+from .rounding import survives_rounding
 
-__all__ = ["FreeMotion", "Limit", "check_embedded", "free_motion", "is_free", "minimal_gap"]
+__all__ = ["FreeMotion", "Limit", "check_embedded", "free_motion", "is_free", "minimal_gap", "survives_rounding"]

@@ -24,11 +24,10 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
     unit = int(np.frexp(np.abs(curve.vertices).max())[1])
     points = np.ldexp(curve.vertices.T, -unit, order="C")
     tree = BoxTree.build(curve.mesh, points, points)
-    best, pair = np.inf, None
-    bound = _some_gap(curve, points)
+    best, pair = _some_gap(curve, points)
 
     def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
-        return _squared_gaps(level, a, b) <= min(bound, best)
+        return _squared_gaps(level, a, b) <= min(best, 4.0 * len(points))  # beyond the padding, which is infinitely far
 
     tails, heads = tree.order, curve.mesh.heads[tree.order]
     for a, b in tree.pairs(near):
@@ -52,14 +51,15 @@ def _squared_gaps(level: Level, a: IntArray, b: IntArray) -> FloatArray:
     return np.asarray(np.einsum("kp,kp->p", gaps, gaps))
 
 
-def _some_gap(curve: Curve, points: FloatArray) -> float:
-    """An upper bound of the squared gap: the smallest distance between edges one edge apart."""
+def _some_gap(curve: Curve, points: FloatArray) -> tuple[float, tuple[int, int] | None]:
+    """A squared gap to begin with: the smallest one between edges one edge apart, and these; infinite without any."""
     mesh = curve.mesh
     heads = mesh.heads
     i, j = mesh.tails, heads[heads]
     apart = heads[j] != i  # a triangle has no such edges
     i, j = i[apart], j[apart]
     if not i.size:
-        return 4.0 * len(points)  # of coordinates within ±1; finite, since the boxes' padding is infinitely far
-    bound = np.min(squared_distances(points, np.stack([i, heads[i], j, heads[j]])))
-    return float(bound) * (1 + 1e-12)  # so that rounding cannot exclude the pair itself
+        return np.inf, None
+    squares = squared_distances(points, np.stack([i, heads[i], j, heads[j]]))
+    k = int(np.argmin(squares))
+    return float(squares[k]), (int(i[k]), int(j[k]))

@@ -24,6 +24,7 @@ class Limit(Enum):
     CONTACT = "two edges meet, or come too near to each other to be told apart"
     TOUCHING_START = "two edges touch, or cannot be told apart, at the start"
     NOT_FINITE = "a vertex is not finite"
+    UNTESTED = "in more than three dimensions, where nothing is knotted, contact is not tested"
 
 
 @dataclass(frozen=True)

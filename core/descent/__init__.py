@@ -11,7 +11,7 @@ from .lbfgs import LimitedMemoryBFGS
 from .method import DEFAULT_PENALTY, LineSearchMethod, Method, State
 from .nesterov import AcceleratedGradient
 from .problem import Point, Problem
-from .search import NoStep, Step
+from .step import Leg, NoStep, Step
 from .trust_region import TrustRegion
 
 _J_C = MoebiusMetric()
@@ -42,4 +42,4 @@ _ALL: tuple[Method, ...] = (
 
 METHODS: Mapping[str, Method] = MappingProxyType({method.name: method for method in _ALL})
 
-__all__ = ["METHODS", "Method", "NoStep", "Point", "Problem", "State", "Step"]
+__all__ = ["METHODS", "Leg", "Method", "NoStep", "Point", "Problem", "State", "Step"]

@@ -7,7 +7,8 @@ import numpy as np
 from ..types import FloatArray
 from .feasibility import restore
 from .problem import Point
-from .search import NoStep, Step, free_step
+from .search import free_step
+from .step import NoStep, Step, leg
 
 FIRST_STEP = 0.5  # in the metric's norm
 MAX_TRIALS = 20
@@ -30,9 +31,9 @@ def escape_step(point: Point, direction: FloatArray, curvature: float) -> Step |
             trial = restore(point, point.vertices + sign * tau * direction, np.zeros_like(point.residual))
             wanted = point.energy + 0.1 * 0.5 * curvature * tau**2
             if trial is not None and math.isfinite(trial.energy) and trial.energy < wanted:
-                proof = point.problem.free_motion(point.vertices, trial.vertices)
-                if proof.time == 1.0:
-                    return Step(trial, tau, (trial.vertices,), limited_by)
-                limited_by = proof.pair
+                motion = leg(point, trial)
+                if motion.open:
+                    return Step((motion,), tau, limited_by)
+                limited_by = motion.proof.pair
             tau *= 0.5
     return NoStep.because(limited_by)

@@ -20,7 +20,8 @@ from .feasibility import restore
 from .method import State
 from .newton import energy_hessian, projected_conjugate_gradient
 from .problem import Point
-from .search import MAX_TRIALS, SMALL_SHARE, NormalStep, NoStep, Step, sufficient
+from .search import MAX_TRIALS, SMALL_SHARE, NormalStep, sufficient
+from .step import NoStep, Step, leg
 
 FIRST_STEP = 0.1
 STEP_GROWTH = 2.0
@@ -56,10 +57,10 @@ class ImplicitFlow:
                     share *= 0.25  # the way to the target lengths costs more than the flow gains
                     continue
                 if sufficient(trial.energy - point.energy, slope, point.energy):
-                    proof = point.problem.free_motion(point.vertices, trial.vertices)
-                    if proof.time == 1.0:
-                        return Step(trial, tau, (trial.vertices,), limited_by), State(tau, tau)
-                    limited_by = proof.pair
+                    motion = leg(point, trial)
+                    if motion.open:
+                        return Step((motion,), tau, limited_by), State(tau, tau)
+                    limited_by = motion.proof.pair
             tau *= 0.5
             share *= 0.5
         return NoStep.because(limited_by), state

@@ -9,7 +9,8 @@ from ..errors import OptionError
 from ..metrics import Metric
 from ..types import FloatArray
 from .problem import Point
-from .search import NoStep, Step, armijo_step
+from .search import armijo_step
+from .step import NoStep, Step
 from .wolfe import wolfe_step
 
 GROWTH = 4.0  # a first trial is at most this many times the last accepted step

@@ -14,7 +14,8 @@ from ..metrics import Metric
 from ..types import FloatArray
 from .method import GROWTH, State, check_penalty
 from .problem import Point
-from .search import NoStep, Step, free_step
+from .search import free_step
+from .step import NoStep, Step, leg
 from .wolfe import wolfe_step
 
 
@@ -45,13 +46,14 @@ class AcceleratedGradient:
         t = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * memory.t**2))
         momentum = (memory.t - 1.0) / t * (point.vertices - memory.vertices)
         truncated, _ = free_step(point, momentum, 1.0)
-        extrapolated = point if truncated == 0.0 else point.problem.at(point.vertices + truncated * momentum)
+        first = leg(point, point.problem.at(point.vertices + truncated * momentum))
+        extrapolated = first.end if truncated > 0.0 and first.open else point
         longest = GROWTH * state.last_step
         natural = 1.0 if np.isinf(longest) else longest
         step = wolfe_step(extrapolated, -extrapolated.gradient, natural, np.inf)
         if isinstance(step, NoStep):
             return (step, state) if state.memory is None else self.step(point, replace(state, memory=None))
         if extrapolated is not point:
-            step = replace(step, path=(extrapolated.vertices, *step.path))
+            step = replace(step, legs=(first, *step.legs))
         rising = step.point.energy > point.energy
         return step, State(None if rising else Memory(point.vertices, t), step.size)

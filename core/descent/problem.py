@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..collision import FreeMotion, free_motion
+from ..collision import FreeMotion, Limit, free_motion
 from ..constraints import ConstraintDerivative, Constraints
 from ..curve import Curve, Mesh
 from ..energies import Objective
@@ -40,7 +40,11 @@ class Problem:
 
     def at(self, vertices: FloatArray) -> "Point":
         """The point with these vertices, in the program's units."""
-        return Point(self, vertices)
+        return Point(self, vertices, self.units.to_user(vertices))
+
+    def at_curve(self, curve: Curve) -> "Point":
+        """The point of a curve in the user's units, whose coordinates are kept to the last digit."""
+        return Point(self, self.units.from_user(curve.vertices), curve.vertices)
 
     @property
     def certifiable(self) -> bool:
@@ -48,10 +52,10 @@ class Problem:
         return len(self.units.offset) <= 3
 
     def free_motion(self, start: FloatArray, end: FloatArray) -> FreeMotion:
-        """How far the straight motion is proved free of contact, in the user's rounded coordinates."""
+        """How far a straight motion in the user's units, both (n, m), is proved free of contact."""
         if not self.certifiable:
-            return FreeMotion(1.0, None)
-        return free_motion(self.mesh, self.units.to_user(start), self.units.to_user(end))
+            return FreeMotion(1.0, None, Limit.UNTESTED)
+        return free_motion(self.mesh, start, end)
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """The objective, with the penalty if there is one, and its derivative, shape (n, m)."""
@@ -74,11 +78,26 @@ class Problem:
 
 
 class Point:
-    """A polygon with the values that methods ask for, each computed at most once."""
+    """A polygon with the values that methods ask for, each computed at most once.
 
-    def __init__(self, problem: Problem, vertices: FloatArray) -> None:
+    Parameters
+    ----------
+    problem
+        What is solved.
+    vertices
+        In the program's units; shape (n, m).
+    placed
+        The same in the user's, rounded: the doubles that proofs are about and that are written; shape (n, m).
+    """
+
+    def __init__(self, problem: Problem, vertices: FloatArray, placed: FloatArray) -> None:
         self.problem = problem
         self.vertices = vertices
+        self.placed = placed
+
+    def within(self, problem: Problem) -> "Point":
+        """The same polygon in another problem on the same mesh."""
+        return self if problem is self.problem else Point(problem, self.vertices, self.placed)
 
     @cached_property
     def curve(self) -> Curve:

@@ -9,6 +9,7 @@ from ..saddle import SaddleSolver
 from ..types import FloatArray
 from .feasibility import restore
 from .problem import Point
+from .step import NoStep, Step, leg
 
 COLLISION_FRACTION = 2.0 / 3.0  # of the first step with a contact, the first trial of [RS21], Section 6.3
 MAX_DISPLACEMENT = 0.5  # of any vertex in one step, in the program's units (a component is 4 to 8 long)
@@ -16,44 +17,6 @@ MAX_TRIALS = 40
 LENGTH_CHANGE = 0.25  # largest logarithmic change of an edge length in one step, on the way to the targets
 SMALL_SHARE = 0.01  # of the way to the target lengths, taken even where it costs more energy than can be gained
 FEASIBLE = 1e-7  # residual below which the curve counts as being on the constraints
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """An accepted step.
-
-    Attributes
-    ----------
-    point
-        Where it ends.
-    size
-        Its τ.
-    path
-        Vertices at the ends of the straight legs that lead there, the last those of ``point``; all proved.
-    limited_by
-        The pair of edges whose contact limited τ, if any.
-    """
-
-    point: Point
-    size: float
-    path: tuple[FloatArray, ...]
-    limited_by: tuple[int, int] | None
-
-
-@dataclass(frozen=True)
-class NoStep:
-    """Why no step was found: in words, and the pair of edges in the way if it was contact."""
-
-    reason: str
-    limited_by: tuple[int, int] | None = None
-
-    @classmethod
-    def because(cls, limited_by: tuple[int, int] | None) -> "NoStep":
-        """The usual two reasons: contact, or an energy that does not go down any more."""
-        if limited_by is None:
-            return cls("no step along the direction lowers the energy by a measurable amount")
-        i, j = limited_by
-        return cls(f"edges {i + 1} and {j + 1} are so near to each other that no step is free of contact", limited_by)
 
 
 def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | NoStep:
@@ -88,25 +51,25 @@ def armijo_step(point: Point, direction: FloatArray, longest: float) -> Step | N
         if not sufficient(excess, slope, point.energy):
             shrink *= _interpolated(excess, slope)
             continue
-        proof = point.problem.free_motion(point.vertices, trial.vertices)
-        if proof.time < 1.0:
-            limited_by = proof.pair
-            shrink *= max(0.1, COLLISION_FRACTION * proof.time)
+        motion = leg(point, trial)
+        if not motion.open:
+            limited_by = motion.proof.pair
+            shrink *= max(0.1, COLLISION_FRACTION * motion.proof.time)
             continue
-        return Step(trial, shrink * tau, (trial.vertices,), limited_by)
+        return Step((motion,), shrink * tau, limited_by)
     return NoStep.because(limited_by)
 
 
 def free_step(point: Point, direction: FloatArray, longest: float) -> tuple[float, tuple[int, int] | None]:
     """The longest step worth trying: bounded displacement, and 2/3 of the first step with a contact.
 
-    Returns it with the pair of edges that limits it, if any; the motion up to it is proved free of contact.
+    Returns it with the pair of edges that limits it, if any. Nothing is proved yet: a point on the way is rounded.
     """
     speed = float(np.max(np.linalg.norm(direction, axis=1)))
     if speed == 0.0:
         return 0.0, None
     tau = min(longest, MAX_DISPLACEMENT / speed)
-    free = point.problem.free_motion(point.vertices, point.vertices + tau * direction)
+    free = leg(point, point.problem.at(point.vertices + tau * direction)).proof
     if free.time < 1.0:
         tau *= COLLISION_FRACTION * free.time
     return tau, free.pair

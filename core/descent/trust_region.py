@@ -18,7 +18,8 @@ from .feasibility import restore
 from .method import State
 from .newton import LinearMap, lagrangian_hessian, newton_direction
 from .problem import Point
-from .search import COLLISION_FRACTION, FEASIBLE, MAX_TRIALS, NoStep, Step, armijo_step, free_step
+from .search import COLLISION_FRACTION, FEASIBLE, MAX_TRIALS, armijo_step, free_step
+from .step import NoStep, Step, leg
 
 NEWTON_THRESHOLD = 0.3  # of √E: longer gradients are not worth a Newton direction
 FIRST_RADIUS = 1.0
@@ -63,14 +64,13 @@ class TrustRegion:
                 s, predicted = part * s, model.reduction(part * s)
             trial, ratio = _trial(point, s, predicted)
             if trial is not None and ratio >= ACCEPT:
-                proof = point.problem.free_motion(point.vertices, trial.vertices)
-                if proof.time == 1.0:
+                motion = leg(point, trial)
+                if motion.open:
                     radius = memory.radius * (2.0 if ratio > GOOD and length > 0.8 * memory.radius else 1.0)
                     radius = 0.5 * radius if ratio < 0.25 else radius
-                    step = Step(trial, 1.0, (trial.vertices,), limited_by)
-                    return step, State(Memory(radius, point.gradient), length)
-                limited_by = proof.pair
-                memory = replace(memory, radius=COLLISION_FRACTION * max(proof.time, 0.1) * length)
+                    return Step((motion,), 1.0, limited_by), State(Memory(radius, point.gradient), length)
+                limited_by = motion.proof.pair
+                memory = replace(memory, radius=COLLISION_FRACTION * max(motion.proof.time, 0.1) * length)
             else:
                 memory = replace(memory, radius=0.4 * min(length, memory.radius))
         return NoStep.because(limited_by), state

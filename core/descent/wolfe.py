@@ -10,7 +10,8 @@ import numpy as np
 
 from ..types import FloatArray
 from .problem import Point
-from .search import MAX_TRIALS, NoStep, Step, free_step
+from .search import MAX_TRIALS, free_step
+from .step import NoStep, Step, leg
 
 SUFFICIENT_DECREASE = 1e-4
 CURVATURE = 0.9
@@ -42,8 +43,10 @@ def wolfe_step(point: Point, direction: FloatArray, natural: float, longest: flo
         excess = trial.energy - point.energy if _nondegenerate(trial) else math.inf
         if not (math.isfinite(excess) and excess <= SUFFICIENT_DECREASE * tau * slope + 1e-14 * abs(point.energy)):
             high = tau
+        elif not (motion := leg(point, trial)).open:
+            high, limited_by = tau, motion.proof.pair
         else:
-            best, low = Step(trial, tau, (trial.vertices,), limited_by), tau
+            best, low = Step((motion,), tau, limited_by), tau
             if np.sum(trial.derivative * direction) >= CURVATURE * slope or tau >= end:
                 break
         tau = min(end, 2.0 * low) if math.isinf(high) else 0.5 * (low + high)

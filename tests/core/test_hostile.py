@@ -75,7 +75,7 @@ REFUSED: dict[str, tuple[Array, str]] = {
     ),
     "below range": (1e-300 * TREFOIL, "only 5.6.*e-300 wide, less than 1e-40; use a smaller unit"),
     "denormal": (np.ldexp(np.round(4 * TREFOIL), -1074), "use a smaller unit"),
-    "too far away": (TREFOIL + 1e15, "so far from the origin there are too few digits .* move the curve nearer"),
+    "too far away": (TREFOIL + 1e15, "too few digits .* move it nearer to the origin"),
     "much too far away": (TREFOIL + 1e18, "the same point"),
     "one point": (np.zeros((5, 3)), "vertices 1 and 2 are the same point"),
     "closed up to rounding": (np.stack([np.cos(CLOSED_TWICE), np.sin(CLOSED_TWICE)], axis=1), "41 and 1 are the same"),

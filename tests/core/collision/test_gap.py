@@ -63,6 +63,14 @@ def test_links_and_knots() -> None:
     assert minimal_gap(torus_trefoil(30))[0] == pytest.approx(brute_force(torus_trefoil(30)), rel=1e-9)
 
 
+@pytest.mark.parametrize("gap", [0.0, 1e-15, 1e-13, 1e-12, 1e-9])
+def test_edges_one_edge_apart_whose_gap_is_mostly_rounding(gap: float) -> None:
+    curve = Curve([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, gap, 0.0], [0, 1, 0]])
+    found, pair = minimal_gap(curve)
+    assert pair is not None
+    assert found == pytest.approx(gap, abs=1e-15)
+
+
 def test_a_triangle_has_no_gap() -> None:
     assert minimal_gap(regular_polygon(3)) == (np.inf, None)
 

@@ -1,0 +1,74 @@
+"""What a search ends with: a step with its proofs, or the reason why there is none."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from ..collision import FreeMotion
+from .problem import Point, Problem
+
+
+class Leg(NamedTuple):
+    """A straight motion to a point, and what is proved of it."""
+
+    end: Point
+    proof: FreeMotion
+
+    @property
+    def open(self) -> bool:
+        """Whether nothing is in the way; that this is also proved says ``proof.proved``."""
+        return self.proof.time == 1.0
+
+
+def leg(start: Point, end: Point) -> Leg:
+    """The straight motion between two points, in the rounded coordinates that users get to see."""
+    return Leg(end, end.problem.free_motion(start.placed, end.placed))
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """An accepted step.
+
+    Attributes
+    ----------
+    legs
+        The straight motions that lead to its end, one after the other, at least one.
+    size
+        Its τ.
+    limited_by
+        The pair of edges whose contact limited τ, if any.
+    """
+
+    legs: tuple[Leg, ...]
+    size: float
+    limited_by: tuple[int, int] | None
+
+    @property
+    def point(self) -> Point:
+        """Where it ends."""
+        return self.legs[-1].end
+
+    @property
+    def certified(self) -> bool:
+        """Whether all of it is proved free of contact."""
+        return all(leg.proof.proved for leg in self.legs)
+
+    def within(self, problem: Problem) -> "Step":
+        """The same step, ending at the point of another problem on the same mesh."""
+        last = self.legs[-1]
+        return replace(self, legs=(*self.legs[:-1], last._replace(end=last.end.within(problem))))
+
+
+@dataclass(frozen=True)
+class NoStep:
+    """Why no step was found: in words, and the pair of edges in the way if it was contact."""
+
+    reason: str
+    limited_by: tuple[int, int] | None = None
+
+    @classmethod
+    def because(cls, limited_by: tuple[int, int] | None) -> "NoStep":
+        """The usual two reasons: contact, or an energy that does not go down any more."""
+        if limited_by is None:
+            return cls("no step along the direction lowers the energy by a measurable amount")
+        i, j = limited_by
+        return cls(f"edges {i + 1} and {j + 1} are so near to each other that no step is free of contact", limited_by)
