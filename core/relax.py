@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .collision import check_embedded, minimal_gap
+from .collision import check_embedded, check_gap
 from .curve import Curve
 from .energies import MoebiusEnergy
 from .errors import CurveError, OptionError
@@ -14,9 +14,7 @@ from .iterate import Iterate, Status
 from .options import RelaxOptions
 from .run import Run
 from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
-from .units import check_units
-
-NEAREST_STRANDS = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
+from .units import centred, check_units
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +62,7 @@ class Result:
             "iterations": len(self.energies) - 1,
             "seconds": self.seconds,
             "energy": list(self.energies),
-            "final_energy": MoebiusEnergy().value(self.curve),
+            "final_energy": MoebiusEnergy().value(centred(self.curve)),
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
             "max_edge_length_error": self.edge_length_error,
@@ -100,30 +98,11 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     check_units(curve)
     check_embedded(curve)
     refined = embedded_refinement(curve, options.vertices)
-    _check_gap(refined)
+    check_gap(refined)
     try:
         return Run(start_problem(refined, options), refined, options).iterates()
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; move near strands apart") from error
-
-
-def _check_gap(curve: Curve) -> None:
-    """Refuse strands so near that the energy of their edges is nothing but rounding errors."""
-    if curve.dimension > 3:
-        return
-    gap, pair = minimal_gap(curve)
-    if pair is None or gap >= NEAREST_STRANDS * curve.length:
-        return
-    i, j = pair
-    if np.linalg.norm(curve.midpoints[i] - curve.midpoints[j]) > 1e-3 * max(
-        curve.edge_lengths[i], curve.edge_lengths[j]
-    ):
-        return  # only their ends are near, with a short edge between them or a vertex that nearly lies on an edge
-    place = ", ".join(f"{x:.6g}" for x in curve.vertices[i])
-    raise CurveError(
-        f"strands are only {gap:.2g} apart near ({place}), less than {NEAREST_STRANDS:g} of the curve's length, which "
-        "is too near to compute their energy; move them apart"
-    )
 
 
 def minimize(

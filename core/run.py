@@ -178,7 +178,7 @@ class Run:
         return Iterate(
             index=index,
             curve=curve,
-            energy=point.energy,
+            energy=point.energy_as_given_back(curve.vertices),
             gradient_norm=point.gradient_norm,
             step_size=step_size,
             path=path,

@@ -73,6 +73,9 @@ class Problem:
         return SaddleSolver(matrix, ConstraintDerivative.of_lengths(curve), 1.0 / (weight * self.constraints.lengths))
 
 
+NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
+
+
 class Point:
     """A polygon with the values that methods ask for, each computed at most once."""
 
@@ -98,6 +101,15 @@ class Point:
     def derivative(self) -> FloatArray:
         """DE, shape (n, m)."""
         return self._energy_and_derivative[1]
+
+    def energy_as_given_back(self, vertices: FloatArray) -> float:
+        """The objective of this point rounded to the user's units, which far from the origin is another curve's.
+
+        ``vertices`` are those in the user's units, shape (n, m).
+        """
+        rounded = self.problem.units.from_user(vertices)
+        same = np.max(np.abs(rounded - self.vertices)) <= NEGLIGIBLE
+        return self.energy if same else self.problem.at(rounded).energy
 
     @cached_property
     def residual(self) -> FloatArray:

@@ -20,6 +20,7 @@ from mobius_flow.core import (
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.judgement import CONFORMAL
+from mobius_flow.core.measure import measure
 from shapes import hopf_link, regular_polygon, shared_knot, torus_trefoil
 
 SHORT = RelaxOptions(max_iterations=5)
@@ -160,6 +161,17 @@ def test_report_has_the_contract():
     assert report["certified"] is True
     assert report["method"] == "lbfgs"
     assert report["final_energy"] == pytest.approx(report["energy"][-1], rel=0.2)
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e9, 1e12, 1e14])
+def test_every_energy_is_that_of_the_curve_given_back(offset):
+    """Far from the origin rounding to the user's units is felt; report and message speak of the rounded curve."""
+    curve = regular_polygon(40)
+    result = minimize(curve.with_vertices(offset + curve.vertices * [3, 2, 1]), RelaxOptions(vertices=60))
+    about_origin = result.curve.with_vertices(result.curve.vertices - offset)
+    assert result.report()["final_energy"] == pytest.approx(measure(about_origin), rel=1e-12)
+    assert result.energies[-1] == pytest.approx(measure(about_origin), rel=1e-9)
+    assert measure(result.curve) == result.report()["final_energy"]
 
 
 def test_trajectory_starts_at_the_input_and_ends_at_the_output(tmp_path):
