@@ -22,7 +22,11 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
     """
     points, unit = scaled_points(curve)
     best, pair = _some_gap(curve, points), None
-    for i, j, squares in near_edges(curve, points, lambda: best):
+
+    def bound() -> float:
+        return best
+
+    for i, j, squares in near_edges(curve, points, bound):
         if i.size and squares.min() <= best:
             k = int(np.argmin(squares))
             best, pair = float(squares[k]), (int(i[k]), int(j[k]))
@@ -85,7 +89,7 @@ def squared_distances(points: FloatArray, vertices: IntArray) -> FloatArray:
     """Squared distances of pairs of segments given by their end points; shapes (m, n), (4, pairs) -> (pairs,)."""
     motion = relative_motion(points, points, vertices)[0]
     if len(points) > 3:  # four points span three dimensions at most: the same vectors in coordinates of their span
-        motion = np.linalg.qr(motion.transpose(2, 1, 0), mode="r").transpose(2, 1, 0)
+        motion = np.asarray(np.linalg.qr(motion.transpose(2, 1, 0), mode="r")).transpose(2, 1, 0)
     chord = closest_chord(motion)
     return np.asarray(np.einsum("mp,mp->p", chord, chord))
 

@@ -85,7 +85,7 @@ REFUSED: dict[str, tuple[Array, str]] = {
     "a line": (np.linspace([0, 0, 0], [1, 2, 3], 5), "doubles back"),
     "thinner than digits": (SQUARE * [1e12, 1, 1], "strands are only 4 apart .* move them apart"),
     "nearer than digits beside a short edge": (
-        np.concatenate([SQUARE, SQUARE[::-1] + [0, 0, 5e-12], [[0, -4e-14, 5e-12 + 4e-14]]]),
+        np.concatenate([SQUARE, SQUARE[::-1] + np.array([0, 0, 5e-12]), [[0, -4e-14, 5e-12 + 4e-14]]]),
         "strands are only 5e-12 apart",
     ),
     "not a number": (np.where(TREFOIL[3, 1] == TREFOIL, np.nan, TREFOIL), "vertex 4 is not finite"),
