@@ -68,9 +68,8 @@ class Problem:
         matrix = self.metric.matrix(curve)
         if self.penalty is None:
             return SaddleSolver(matrix, self.constraints.derivative(curve))
-        # without extension the constraints' part must vanish: infinitely compliant
-        weight = self.penalty if self.extended else np.finfo(np.float64).tiny
-        return SaddleSolver(matrix, ConstraintDerivative.of_lengths(curve), 1.0 / (weight * self.constraints.lengths))
+        weights = (self.penalty if self.extended else 0.0) * self.constraints.lengths
+        return SaddleSolver(matrix, ConstraintDerivative.of_lengths(curve), weights)
 
 
 NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
