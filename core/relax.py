@@ -16,6 +16,8 @@ from .run import Run
 from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
 from .units import centred, check_units
 
+RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
+
 
 @dataclass(frozen=True, eq=False)
 class Result:
@@ -100,9 +102,25 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     refined = embedded_refinement(curve, options.vertices)
     check_gap(refined)
     try:
-        return Run(start_problem(refined, options), refined, options).iterates()
+        run = Run(start_problem(refined, options), refined, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; move near strands apart") from error
+    penalised = method_named(options.method).penalty is not None  # its energy contains the lengths
+    return run.iterates() if penalised else _with_rises_told(run.iterates())
+
+
+def _with_rises_told(iterates: Iterator[Iterate]) -> Iterator[Iterate]:
+    """The same iterates; the last one's message tells how much energy it took to even edge lengths out, if any."""
+    last: Iterate | None = None
+    rises: list[float] = []
+    for iterate in iterates:
+        if last is not None and iterate.path and iterate.edge_length_error < last.edge_length_error:
+            rises += [iterate.energy - last.energy] if iterate.energy > (1.0 + RISE) * last.energy else []
+        last = iterate
+        if rises and iterate.status is not Status.RUNNING:
+            told = f"the energy rose in {len(rises)} of {iterate.index} steps, by {sum(rises):.3g} in all"
+            iterate = replace(iterate, message=f"{iterate.message}; {told}, while edge lengths were evened out")
+        yield iterate
 
 
 def minimize(
