@@ -1,7 +1,7 @@
 """The energy of a curve as it stands: what ``mobius-flow energy`` prints and a report's ``final_energy`` is."""
 
 from .collision import check_embedded, check_gap
-from .curve import Curve
+from .curve import Curve, check_is_curve
 from .energies import ENERGIES
 from .setup import named
 from .units import centred, check_units
@@ -17,6 +17,7 @@ def measure(curve: Curve, energy: str = "moebius") -> float:
     OptionError
         If the energy is unknown.
     """
+    check_is_curve(curve)
     wanted = named(ENERGIES, "energy", energy)
     check_units(curve)
     check_embedded(curve)

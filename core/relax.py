@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .collision import check_embedded, check_gap
-from .curve import Curve
+from .curve import Curve, check_is_curve
 from .energies import MoebiusEnergy
 from .errors import CurveError, OptionError
 from .iterate import Iterate, Status
@@ -93,7 +93,10 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     OptionError
         If an option does not fit.
     """
+    check_is_curve(curve)
     options = RelaxOptions() if options is None else options
+    if not isinstance(options, RelaxOptions):
+        raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
     method_named(options.method)
     if options.vertices is not None and options.vertices > MOST_VERTICES:
         raise OptionError(f"vertices is {options.vertices}; dense matrices have at most {MOST_VERTICES} rows")
@@ -130,6 +133,8 @@ def minimize(
 
     ``callback`` gets every iterate, unless an interrupt cuts it short.  Raises as `relax` does.
     """
+    if callback is not None and not callable(callback):
+        raise OptionError(f"callback is of type {type(callback).__name__}; give a function of one Iterate")
     options = RelaxOptions() if options is None else options
     started = time.perf_counter()
     energies: list[float] = []

@@ -6,7 +6,7 @@ import numpy as np
 
 from .curve import Curve
 from .errors import CurveError
-from .types import FloatArray
+from .types import FloatArray, frozen
 
 LARGEST = 1e40  # coordinate, and the inverse of the smallest size: even seventh powers of both are still numbers
 
@@ -50,5 +50,5 @@ class Units:
         return np.asarray((vertices - self.offset) / self.scale)
 
     def to_user(self, vertices: FloatArray) -> FloatArray:
-        """Vertices in the user's units, rounded to the doubles that are proved and written; shape (n, m)."""
-        return np.asarray(self.offset + self.scale * vertices)
+        """Vertices in the user's units, rounded to the doubles that are proved and written, read-only; shape (n, m)."""
+        return frozen(np.asarray(self.offset + self.scale * vertices))

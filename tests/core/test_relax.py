@@ -8,6 +8,7 @@ from mobius_flow.core import (
     METHODS,
     Curve,
     CurveError,
+    MobiusFlowError,
     Objective,
     OptionError,
     RelaxOptions,
@@ -16,6 +17,7 @@ from mobius_flow.core import (
     minimize,
     relax,
     setup,
+    write_curve,
 )
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.energies import ENERGIES
@@ -212,6 +214,44 @@ def test_trajectory_starts_at_the_input_and_ends_at_the_output(tmp_path):
 def test_bad_options(options, message):
     with pytest.raises(OptionError, match=message):
         relax(torus_trefoil(60), RelaxOptions(**options))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: relax(torus_trefoil(20).vertices), r"a Curve is wanted, not an object of type ndarray; make one by"),
+        (lambda: minimize([[0, 0, 0]]), "a Curve is wanted, not an object of type list"),
+        (lambda: write_curve("never.txt", [[0, 0, 0]]), "a Curve is wanted, not an object of type list"),
+        (lambda: measure(None), "a Curve is wanted, not an object of type NoneType"),
+        (lambda: minimize(torus_trefoil(20), {"method": "cg"}), "options is of type dict; give RelaxOptions"),
+        (lambda: relax(torus_trefoil(20), "lbfgs"), "options is of type str; give RelaxOptions"),
+        (lambda: minimize(torus_trefoil(20), callback=3), "callback is of type int; give a function"),
+    ],
+)
+def test_arguments_of_a_wrong_type_are_named(wrong, message):
+    with pytest.raises(MobiusFlowError, match=message):
+        wrong()
+
+
+def test_paths_are_read_only():
+    *_, last = relax(torus_trefoil(40), RelaxOptions(max_iterations=1))
+    with pytest.raises(ValueError, match="read-only"):
+        last.path[-1][0] = 0.0
+
+
+def test_a_trajectory_is_of_one_run_and_complete():
+    iterates = list(relax(torus_trefoil(40), RelaxOptions(max_iterations=3)))
+    trajectory = Trajectory()
+    for iterate in (*iterates, iterates[-1]):  # a stalled run yields its last curve twice
+        trajectory.add(iterate)
+    for other in (iterates[0], next(relax(torus_trefoil(50))), iterates[2]):
+        with pytest.raises(
+            MobiusFlowError, match=f"iterate {other.index} does not follow the 4 iterates .* make a new"
+        ):
+            trajectory.add(other)
+    assert len(trajectory.arrays()["stage_000"]) == 4
+    with pytest.raises(MobiusFlowError, match="iterate 1 does not follow the 0 iterates"):
+        Trajectory().add(iterates[1])
 
 
 def test_curves_that_touch_are_refused_with_the_place():
