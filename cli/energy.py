@@ -5,10 +5,8 @@ import json
 from typing import TYPE_CHECKING
 
 from ..core import read_curve
-from ..core.collision import check_embedded
 from ..core.energies import ENERGIES
-from ..core.errors import OptionError
-from ..core.units import check_units
+from ..core.measure import measure
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
@@ -25,11 +23,6 @@ def add_to(subparsers: "Subparsers") -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the energy."""
-    if options.energy not in ENERGIES:
-        raise OptionError(f"energy {options.energy!r} is unknown; choose one of {', '.join(ENERGIES)}")
-    curve = read_curve(options.input)
-    check_units(curve)
-    check_embedded(curve)
-    value = ENERGIES[options.energy].value(curve)
+    value = measure(read_curve(options.input), options.energy)
     print(json.dumps({"name": options.energy, "energy": value}) if options.json else repr(value))
     return 0

@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .collision import check_embedded, minimal_gap
-from .curve import Curve
+from .collision import check_embedded, check_gap
+from .curve import Curve, check_is_curve
 from .energies import MoebiusEnergy
 from .errors import CurveError, OptionError
 from .iterate import Iterate, Status
 from .options import RelaxOptions
 from .run import Run
 from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
-from .units import check_units
+from .units import centred, check_units
 
-NEAREST_STRANDS = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
+RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class Result:
             "iterations": len(self.energies) - 1,
             "seconds": self.seconds,
             "energy": list(self.energies),
-            "final_energy": MoebiusEnergy().value(self.curve),
+            "final_energy": MoebiusEnergy().value(centred(self.curve)),
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
             "max_edge_length_error": self.edge_length_error,
@@ -93,37 +93,37 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     OptionError
         If an option does not fit.
     """
+    check_is_curve(curve)
     options = RelaxOptions() if options is None else options
+    if not isinstance(options, RelaxOptions):
+        raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
     method_named(options.method)
     if options.vertices is not None and options.vertices > MOST_VERTICES:
         raise OptionError(f"vertices is {options.vertices}; dense matrices have at most {MOST_VERTICES} rows")
     check_units(curve)
     check_embedded(curve)
     refined = embedded_refinement(curve, options.vertices)
-    _check_gap(refined)
+    check_gap(refined)
     try:
-        return Run(start_problem(refined, options), refined, options).iterates()
+        run = Run(start_problem(refined, options), refined, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; move near strands apart") from error
+    penalised = method_named(options.method).penalty is not None  # its energy contains the lengths
+    return run.iterates() if penalised else _with_rises_told(run.iterates())
 
 
-def _check_gap(curve: Curve) -> None:
-    """Refuse strands so near that the energy of their edges is nothing but rounding errors."""
-    if curve.dimension > 3:
-        return
-    gap, pair = minimal_gap(curve)
-    if pair is None or gap >= NEAREST_STRANDS * curve.length:
-        return
-    i, j = pair
-    if np.linalg.norm(curve.midpoints[i] - curve.midpoints[j]) > 1e-3 * max(
-        curve.edge_lengths[i], curve.edge_lengths[j]
-    ):
-        return  # only their ends are near, with a short edge between them or a vertex that nearly lies on an edge
-    place = ", ".join(f"{x:.6g}" for x in curve.vertices[i])
-    raise CurveError(
-        f"strands are only {gap:.2g} apart near ({place}), less than {NEAREST_STRANDS:g} of the curve's length, which "
-        "is too near to compute their energy; move them apart"
-    )
+def _with_rises_told(iterates: Iterator[Iterate]) -> Iterator[Iterate]:
+    """The same iterates; the last one's message tells how much energy it took to even edge lengths out, if any."""
+    last: Iterate | None = None
+    rises: list[float] = []
+    for iterate in iterates:
+        if last is not None and iterate.path and iterate.edge_length_error < last.edge_length_error:
+            rises += [iterate.energy - last.energy] if iterate.energy > (1.0 + RISE) * last.energy else []
+        last = iterate
+        if rises and iterate.status is not Status.RUNNING:
+            told = f"the energy rose in {len(rises)} of {iterate.index} steps, by {sum(rises):.3g} in all"
+            iterate = replace(iterate, message=f"{iterate.message}; {told}, while edge lengths were evened out")
+        yield iterate
 
 
 def minimize(
@@ -133,6 +133,8 @@ def minimize(
 
     ``callback`` gets every iterate, unless an interrupt cuts it short.  Raises as `relax` does.
     """
+    if callback is not None and not callable(callback):
+        raise OptionError(f"callback is of type {type(callback).__name__}; give a function of one Iterate")
     options = RelaxOptions() if options is None else options
     started = time.perf_counter()
     energies: list[float] = []

@@ -177,7 +177,7 @@ class Run:
         return Iterate(
             index=index,
             curve=Curve(point.placed, point.problem.mesh),
-            energy=point.energy,
+            energy=point.energy_as_placed,
             gradient_norm=point.gradient_norm,
             step_size=step_size,
             path=path,

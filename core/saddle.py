@@ -25,9 +25,10 @@ class SaddleSolver:
         Gram matrix A of the metric, symmetric positive definite, shape (n, n).
     constraints
         DΦ at the curve, of full rank.
-    compliance
-        Diagonal subtracted from the zero block, shape (n + m,) or None for none.  With 1/w it turns the constraints
-        into the part DΦᵀ w DΦ of the metric, which is how the penalised problems of Section 6.4 use it.
+    weights
+        None for hard constraints.  Otherwise w ≥ 0, shape (rows of DΦ,), turns the constraints into the part DΦᵀ w DΦ
+        of the metric, which is how the penalised problems of Section 6.4 use it: −1/w stands in place of the zero
+        block, in a form that has a meaning for w = 0 too.
 
     Raises
     ------
@@ -36,15 +37,16 @@ class SaddleSolver:
     """
 
     def __init__(
-        self, matrix: FloatArray, constraints: ConstraintDerivative, compliance: FloatArray | None = None
+        self, matrix: FloatArray, constraints: ConstraintDerivative, weights: FloatArray | None = None
     ) -> None:
         self.matrix = np.asfortranarray(matrix)
         self.constraints = constraints
-        self._weights = None if compliance is None else 1.0 / compliance
+        self._weights = weights
         self._inverse = _inverse(self.matrix)
         schur = self._schur_complement()
-        if compliance is not None:
-            schur[np.diag_indices_from(schur)] += compliance
+        if weights is not None:  # (S + 1/w)⁻¹ = √w (√w S √w + 1)⁻¹ √w
+            schur *= np.sqrt(np.multiply.outer(weights, weights))
+            schur[np.diag_indices_from(schur)] += 1.0
         self._schur = _cholesky(schur)
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
@@ -57,14 +59,15 @@ class SaddleSolver:
         right = c.apply(free)
         if xi is not None:
             right -= xi
-        multipliers, _ = lapack.dpotrs(self._schur, right, lower=1)
+        scale = 1.0 if self._weights is None else np.sqrt(self._weights)
+        multipliers = scale * lapack.dpotrs(self._schur, scale * right, lower=1)[0]
         u = free - self._apply_inverse(c.apply_transpose(multipliers))
         return u, multipliers
 
     def gradient(self, derivative: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Projected gradient u and multipliers λ of a derivative, shape (n, m).
 
-        With compliant constraints u is the gradient in the extended metric.
+        With weighted constraints u is the gradient in the extended metric.
         """
         return self.solve(derivative, None)
 
@@ -77,7 +80,7 @@ class SaddleSolver:
         return self.solve(self.apply_metric(u), None)[0]
 
     def apply_metric(self, u: FloatArray) -> FloatArray:
-        """J u, with the constraints' part DΦᵀ w DΦ u if they are compliant; shape (n, m)."""
+        """J u, with the constraints' part DΦᵀ w DΦ u if they are weighted; shape (n, m)."""
         image = np.ascontiguousarray(blas.dsymm(1.0, self.matrix, np.asfortranarray(u), lower=1))
         if self._weights is not None:
             image += self.constraints.apply_transpose(self._weights * self.constraints.apply(u))

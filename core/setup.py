@@ -23,10 +23,11 @@ MOST_VERTICES = 12_000  # some six matrices of so many rows make 7 GB
 
 def method_named(name: str) -> Method:
     """Look a method up; an OptionError lists the known ones."""
-    return _named(METHODS, "method", name)
+    return named(METHODS, "method", name)
 
 
-def _named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
+def named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
+    """Look an entry of a registry up; an OptionError lists the known ones."""
     if name not in table:
         raise OptionError(f"{kind} {name!r} is unknown; choose one of {', '.join(table)}")
     return table[name]
@@ -68,7 +69,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
-    energy = _named(ENERGIES, "energy", options.energy)
+    energy = named(ENERGIES, "energy", options.energy)
     objective = Objective(energy, Barrier(replaces_midpoint=isinstance(energy, MoebiusEnergy)))
     second_order = method.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:
@@ -77,7 +78,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
         )
     if (options.stability or options.escape_saddles) and method.penalty is not None:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
-    metric = method.metric if options.metric is None else _named(METRICS, "metric", options.metric)
+    metric = method.metric if options.metric is None else named(METRICS, "metric", options.metric)
     if options.quadrature_points > 1:
         if not isinstance(metric, MoebiusMetric):
             raise OptionError(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .curve import Curve
 from .errors import MobiusFlowError
 from .files import atomic_write
 from .iterate import Iterate
@@ -22,16 +23,32 @@ class Trajectory:
 
     def __init__(self) -> None:
         self._stages: list[tuple[tuple[int, ...], list[FloatArray]]] = []
+        self._last: Curve | None = None
         self._last_index = -1
 
     def add(self, iterate: Iterate) -> None:
-        """Append the motion that led to an iterate (for the first one: the start)."""
+        """Append the motion that led to an iterate (for the first one: the start).
+
+        Raises
+        ------
+        MobiusFlowError
+            If the iterate does not follow the last one, for then nobody has proved the motion between them.
+        """
+        if not self._follows(iterate):
+            raise MobiusFlowError(
+                f"iterate {iterate.index} does not follow the {self._last_index + 1} iterates of this trajectory; "
+                "it takes all iterates of one run, in order: make a new Trajectory for another run"
+            )
         if iterate.index > self._last_index and not iterate.path:
             # the start, or the same curve on another mesh
             self._stages.append((iterate.curve.mesh.component_sizes, [iterate.curve.vertices]))
-        else:
+        elif iterate.index > self._last_index:
             self._stages[-1][1].extend(iterate.path)
-        self._last_index = iterate.index
+        self._last, self._last_index = iterate.curve, iterate.index
+
+    def _follows(self, iterate: Iterate) -> bool:
+        """Whether it is the run's next iterate, or the last one again with another status."""
+        return iterate.index == self._last_index + 1 or iterate.curve is self._last
 
     def arrays(self) -> dict[str, FloatArray | IntArray]:
         """The arrays of the file, by name."""

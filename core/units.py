@@ -6,7 +6,7 @@ import numpy as np
 
 from .curve import Curve
 from .errors import CurveError
-from .types import FloatArray
+from .types import FloatArray, frozen
 
 LARGEST = 1e40  # coordinate, and the inverse of the smallest size: even seventh powers of both are still numbers
 
@@ -23,6 +23,15 @@ def check_units(curve: Curve) -> None:
         raise CurveError(f"the curve is only {width:.3g} wide, less than {1 / LARGEST:g}; use a smaller unit of length")
 
 
+def centred(curve: Curve) -> Curve:
+    """The same polygon around the origin, since midpoints far away from it lose digits."""
+    return curve.with_vertices(curve.vertices - _centre(curve))
+
+
+def _centre(curve: Curve) -> FloatArray:
+    return np.asarray(0.5 * (curve.vertices.min(axis=0) + curve.vertices.max(axis=0)))
+
+
 @dataclass(frozen=True, eq=False)
 class Units:
     """x_user = offset + scale · x, with ``scale`` a power of two so that only the shift rounds."""
@@ -33,14 +42,13 @@ class Units:
     @classmethod
     def of(cls, curve: Curve) -> "Units":
         """Units that centre the curve and make its mean component 4 to 8 long."""
-        offset = 0.5 * (curve.vertices.min(axis=0) + curve.vertices.max(axis=0))
         exponent = np.frexp(curve.length / len(curve.mesh.component_sizes))[1] - 3
-        return cls(offset, float(np.ldexp(1.0, exponent)))
+        return cls(_centre(curve), float(np.ldexp(1.0, exponent)))
 
     def from_user(self, vertices: FloatArray) -> FloatArray:
         """Vertices in the program's units; shape (n, m)."""
         return np.asarray((vertices - self.offset) / self.scale)
 
     def to_user(self, vertices: FloatArray) -> FloatArray:
-        """Vertices in the user's units, rounded to the doubles that are proved and written; shape (n, m)."""
-        return np.asarray(self.offset + self.scale * vertices)
+        """Vertices in the user's units, rounded to the doubles that are proved and written, read-only; shape (n, m)."""
+        return frozen(np.asarray(self.offset + self.scale * vertices))

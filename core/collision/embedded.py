@@ -1,5 +1,7 @@
 """Refuse curves that touch themselves, and say where."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ..curve import Curve, Mesh
@@ -7,6 +9,7 @@ from ..errors import CurveError
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level
 from .exact import first_contact
+from .gap import near_edges, scaled_points
 from .planes import ROUNDING, Separation, closest_chord, relative_motion
 
 NEAREST = 2.0**-48  # distance of neighbours, relative to the curve's size, below which they are the same up to rounding
@@ -15,7 +18,8 @@ NEAREST = 2.0**-48  # distance of neighbours, relative to the curve's size, belo
 def check_embedded(curve: Curve) -> None:
     """Raise unless the curve is embedded: no repeated points, no doubled-back edges, no edges that touch or cross.
 
-    In four and more dimensions, where crossings don't matter, only neighbouring points and edges are looked at.
+    Exact in the plane and in space.  In four and more dimensions, where nothing is proved, edges touch if they are
+    together up to rounding.
 
     Raises
     ------
@@ -23,11 +27,9 @@ def check_embedded(curve: Curve) -> None:
         One sentence that names the component and its edges and vertices, counted from 1, and the place.
     """
     _check_repeated(curve)
-    unit = int(np.frexp(np.abs(curve.vertices).max())[1])
-    points = np.ldexp(curve.vertices.T, -unit, order="C")
+    points, _ = scaled_points(curve)
     _check_doubled_back(curve, points)
-    if curve.dimension <= 3:
-        _check_crossings(curve, points)
+    _check_crossings(curve, points)
 
 
 def _check_repeated(curve: Curve) -> None:
@@ -63,29 +65,44 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
 
 
 def _check_crossings(curve: Curve, points: FloatArray) -> None:
+    touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
+    for i, j in touching(curve, points):
+        where = _meeting_point(curve.vertices[[i, curve.mesh.heads[i], j, curve.mesh.heads[j]]])
+        raise CurveError(f"{_names(curve.mesh, i, j)} touch or cross near {_point(where)}; move the strands apart")
+
+
+def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
+    """Pairs of edges that touch, decided exactly."""
     heads = curve.mesh.heads
     for i, j in _doubtful_pairs(curve.mesh, points):
-        vertices = np.array([i, heads[i], j, heads[j]])
-        if first_contact(points[:, vertices].T, points[:, vertices].T) is not None:
-            where = _meeting_point(curve.vertices[vertices])
-            raise CurveError(f"{_names(curve.mesh, i, j)} touch or cross near {_point(where)}; move the strands apart")
+        corners = curve.vertices[[i, heads[i], j, heads[j]]]  # as given: scaling may cost the smallest digits
+        if first_contact(corners, corners) is not None:
+            yield i, j
 
 
-def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> list[tuple[int, int]]:
-    """Pairs of edges that no plane separates certainly in floating-point numbers, sorted."""
+def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
+    """Pairs of edges no further apart than rounding, sorted batch by batch."""
+    nearest = NEAREST * float(np.ptp(points, axis=1).max())
+    for i, j, _ in near_edges(curve, points, lambda: nearest**2):
+        yield from sorted(zip(*np.sort(np.stack([i, j]), axis=0).tolist(), strict=True))
+
+
+def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]:
+    """Pairs of edges that no plane separates certainly in floating-point numbers, sorted batch by batch.
+
+    Never all at once: where thousands of edges coincide they are millions, and the first is enough.
+    """
     tree = BoxTree.build(mesh, points, points)
 
     def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
         return np.asarray((level.gaps(a, b)[0] <= 0).all(axis=0))
 
-    pairs = []
     for a, b in tree.pairs(near):
         i, j = np.sort(tree.order[np.stack([a, b])], axis=0)
         motion = relative_motion(points, points, np.stack([i, mesh.heads[i], j, mesh.heads[j]]))
         planes = Separation(motion, np.abs(motion).sum(axis=1), closest_chord(motion[0]))
         doubtful = ~planes.proves(np.zeros(len(i)))
-        pairs += list(zip(i[doubtful].tolist(), j[doubtful].tolist(), strict=True))
-    return sorted(pairs)
+        yield from sorted(zip(i[doubtful].tolist(), j[doubtful].tolist(), strict=True))
 
 
 def _meeting_point(corners: FloatArray) -> FloatArray:

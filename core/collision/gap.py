@@ -1,11 +1,17 @@
-"""The smallest distance between edges that are no neighbours."""
+"""Distances between edges that are no neighbours: the smallest one, and those too small to compute with."""
+
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from ..curve import Curve
+from ..errors import CurveError
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level
 from .planes import closest_chord, relative_motion
+
+NEAREST_STRANDS = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
+ENDS_ONLY = 1e-3  # of the longer edge: midpoints further apart than that don't feel that the edges are near
 
 
 def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
@@ -13,36 +19,79 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
 
     A floating-point value, accurate to rounding: 0 or a tiny number if edges meet. A single triangle has no such
     pair: infinity and None.
+    """
+    points, unit = scaled_points(curve)
+    best, pair = _some_gap(curve, points)
+    farthest = 4.0 * len(points)  # of coordinates within ±1; finite, since the boxes' padding is infinitely far
+
+    def bound() -> float:
+        return min(best, farthest)
+
+    for i, j, squares in near_edges(curve, points, bound):
+        if i.size and squares.min() < best:
+            k = int(np.argmin(squares))
+            best, pair = float(squares[k]), (int(i[k]), int(j[k]))
+    return float(np.ldexp(np.sqrt(best), unit)), pair
+
+
+def check_gap(curve: Curve) -> None:
+    """Refuse strands so near that the energy of their edges is nothing but rounding errors.
+
+    Edges of which only the ends are near, with a short edge between them or a vertex that nearly lies on an edge, do
+    no harm.
 
     Raises
     ------
-    ValueError
-        If the curve is neither in the plane nor in space.
+    CurveError
+        One sentence that says where.
     """
-    if curve.dimension > 3:
-        raise ValueError(f"the curve has dimension {curve.dimension}; gaps are measured in 2 and 3 dimensions")
+    points, unit = scaled_points(curve)
+    radius = float(np.ldexp(NEAREST_STRANDS * curve.length, -unit))
+    for i, j, squares in near_edges(curve, points, lambda: radius**2):
+        apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)
+        near = apart <= ENDS_ONLY * np.maximum(curve.edge_lengths[i], curve.edge_lengths[j])
+        if near.any():
+            k = int(np.where(near, squares, np.inf).argmin())
+            gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in curve.vertices[i[k]])
+            raise CurveError(
+                f"strands are only {gap:.2g} apart near ({place}), less than {NEAREST_STRANDS:g} of the curve's "
+                "length, which is too near to compute their energy; move them apart"
+            )
+
+
+def scaled_points(curve: Curve) -> tuple[FloatArray, int]:
+    """The vertices divided by a power of two so that all coordinates are within ±1, shape (m, n), and its exponent."""
     unit = int(np.frexp(np.abs(curve.vertices).max())[1])
-    points = np.ldexp(curve.vertices.T, -unit, order="C")
+    return np.ldexp(curve.vertices.T, -unit, order="C"), unit
+
+
+def near_edges(
+    curve: Curve, points: FloatArray, bound: Callable[[], float]
+) -> Iterator[tuple[IntArray, IntArray, FloatArray]]:
+    """Yield the pairs of non-neighbour edges whose squared distance is at most ``bound()``, batch by batch.
+
+    Two arrays of edges and one of squared distances; ``bound`` may fall meanwhile.  ``points`` are the vertices as
+    `scaled_points` gives them.
+    """
     tree = BoxTree.build(curve.mesh, points, points)
-    best, pair = _some_gap(curve, points)
 
     def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
-        return _squared_gaps(level, a, b) <= min(best, 4.0 * len(points))  # beyond the padding, which is infinitely far
+        return _squared_gaps(level, a, b) <= bound()
 
-    tails, heads = tree.order, curve.mesh.heads[tree.order]
+    heads = curve.mesh.heads
     for a, b in tree.pairs(near):
-        if not a.size:
-            continue
-        squares = squared_distances(points, np.stack([tails[a], heads[a], tails[b], heads[b]]))
-        k = int(np.argmin(squares))
-        if squares[k] < best:
-            best, pair = float(squares[k]), (int(tails[a[k]]), int(tails[b[k]]))
-    return float(np.ldexp(np.sqrt(best), unit)), pair
+        i, j = tree.order[a], tree.order[b]
+        squares = squared_distances(points, np.stack([i, heads[i], j, heads[j]]))
+        kept = squares <= bound()
+        yield i[kept], j[kept], squares[kept]
 
 
 def squared_distances(points: FloatArray, vertices: IntArray) -> FloatArray:
     """Squared distances of pairs of segments given by their end points; shapes (m, n), (4, pairs) -> (pairs,)."""
-    chord = closest_chord(relative_motion(points, points, vertices)[0])
+    motion = relative_motion(points, points, vertices)[0]
+    if len(points) > 3:  # four points span three dimensions at most: the same vectors in coordinates of their span
+        motion = np.asarray(np.linalg.qr(motion.transpose(2, 1, 0), mode="r")).transpose(2, 1, 0)
+    chord = closest_chord(motion)
     return np.asarray(np.einsum("mp,mp->p", chord, chord))
 
 

@@ -26,17 +26,19 @@ class Curve:
     Raises
     ------
     CurveError
-        If the shape is wrong or a coordinate is not finite; the message names the vertex.
+        If these are no numbers, the shape is wrong or a coordinate is not finite; the message names the vertex.
     """
 
     vertices: FloatArray
     mesh: Mesh
 
     def __init__(self, vertices: npt.ArrayLike, mesh: Mesh | None = None) -> None:
-        points = frozen(np.array(vertices, dtype=np.float64))
+        points = frozen(_numbers(vertices, "vertices"))
         if points.ndim != 2 or points.shape[1] < 2:
             raise CurveError(f"vertices have shape {points.shape}; they must be an array (n, m) with m at least 2")
         mesh = Mesh((len(points),)) if mesh is None else mesh
+        if not isinstance(mesh, Mesh):
+            raise CurveError(f"mesh is of type {type(mesh).__name__}; give a Mesh, such as Mesh(({len(points)},))")
         if mesh.size != len(points):
             raise CurveError(f"the components have {mesh.size} vertices together but {len(points)} are given")
         bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
@@ -48,7 +50,7 @@ class Curve:
     @classmethod
     def from_components(cls, components: Sequence[npt.ArrayLike]) -> "Curve":
         """Join closed polygons, arrays (n_k, m) of one common m, into one curve (a link)."""
-        arrays = [np.asarray(component, dtype=np.float64) for component in components]
+        arrays = [_numbers(component, f"component {k + 1}") for k, component in enumerate(components)]
         for k, array in enumerate(arrays):
             if array.ndim != 2 or array.shape[1] != arrays[0].shape[-1]:
                 raise CurveError(
@@ -56,6 +58,10 @@ class Curve:
                 )
         mesh = Mesh(tuple(len(array) for array in arrays))
         return cls(np.concatenate(arrays), mesh)
+
+    def __reduce__(self) -> tuple[type["Curve"], tuple[FloatArray, Mesh]]:
+        # made anew, because arrays come out of pickles and deep copies writable
+        return Curve, (self.vertices, self.mesh)
 
     @property
     def components(self) -> tuple[FloatArray, ...]:
@@ -93,3 +99,22 @@ class Curve:
     def length(self) -> float:
         """Total length of all components."""
         return float(self.edge_lengths.sum())
+
+
+def check_is_curve(value: object) -> None:
+    """Raise a CurveError that says what to do if something else stands where a curve belongs."""
+    if not isinstance(value, Curve):
+        raise CurveError(
+            f"a Curve is wanted, not an object of type {type(value).__name__}; make one by Curve(vertices)"
+        )
+
+
+def _numbers(values: npt.ArrayLike, name: str) -> FloatArray:
+    try:
+        array = np.array(values)
+        if np.iscomplexobj(array):
+            raise TypeError("they are complex")
+        return array.astype(np.float64, copy=False)
+    except (TypeError, ValueError, OverflowError) as error:
+        reason = str(error).splitlines()[0]
+        raise CurveError(f"{name} cannot be made an array (n, m) of real numbers: {reason}") from error

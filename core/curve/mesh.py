@@ -1,5 +1,6 @@
 """Connectivity of closed polygons: which vertices each edge joins, and which edges are neighbours."""
 
+import operator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,12 +26,18 @@ class Mesh:
     Raises
     ------
     CurveError
-        If there is no component or one has fewer than 3 vertices.
+        If these are no whole numbers, there is no component, or one has fewer than 3 vertices.
     """
 
     component_sizes: tuple[int, ...]
 
     def __post_init__(self) -> None:
+        try:
+            object.__setattr__(self, "component_sizes", tuple(map(operator.index, self.component_sizes)))
+        except TypeError as error:
+            raise CurveError(
+                f"component_sizes is {self.component_sizes!r}; it must be a tuple of whole numbers, such as (10, 12)"
+            ) from error
         if not self.component_sizes:
             raise CurveError("the curve is empty: it has no component; give at least one closed polygon")
         for k, size in enumerate(self.component_sizes):
@@ -39,6 +46,10 @@ class Mesh:
                 raise CurveError(
                     f"component {k + 1} has {size} {noun}; a closed polygon needs at least 3 different vertices"
                 )
+
+    def __reduce__(self) -> tuple[type["Mesh"], tuple[tuple[int, ...]]]:
+        # made anew, because arrays come out of pickles and deep copies writable
+        return Mesh, (self.component_sizes,)
 
     @cached_property
     def size(self) -> int:

@@ -72,9 +72,11 @@ class Problem:
         matrix = self.metric.matrix(curve)
         if self.penalty is None:
             return SaddleSolver(matrix, self.constraints.derivative(curve))
-        # without extension the constraints' part must vanish: infinitely compliant
-        weight = self.penalty if self.extended else np.finfo(np.float64).tiny
-        return SaddleSolver(matrix, ConstraintDerivative.of_lengths(curve), 1.0 / (weight * self.constraints.lengths))
+        weights = (self.penalty if self.extended else 0.0) * self.constraints.lengths
+        return SaddleSolver(matrix, ConstraintDerivative.of_lengths(curve), weights)
+
+
+NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
 
 
 class Point:
@@ -117,6 +119,13 @@ class Point:
     def derivative(self) -> FloatArray:
         """DE, shape (n, m)."""
         return self._energy_and_derivative[1]
+
+    @property
+    def energy_as_placed(self) -> float:
+        """The objective of the rounded coordinates that users get, which far from the origin are another curve's."""
+        rounded = self.problem.units.from_user(self.placed)
+        same = np.max(np.abs(rounded - self.vertices)) <= NEGLIGIBLE
+        return self.energy if same else self.problem.at(rounded).energy
 
     @cached_property
     def residual(self) -> FloatArray:

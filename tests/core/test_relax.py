@@ -8,6 +8,7 @@ from mobius_flow.core import (
     METHODS,
     Curve,
     CurveError,
+    MobiusFlowError,
     Objective,
     OptionError,
     RelaxOptions,
@@ -16,10 +17,12 @@ from mobius_flow.core import (
     minimize,
     relax,
     setup,
+    write_curve,
 )
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.judgement import CONFORMAL
+from mobius_flow.core.measure import measure
 from shapes import hopf_link, regular_polygon, shared_knot, torus_trefoil
 
 SHORT = RelaxOptions(max_iterations=5)
@@ -55,6 +58,20 @@ def test_every_method_goes_down_feasibly_and_certified(method, name, even_trefoi
 def test_unequal_edges_become_equal(method):
     result = minimize(torus_trefoil(70), RelaxOptions(method=method, max_iterations=25, vertices=70))
     assert result.edge_length_error < 1e-8
+
+
+def test_energy_spent_on_edge_lengths_is_told_of():
+    """A circle with uneven edges has nothing to gain, and in L² lengths change in rough motions."""
+    gaps = 1 + 0.6 * np.cos(2 * np.pi * np.arange(60) / 60)
+    t = 2 * np.pi * np.cumsum(gaps) / gaps.sum()
+    circle = Curve(np.stack([np.cos(t), np.sin(t)], axis=1))
+    iterates = list(relax(circle, RelaxOptions(method="flow-l2", max_iterations=10, vertices=60)))
+    rises = [b.energy - a.energy for a, b in itertools.pairwise(iterates) if b.energy > a.energy * (1 + 1e-9)]
+    assert len(rises) > 3
+    told = f"the energy rose in {len(rises)} of {iterates[-1].index} steps, by {sum(rises):.3g} in all"
+    assert told in iterates[-1].message
+    assert iterates[-1].edge_length_error < iterates[0].edge_length_error
+    assert "rose" not in minimize(torus_trefoil(60), SHORT).message
 
 
 def test_trefoil_to_its_minimum():
@@ -162,6 +179,17 @@ def test_report_has_the_contract():
     assert report["final_energy"] == pytest.approx(report["energy"][-1], rel=0.2)
 
 
+@pytest.mark.parametrize("offset", [0.0, 1e9, 1e12, 1e14])
+def test_every_energy_is_that_of_the_curve_given_back(offset):
+    """Far from the origin rounding to the user's units is felt; report and message speak of the rounded curve."""
+    curve = regular_polygon(40)
+    result = minimize(curve.with_vertices(offset + curve.vertices * [3, 2, 1]), RelaxOptions(vertices=60))
+    about_origin = result.curve.with_vertices(result.curve.vertices - offset)
+    assert result.report()["final_energy"] == pytest.approx(measure(about_origin), rel=1e-12)
+    assert result.energies[-1] == pytest.approx(measure(about_origin), rel=1e-9)
+    assert measure(result.curve) == result.report()["final_energy"]
+
+
 def test_trajectory_starts_at_the_input_and_ends_at_the_output(tmp_path):
     trajectory = Trajectory()
     result = minimize(torus_trefoil(60), SHORT, trajectory.add)
@@ -186,6 +214,44 @@ def test_trajectory_starts_at_the_input_and_ends_at_the_output(tmp_path):
 def test_bad_options(options, message):
     with pytest.raises(OptionError, match=message):
         relax(torus_trefoil(60), RelaxOptions(**options))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: relax(torus_trefoil(20).vertices), r"a Curve is wanted, not an object of type ndarray; make one by"),
+        (lambda: minimize([[0, 0, 0]]), "a Curve is wanted, not an object of type list"),
+        (lambda: write_curve("never.txt", [[0, 0, 0]]), "a Curve is wanted, not an object of type list"),
+        (lambda: measure(None), "a Curve is wanted, not an object of type NoneType"),
+        (lambda: minimize(torus_trefoil(20), {"method": "cg"}), "options is of type dict; give RelaxOptions"),
+        (lambda: relax(torus_trefoil(20), "lbfgs"), "options is of type str; give RelaxOptions"),
+        (lambda: minimize(torus_trefoil(20), callback=3), "callback is of type int; give a function"),
+    ],
+)
+def test_arguments_of_a_wrong_type_are_named(wrong, message):
+    with pytest.raises(MobiusFlowError, match=message):
+        wrong()
+
+
+def test_paths_are_read_only():
+    *_, last = relax(torus_trefoil(40), RelaxOptions(max_iterations=1))
+    with pytest.raises(ValueError, match="read-only"):
+        last.path[-1][0] = 0.0
+
+
+def test_a_trajectory_is_of_one_run_and_complete():
+    iterates = list(relax(torus_trefoil(40), RelaxOptions(max_iterations=3)))
+    trajectory = Trajectory()
+    for iterate in (*iterates, iterates[-1]):  # a stalled run yields its last curve twice
+        trajectory.add(iterate)
+    for other in (iterates[0], next(relax(torus_trefoil(50))), iterates[2]):
+        with pytest.raises(
+            MobiusFlowError, match=f"iterate {other.index} does not follow the 4 iterates .* make a new"
+        ):
+            trajectory.add(other)
+    assert len(trajectory.arrays()["stage_000"]) == 4
+    with pytest.raises(MobiusFlowError, match="iterate 1 does not follow the 0 iterates"):
+        Trajectory().add(iterates[1])
 
 
 def test_curves_that_touch_are_refused_with_the_place():

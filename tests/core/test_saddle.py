@@ -72,6 +72,23 @@ def test_indefinite_matrix_is_refused():
         SaddleSolver(-np.eye(len(curve)), ConstraintDerivative.at(curve))
 
 
+@pytest.mark.parametrize("weight", [0.0, 1e-200, 1.0, 1e3])
+def test_weighted_constraints_are_a_part_of_the_metric(weight):
+    """(J + DΦᵀ w DΦ) u = η, also where a weight is nothing or next to nothing."""
+    curve = CURVES["link"]
+    n, m = curve.vertices.shape
+    matrix = METRICS["l2"].matrix(curve)
+    lengths = ConstraintDerivative.of_lengths(curve)
+    rows = np.stack([lengths.apply(unit.reshape(n, m)) for unit in np.eye(n * m)], axis=1)
+    weights = np.where(np.arange(n) % 3 == 0, weight, 2.0 * weight)
+    full = np.kron(matrix, np.eye(m)) + rows.T @ (weights[:, None] * rows)
+    eta = np.random.default_rng(17).normal(size=(n, m))
+    solver = SaddleSolver(matrix, lengths, weights)
+    u, _ = solver.gradient(eta)
+    np.testing.assert_allclose(u.ravel(), np.linalg.solve(full, eta.ravel()), rtol=1e-8, atol=1e-10 * np.abs(u).max())
+    np.testing.assert_allclose(solver.apply_metric(u), eta, atol=1e-9)
+
+
 @pytest.mark.parametrize("name", CURVES)
 def test_constraint_derivative_has_slope_two(name):
     curve = CURVES[name]

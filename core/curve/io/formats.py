@@ -9,7 +9,7 @@ from typing import TextIO
 
 from ...errors import CurveError, CurveFileError
 from ...files import atomic_write
-from ..curve import Curve
+from ..curve import Curve, check_is_curve
 from . import json_lists, obj, vect, xyz
 from .polygons import Polygon, assemble
 from .source import Source
@@ -87,6 +87,7 @@ def write_curve(path: str | os.PathLike[str], curve: Curve) -> None:
     CurveFileError
         If the suffix is unknown, the format cannot hold the curve, or the file cannot be written.
     """
+    check_is_curve(curve)
     path = Path(path)
     form = _format_of(path)
     try:

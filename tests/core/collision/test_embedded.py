@@ -1,5 +1,7 @@
 """Curves that touch themselves are refused, with a sentence that says where."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError
@@ -69,8 +71,9 @@ def test_two_components() -> None:
     assert refusal(curve) == expected
 
 
-def test_curve_run_through_twice() -> None:
-    once = regular_polygon(40).vertices
+@pytest.mark.parametrize("m", [3, 4])
+def test_curve_run_through_twice(m: int) -> None:
+    once = regular_polygon(40, dimension=m).vertices
     assert "edges 1 and 40 touch" in refusal(Curve(np.concatenate([once, once])))
 
 
@@ -98,5 +101,25 @@ def test_lattice_polygon_with_parallel_and_collinear_edges() -> None:
     assert "touch or cross near (1, 0, 0)" in refusal(Curve(path))
 
 
-def test_crossings_do_not_matter_in_four_dimensions() -> None:
-    check_embedded(Curve([[0.0, 0, 0, 0], [2, 2, 0, 0], [2, 0, 0, 0], [0, 2, 0, 0]]))
+@pytest.mark.parametrize("m", [4, 5, 40])
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6])
+def test_crossings_in_more_dimensions(m: int, scale: float) -> None:
+    """An eight that crosses itself, or nearly, turned into a random direction of R^m."""
+    turn = np.linalg.qr(np.random.default_rng(9).normal(size=(m, m)))[0]
+    eight = np.zeros((4, m))
+    eight[:, :2] = [[0, 0], [2, 2], [2, 0], [0, 2]]
+    message = refusal(Curve(scale * eight @ turn + scale))
+    assert message.startswith("component 1: edges 1 and 3 touch or cross near (")
+    eight[2:, m - 1] = 1e-9  # one strand passes the other in the last dimension
+    check_embedded(Curve(scale * eight @ turn + scale))
+
+
+def test_thousands_of_edges_on_each_other_need_little_memory() -> None:
+    """The first contact is enough: 9,000 vertices on three places are 13 million pairs of edges that coincide."""
+    tracemalloc.start()
+    try:
+        assert "touch or cross" in refusal(Curve(np.tile(np.eye(3), (3000, 1))))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 2e8

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, OptionError, RelaxOptions, Status, minimize, relax
+from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.feasibility import restore
 from mobius_flow.core.descent.newton import lagrangian_hessian, lagrangian_hessian_matrix
 from mobius_flow.core.setup import start_problem
@@ -192,6 +192,16 @@ def test_every_energy_in_every_metric_goes_down(energy, metric):
     energies = minimize(torus_trefoil(60), options).energies
     assert len(energies) == 4
     assert energies[-1] < energies[0]
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.penalty is not None])
+def test_penalised_methods_in_the_l2_metric_are_not_extended(method):
+    """Footnote 8 of the paper: the gradient of the penalised energy in L² alone."""
+    options = RelaxOptions(method=method, metric="l2", max_iterations=3, vertices=60)
+    point = point_at(torus_trefoil(60), method=method, metric="l2")
+    mass = point.saddle.matrix
+    np.testing.assert_allclose(mass @ point.gradient, point.derivative, atol=1e-9 * np.abs(point.derivative).max())
+    assert minimize(torus_trefoil(60), options).energies[-1] < point.energy
 
 
 @pytest.mark.parametrize("energy", ["edge", "vertex", "tangent-point"])
