@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .collision import check_embedded, check_gap
+from .collision import check_embedded
 from .curve import Curve, check_is_curve
 from .energies import MoebiusEnergy
 from .errors import CurveError, OptionError
@@ -103,7 +103,6 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     check_units(curve)
     check_embedded(curve)
     refined = embedded_refinement(curve, options.vertices)
-    check_gap(refined)
     try:
         run = Run(start_problem(refined, options), refined, options)
     except np.linalg.LinAlgError as error:

@@ -5,7 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from .collision import survives_rounding
+from .collision import check_gap, survives_rounding
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
 from .descent import METHODS, Method, Problem
@@ -39,7 +39,8 @@ def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
     Raises
     ------
     CurveError
-        If the new vertices, rounded to doubles, might not be on their edges for all that matters.
+        If strands are too near to compute with, or the new vertices, rounded to doubles, might not be on their edges
+        for all that matters.
     """
     refined = refine(curve, vertices)
     if len(refined) > len(curve) and not survives_rounding(refined):
@@ -47,6 +48,7 @@ def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
             "the curve is so far from the origin, or has strands so near to each other, that there are too few digits "
             "for vertices to be inserted; move it nearer to the origin, or its strands apart"
         )
+    check_gap(refined)
     return refined
 
 

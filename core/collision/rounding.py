@@ -5,16 +5,17 @@ import numpy as np
 from ..curve import Curve
 from .gap import minimal_gap
 
-UNITS = 16  # of the last place of the largest coordinate, by which an inserted vertex may be beside its edge
+UNITS = 2  # of the last place of the largest coordinate, by which coordinates of an inserted vertex may be wrong
 
 
 def survives_rounding(curve: Curve) -> bool:
     """Whether vertices that lie on edges but for rounding can move onto these without any contact.
 
     Then the curve with them and the curve without them are isotopic: no point moves by more than r, the rounding, and
-    edges that are no neighbours are more than 2 r apart. In more than three dimensions there is nothing to keep.
+    edges that are no neighbours are more than 2 r apart (and a bit, for the rounding of that distance). In more than
+    three dimensions there is nothing to keep.
     """
     if curve.dimension > 3:
         return True
     rounding = UNITS * np.spacing(np.abs(curve.vertices).max()) * np.sqrt(curve.dimension)
-    return bool(minimal_gap(curve)[0] > 4 * rounding)
+    return bool(minimal_gap(curve)[0] > 2.5 * rounding)
