@@ -89,7 +89,7 @@ def measure(curve: Curve, repetitions: int) -> Iterator[float]:
     yield best(lambda: check_embedded(curve), repetitions)
     yield best(lambda: minimal_gap(curve), repetitions)
     if len(curve) < 50_000:
-        yield best(lambda: doubtful_pairs(start, end, mesh.heads), repetitions)
+        yield best(lambda: list(doubtful_pairs(start, end, mesh.heads)), repetitions)
 
 
 if __name__ == "__main__":
