@@ -48,7 +48,7 @@ def random_curve(rng: np.random.Generator) -> Curve:
 def random_options(rng: np.random.Generator, given: int) -> RelaxOptions:
     """Options of every kind for a curve of so many vertices; mostly coarse meshes, which are quick and harder."""
     method = str(rng.choice(COMMON if rng.random() < 0.8 else list(METHODS)))
-    energies = [name for name in ENERGIES if not METHODS[method].second_order or name == "moebius"]
+    energies = [name for name in ENERGIES if not METHODS[method].rule.second_order or name == "moebius"]
     adaptive = bool(rng.random() < 0.2)
     return RelaxOptions(
         method=method,

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from .curve import Curve, Mesh
 from .types import FloatArray
@@ -105,6 +106,20 @@ class ConstraintDerivative:
                 row[:, k] += own * mass
                 rows.append(row)
         return cls(mesh, tau / ell[:, None], np.stack(rows))
+
+    @property
+    def count(self) -> int:
+        """Number of rows, n + p·m."""
+        return len(self.tangents) + len(self.barycenter)
+
+    def length_rows(self) -> sp.csr_array:
+        """The rows of the lengths as a sparse matrix; shape (n, n·m)."""
+        n, m = self.tangents.shape
+        edge, coordinate = np.indices((n, m))
+        ends = [m * end[edge] + coordinate for end in (self.mesh.tails, self.mesh.heads)]
+        entries = np.concatenate([-self.tangents.ravel(), self.tangents.ravel()])
+        places = (np.concatenate([edge.ravel()] * 2), np.concatenate([end.ravel() for end in ends]))
+        return sp.csr_array((entries, places), shape=(n, n * m))
 
     def apply(self, u: FloatArray) -> FloatArray:
         """DΦ u; shape (n + p·m,) from (n, m)."""

@@ -28,7 +28,7 @@ COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
 def judged(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Iterate, tuple[FloatArray, float] | None]:
     """The iterate with its status, and from a saddle the way down: a direction and its negative curvature."""
     bound = options.tolerance * np.sqrt(abs(point.energy))
-    feasible = point.problem.penalty is not None or iterate.edge_length_error <= LENGTHS_REACHED
+    feasible = not point.problem.geometry.prescribes or iterate.edge_length_error <= LENGTHS_REACHED
     way_down = None
     if iterate.gradient_norm <= bound and feasible:
         message = f"converged: projected gradient {iterate.gradient_norm:.3g} ≤ {bound:.3g}"

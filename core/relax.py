@@ -107,7 +107,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
         run = Run(start_problem(refined, options), refined, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; move near strands apart") from error
-    penalised = method_named(options.method).penalty is not None  # its energy contains the lengths
+    penalised = not method_named(options.method).geometry.prescribes  # its energy contains the lengths
     return run.iterates() if penalised else _with_rises_told(run.iterates())
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from .adaptive import INTERVAL, adapt, graded_problem
 from .curve import Curve
 from .descent import NoStep, Point, Problem, Step
-from .descent.escape import escape_step
+from .descent.searches import Escape
 from .errors import CurveError
 from .iterate import Iterate, Status
 from .judgement import judged, unresolved
@@ -95,7 +95,7 @@ class Run:
         if way_down is None:
             return self._stepper.step(self._point)
         self._stepper.restart()
-        return escape_step(self._point, *way_down)
+        return Escape().step(self._point, *way_down)
 
     def _begin(self, problem: Problem, curve: Curve, index: int) -> None:
         """Start on a mesh."""
@@ -132,7 +132,7 @@ class Run:
     def _hold_parts(self) -> None:
         """Keep parts that are not linked from drifting apart for ever, once they are far from each other."""
         constraints = self._problem.constraints
-        if self._problem.penalty is not None:
+        if not self._problem.geometry.prescribes:
             return
         parts = separate_parts(self._iterate.curve)
         if max(parts) > max(constraints.parts or (0,)):

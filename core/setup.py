@@ -73,12 +73,12 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
     energy = named(ENERGIES, "energy", options.energy)
     objective = Objective(energy, Barrier(replaces_midpoint=isinstance(energy, MoebiusEnergy)))
-    second_order = method.second_order or options.stability or options.escape_saddles
+    second_order = method.rule.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:
         raise OptionError(
             f"{method.name} with these options needs a second derivative; energy {options.energy} has none"
         )
-    if (options.stability or options.escape_saddles) and method.penalty is not None:
+    if (options.stability or options.escape_saddles) and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
     metric = method.metric if options.metric is None else named(METRICS, "metric", options.metric)
     if options.quadrature_points > 1:
@@ -87,12 +87,8 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
                 f"quadrature_points is {options.quadrature_points}; metric {metric.name!r} has no such rule"
             )
         metric = MoebiusMetric(options.quadrature_points)
-    penalty = method.penalty
-    if options.penalty is not None:
-        if penalty is None:
-            raise OptionError(f"penalty is {options.penalty}; method {method.name!r} keeps lengths and has no penalty")
-        penalty = options.penalty
-    return Problem(curve.mesh, objective, metric, constraints, units, penalty, extended=metric.name != "l2")
+    geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
+    return Problem(curve.mesh, objective, metric, constraints, units, geometry)
 
 
 def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:

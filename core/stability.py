@@ -7,7 +7,7 @@ from scipy.linalg import eigh, qr
 
 from .constraints import ConstraintDerivative
 from .descent import Point
-from .descent.newton import lagrangian_hessian_matrix
+from .descent.directions.newton import lagrangian_hessian_matrix
 from .types import FloatArray
 
 ZERO = 1e-5  # eigenvalues against J_C below this count as 0: rotations and sliding are flat directions
@@ -40,9 +40,10 @@ def stability(point: Point, count: int = 20) -> Stability:
     Dense: O((n m)³) operations and O((n m)²) memory.
     """
     n, m = point.vertices.shape
-    tangent = _tangent_basis(point.saddle.constraints)
+    tangent = _tangent_basis(point.tangent_space.constraints)
     hessian = tangent.T @ lagrangian_hessian_matrix(point) @ tangent
-    gram = tangent.T @ np.kron(point.saddle.matrix, np.eye(m)) @ tangent
+    # the metric acts coordinate by coordinate, on all basis vectors at once
+    gram = tangent.T @ point.tangent_space.apply(tangent.reshape(n, -1)).reshape(tangent.shape)
     last = min(count, len(gram)) - 1
     values, vectors = eigh(0.5 * (hessian + hessian.T), 0.5 * (gram + gram.T), subset_by_index=(0, last))
     return Stability(values, np.ascontiguousarray((tangent @ vectors).T).reshape(-1, n, m))
@@ -50,6 +51,5 @@ def stability(point: Point, count: int = 20) -> Stability:
 
 def _tangent_basis(constraints: ConstraintDerivative) -> FloatArray:
     """Orthonormal basis of ker DΦ, as columns; shape (n·m, (n − 1)·m − n)."""
-    rows = len(constraints.tangents) + len(constraints.barycenter)
-    transposed = np.stack([constraints.apply_transpose(unit).ravel() for unit in np.eye(rows)], axis=1)
-    return np.asarray(qr(transposed)[0][:, rows:])
+    transposed = np.stack([constraints.apply_transpose(unit).ravel() for unit in np.eye(constraints.count)], axis=1)
+    return np.asarray(qr(transposed)[0][:, constraints.count :])

@@ -6,7 +6,7 @@ import numpy as np
 
 from .collision import minimal_gap
 from .descent import METHODS, Method, NoStep, Point, State, Step
-from .descent.search import FEASIBLE
+from .descent.searches.normal_step import on_target
 
 HELPER = METHODS["flow-h3-2"]  # its metric does not see how near strands are, and so does not hold them together
 NEARLY_TOUCHING = 0.01  # times ℓ_I + ℓ_J, the gap below which it is asked first
@@ -41,7 +41,8 @@ class Stepper:
         """
         if not self._may_help(point):
             return self._by(self._method, point)
-        if self._helps or (_on_constraints(point) and _nearly_touching(point)):
+        # before lengths are reached J_C must see strands, or evening edges out presses them together
+        if self._helps or (on_target(point) and _nearly_touching(point)):
             self._helps = max(0, self._helps - 1)
             step = self._by(HELPER, point)
             if isinstance(step, Step):
@@ -55,7 +56,7 @@ class Stepper:
         return step
 
     def _may_help(self, point: Point) -> bool:
-        return point.problem.penalty is None and self._method is not HELPER
+        return point.problem.geometry.prescribes and self._method is not HELPER
 
     def _by(self, method: Method, point: Point) -> Step | NoStep:
         if method is not self._last:
@@ -64,18 +65,13 @@ class Stepper:
         if method is HELPER and problem.metric is not HELPER.metric:
             point = point.within(replace(problem, metric=HELPER.metric))
         try:
-            step, self._state = method.step(point, self._state)
+            step, self._state = method.rule.step(point, self._state)
             if isinstance(step, Step):
                 step = step.within(problem)
                 step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
         except np.linalg.LinAlgError as error:
             return NoStep(f"the curve has become too degenerate: {error}")
         return step
-
-
-def _on_constraints(point: Point) -> bool:
-    """Whether lengths are reached; before that J_C must see strands, or evening edges out presses them together."""
-    return float(np.max(np.abs(point.residual))) <= FEASIBLE
 
 
 def _nearly_touching(point: Point) -> bool:

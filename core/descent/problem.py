@@ -6,13 +6,14 @@ from functools import cached_property
 import numpy as np
 
 from ..collision import FreeMotion, Limit, free_motion
-from ..constraints import ConstraintDerivative, Constraints
+from ..constraints import Constraints
 from ..curve import Curve, Mesh
 from ..energies import Objective
 from ..metrics import Metric
-from ..saddle import SaddleSolver
+from ..saddle import TangentSpace
 from ..types import FloatArray
 from ..units import Units
+from .geometry import Geometry
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,12 +23,9 @@ class Problem:
     Attributes
     ----------
     constraints
-        Prescribed lengths and barycenter.
-    penalty
-        None for the constrained problem.  Otherwise α of Section 6.4 of [RS21]: lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)² instead
-        of being prescribed, and the metric is J + α DΦᵀ I_{L²} DΦ.
-    extended
-        Whether a penalised problem extends its metric so (footnote 8: not on L²).
+        Targets of lengths and barycenter.
+    geometry
+        Whether the targets are prescribed, or missing them costs energy.
     """
 
     mesh: Mesh
@@ -35,8 +33,7 @@ class Problem:
     metric: Metric
     constraints: Constraints
     units: Units
-    penalty: float | None = None
-    extended: bool = True
+    geometry: Geometry
 
     def at(self, vertices: FloatArray) -> "Point":
         """The point with these vertices, in the program's units."""
@@ -56,24 +53,6 @@ class Problem:
         if not self.certifiable:
             return FreeMotion(1.0, None, Limit.UNTESTED)
         return free_motion(self.mesh, start, end)
-
-    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """The objective, with the penalty if there is one, and its derivative, shape (n, m)."""
-        energy, derivative = self.objective.value_and_derivative(curve)
-        if self.penalty is None:
-            return energy, derivative
-        stretch = np.log(curve.edge_lengths / self.constraints.lengths)
-        weights = self.penalty * self.constraints.lengths
-        pull = ConstraintDerivative.of_lengths(curve).apply_transpose(2.0 * weights * stretch)
-        return energy + float(weights @ stretch**2), derivative + pull
-
-    def saddle(self, curve: Curve) -> SaddleSolver:
-        """The factorised system (41) of [RS21] at a curve."""
-        matrix = self.metric.matrix(curve)
-        if self.penalty is None:
-            return SaddleSolver(matrix, self.constraints.derivative(curve))
-        weights = (self.penalty if self.extended else 0.0) * self.constraints.lengths
-        return SaddleSolver(matrix, ConstraintDerivative.of_lengths(curve), weights)
 
 
 NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
@@ -106,9 +85,22 @@ class Point:
         """The polygon in the program's units."""
         return Curve(self.vertices, self.problem.mesh)
 
+    @property
+    def nondegenerate(self) -> bool:
+        """Whether all vertices are finite and all edges have a length."""
+        return bool(np.isfinite(self.vertices).all() and self.curve.edge_lengths.min() > 0.0)
+
+    def retract(self, vertices: FloatArray, level: FloatArray, space: TangentSpace | None = None) -> "Point | None":
+        """The point that vertices near this one are led to, as `Geometry.retract` does; by default in this metric."""
+        return self.problem.geometry.retract(self, vertices, level, self.tangent_space if space is None else space)
+
+    def transport(self, u: FloatArray) -> FloatArray:
+        """A vector of another tangent space moved to that of this point; shape (n, m)."""
+        return self.problem.geometry.transport(self, u)
+
     @cached_property
     def _energy_and_derivative(self) -> tuple[float, FloatArray]:
-        return self.problem.value_and_derivative(self.curve)
+        return self.problem.geometry.value_and_derivative(self.problem, self.curve)
 
     @property
     def energy(self) -> float:
@@ -129,17 +121,17 @@ class Point:
 
     @cached_property
     def residual(self) -> FloatArray:
-        """Φ, shape (n + m,)."""
-        return self.problem.constraints.residual(self.curve)
+        """How far constraints are from their targets, shape (n + p·m,) for p parts; 0 where nothing is prescribed."""
+        return self.problem.geometry.residual(self.problem, self.curve)
 
     @cached_property
-    def saddle(self) -> SaddleSolver:
-        """The factorised system (41) of [RS21]."""
-        return self.problem.saddle(self.curve)
+    def tangent_space(self) -> TangentSpace:
+        """Where directions lie, with the metric."""
+        return self.problem.geometry.tangent_space(self.problem, self.curve)
 
     @cached_property
     def _gradient_and_multipliers(self) -> tuple[FloatArray, FloatArray]:
-        return self.saddle.gradient(self.derivative)
+        return self.tangent_space.gradient(self.derivative)
 
     @property
     def gradient(self) -> FloatArray:
@@ -148,9 +140,7 @@ class Point:
 
     @property
     def multipliers(self) -> FloatArray:
-        """Lagrange multipliers λ, shape (n + m,); 0 where lengths are penalised."""
-        if self.problem.penalty is not None:
-            return np.zeros(len(self.vertices))
+        """Lagrange multipliers λ, shape (n + p·m,) for p parts; 0 where nothing is prescribed."""
         return self._gradient_and_multipliers[1]
 
     @cached_property
@@ -160,4 +150,4 @@ class Point:
 
     def lagrangian_derivative(self, multipliers: FloatArray) -> FloatArray:
         """DE − DΦᵀ λ for given multipliers, shape (n, m): the covector whose zeros are critical points."""
-        return self.derivative - self.saddle.constraints.apply_transpose(multipliers)
+        return self.derivative - self.tangent_space.constraints.apply_transpose(multipliers)

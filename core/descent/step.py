@@ -1,9 +1,13 @@
-"""What a search ends with: a step with its proofs, or the reason why there is none."""
+"""Steps, their proofs, and the one way to try a step: back to the constraints, compare, prove."""
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ..collision import FreeMotion
+from ..saddle import TangentSpace
+from ..types import FloatArray
 from .problem import Point, Problem
 
 
@@ -19,9 +23,64 @@ class Leg(NamedTuple):
         return self.proof.time == 1.0
 
 
+class Rejected(NamedTuple):
+    """A trial that is no step.
+
+    Attributes
+    ----------
+    trial
+        Where it would have ended; None if it cannot be brought back to the constraints.
+    proof
+        What was proved of the way there, if only contact is against it.
+    """
+
+    trial: Point | None = None
+    proof: FreeMotion | None = None
+
+    @property
+    def in_the_way(self) -> tuple[int, int] | None:
+        """The edges that meet on the way, if that is the reason."""
+        return None if self.proof is None else self.proof.pair
+
+
 def leg(start: Point, end: Point) -> Leg:
     """The straight motion between two points, in the rounded coordinates that users get to see."""
     return Leg(end, end.problem.free_motion(start.placed, end.placed))
+
+
+def attempt(
+    base: Point,
+    vertices: FloatArray,
+    level: FloatArray,
+    acceptable: Callable[[Point], bool],
+    space: TangentSpace | None = None,
+) -> Leg | Rejected:
+    """Try to go straight to the point that vertices are led back to.
+
+    Parameters
+    ----------
+    base
+        Where the motion begins.
+    vertices
+        Where it is aimed at, shape (n, m).
+    level
+        Of the constraints' residual, which the end is to have.
+    acceptable
+        Whether the end, at which the energy is finite, is good enough.
+    space
+        The metric of the way back; by default that of the base point.
+    """
+    return judged(base, base.retract(vertices, level, space), acceptable)
+
+
+def judged(base: Point, trial: Point | None, acceptable: Callable[[Point], bool]) -> Leg | Rejected:
+    """Compare and prove: the end of `attempt`, for a point that has been brought back to the constraints."""
+    if trial is None or not math.isfinite(trial.energy):
+        return Rejected()
+    if not acceptable(trial):
+        return Rejected(trial)
+    motion = leg(base, trial)
+    return motion if motion.open else Rejected(trial, motion.proof)
 
 
 @dataclass(frozen=True, eq=False)

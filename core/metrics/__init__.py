@@ -1,15 +1,27 @@
-"""Metrics: inner products on functions along the curve, one Gram matrix A of shape (n, n) each."""
+"""Metrics: inner products on functions along the curve."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
 
 from .fractional import FractionalMetric
+from .inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
 from .local import H1Metric, H2Metric, L2Metric
+from .metric import Metric
 from .moebius import MoebiusMetric
-from .protocol import Metric
 
 METRICS: Mapping[str, Metric] = MappingProxyType(
     {metric.name: metric for metric in (L2Metric(), H1Metric(), FractionalMetric(), H2Metric(), MoebiusMetric())}
 )
 
-__all__ = ["METRICS", "FractionalMetric", "H1Metric", "H2Metric", "L2Metric", "Metric", "MoebiusMetric"]
+__all__ = [
+    "METRICS",
+    "DenseInnerProduct",
+    "FractionalMetric",
+    "H1Metric",
+    "H2Metric",
+    "InnerProduct",
+    "L2Metric",
+    "Metric",
+    "MoebiusMetric",
+    "SparseInnerProduct",
+]

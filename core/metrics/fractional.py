@@ -6,7 +6,7 @@ import numpy as np
 
 from ..curve import Curve
 from ..curve.distances import arc_distances
-from ..types import FloatArray
+from .inner_product import DenseInnerProduct, InnerProduct, check_dense
 from .local import mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
@@ -17,13 +17,15 @@ class FractionalMetric:
 
     name = "h3-2"
     description = "W^{3/2,2}, intrinsic"
+    extends_penalty = True
 
-    def matrix(self, curve: Curve) -> FloatArray:
-        """Gram matrix, shape (n, n)."""
+    def at(self, curve: Curve) -> InnerProduct:
+        """Dense: every pair of edges weighs in."""
+        check_dense(len(curve))
         ell = curve.edge_lengths
         weights = np.empty((len(curve), len(curve)))
         for rows in row_blocks(curve.mesh):
             rho = excluding_neighbours(arc_distances(curve, 0.5, 0.5, rows), curve.mesh, rows)
             weights[rows] = ell[rows, None] * ell[None, :] / rho**2
         slope = slopes(curve)
-        return np.asarray(difference_form(weights, slope, slope) + mass(curve).toarray())
+        return DenseInnerProduct(difference_form(weights, slope, slope) + mass(curve).toarray())

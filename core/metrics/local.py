@@ -6,11 +6,11 @@ which a component is 4 to 8 long, so that the two terms weigh alike.
 
 from dataclasses import dataclass
 
-import numpy as np
 import scipy.sparse as sp
 
 from ..curve import Curve
 from ..types import FloatArray
+from .inner_product import InnerProduct, SparseInnerProduct
 
 
 def mass(curve: Curve) -> sp.csr_array:
@@ -38,10 +38,11 @@ class L2Metric:
 
     name = "l2"
     description = "L²"
+    extends_penalty = False
 
-    def matrix(self, curve: Curve) -> FloatArray:
-        """Gram matrix, shape (n, n)."""
-        return np.asarray(mass(curve).toarray())
+    def at(self, curve: Curve) -> InnerProduct:
+        """Two neighbours in each row."""
+        return SparseInnerProduct(mass(curve))
 
 
 @dataclass(frozen=True)
@@ -50,10 +51,11 @@ class H1Metric:
 
     name = "h1"
     description = "W^{1,2}"
+    extends_penalty = True
 
-    def matrix(self, curve: Curve) -> FloatArray:
-        """Gram matrix, shape (n, n)."""
-        return np.asarray((stiffness(curve) + mass(curve)).toarray())
+    def at(self, curve: Curve) -> InnerProduct:
+        """Two neighbours in each row."""
+        return SparseInnerProduct(stiffness(curve) + mass(curve))
 
 
 @dataclass(frozen=True)
@@ -62,9 +64,10 @@ class H2Metric:
 
     name = "h2"
     description = "W^{2,2}"
+    extends_penalty = True
 
-    def matrix(self, curve: Curve) -> FloatArray:
-        """Gram matrix, shape (n, n)."""
+    def at(self, curve: Curve) -> InnerProduct:
+        """Four neighbours in each row."""
         k = stiffness(curve)
         bending = k @ sp.diags_array(1.0 / lumped_mass(curve)) @ k
-        return np.asarray((bending + mass(curve)).toarray())
+        return SparseInnerProduct(bending + mass(curve))

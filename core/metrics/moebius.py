@@ -18,6 +18,7 @@ from ..curve.distances import arc_distances, points_at, squared_distances
 from ..errors import OptionError
 from ..quadrature import gauss_legendre
 from ..types import FloatArray
+from .inner_product import DenseInnerProduct, InnerProduct, check_dense
 from .local import lumped_mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
@@ -44,13 +45,15 @@ class MoebiusMetric:
     points: int = 1
     name = "moebius"
     description = "J_C of Theorem 4.1, extrinsic W^{3/2,2}"
+    extends_penalty = True
 
     def __post_init__(self) -> None:
         if self.points < 1:
             raise OptionError(f"points is {self.points}; the quadrature needs 1 point per edge or more")
 
-    def matrix(self, curve: Curve) -> FloatArray:
-        """Gram matrix A, symmetric positive definite, shape (n, n)."""
+    def at(self, curve: Curve) -> InnerProduct:
+        """Dense: every pair of edges weighs in."""
+        check_dense(len(curve))
         mesh = curve.mesh
         t, omega = gauss_legendre(self.points)
         seminorm = np.zeros((len(curve), len(curve)))  # weights of term 1
@@ -66,7 +69,7 @@ class MoebiusMetric:
         matrix += difference_form(seminorm, slope, slope)
         weight = lumped_mass(curve)
         matrix += np.multiply.outer(weight, weight)
-        return 0.5 * (matrix + matrix.T)
+        return DenseInnerProduct(0.5 * (matrix + matrix.T))
 
 
 def _weights(curve: Curve, t_i: float, t_j: float) -> tuple[FloatArray, FloatArray]:

@@ -15,7 +15,7 @@ from mobius_flow.core.types import FloatArray
 from mobius_flow.core.verify import verify
 from shapes import torus_trefoil
 
-PENALISED = [name for name, method in METHODS.items() if method.penalty is not None]
+PENALISED = [name for name, method in METHODS.items() if not method.geometry.prescribes]
 
 Proofs = set[tuple[bytes, bytes]]
 
@@ -85,15 +85,14 @@ def test_changes_of_mesh_are_proved_too(proofs: Proofs) -> None:
 
 
 class Forgetful:
-    """A method that now and then takes a step and proves nothing of it."""
+    """A rule that now and then takes a step and proves nothing of it."""
 
     def __init__(self, limit: Limit) -> None:
-        self._method, self._limit, self._count = METHODS["lbfgs"], limit, 0
-        self.metric, self.penalty, self.second_order = self._method.metric, None, False
-        self.name = self.description = "forgetful"
+        self._rule, self._limit, self._count = METHODS["lbfgs"].rule, limit, 0
+        self.second_order = False
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
-        step, state = self._method.step(point, state)
+        step, state = self._rule.step(point, state)
         self._count += 1
         if self._count == 3:
             assert isinstance(step, Step)
@@ -110,7 +109,7 @@ def certified(iterates: list[Iterate]) -> list[bool]:
 def test_one_step_without_proof_and_nothing_after_it_is_certified(
     limit: Limit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(driver, "method_named", lambda name: Forgetful(limit))
+    monkeypatch.setattr(driver, "method_named", lambda name: replace(METHODS["lbfgs"], rule=Forgetful(limit)))
     iterates = list(relax(torus_trefoil(60), RelaxOptions(max_iterations=6, vertices=60)))
     assert certified(iterates) == [True] * 3 + [False] * 4
 

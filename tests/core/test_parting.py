@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
-from mobius_flow.core.descent.feasibility import restore
-from mobius_flow.core.descent.newton import lagrangian_hessian
+from mobius_flow.core.descent.directions.newton import lagrangian_hessian
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.metrics import METRICS
 from mobius_flow.core.parting import separate_parts
-from mobius_flow.core.saddle import SaddleSolver
 from mobius_flow.core.setup import start_problem
 from mobius_flow.core.taylor import taylor_slope
 
@@ -73,13 +71,14 @@ def test_solver_with_parts_against_dense_matrix(parted):
     curve, constraints = parted
     derivative = constraints.derivative(curve)
     n, m = curve.vertices.shape
-    matrix = METRICS["moebius"].matrix(curve)
+    inner = METRICS["moebius"].at(curve)
+    matrix = inner.dense()
     rows = np.stack([derivative.apply(unit.reshape(n, m)) for unit in np.eye(n * m)], axis=1)
     assert rows.shape == (n + 6, n * m)
     dense = np.block([[np.kron(matrix, np.eye(m)), rows.T], [rows, np.zeros((n + 6, n + 6))]])
     covector = np.random.default_rng(6).normal(size=(n, m))
     expected = np.linalg.solve(dense, np.concatenate([covector.ravel(), np.zeros(n + 6)]))
-    u, multipliers = SaddleSolver(matrix, derivative).gradient(covector)
+    u, multipliers = inner.tangent_space(derivative).gradient(covector)
     np.testing.assert_allclose(u.ravel(), expected[: n * m], atol=1e-8 * np.abs(expected).max())
     np.testing.assert_allclose(derivative.apply_transpose(multipliers).ravel(), rows.T @ multipliers, atol=1e-8)
 
@@ -137,14 +136,14 @@ def test_second_derivative_along_held_parts():
     constraints = Constraints(start.edge_lengths, np.zeros(3)).of_parts(start, (0, 1))
     problem = replace(problem, constraints=constraints)
     point = problem.at(vertices)
-    v = point.saddle.project(np.random.default_rng(9).normal(size=vertices.shape))
+    v = point.tangent_space.project(np.random.default_rng(9).normal(size=vertices.shape))
     # the Lagrangian's slope along tangents vanishes only at critical points: the path's own bend is what (42) adds
     expected = float(np.sum(v * lagrangian_hessian(point)(v)))
     errors = []
     for h in (2e-3, 1e-3):
-        ahead, behind = (restore(point, vertices + sign * h * v, 0 * point.residual) for sign in (1.0, -1.0))
+        ahead, behind = (point.retract(vertices + sign * h * v, 0 * point.residual) for sign in (1.0, -1.0))
         bend = ahead.vertices + behind.vertices - 2 * vertices
-        along = np.sum((point.derivative - point.saddle.constraints.apply_transpose(point.multipliers)) * bend)
+        along = np.sum((point.derivative - point.tangent_space.constraints.apply_transpose(point.multipliers)) * bend)
         errors.append((ahead.energy - 2 * point.energy + behind.energy - along) / h**2 - expected)
     assert abs(errors[1]) < 1e-3 * abs(expected)
     assert abs(errors[1]) < 0.3 * abs(errors[0])

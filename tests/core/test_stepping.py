@@ -1,5 +1,7 @@
 """Another method helps out where the one asked for finds no step, or strands nearly touch."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mobius_flow.core import METHODS, Curve, RelaxOptions, stepping
@@ -10,10 +12,9 @@ from mobius_flow.core.stepping import HELPER, HELPS, Stepper
 
 
 class Stubborn:
-    """A method that never finds a step, and counts how often it is asked."""
+    """A rule that never finds a step, and counts how often it is asked."""
 
-    name, description, penalty, second_order = "stubborn", "finds no step", None, False
-    metric = METHODS["lbfgs"].metric
+    second_order = False
 
     def __init__(self):
         self.asked = 0
@@ -21,6 +22,10 @@ class Stubborn:
     def step(self, point, state):
         self.asked += 1
         return NoStep("it never does"), state
+
+
+def stubborn(rule=None):
+    return replace(METHODS["lbfgs"], rule=rule or Stubborn())
 
 
 @pytest.fixture
@@ -31,19 +36,19 @@ def point():
 
 
 def test_the_helper_goes_on_where_a_method_is_stuck(point):
-    method = Stubborn()
-    stepper = Stepper(method)
+    rule = Stubborn()
+    stepper = Stepper(stubborn(rule))
     for _ in range(HELPS + 1):
         step = stepper.step(point)
         assert isinstance(step, Step)
         assert step.point.problem is point.problem
         assert step.point.energy < point.energy
         point = step.point
-    assert method.asked == 1
+    assert rule.asked == 1
 
 
 def test_it_is_not_asked_twice_in_vain(point):
-    stepper = Stepper(Stubborn())
+    stepper = Stepper(stubborn())
     for _ in range(HELPS + 1):
         stepper.step(point)  # the same point again and again: no progress
     step = stepper.step(point)
@@ -56,20 +61,20 @@ def test_strands_that_nearly_touch_are_for_the_helper():
     eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 1e-5 * np.sin(t)]))
     problem = start_problem(eight, RelaxOptions(edge_lengths="keep"))
     point = problem.at(problem.units.from_user(eight.vertices))
-    method = Stubborn()
-    step = Stepper(method).step(point)
+    rule = Stubborn()
+    step = Stepper(stubborn(rule)).step(point)
     assert isinstance(step, Step)
-    assert method.asked == 0
+    assert rule.asked == 0
 
 
 def test_where_the_helper_finds_nothing_the_method_is_asked(point, monkeypatch):
-    monkeypatch.setattr(stepping, "HELPER", Stubborn())
+    monkeypatch.setattr(stepping, "HELPER", stubborn())
     monkeypatch.setattr(stepping, "_nearly_touching", lambda point: True)
     assert isinstance(Stepper(METHODS["lbfgs"]).step(point), Step)
 
 
 def test_energies_of_another_mesh_are_not_compared(point):
-    stepper = Stepper(Stubborn())
+    stepper = Stepper(stubborn())
     for _ in range(HELPS + 1):
         stepper.step(point)
     assert isinstance(stepper.step(point), NoStep)
@@ -78,11 +83,8 @@ def test_energies_of_another_mesh_are_not_compared(point):
 
 
 def test_the_helper_and_penalised_problems_get_no_help(point):
-    class StubbornHelper(Stubborn):
-        penalty = 10.0
-
     curve = knot("3_1")
     problem = start_problem(curve, RelaxOptions(method="penalty-lbfgs"))
     penalised = problem.at(problem.units.from_user(curve.vertices))
-    assert isinstance(Stepper(StubbornHelper()).step(penalised), NoStep)
+    assert isinstance(Stepper(stubborn()).step(penalised), NoStep)
     assert isinstance(Stepper(HELPER).step(point), Step)

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..types import FloatArray
-from .problem import Point
+from ...types import FloatArray
+from ..problem import Point
 
 
 @dataclass(frozen=True, eq=False)
-class Memory:
+class Pairs:
     """The last point and the pairs (s, y) of displacements and Lagrangian-gradient differences, oldest first."""
 
     point: Point
@@ -32,21 +32,21 @@ class LimitedMemoryBFGS:
     history: int = 8
     natural_step: float = 1.0
 
-    def propose(self, point: Point, memory: Memory | None) -> tuple[FloatArray, Memory]:
+    def propose(self, point: Point, memory: Pairs | None) -> tuple[FloatArray, Pairs]:
         """The quasi-Newton direction, or steepest descent where that is no direction of descent."""
         pairs = () if memory is None else self._updated(memory, point)
         direction = -_two_loops(point, pairs)
         slope = float(np.sum(point.derivative * direction))
-        if not slope < -1e-3 * point.gradient_norm * point.saddle.norm(direction):
+        if not slope < -1e-3 * point.gradient_norm * point.tangent_space.norm(direction):
             direction, pairs = -point.gradient, ()
-        return direction, Memory(point, pairs)
+        return direction, Pairs(point, pairs)
 
-    def _updated(self, memory: Memory, point: Point) -> tuple[tuple[FloatArray, FloatArray], ...]:
+    def _updated(self, memory: Pairs, point: Point) -> tuple[tuple[FloatArray, FloatArray], ...]:
         """The pairs with the one of the last step; it is left out if it carries no positive curvature."""
         last = memory.point
         s = point.vertices - last.vertices
         y = point.lagrangian_derivative(point.multipliers) - last.lagrangian_derivative(point.multipliers)
-        if not np.sum(s * y) > 1e-8 * np.sum(s * point.saddle.apply_metric(s)):
+        if not np.sum(s * y) > 1e-8 * np.sum(s * point.tangent_space.apply(s)):
             return memory.pairs
         return (*memory.pairs, (s, y))[-self.history :]
 
@@ -60,7 +60,7 @@ def _two_loops(point: Point, pairs: tuple[tuple[FloatArray, FloatArray], ...]) -
         alpha = rho * np.sum(s * q)
         q -= alpha * y
         weights.append((alpha, rho))
-    r = point.saddle.gradient(q)[0] if pairs else point.gradient.copy()
+    r = point.tangent_space.gradient(q)[0] if pairs else point.gradient.copy()
     for (s, y), (alpha, rho) in zip(pairs, reversed(weights), strict=True):
         r += (alpha - rho * np.sum(y * r)) * s
-    return point.saddle.project(r) if pairs and point.problem.penalty is None else r
+    return point.transport(r) if pairs else r

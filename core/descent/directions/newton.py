@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..saddle import SaddleSolver
-from ..types import FloatArray
-from .problem import Point
+from ...saddle import TangentSpace
+from ...types import FloatArray
+from ..problem import Point
 
 LinearMap = Callable[[FloatArray], FloatArray]
 ASSEMBLED_SIZE = 3000  # up to so many unknowns one assembled matrix beats products that go through all pairs
@@ -69,7 +69,7 @@ def _curvature_weights(point: Point) -> FloatArray:
 
 
 def projected_conjugate_gradient(
-    operator: LinearMap, right: FloatArray, solver: SaddleSolver, tolerance: float, max_iterations: int
+    operator: LinearMap, right: FloatArray, space: TangentSpace, tolerance: float, max_iterations: int
 ) -> FloatArray:
     """Solve ⟨operator w − right, v⟩ = 0 for all tangent v, for tangent w, preconditioned by the metric.
 
@@ -82,14 +82,14 @@ def projected_conjugate_gradient(
         Symmetric, (n, m) to (n, m).
     right
         Covector, shape (n, m).
-    solver
+    space
         Projects and preconditions; its norm measures the residual.
     tolerance
         Relative residual at which to stop.
     """
     w = np.zeros_like(right)
     residual = right.copy()
-    z = solver.gradient(residual)[0]
+    z = space.gradient(residual)[0]
     square = float(np.sum(residual * z))
     bound = tolerance**2 * square
     direction = z
@@ -103,7 +103,7 @@ def projected_conjugate_gradient(
         step = square / curvature
         w = w + step * direction
         residual = residual - step * image
-        z = solver.gradient(residual)[0]
+        z = space.gradient(residual)[0]
         square, last = float(np.sum(residual * z)), square
         direction = z + (square / last) * direction
     return w
@@ -111,4 +111,4 @@ def projected_conjugate_gradient(
 
 def newton_direction(point: Point, hessian: LinearMap, tolerance: float, max_iterations: int = 200) -> FloatArray:
     """Tangent w with (D²L w + DE) orthogonal to the tangent space, by projected conjugate gradients."""
-    return projected_conjugate_gradient(hessian, -point.derivative, point.saddle, tolerance, max_iterations)
+    return projected_conjugate_gradient(hessian, -point.derivative, point.tangent_space, tolerance, max_iterations)

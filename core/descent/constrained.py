@@ -1,0 +1,74 @@
+"""The feasible geometry: lengths and barycenter are prescribed, and (42) of [RS21] leads back to them after a step."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..curve import Curve
+from ..errors import OptionError
+from ..saddle import TangentSpace
+from ..types import FloatArray
+
+if TYPE_CHECKING:
+    from .problem import Point, Problem
+
+
+@dataclass(frozen=True)
+class Constrained:
+    """The manifold {Φ = 0}.
+
+    Parameters
+    ----------
+    tolerance
+        Of the constraints' residual, relative error of edge lengths: far below any gap that can be proved.
+    max_iterations
+        Of the modified Newton method (42).
+    contraction
+        Least rate of (42); where it is slower, a shorter step is cheaper than more iterations.
+    """
+
+    tolerance: float = 1e-11
+    max_iterations: int = 15
+    contraction: float = 0.6
+    prescribes = True
+
+    def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
+        """The objective alone."""
+        return problem.objective.value_and_derivative(curve)
+
+    def tangent_space(self, problem: "Problem", curve: Curve) -> TangentSpace:
+        """ker DΦ."""
+        return problem.metric.at(curve).tangent_space(problem.constraints.derivative(curve))
+
+    def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
+        """Φ."""
+        return problem.constraints.residual(curve)
+
+    def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
+        """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point: (42).
+
+        None if the residual does not contract: the step was too long.
+        """
+        last = np.inf
+        for _ in range(self.max_iterations):
+            point = base.problem.at(vertices)
+            if not point.nondegenerate:
+                return None
+            residual = point.residual - level
+            error = float(np.max(np.abs(residual)))
+            if error <= self.tolerance:
+                return point
+            if not error <= self.contraction * last:
+                return None
+            last = error
+            vertices = vertices - space.pseudo_inverse(residual)
+        return None
+
+    def transport(self, point: "Point", u: FloatArray) -> FloatArray:
+        """By orthogonal projection."""
+        return point.tangent_space.project(u)
+
+    def weighted(self, penalty: float) -> "Constrained":
+        """There is no penalty."""
+        raise OptionError(f"penalty is {penalty}; the method keeps lengths and has no penalty")

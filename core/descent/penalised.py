@@ -1,0 +1,72 @@
+"""The infeasible geometry of Section 6.4 of [RS21]: E_α = E + α ∫ log(|γ'|/L)² L dt, without constraints."""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..constraints import ConstraintDerivative
+from ..curve import Curve
+from ..errors import OptionError
+from ..saddle import TangentSpace
+from ..types import FloatArray
+
+if TYPE_CHECKING:
+    from .problem import Point, Problem
+
+
+@dataclass(frozen=True)
+class Penalised:
+    """All polygons; lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)².
+
+    The metric is J + α DΦᵀ I_{L²} DΦ, or J alone where footnote 8 leaves the extension out.
+
+    Parameters
+    ----------
+    penalty
+        α.
+
+    Raises
+    ------
+    OptionError
+        If α is not a finite positive number.
+    """
+
+    penalty: float = 1000.0
+    prescribes = False
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.penalty) and self.penalty > 0.0):
+            raise OptionError(f"penalty is {self.penalty}; it must be a finite number above 0")
+
+    def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
+        """E_α and its derivative."""
+        energy, derivative = problem.objective.value_and_derivative(curve)
+        targets = problem.constraints.lengths
+        stretch = np.log(curve.edge_lengths / targets)
+        weights = self.penalty * targets
+        pull = ConstraintDerivative.of_lengths(curve).apply_transpose(2.0 * weights * stretch)
+        return energy + float(weights @ stretch**2), derivative + pull
+
+    def tangent_space(self, problem: "Problem", curve: Curve) -> TangentSpace:
+        """The whole space."""
+        penalty = self.penalty if problem.metric.extends_penalty else 0.0
+        rows = ConstraintDerivative.of_lengths(curve)
+        return problem.metric.at(curve).whole_space(rows, penalty * problem.constraints.lengths)
+
+    def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
+        """Every polygon is allowed: 0."""
+        return np.zeros(len(curve))
+
+    def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
+        """The vertices as they are, unless an edge has no length."""
+        point = base.problem.at(vertices)
+        return point if point.nondegenerate else None
+
+    def transport(self, point: "Point", u: FloatArray) -> FloatArray:
+        """There is only one tangent space."""
+        return u
+
+    def weighted(self, penalty: float) -> "Penalised":
+        """The same with another α."""
+        return replace(self, penalty=penalty)

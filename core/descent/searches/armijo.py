@@ -1,0 +1,93 @@
+"""Armijo's rule along the constraints (Section 6.3 of [RS21])."""
+
+import math
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from ...checks import check_fields
+from ...types import FloatArray
+from ..problem import Point
+from ..step import Leg, NoStep, Rejected, Step, attempt
+from .first_trial import NOTHING, FirstTrial
+from .normal_step import TowardsTargets
+
+ROUNDING = 1e-14  # relative differences of energies that count as none
+
+
+@dataclass(frozen=True)
+class Armijo:
+    """Shrink the first trial until the energy goes down enough and the motion is proved.
+
+    Parameters
+    ----------
+    decrease
+        Part of the predicted decrease that is asked for: the paper's ½.
+    first
+        The first trial.
+    lengths
+        How fast lengths go to their targets.
+    max_trials
+        Number of trials.
+    """
+
+    decrease: float = 0.5
+    first: FirstTrial = field(default_factory=FirstTrial)
+    lengths: TowardsTargets = field(default_factory=TowardsTargets)
+    max_trials: int = 40
+
+    def __post_init__(self) -> None:
+        check_fields(self, decrease=(0.0, 1.0), max_trials=(0, math.inf))
+
+    def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
+        """Find a step along a descent direction.
+
+        The motion is the straight one from P to Q, where Q = P + τ·direction, moved towards the target lengths if they
+        are not reached yet, and back onto that level of the constraints by (42).  It is accepted if
+        E(Q) ≤ E(P) + ½ DE·(Q₀ − P) and the motion from P to Q is proved free of contact.
+
+        Parameters
+        ----------
+        direction
+            Tangent vector with DE·direction < 0; shape (n, m).
+        natural
+            The direction's own step size.
+        last
+            The last accepted one.
+        """
+        tau, limited_by = self.first(point, direction, min(natural, self.first.growth * last))
+        normal = self.lengths.at(point, point.tangent_space)
+        slope_along = float(np.sum(point.derivative * direction))
+        shrink = 1.0
+        for _ in range(self.max_trials):
+            share = normal.share(-shrink * tau * slope_along) * min(1.0, 4.0 * shrink)
+            move = shrink * tau * direction + share * normal.full
+            slope = shrink * tau * slope_along + share * normal.cost
+            if not np.max(np.abs(move)) > NOTHING:
+                break
+            level = (1.0 - share) * point.residual
+            trial = attempt(point, point.vertices + move, level, partial(self.sufficient, point, slope))
+            if isinstance(trial, Leg):
+                return Step((trial,), shrink * tau, limited_by)
+            limited_by = trial.in_the_way or limited_by
+            shrink *= self._shorter(point, trial, slope)
+        return NoStep.because(limited_by)
+
+    def sufficient(self, point: Point, slope: float, trial: Point) -> bool:
+        """Armijo's rule; where the lengths' cost makes the slope positive, the energy may rise by twice the prediction.
+
+        Differences below the rounding of the energy count as none.
+        """
+        wanted = self.decrease * slope if slope < 0.0 else 2.0 * slope
+        return trial.energy - point.energy <= wanted + ROUNDING * abs(point.energy)
+
+    def _shorter(self, point: Point, rejected: Rejected, slope: float) -> float:
+        """Factor for the next trial."""
+        if rejected.proof is not None:
+            return max(0.1, self.first.collision_fraction * rejected.proof.time)
+        if rejected.trial is None or not slope < 0.0:
+            return 0.5
+        # the minimum of the parabola through what is known, within bounds
+        excess = rejected.trial.energy - point.energy
+        return min(0.6, max(0.1, -0.5 * slope / (excess - slope)))

@@ -1,0 +1,76 @@
+"""The part of a step that leads towards the target lengths, where these are not reached yet."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...checks import check_fields
+from ...saddle import TangentSpace
+from ...types import FloatArray
+from ..problem import Point
+
+FEASIBLE = 1e-7  # residual below which a curve counts as being on the constraints
+
+
+def on_target(point: Point) -> bool:
+    """Whether a point is on the constraints, or on its way there no more."""
+    return float(np.max(np.abs(point.residual))) <= FEASIBLE
+
+
+@dataclass(frozen=True, eq=False)
+class NormalStep:
+    """The way to the targets of the constraints from one point.
+
+    Attributes
+    ----------
+    full
+        −C^† Φ, the displacement that reaches them to first order; shape (n, m).
+    cost
+        DE·full, the energy that takes.
+    longest
+        The share of it that changes no length by more than a bounded factor.
+    least
+        The share taken even where it costs more energy than can be gained.
+    """
+
+    full: FloatArray
+    cost: float
+    longest: float
+    least: float
+
+    def share(self, gain: float) -> float:
+        """The share to take along with a tangential step that gains so much energy.
+
+        It costs at most half the gain, so that the objective goes down; but where there is nothing left to gain the
+        lengths go on, slowly, all the same.
+        """
+        if self.longest * self.cost <= 0.5 * gain:
+            return self.longest
+        return max(0.5 * gain / self.cost, self.least)
+
+
+@dataclass(frozen=True)
+class TowardsTargets:
+    """How fast lengths go to their targets.
+
+    Parameters
+    ----------
+    length_change
+        Largest logarithmic change of an edge length in one step.
+    least_share
+        Of that step, taken even where it costs more energy than can be gained.
+    """
+
+    length_change: float = 0.25
+    least_share: float = 0.01
+
+    def __post_init__(self) -> None:
+        check_fields(self, length_change=(0.0, np.inf), least_share=(0.0, 1.0))
+
+    def at(self, point: Point, space: TangentSpace) -> NormalStep:
+        """The normal step at a point, none if it is on target; ``space`` gives the pseudo-inverse."""
+        if on_target(point):
+            return NormalStep(np.zeros_like(point.vertices), 0.0, 1.0, 1.0)
+        full = space.pseudo_inverse(-point.residual)
+        longest = min(1.0, self.length_change / float(np.max(np.abs(point.residual))))
+        return NormalStep(full, float(np.sum(point.derivative * full)), longest, self.least_share * longest)

@@ -1,0 +1,198 @@
+"""The trust-region method of Section 6.4 of [RS21].
+
+A quadratic model of the Lagrangian is minimised within a ball of the metric, in the span of the projected gradient,
+the previous projected gradient moved to this tangent space, and, once the gradient is short, the Newton direction: a
+blend of Byrd, Schnabel and Shultz (1987) with the two-dimensional subspace method.
+"""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+import numpy as np
+from scipy.linalg import eigh
+
+from ...checks import check_fields
+from ...errors import OptionError
+from ...types import FloatArray
+from ..directions.newton import LinearMap, lagrangian_hessian, newton_direction
+from ..problem import Point
+from ..state import State
+from ..step import Leg, NoStep, Rejected, Step, attempt
+from .armijo import Armijo
+from .first_trial import NOTHING, FirstTrial
+from .normal_step import on_target
+
+ROUNDING = 1e-13  # of the energy: reductions below it cannot be measured, and there the model is believed
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """The radius, and the last projected gradient (None at the start)."""
+
+    radius: float
+    gradient: FloatArray | None
+
+
+@dataclass(frozen=True)
+class TrustRegion:
+    """Shrink the radius until the step is feasible, free of contact and as good as predicted.
+
+    Parameters
+    ----------
+    newton_threshold
+        Of √E: longer gradients are not worth a Newton direction.
+    first_radius
+        In the metric's norm.
+    accept, good, poor
+        Ratios of actual to predicted reduction: below ``accept`` a step is rejected, above ``good`` the radius grows,
+        below ``poor`` it shrinks.
+    first
+        Bounds of a step.
+    underway
+        The search on the way to target lengths, where there is no Lagrangian to model.
+    max_trials
+        Number of trials.
+    """
+
+    newton_threshold: float = 0.3
+    first_radius: float = 1.0
+    accept: float = 0.05
+    good: float = 0.7
+    poor: float = 0.25
+    first: FirstTrial = field(default_factory=FirstTrial)
+    underway: Armijo = field(default_factory=Armijo)
+    max_trials: int = 40
+    second_order: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        positive = (0.0, math.inf)
+        check_fields(self, newton_threshold=positive, first_radius=positive, max_trials=positive)
+        if not 0.0 < self.accept <= self.poor < self.good < 1.0:
+            raise OptionError(
+                f"accept, poor and good are {self.accept}, {self.poor} and {self.good}; they must ascend within (0, 1)"
+            )
+
+    def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
+        """Take one step."""
+        if not on_target(point):
+            step = self.underway.along(point, -point.gradient, math.inf, state.last_step)
+            return step, (State(None, step.size) if isinstance(step, Step) else state)
+        region = Region(self.first_radius, None) if state.memory is None else state.memory
+        model = _Model.at(point, region.gradient, self.newton_threshold)
+        limited_by = None
+        for _ in range(self.max_trials):
+            s, predicted = model.minimise(region.radius)
+            length = point.tangent_space.norm(s)
+            if not np.max(np.abs(s)) > NOTHING:
+                break
+            part, limited_by = self.first(point, s, 1.0)
+            if part < 1.0:
+                region = replace(region, radius=max(part, 0.1) * length)
+                s, predicted = part * s, model.reduction(part * s)
+            trial = self._attempt(point, s, predicted)
+            if isinstance(trial, Leg):
+                radius = self._radius(region.radius, length, _ratio(point, trial.end, predicted))
+                return Step((trial,), 1.0, limited_by), State(Region(radius, point.gradient), length)
+            limited_by = trial.in_the_way or limited_by
+            region = replace(region, radius=self._shorter(trial, min(length, region.radius), length))
+        return NoStep.because(limited_by), state
+
+    def _attempt(self, point: Point, s: FloatArray, predicted: float) -> Leg | Rejected:
+        return attempt(
+            point,
+            point.vertices + s,
+            np.zeros_like(point.residual),
+            lambda q: _ratio(point, q, predicted) >= self.accept,
+        )
+
+    def _radius(self, radius: float, length: float, ratio: float) -> float:
+        """The radius after a step of this length in the metric."""
+        grown = radius * (2.0 if ratio > self.good and length > 0.8 * radius else 1.0)
+        return 0.5 * grown if ratio < self.poor else grown
+
+    def _shorter(self, rejected: Rejected, shortest: float, length: float) -> float:
+        """The radius after a trial that was rejected."""
+        if rejected.proof is None:
+            return 0.4 * shortest
+        return self.first.collision_fraction * max(rejected.proof.time, 0.1) * length
+
+
+def _ratio(point: Point, trial: Point, predicted: float) -> float:
+    """Actual to predicted reduction."""
+    rounding = ROUNDING * abs(point.energy)
+    return (point.energy - trial.energy + rounding) / (predicted + rounding)
+
+
+@dataclass(frozen=True, eq=False)
+class _Model:
+    """DE·s + ½ ⟨s, D²L s⟩ on the span of a few vectors, orthonormal in the metric."""
+
+    basis: tuple[FloatArray, ...]
+    linear: FloatArray
+    quadratic: FloatArray
+    point: Point
+    hessian: LinearMap
+
+    @classmethod
+    def at(cls, point: Point, last_gradient: FloatArray | None, newton_threshold: float) -> "_Model":
+        """The model at a point."""
+        hessian = lagrangian_hessian(point)
+        vectors = [-point.gradient]
+        threshold = newton_threshold * math.sqrt(abs(point.energy))
+        if point.gradient_norm < threshold:
+            # superlinear: the inner tolerance goes to 0 with the gradient
+            vectors.append(newton_direction(point, hessian, min(0.1, point.gradient_norm / threshold)))
+        if last_gradient is not None:
+            vectors.append(point.transport(last_gradient))
+        basis = _orthonormal(point, vectors)
+        images = [hessian(b) for b in basis]
+        quadratic = np.array([[np.sum(a * image) for image in images] for a in basis])
+        linear = np.array([np.sum(point.derivative * b) for b in basis])
+        return cls(basis, linear, 0.5 * (quadratic + quadratic.T), point, hessian)
+
+    def minimise(self, radius: float) -> tuple[FloatArray, float]:
+        """The model's minimum in the ball, and the reduction it predicts (a positive number)."""
+        c = _minimum_in_ball(self.quadratic, self.linear, radius)
+        s = np.sum([ck * b for ck, b in zip(c, self.basis, strict=True)], axis=0)
+        return s, -float(self.linear @ c + 0.5 * c @ self.quadratic @ c)
+
+    def reduction(self, s: FloatArray) -> float:
+        """Predicted reduction of a vector of the span."""
+        return -float(np.sum(self.point.derivative * s) + 0.5 * np.sum(s * self.hessian(s)))
+
+
+def _orthonormal(point: Point, vectors: list[FloatArray]) -> tuple[FloatArray, ...]:
+    """Gram–Schmidt in the metric, twice for stability; vectors that add nothing new are left out."""
+    basis: list[FloatArray] = []
+    for vector in vectors:
+        size = point.tangent_space.norm(vector)
+        if size == 0.0:
+            continue
+        v = vector / size
+        for _ in range(2):
+            for b in basis:
+                v = v - np.sum(b * point.tangent_space.apply(v)) * b
+        rest = point.tangent_space.norm(v)
+        if rest > 1e-8:
+            basis.append(v / rest)
+    return tuple(basis)
+
+
+def _minimum_in_ball(q: FloatArray, g: FloatArray, radius: float) -> FloatArray:
+    """Minimise g·c + ½ c·q c over |c| ≤ radius for a small matrix, exactly: (q + σ) c = −g with the right σ ≥ 0."""
+    values, vectors = eigh(q)
+    h = vectors.T @ g
+    if values[0] > 0.0 and np.linalg.norm(h / values) <= radius:
+        return np.asarray(-vectors @ (h / values))
+    low, high = max(0.0, -values[0]), max(0.0, -values[0]) + np.linalg.norm(g) / radius + abs(values[-1])
+    for _ in range(200):
+        sigma = 0.5 * (low + high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            longer = not np.linalg.norm(h / (values + sigma)) <= radius
+        low, high = (sigma, high) if longer else (low, sigma)
+    c = -h / (values + high)
+    missing = radius**2 - float(c @ c)
+    if values[0] < 0.0 and missing > 1e-10 * radius**2:  # the hard case: go on along the lowest eigenvector
+        c[0] += math.copysign(math.sqrt(missing), c[0])
+    return np.asarray(vectors @ c)

@@ -1,0 +1,139 @@
+"""Inner products on functions along a curve, as operators: what is done with a Gram matrix A, and how.
+
+On R^m-valued functions they act coordinate by coordinate, J = A ⊗ Id_m.
+"""
+
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import blas, lapack
+from scipy.sparse.linalg import SuperLU
+
+from ..constraints import ConstraintDerivative
+from ..errors import CurveError
+from ..saddle import TangentSpace
+from ..saddle.dense import DenseTangentSpace, DenseWholeSpace, cholesky
+from ..saddle.sparse import SparseTangentSpace, SparseWholeSpace, factorised
+from ..types import FloatArray
+
+MOST_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
+
+
+class InnerProduct(Protocol):
+    """⟨u, v⟩ = Σ u A v, A symmetric and positive definite, for functions on n vertices."""
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """A u; shape (n, k)."""
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """A⁻¹ f; shape (n, k).  A LinAlgError says if A is not positive definite."""
+
+    def plus(self, other: "InnerProduct", weight: float = 1.0) -> "InnerProduct":
+        """⟨u, v⟩ + weight ⟨u, v⟩_other."""
+
+    def dense(self) -> FloatArray:
+        """A, shape (n, n), for tests and for other dense matrices."""
+
+    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
+        """The tangent space of constraints with this inner product."""
+
+    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
+        """The whole space with J + Cᵀ w C, weights w ≥ 0 of shape (rows of C,)."""
+
+
+class DenseInnerProduct:
+    """A as an array, in Fortran order for LAPACK."""
+
+    def __init__(self, matrix: FloatArray) -> None:
+        self._matrix = np.asfortranarray(matrix)
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """A u."""
+        return np.ascontiguousarray(blas.dsymm(1.0, self._matrix, np.asfortranarray(u), lower=1))
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """A⁻¹ f."""
+        return np.ascontiguousarray(blas.dsymm(1.0, self.inverse, np.asfortranarray(f), lower=1))
+
+    def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
+        """The sum, dense."""
+        return DenseInnerProduct(self._matrix + weight * other.dense())
+
+    def dense(self) -> FloatArray:
+        """A."""
+        return self._matrix
+
+    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
+        """By two Cholesky factorisations."""
+        return DenseTangentSpace(self, constraints)
+
+    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
+        """By two Cholesky factorisations."""
+        return DenseWholeSpace(self, constraints, weights)
+
+    @cached_property
+    def inverse(self) -> FloatArray:
+        """A⁻¹, in full."""
+        inverse, info = lapack.dpotri(cholesky(self._matrix.copy(order="F")), lower=1, overwrite_c=1)
+        if info != 0:
+            raise np.linalg.LinAlgError(f"matrix is singular: pivot {info} of {len(self._matrix)}")
+        return _filled(np.asarray(inverse))
+
+
+class SparseInnerProduct:
+    """A as a sparse matrix of few entries a row."""
+
+    def __init__(self, matrix: sp.sparray) -> None:
+        self._matrix = sp.csr_array(matrix)
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """A u."""
+        return np.asarray(self._matrix @ u)
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """A⁻¹ f."""
+        return np.asarray(self._factor.solve(f))
+
+    def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
+        """The sum, sparse if both are."""
+        if isinstance(other, SparseInnerProduct):
+            return SparseInnerProduct(self._matrix + weight * other._matrix)
+        return DenseInnerProduct(self.dense() + weight * other.dense())
+
+    def dense(self) -> FloatArray:
+        """A."""
+        return np.asarray(self._matrix.toarray())
+
+    def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
+        """By a sparse factorisation."""
+        return SparseTangentSpace(self._matrix, constraints)
+
+    def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
+        """By a sparse factorisation."""
+        return SparseWholeSpace(self._matrix, constraints, weights)
+
+    @cached_property
+    def _factor(self) -> SuperLU:
+        return factorised(self._matrix)
+
+
+def check_dense(rows: int) -> None:
+    """Raise a CurveError if dense matrices of so many rows are too large."""
+    if rows > MOST_DENSE_ROWS:
+        raise CurveError(
+            f"the curve has {rows} vertices; dense matrices of more than {MOST_DENSE_ROWS} rows do not fit into "
+            "memory; thin the curve out or relax its components apart"
+        )
+
+
+def _filled(lower: FloatArray) -> FloatArray:
+    """A symmetric matrix in Fortran order, of which only the lower half was given, in full."""
+    block = 128
+    for first in range(0, len(lower), block):
+        last = first + block
+        diagonal = lower[first:last, first:last]
+        diagonal[...] = np.tril(diagonal) + np.tril(diagonal, -1).T
+        lower[first:last, last:] = lower[last:, first:last].T
+    return lower

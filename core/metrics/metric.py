@@ -1,0 +1,31 @@
+"""What a metric is."""
+
+from typing import Protocol
+
+from ..curve import Curve
+from .inner_product import InnerProduct
+
+
+class Metric(Protocol):
+    """An inner product on functions along the curve; on R^m-valued ones it acts coordinate by coordinate."""
+
+    @property
+    def name(self) -> str:
+        """Name in the registry."""
+
+    @property
+    def description(self) -> str:
+        """The space, in mathematicians' notation."""
+
+    @property
+    def extends_penalty(self) -> bool:
+        """Whether penalised methods add the lengths' part to it (footnote 8 of [RS21])."""
+
+    def at(self, curve: Curve) -> InnerProduct:
+        """The inner product on functions along a curve.
+
+        Raises
+        ------
+        CurveError
+            If the curve has more vertices than fit into memory.
+        """

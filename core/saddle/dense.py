@@ -1,0 +1,103 @@
+"""Tangent spaces with a dense inner product, through the structure of the saddle-point system (41) of [RS21].
+
+The paper factorises the dense matrix of (m+1) n + m rows.  With J = A ⊗ Id_m, D the edge differences and t_I = τ_I/ℓ_I
+the Schur complement of the length rows is the Hadamard product (t tᵀ) ∘ (D A⁻¹ Dᵀ), to which p barycenters add p·m
+rows, so two Cholesky factorisations of size n do.
+"""
+
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg import lapack
+
+from ..constraints import ConstraintDerivative
+from ..types import FloatArray
+from .tangent_space import TangentSpace, WholeSpace
+
+
+class WithInverse(Protocol):
+    """A Gram matrix A whose inverse is at hand."""
+
+    @property
+    def inverse(self) -> FloatArray:
+        """A⁻¹, shape (n, n)."""
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """A u, shape (n, k)."""
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """A⁻¹ f, shape (n, k)."""
+
+
+class DenseTangentSpace(TangentSpace):
+    """The tangent space of constraints of full rank, with J = A ⊗ Id_m.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If A or the Schur complement is not positive definite to working precision.
+    """
+
+    def __init__(self, inner: WithInverse, constraints: ConstraintDerivative) -> None:
+        super().__init__(constraints)
+        self._inner = inner
+        self._schur = cholesky(_schur_complement(inner, constraints))
+
+    def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        """Solve the Schur complement's system for λ, then for u."""
+        c = self.constraints
+        free = np.zeros(c.tangents.shape) if eta is None else self._inner.solve(eta)
+        right = c.apply(free)
+        if xi is not None:
+            right -= xi
+        multipliers, _ = lapack.dpotrs(self._schur, right, lower=1)
+        return free - self._inner.solve(c.apply_transpose(multipliers)), multipliers
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """J u."""
+        return self._inner.apply(u)
+
+
+class DenseWholeSpace(WholeSpace):
+    """The whole space with J + Cᵀ w C: in (41) −1/w stands for the zero block, in a form that allows for w = 0."""
+
+    def __init__(self, inner: WithInverse, constraints: ConstraintDerivative, weights: FloatArray) -> None:
+        super().__init__(constraints, weights)
+        self._inner = inner
+        schur = _schur_complement(inner, constraints)
+        schur *= np.sqrt(np.multiply.outer(weights, weights))  # (S + 1/w)⁻¹ = √w (√w S √w + 1)⁻¹ √w
+        schur[np.diag_indices_from(schur)] += 1.0
+        self._schur = cholesky(schur)
+
+    def riesz(self, eta: FloatArray) -> FloatArray:
+        """By the identity of Sherman, Morrison and Woodbury."""
+        free, scale = self._inner.solve(eta), np.sqrt(self.weights)
+        pull = scale * lapack.dpotrs(self._schur, scale * self.constraints.apply(free), lower=1)[0]
+        return free - self._inner.solve(self.constraints.apply_transpose(pull))
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """(J + Cᵀ w C) u."""
+        c = self.constraints
+        return self._inner.apply(u) + c.apply_transpose(self.weights * c.apply(u))
+
+
+def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray:
+    """C J⁻¹ Cᵀ, in Fortran order."""
+    n, rows = len(c.tangents), len(c.barycenter)
+    difference = c.mesh.difference
+    half = difference @ inner.inverse
+    schur = np.empty((n + rows, n + rows), order="F")
+    # symmetric, so D (D A⁻¹)ᵀ is the product in either storage order
+    np.multiply(difference @ half.T, c.tangents @ c.tangents.T, out=schur[:n, :n])
+    for k in range(rows):
+        schur[n + k, :] = c.apply(inner.solve(c.barycenter[k]))
+    schur[:n, n:] = schur[n:, :n].T
+    return schur
+
+
+def cholesky(matrix: FloatArray) -> FloatArray:
+    """Lower factor of a symmetric positive definite matrix in Fortran order, which is overwritten."""
+    factor, info = lapack.dpotrf(matrix, lower=1, clean=0, overwrite_a=1)
+    if info != 0:
+        raise np.linalg.LinAlgError(f"matrix is not positive definite: pivot {info} of {len(matrix)}")
+    return np.asarray(factor)
