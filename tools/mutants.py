@@ -1,0 +1,198 @@
+"""Break the program on purpose, in one place at a time, and see that the test which names the behaviour fails.
+
+    python tools/mutants.py            all of them
+    python tools/mutants.py NAME …     some of them
+
+Works on a copy; exit status 1 if a mutant survives, or if a test fails without any.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[1]
+SEARCHES, CLAIMS = "tests/core/descent/test_searches.py", "tests/core/descent/test_claims.py"
+CERTIFICATE, VERIFY = "tests/core/test_certificate.py", "tests/core/verify"
+
+
+class Mutant(NamedTuple):
+    """One change, and the test that must notice."""
+
+    name: str
+    file: str
+    old: str
+    new: str
+    test: str
+
+
+MUTANTS = (
+    Mutant(
+        "conjugate gradients are steepest descent",
+        "core/descent/directions/conjugate_gradient.py",
+        "beta = max(0.0, ",
+        "beta = 0.0 * max(0.0, ",
+        f"{SEARCHES}::test_conjugate_gradients_by_their_formula",
+    ),
+    Mutant(
+        "implicit Euler is explicit",
+        "core/descent/searches/backward_euler.py",
+        "right = -(trial.derivative +",
+        "right = -(point.derivative +",
+        f"{SEARCHES}::test_backward_euler_takes_the_gradient_at_the_end",
+    ),
+    Mutant(
+        "Nesterov without momentum",
+        "core/descent/searches/accelerated.py",
+        "(memory.t - 1.0) / t *",
+        "0.0 * (memory.t - 1.0) / t *",
+        f"{SEARCHES}::test_nesterov_goes_on_in_the_direction_of_the_last_step",
+    ),
+    Mutant(
+        "half the penalty's derivative",
+        "core/descent/penalised.py",
+        "2.0 * weights * stretch",
+        "weights * stretch",
+        f"{SEARCHES}::test_the_penalised_energy_has_slope_two",
+    ),
+    Mutant(
+        "trust region without the last gradient",
+        "core/descent/searches/trust_region.py",
+        "if last_gradient is not None:",
+        "if False:",
+        f"{SEARCHES}::test_trust_region_uses_the_last_gradient",
+    ),
+    Mutant(
+        "trust region without its ratio test",
+        "core/descent/searches/trust_region.py",
+        "_ratio(point, q, predicted) >= self.accept",
+        "_ratio(point, q, predicted) > 0.0",
+        f"{SEARCHES}::test_trust_region_rejects_what_the_model_did_not_foresee",
+    ),
+    Mutant(
+        "no curvature condition",
+        "core/descent/searches/wolfe.py",
+        "if self.flat(trial.end, direction, slope) or tau >= end:",
+        "if True:",
+        f"{SEARCHES}::test_wolfe_does_not_take_steps_that_are_too_short",
+    ),
+    Mutant(
+        "footnote 8 reversed",
+        "core/descent/penalised.py",
+        "self.penalty if problem.metric.extends_penalty else 0.0",
+        "0.0 if problem.metric.extends_penalty else self.penalty",
+        f"{CLAIMS}::test_penalised_methods_in_the_l2_metric_are_not_extended",
+    ),
+    Mutant(
+        "the first trial is the whole way to contact",
+        "core/descent/searches/first_trial.py",
+        "collision_fraction: float = 2.0 / 3.0",
+        "collision_fraction: float = 1.0",
+        f"{SEARCHES}::test_the_first_trial_is_two_thirds_of_the_first_contact",
+    ),
+    Mutant(
+        "the first trial is a tenth of the way",
+        "core/descent/searches/first_trial.py",
+        "collision_fraction: float = 2.0 / 3.0",
+        "collision_fraction: float = 0.1",
+        f"{SEARCHES}::test_the_first_trial_is_two_thirds_of_the_first_contact",
+    ),
+    Mutant(
+        "Armijo asks for next to nothing",
+        "core/descent/searches/armijo.py",
+        "decrease: float = 0.5",
+        "decrease: float = 1e-4",
+        f"{SEARCHES}::test_armijo_asks_for_half_of_the_predicted_decrease",
+    ),
+    Mutant(
+        "the chord is not proved",
+        "core/descent/step.py",
+        "return motion if motion.open else Rejected(trial, motion.proof)",
+        "return Leg(trial, FreeMotion(1.0))",
+        f"{SEARCHES}::test_no_leg_is_taken_that_is_not_proved",
+    ),
+    Mutant(
+        "a chord through a strand",
+        "core/descent/step.py",
+        "return motion if motion.open else Rejected(trial, motion.proof)",
+        "return Leg(trial, FreeMotion(1.0))",
+        f"{SEARCHES}::test_a_chord_through_a_strand_is_rejected",
+    ),
+    Mutant(
+        "certified is a constant",
+        "core/run.py",
+        "self._certified &= step.certified",
+        "pass",
+        f"{CERTIFICATE}::test_one_step_without_proof_and_nothing_after_it_is_certified",
+    ),
+    Mutant(
+        "proofs begin beside the start",
+        "core/descent/problem.py",
+        "return Point(self, self.units.from_user(curve.vertices), curve.vertices)",
+        "return self.at(self.units.from_user(curve.vertices))",
+        f"{CERTIFICATE}::test_the_start_is_the_input_to_the_last_digit",
+    ),
+    Mutant(
+        "roots of a polynomial that is not square-free",
+        "core/verify/polynomials.py",
+        "    p = square_free(p)\n    chain = [p, derivative(p)]",
+        "    chain = [p, derivative(p)]",
+        f"{VERIFY}/test_segments.py::test_edges_that_meet_beside_a_multiple_root",
+    ),
+    Mutant(
+        "triangles that collapse",
+        "core/verify/filter.py",
+        "chain([_triangles(heads)], _overlapping(",
+        "chain([], _overlapping(",
+        f"{VERIFY}/test_forgeries.py::test_forgeries_are_refused",
+    ),
+    Mutant(
+        "stages that do not fit together",
+        "core/verify/check.py",
+        "        if last is not None:\n            _check_transition",
+        "        if last is None and sizes:\n            _check_transition",
+        f"{VERIFY}/test_forgeries.py::test_forgeries_are_refused",
+    ),
+)
+
+
+def main(names: Sequence[str]) -> int:
+    """Try the mutants with these names, or all."""
+    chosen = [mutant for mutant in MUTANTS if not names or mutant.name in names]
+    with tempfile.TemporaryDirectory() as work:
+        copy = Path(work) / "mobius_flow"
+        shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".*", "build", "__pycache__", "*.egg-info"))
+        if not passes(copy, sorted({mutant.test for mutant in chosen})):
+            print("tests fail without any mutant")
+            return 1
+        survivors = [mutant.name for mutant in chosen if not killed(copy, mutant)]
+    print(f"{len(chosen) - len(survivors)} of {len(chosen)} mutants killed")
+    return 1 if survivors else 0
+
+
+def killed(copy: Path, mutant: Mutant) -> bool:
+    """Whether the mutant's test fails with it."""
+    file = copy / mutant.file
+    original = file.read_text(encoding="utf-8")
+    if original.count(mutant.old) != 1:
+        raise SystemExit(f"{mutant.name}: {mutant.file} does not have {mutant.old!r} once")
+    file.write_text(original.replace(mutant.old, mutant.new), encoding="utf-8")
+    survived = passes(copy, [mutant.test])
+    file.write_text(original, encoding="utf-8")
+    print(f"{'SURVIVED' if survived else 'killed'}  {mutant.name}", flush=True)
+    return not survived
+
+
+def passes(copy: Path, tests: Sequence[str]) -> bool:
+    """Whether tests pass in the copy, which goes before an installed package."""
+    environment = {**os.environ, "PYTHONPATH": str(copy.parent), "PYTHONDONTWRITEBYTECODE": "1"}
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests]
+    return subprocess.run(command, cwd=copy, env=environment, capture_output=True, check=False).returncode == 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
