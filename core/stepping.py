@@ -4,12 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from .collision import minimal_gap
 from .descent import METHODS, Method, NoStep, Point, State, Step
-from .descent.searches.normal_step import on_target
 
 HELPER = METHODS["flow-h3-2"]  # its metric does not see how near strands are, and so does not hold them together
-NEARLY_TOUCHING = 0.01  # times ℓ_I + ℓ_J, the gap below which it is asked first
 HELPS = 10  # steps it takes when the other method finds none
 PROGRESS = 1e-6  # relative decrease of energy without which asking it again is no use
 
@@ -35,14 +32,13 @@ class Stepper:
         self._helps, self._helped_at = 0, np.inf
 
     def step(self, point: Point) -> Step | NoStep:
-        """Take a step; the helper takes it if strands nearly touch, or if the method finds none.
+        """Take a step; the helper takes it if the method finds none.
 
         The step's point belongs to the same problem.
         """
         if not self._may_help(point):
             return self._by(self._method, point)
-        # before lengths are reached J_C must see strands, or evening edges out presses them together
-        if self._helps or (on_target(point) and _nearly_touching(point)):
+        if self._helps:
             self._helps = max(0, self._helps - 1)
             step = self._by(HELPER, point)
             if isinstance(step, Step):
@@ -72,11 +68,3 @@ class Stepper:
         except np.linalg.LinAlgError as error:
             return NoStep(f"the curve has become too degenerate: {error}")
         return step
-
-
-def _nearly_touching(point: Point) -> bool:
-    """Whether strands are so near that J_C would hold them together."""
-    if not point.problem.certifiable:
-        return False
-    gap, pair = minimal_gap(point.curve)
-    return pair is not None and gap < NEARLY_TOUCHING * float(point.curve.edge_lengths[list(pair)].sum())

@@ -22,9 +22,9 @@ from .inner_product import DenseInnerProduct, InnerProduct, check_dense
 from .local import lumped_mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
-# Nearer pairs than this, times ℓ_I + ℓ_J, count as far as they are along the curve.  Their 1/r⁴ would leave no digits
-# to the others, and forbid the very motion that brings strands apart.
-NEAREST = 0.01
+# In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
+# others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves it changes nothing.
+NEAREST = 1.0
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,8 @@ def _weights(curve: Curve, t_i: float, t_j: float) -> tuple[FloatArray, FloatArr
         nearest = NEAREST * (ell[rows, None] + ell[None, :])
         rho = arc_distances(curve, t_i, t_j, rows)
         r2 = squared_distances(x[rows], y)
-        r2 = np.where(r2 < nearest**2, rho * rho, r2)
+        r2 = np.maximum(r2, nearest**2)
+        rho = np.maximum(rho, nearest)
         s = 1.0 / excluding_neighbours(r2, mesh, rows)
         rho = excluding_neighbours(rho, mesh, rows)
         np.multiply(s, ell[rows, None] * ell[None, :], out=inverse[rows])

@@ -1,10 +1,9 @@
-"""Another method helps out where the one asked for finds no step, or strands nearly touch."""
+"""Another method helps out where the one asked for finds no step."""
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
-from mobius_flow.core import METHODS, Curve, RelaxOptions, stepping
+from mobius_flow.core import METHODS, RelaxOptions, stepping
 from mobius_flow.core.descent import NoStep, Step
 from mobius_flow.core.knots import knot
 from mobius_flow.core.setup import start_problem
@@ -56,21 +55,11 @@ def test_it_is_not_asked_twice_in_vain(point):
     assert step.reason == "it never does"
 
 
-def test_strands_that_nearly_touch_are_for_the_helper():
-    t = 2 * np.pi * np.arange(60) / 60
-    eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 1e-5 * np.sin(t)]))
-    problem = start_problem(eight, RelaxOptions(edge_lengths="keep"))
-    point = problem.at(problem.units.from_user(eight.vertices))
-    rule = Stubborn()
-    step = Stepper(stubborn(rule)).step(point)
-    assert isinstance(step, Step)
-    assert rule.asked == 0
-
-
-def test_where_the_helper_finds_nothing_the_method_is_asked(point, monkeypatch):
+def test_where_the_helper_finds_nothing_either_the_method_has_the_last_word(point, monkeypatch):
     monkeypatch.setattr(stepping, "HELPER", stubborn())
-    monkeypatch.setattr(stepping, "_nearly_touching", lambda point: True)
-    assert isinstance(Stepper(METHODS["lbfgs"]).step(point), Step)
+    step = Stepper(stubborn()).step(point)
+    assert isinstance(step, NoStep)
+    assert step.reason == "it never does"
 
 
 def test_energies_of_another_mesh_are_not_compared(point):
