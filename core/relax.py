@@ -16,6 +16,7 @@ from .run import Run
 from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
 from .units import centred, check_units
 
+SIZES = 1e3  # ratio of the components' lengths from which that is the likely reason for a singular matrix
 RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
 
 
@@ -107,9 +108,21 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     try:
         run = Run(start_problem(refined, options), refined, options)
     except np.linalg.LinAlgError as error:
-        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; move near strands apart") from error
+        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(refined)}") from error
     penalised = method_named(options.method).penalty is not None  # its energy contains the lengths
     return run.iterates() if penalised else _with_rises_told(run.iterates())
+
+
+def _remedy(curve: Curve) -> str:
+    """What to do about a singular matrix: sizes that are too different, or else strands that are too near."""
+    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
+    long, short = int(lengths.argmax()), int(lengths.argmin())
+    if lengths[long] < SIZES * lengths[short]:
+        return "move near strands apart"
+    return (
+        f"component {long + 1} is {lengths[long]:.3g} long and component {short + 1} only {lengths[short]:.3g}, sizes "
+        "too different to be relaxed together: relax them one by one, or scale one of them"
+    )
 
 
 def _with_rises_told(iterates: Iterator[Iterate]) -> Iterator[Iterate]:

@@ -93,6 +93,15 @@ REFUSED: dict[str, tuple[Array, str]] = {
 }
 
 
+def test_parts_of_too_different_sizes_are_named() -> None:
+    """Far apart as they are, moving strands would not help."""
+    link = Curve.from_components([TREFOIL * 1e5, TREFOIL + 1e6, TREFOIL * 1e-6 - 1e6])
+    reason = r"component 1 is 2.*e\+06 long and component 3 only 2.*e-05, sizes too different .* relax them one by one"
+    with pytest.raises(CurveError, match=reason) as caught:
+        relax(link)
+    assert "move near strands" not in str(caught.value)
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_hostile_curves_that_are_refused(name: str) -> None:
     vertices, reason = REFUSED[name]

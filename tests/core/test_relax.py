@@ -280,9 +280,9 @@ def test_triangles():
     assert result.energies[-1] == pytest.approx(4, abs=1e-4)
 
 
-@pytest.mark.parametrize("seed", [5, 6])
+@pytest.mark.parametrize("seed", [1, 5, 6])
 def test_noisy_circles_do_not_crumple(seed):
-    """Refined edges of very different lengths keep them; evening them out would fold the corners."""
+    """Beside corners of few degrees edges keep their lengths; evening them out would fold the corners."""
     circle = regular_polygon(24).vertices
     noisy = Curve(circle + 0.15 * np.random.default_rng(seed).standard_normal(circle.shape))
     result = minimize(noisy)
