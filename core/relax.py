@@ -16,7 +16,7 @@ from .run import Run
 from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
 from .units import centred, check_units
 
-SIZES = 1e3  # ratio of the components' lengths from which that is the likely reason for a singular matrix
+WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
 RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
 
 
@@ -114,14 +114,14 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
 
 
 def _remedy(curve: Curve) -> str:
-    """What to do about a singular matrix: sizes that are too different, or else strands that are too near."""
+    """What to do about a singular matrix: parts too small for their distances, or else strands that are too near."""
     lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
-    long, short = int(lengths.argmax()), int(lengths.argmin())
-    if lengths[long] < SIZES * lengths[short]:
+    shortest, width = int(lengths.argmin()), float(np.ptp(curve.vertices, axis=0).max())
+    if width < WIDTHS * lengths[shortest]:
         return "move near strands apart"
     return (
-        f"component {long + 1} is {lengths[long]:.3g} long and component {short + 1} only {lengths[short]:.3g}, sizes "
-        "too different to be relaxed together: relax them one by one, or scale one of them"
+        f"component {shortest + 1} is only {lengths[shortest]:.3g} long in a link {width:.3g} wide, too small or too far "
+        "away to be relaxed together with the rest: relax it by itself, or move or scale it"
     )
 
 
