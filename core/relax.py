@@ -120,8 +120,8 @@ def _remedy(curve: Curve) -> str:
     if width < WIDTHS * lengths[shortest]:
         return "move near strands apart"
     return (
-        f"component {shortest + 1} is only {lengths[shortest]:.3g} long in a link {width:.3g} wide, too small or too far "
-        "away to be relaxed together with the rest: relax it by itself, or move or scale it"
+        f"component {shortest + 1} is only {lengths[shortest]:.3g} long in a link {width:.3g} wide, too small or too "
+        "far away to be relaxed together with the rest: relax it by itself, or move or scale it"
     )
 
 
