@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, OptionError
 from mobius_flow.core.curve.refine import DEFAULT_VERTICES, MOST_VERTICES, refine, subdivide
-from shapes import hopf_link, regular_polygon, shared_knot
+from shapes import hopf_link, lattice_knot, regular_polygon
 
 
 def contains(curve: Curve, refined: Curve) -> bool:
@@ -94,9 +94,9 @@ def test_strands_side_by_side_are_near_though_a_bend_joins_them(gap, round_the_e
     assert refined.edge_lengths[middle].max() <= 1.2 * gap
 
 
-@pytest.mark.parametrize("name", ["unknot_thistlethwaite.txt", "3_1.txt", "unknot_ochiai1.txt"])
+@pytest.mark.parametrize("name", ["3_1", "6_2", "L5a1"])
 def test_lattice_polygons(name):
-    curve = shared_knot(name)
+    curve = lattice_knot(name)
     refined = refine(curve)
     assert contains(curve, refined)
     assert refined.edge_lengths.max() <= 1.0
