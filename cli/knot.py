@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def add_to(subparsers: "Subparsers") -> None:
     """Add the subcommand."""
     parser = subparsers.add_parser("knot", help="write a named knot", description=__doc__)
-    parser.add_argument("name", metavar="NAME", help='such as 3_1, figure-eight, hopf, "T(3,5)" or "braid(1,-2,1,-2)"')
+    parser.add_argument("name", metavar="NAME", help='such as 3_1, goeritz, hopf, "T(3,5)" or "braid(1,-2,1,-2)"')
     parser.add_argument("output", metavar="OUT", help="curve: .txt/.xyz, .obj, .vect or .json")
     parser.add_argument("--vertices", type=int, metavar="N", help="number of vertices")
     parser.set_defaults(run=run)

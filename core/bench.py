@@ -9,8 +9,19 @@ import numpy as np
 
 from .curve import Curve
 from .iterate import Iterate
+from .knots import (
+    HARD_UNKNOTS,
+    braid_word,
+    hard_unknot,
+    knot,
+    lattice_closure,
+    rope,
+    scramble,
+    spiral,
+    torus_knot,
+    unknot_word,
+)
 from .knots import KNOTS as TABLE
-from .knots import braid_word, hard_unknot, knot, lattice_closure, rope, scramble, spiral, torus_knot, unknot_word
 from .knots.alexander import signature
 from .options import RelaxOptions
 from .relax import Result, minimize
@@ -53,6 +64,9 @@ KNOTS: Curves = MappingProxyType(
     {
         **{f"unknot-{c}": partial(hard_unknot, c, seed=c) for c in (20, 60, 100)},
         **{f"unknot-lattice-{c}": partial(lattice_unknot, c) for c in (20, 40, 60, 80, 100, 120, 141)},
+        **{
+            f"unknot-{name}": partial(knot, name) for name in HARD_UNKNOTS if name != "haken"
+        },  # whose 141 crossings it takes more vertices to untangle
         "unknot-scrambled": lambda: scramble(knot("0_1"), seed=11),
         "unknot-spiral": lambda: spiral(6.0),
         "unknot-rope": lambda: rope(6.0, 0.02),

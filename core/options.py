@@ -60,8 +60,8 @@ class RelaxOptions:
         When a curve has converged but strands are nearer than its mesh resolves, go on with half as many vertices
         more, up to 3.5 times the first number.
     edge_lengths
-        Targets ℓ⁰: "equal" within each component, "keep" those of the refined start, or "auto": equal unless they
-        differ by more than 10:1, where evening them out would crumple the curve.
+        Targets ℓ⁰: "equal" within each component, "keep" those of the refined start, or "auto": equal unless they,
+        or the gaps between edges, differ by more than 10:1, where evening them out would crumple the curve.
 
     Raises
     ------

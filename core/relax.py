@@ -16,6 +16,7 @@ from .run import Run
 from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
 from .units import centred, check_units
 
+WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
 RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
 
 
@@ -106,9 +107,21 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     try:
         run = Run(start_problem(refined, options), refined, options)
     except np.linalg.LinAlgError as error:
-        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; move near strands apart") from error
+        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(refined)}") from error
     penalised = not method_named(options.method).geometry.prescribes  # its energy contains the lengths
     return run.iterates() if penalised else _with_rises_told(run.iterates())
+
+
+def _remedy(curve: Curve) -> str:
+    """What to do about a singular matrix: parts too small for their distances, or else strands that are too near."""
+    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
+    shortest, width = int(lengths.argmin()), float(np.ptp(curve.vertices, axis=0).max())
+    if width < WIDTHS * lengths[shortest]:
+        return "move near strands apart"
+    return (
+        f"component {shortest + 1} is only {lengths[shortest]:.3g} long in a link {width:.3g} wide, too small or too "
+        "far away to be relaxed together with the rest: relax it by itself, or move or scale it"
+    )
 
 
 def _with_rises_told(iterates: Iterator[Iterate]) -> Iterator[Iterate]:

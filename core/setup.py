@@ -5,7 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from .collision import check_gap, survives_rounding
+from .collision import check_gap, minimal_gap, survives_rounding
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
 from .descent import METHODS, Method, Problem
@@ -17,7 +17,7 @@ from .types import FloatArray
 from .units import Units
 
 _Entry = TypeVar("_Entry")
-EVEN_RATIO = 10.0  # of edge lengths, up to which they are evened out unless told otherwise
+EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
 MOST_VERTICES = 12_000  # some six matrices of so many rows make 7 GB
 
 
@@ -92,7 +92,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
 
 
 def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:
-    uneven = start.edge_lengths.max() > EVEN_RATIO * start.edge_lengths.min()
+    uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
     if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and uneven):
         return start.edge_lengths
     return np.concatenate([np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices])

@@ -1,6 +1,22 @@
 """What every test needs before it starts."""
 
 import os
+import signal
+from pathlib import Path
+
+from hypothesis import HealthCheck, settings
 
 # as the command line does: two spinning BLAS thread pools would make the tests crawl on a busy machine
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# where Ctrl-C is ignored, as in a shell's background jobs, tests could not raise it; children would inherit that
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# the same examples every time, however slow the machine; --hypothesis-profile=explore looks for new ones
+settings.register_profile("explore", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("same", settings.get_profile("explore"), derandomize=True)
+settings.load_profile("same")
+
+# curves of other people's, which are tested too where somebody has put them beside the project
+collect_ignore = [] if Path(__file__).parents[2].joinpath("shared").is_dir() else ["core/knots/test_shared_inputs.py"]

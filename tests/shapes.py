@@ -1,12 +1,8 @@
 """Curves that several tests need."""
 
-from pathlib import Path
-
 import numpy as np
-import pytest
-from mobius_flow.core import Curve, read_curve
-
-SHARED_KNOTS = Path(__file__).resolve().parents[2] / "shared" / "knots"
+from mobius_flow.core import Curve
+from mobius_flow.core.knots import braid_word, lattice_closure
 
 
 def regular_polygon(n: int, dimension: int = 3) -> Curve:
@@ -30,9 +26,6 @@ def hopf_link(n: int) -> Curve:
     return Curve.from_components([first, second])
 
 
-def shared_knot(name: str) -> Curve:
-    """A curve of the shared data, or the test is skipped."""
-    path = SHARED_KNOTS / name
-    if not path.exists():
-        pytest.skip(f"{name} is not here")
-    return read_curve(path)
+def lattice_knot(name: str) -> Curve:
+    """A coarse polygon with right angles and very unequal edges, as people have them."""
+    return lattice_closure(braid_word(name))

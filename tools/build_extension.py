@@ -3,11 +3,13 @@
 
     tools/build_extension.py [--platform linux-x64] [--output dist] [--wheels DIR]
 
-Wheels are fetched by pip and never committed. The zip is made and validated by Blender's own command-line tool: that
-of the `bpy` module where it is installed, otherwise that of `blender`.
+Wheels are fetched by pip and never committed; only those with the hashes in tools/wheels.sha256 are used. The zip is
+made and validated by Blender's own command-line tool: that of the `bpy` module where it is installed, otherwise that
+of `blender`.
 """
 
 import argparse
+import hashlib
 import importlib.util
 import shutil
 import subprocess
@@ -17,13 +19,17 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-SCIPY = "1.16.3"  # has wheels for Python 3.11 (Blender 4.2 to 5.0), 3.13 (from 5.1) and 3.14 (Debian's)
-# Platforms: those of Blender, the tags of the wheels, and the Pythons
+# Blender's platforms, and what the names of their wheels have in them
 PLATFORMS = {
-    "linux-x64": (("manylinux2014_x86_64", "manylinux_2_17_x86_64"), ("3.11", "3.13", "3.14")),
-    "windows-x64": (("win_amd64",), ("3.11", "3.13")),
-    "macos-arm64": (("macosx_12_0_arm64",), ("3.11", "3.13")),
-    "macos-x64": (("macosx_10_14_x86_64",), ("3.11", "3.13")),
+    "linux-x64": "manylinux2014_x86_64",
+    "windows-x64": "win_amd64",
+    "macos-arm64": "macosx_12_0_arm64",
+    "macos-x64": "macosx_10_14_x86_64",
+}
+PINS = ROOT / "tools" / "wheels.sha256"
+WHEELS = {
+    name: digest
+    for digest, name in (line.split() for line in PINS.read_text(encoding="utf-8").splitlines() if line[0] != "#")
 }
 
 
@@ -53,22 +59,33 @@ def build(platform: str, output: Path, wheels: Path) -> Path:
 
 
 def fetch_wheels(platform: str, wheels: Path) -> list[Path]:
-    """Fetch SciPy's wheels for all Pythons of a platform, unless they are there already."""
-    tags, pythons = PLATFORMS[platform]
-    return [_wheel(python, tags, wheels) for python in pythons]
+    """Fetch SciPy's wheels for all Pythons of a platform, unless they are there already, bit by bit as pinned."""
+    paths = [wheels / name for name in WHEELS if PLATFORMS[platform] in name]
+    for path in paths:
+        if not _as_pinned(path):
+            _download(path)
+        if not _as_pinned(path):
+            sys.exit(f"{path}: not the wheel that {PINS.relative_to(ROOT)} pins; remove it and see where it came from")
+    return paths
 
 
-def _wheel(python: str, tags: tuple[str, ...], wheels: Path) -> Path:
-    pattern = f"scipy-{SCIPY}-cp{python.replace('.', '')}-cp*"
-    found = [path for path in wheels.glob(pattern) if any(tag in path.name for tag in tags)]
-    if found:
-        return found[0]
-    wanted = [argument for tag in tags for argument in ("--platform", tag)]
-    command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--only-binary", ":all:"]
-    subprocess.run(
-        [*command, "--python-version", python, *wanted, "--dest", str(wheels), f"scipy=={SCIPY}"], check=True
-    )
-    return next(path for path in wheels.glob(pattern) if any(tag in path.name for tag in tags))
+def _as_pinned(path: Path) -> bool:
+    """Whether a wheel is there and has the hash that belongs to its name."""
+    return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == WHEELS[path.name]
+
+
+def _download(path: Path) -> None:
+    """Let pip download a wheel by its name and its hash."""
+    distribution, version, python, _, platforms = path.stem.split("-")
+    wanted = [argument for tag in platforms.split(".") for argument in ("--platform", tag)]
+    wanted += ["--python-version", f"{python[2]}.{python[3:]}", "--only-binary", ":all:", "--no-deps"]
+    with tempfile.TemporaryDirectory() as room:
+        pinned = Path(room) / "requirements.txt"
+        pinned.write_text(f"{distribution}=={version} --hash=sha256:{WHEELS[path.name]}\n", encoding="utf-8")
+        command = [sys.executable, "-m", "pip", "download", "--quiet", "--require-hashes", "--requirement", str(pinned)]
+        subprocess.run([*command, *wanted, "--dest", room], check=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        shutil.move(Path(room) / path.name, path)
 
 
 def _stage(stage: Path, platform: str, wheels: list[Path]) -> None:

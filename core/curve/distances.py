@@ -29,6 +29,16 @@ def arc_positions(curve: Curve, t: float) -> FloatArray:
     return np.asarray(position + t * ell)
 
 
+def points_along(curve: Curve, component: IntArray, position: FloatArray) -> FloatArray:
+    """The points of components at arc lengths from their first vertices, taken modulo the length; shape (k, m)."""
+    ends = np.cumsum(curve.edge_lengths)
+    starts = np.concatenate([[0.0], ends])[curve.mesh.offsets]
+    along = starts[component] + position % np.diff(starts)[component]
+    edge = np.minimum(np.searchsorted(ends, along, side="right"), curve.mesh.offsets[component + 1] - 1)
+    t = 1.0 - ((ends[edge] - along) / np.maximum(curve.edge_lengths[edge], np.finfo(np.float64).tiny)).clip(0.0, 1.0)
+    return np.asarray(curve.vertices[edge] + t[:, None] * curve.edge_vectors[edge])
+
+
 def arc_distances(curve: Curve, t_i: float, t_j: float, rows: slice) -> FloatArray:
     """ϱ between the points at t_i of the edges in ``rows`` and at t_j of all edges; inf across components."""
     lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])

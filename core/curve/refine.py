@@ -11,9 +11,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..errors import OptionError
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 from .curve import Curve
-from .distances import arc_distance_of_pairs
+from .distances import arc_distance_of_pairs, arc_positions, points_along
 from .mesh import Mesh
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
@@ -21,6 +21,8 @@ STRAND_RATIO = 2.0  # points are on different strands if their distance along th
 MOST_VERTICES = 1000  # per component, unless the curve has half as many: more are too slow to be of use
 MOST_ALTOGETHER = 5000  # unless the curve has more: dense matrices of so many rows take a minute a step
 COMPONENTS = 10  # that get so many each; more share what ten would have
+CLOSING_IN = 0.6  # ratio below which strands close in on each other: four times nearer to a corner its sides do
+TINY = float(np.finfo(np.float64).tiny)  # against division by 0: far from the origin sample points may coincide
 SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
 
 
@@ -77,13 +79,52 @@ def _strand_gaps(curve: Curve, radius: float) -> FloatArray:
     """Distance from each vertex to the nearest one on another strand, inf beyond ``radius``; shape (n,)."""
     tree = cKDTree(curve.vertices)
     pairs = tree.query_pairs(radius, output_type="ndarray")
-    i, j = pairs[:, 0], pairs[:, 1]
-    distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
-    other = arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance
+    i, j = np.concatenate([pairs, pairs[:, ::-1]]).T  # seen from either end
+    distance = _distances(curve, i, j)
+    passing = (distance <= _distances(curve, i, curve.mesh.heads[j])) & (
+        distance <= _distances(curve, i, curve.mesh.previous[j])
+    )
+    passing &= arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance
+    i, j, distance = i[passing], j[passing], distance[passing]
+    strands = ~_sides_of_corners(curve, i, j)
     gaps = np.full(len(curve), np.inf)
-    for end in (i, j):
-        np.minimum.at(gaps, end[other], distance[other])
+    np.minimum.at(gaps, i[strands], distance[strands])
     return gaps
+
+
+def _distances(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1))
+
+
+def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
+    """Whether the curve between vertices ``i`` and the strands that pass them at vertices ``j`` is but a corner.
+
+    A corner, however sharp, looks the same at every scale: shorter edges do not bring neighbours nearer than its sides.
+    """
+    start, end = arc_positions(curve, 0.0)[i], _feet(curve, i, j)
+    component = curve.mesh.component[i]
+    length = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])[component]
+
+    def apart(arc: FloatArray, fraction: float) -> FloatArray:
+        """The distance of the ends of the arc's middle part."""
+        ends = [points_along(curve, component, start + 0.5 * (1.0 + s * fraction) * arc) for s in (-1, 1)]
+        return np.asarray(np.linalg.norm(ends[1] - ends[0], axis=1))
+
+    forward = (end - start) % length
+    closing = [apart(arc, 0.25) < CLOSING_IN * apart(arc, 1.0) for arc in (forward, forward - length)]
+    return np.asarray((component == curve.mesh.component[j]) & (closing[0] | closing[1]))
+
+
+def _feet(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
+    """Arc length to the point nearest to vertex ``i`` on the two edges that meet at vertex ``j``, elementwise."""
+    position, found = arc_positions(curve, 0.0)[j], []
+    for edge, base in ((j, position), (curve.mesh.previous[j], position - curve.edge_lengths[curve.mesh.previous[j]])):
+        e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
+        chord = curve.vertices[i] - curve.vertices[edge]
+        t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
+        found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
+    (after, ahead), (before, behind) = found
+    return np.where(after < before, ahead, behind)
 
 
 def _sharers(curve: Curve) -> int:

@@ -1,4 +1,4 @@
-"""Knots by name: one small grammar for the table, torus knots, braids, mirror images and sums."""
+"""Knots by name: one small grammar for the table, torus knots, braids, mirror images, sums and hard unknots."""
 
 import difflib
 import re
@@ -7,11 +7,13 @@ from ..curve import Curve
 from ..errors import MobiusFlowError
 from .braids import Word, connected_sum, mirror
 from .closures import braid_closure
-from .table import ALIASES, KNOTS
+from .planar import diagram_knot
+from .table import ALIASES, HARD_UNKNOTS, KNOTS
 from .torus import torus_knot
 
 _TORUS = re.compile(r"t(?:orus)?\(([+-]?\d{1,6}),([+-]?\d{1,6})\)", re.ASCII)
 _BRAID = re.compile(r"braid\(((?:[+-]?\d{1,6}(?:,[+-]?\d{1,6})*)?)\)", re.ASCII)
+_HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
 _TABLE = {name.lower(): name for name in KNOTS}
 
 
@@ -21,11 +23,12 @@ class UnknownKnotError(MobiusFlowError):
     def __init__(self, name: str) -> None:
         plain = _plain(name)
         alike = [key for key in _TABLE if "_" in plain and key.startswith(plain.partition("_")[0] + "_")]
-        close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES], n=3, cutoff=0.5)
+        close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES, *HARD_UNKNOTS], n=3, cutoff=0.5)
         advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""
         super().__init__(
             f"no knot is called {name[:60]!r}; {advice}known are 0_1 to 10_165, the links "
             f"{', '.join(key for key in KNOTS if key[0] == 'L')}, the names {', '.join(ALIASES)}, "
+            f"the hard unknots {', '.join(HARD_UNKNOTS)}, "
             "T(p,q), braid(1,-2,...), m before a name for the mirror image, and sums A#B"
         )
 
@@ -35,8 +38,8 @@ def knot(name: str, vertices: int | None = None) -> Curve:
 
     Names: the table's (``3_1`` to ``10_165``, ``L5a1``), the words of :data:`ALIASES` (``trefoil``,
     ``figure-eight``), torus knots ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, mirror images
-    ``m3_1``, and connected sums ``3_1#m3_1``. Letter case, spaces, hyphens and a last word "knot" or "link"
-    don't matter.
+    ``m3_1``, and connected sums ``3_1#m3_1``; also the diagrams of :data:`HARD_UNKNOTS` (``goeritz``), by themselves.
+    Letter case, spaces, hyphens and a last word "knot", "unknot" or "link" don't matter.
 
     Parameters
     ----------
@@ -59,6 +62,9 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     >>> knot("T(2,4)", 100).mesh.component_sizes
     (50, 50)
     """
+    hard = _HARD.get(_unspaced(_plain(name)))
+    if hard is not None:
+        return diagram_knot(HARD_UNKNOTS[hard], vertices)
     torus = _TORUS.fullmatch(_squeezed(name))
     if torus:
         return torus_knot(int(torus[1]), int(torus[2]), vertices)
@@ -102,7 +108,11 @@ def _squeezed(text: str) -> str:
     return re.sub(r"\s", "", text.lower())
 
 
+def _unspaced(text: str) -> str:
+    return re.sub(r"[\s_-]", "", text)
+
+
 def _plain(name: str) -> str:
-    """Lower case, single spaces for spaces and hyphens between letters, no last word "knot" or "link"."""
+    """Lower case, single spaces for spaces and hyphens between letters, no last word "knot", "unknot" or "link"."""
     text = re.sub(r"(?<=[a-z])[\s_-]+(?=[a-z])", " ", name.strip().lower())
-    return re.sub(r"\s+(knot|link|rings)$", "", re.sub(r"\s+", " ", text))
+    return re.sub(r"\s+(knot|unknot|link|rings)$", "", re.sub(r"\s+", " ", text))

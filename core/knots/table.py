@@ -1,4 +1,4 @@
-"""The named table: braid words of all prime knots to ten crossings, and of some links.
+"""The named table: braid words of all prime knots to ten crossings, and of some links; codes of hard unknots.
 
 Handedness is the braid word's, positive letters being right-handed crossings: 3_1 is the right-handed trefoil.
 """
@@ -6,8 +6,9 @@ Handedness is the braid word's, positive letters being right-handed crossings: 3
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
-from . import words_8, words_9, words_10
+from . import hard_codes, words_8, words_9, words_10
 from .braids import Word
+from .planar import Crossing
 
 _LINKS: dict[str, Word] = {
     "L2a1": (1, 1),
@@ -32,6 +33,17 @@ KNOTS: Mapping[str, Word] = MappingProxyType(
         **_LINKS,
     }
 )
+
+
+def _codes(text: str) -> Iterator[tuple[str, tuple[Crossing, ...]]]:
+    for paragraph in text.strip().split("\n\n"):
+        name, *edges = paragraph.split()
+        numbers = iter(map(int, edges))
+        yield name, tuple(zip(numbers, numbers, numbers, numbers, strict=True))
+
+
+HARD_UNKNOTS: Mapping[str, tuple[Crossing, ...]] = MappingProxyType(dict(_codes(hard_codes.CODES)))
+"""Planar diagram codes of famous unknots that are hard to untangle, from 10 to 141 crossings."""
 
 ALIASES: Mapping[str, str] = MappingProxyType(
     {

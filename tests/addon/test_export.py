@@ -1,7 +1,6 @@
 """Scenes, pictures and films of a relaxation, whole or not at all."""
 
 import os
-import subprocess
 import sys
 
 import numpy as np
@@ -12,6 +11,7 @@ bpy = pytest.importorskip("bpy")
 from blender_scenes import evaluated, in_world  # noqa: E402
 from mobius_flow.addon import export, film, rendering  # noqa: E402
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax  # noqa: E402
+from processes import finished  # noqa: E402
 from shapes import hopf_link, regular_polygon, torus_trefoil  # noqa: E402
 
 TINY = (64, 36, 1)
@@ -69,7 +69,7 @@ bpy.ops.render.render(write_still=True)
 def test_a_scene_needs_no_add_on(tmp_path, iterates):
     export.write_blend(tmp_path / "a.blend", iterates)
     command = [sys.executable, "-c", FRESH, str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = finished(command)
     assert done.returncode == 0, done.stderr
     (line,) = [line for line in done.stdout.splitlines() if line.startswith("points")]
     points = np.array(line.split()[1:], dtype=float).reshape(-1, 3)

@@ -1,5 +1,6 @@
 """The extension's zip: what is in it, and that it works in a clean Blender with nothing else installed."""
 
+import hashlib
 import importlib.util
 import os
 import subprocess
@@ -32,14 +33,13 @@ def builder():
     return module
 
 
-@pytest.fixture(scope="module")
-def empty_wheels(builder, tmp_path_factory):
-    """Wheels with the right names and nothing in them, so that none is fetched."""
+@pytest.fixture
+def empty_wheels(builder, tmp_path_factory, monkeypatch):
+    """Wheels with the right names and nothing in them, pinned as such, so that none is fetched."""
     room = tmp_path_factory.mktemp("wheels")
-    for tags, pythons in builder.PLATFORMS.values():
-        for python in pythons:
-            cp = f"cp{python.replace('.', '')}"
-            (room / f"scipy-{builder.SCIPY}-{cp}-{cp}-{tags[0]}.whl").touch()
+    for name in builder.WHEELS:
+        (room / name).touch()
+    monkeypatch.setattr(builder, "WHEELS", dict.fromkeys(builder.WHEELS, hashlib.sha256(b"").hexdigest()))
     return room
 
 
@@ -56,7 +56,7 @@ def test_only_what_blender_runs_is_in_the_zip(builder, empty_wheels, tmp_path):
     assert all(name.endswith(".py") for name in files if name.startswith(("addon/", "core/")))
     assert not [name for name in files if "__pycache__" in name or Path(name).name.startswith(".")]
     wheels = [name for name in files if name.startswith("wheels/")]
-    assert len(wheels) == len(builder.PLATFORMS[PLATFORM][1])
+    assert len(wheels) == 3  # Python 3.11, 3.13 and 3.14
     assert all(name.startswith("wheels/scipy-") for name in wheels)
 
 
@@ -69,13 +69,42 @@ def test_every_module_is_in_the_zip(builder, empty_wheels, tmp_path):
 
 
 def test_each_platform_has_its_own_wheels(builder, empty_wheels, tmp_path):
-    for platform, (tags, pythons) in builder.PLATFORMS.items():
+    for platform, tag in builder.PLATFORMS.items():
         with zipfile.ZipFile(builder.build(platform, tmp_path, empty_wheels)) as archive:
             manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())
             assert {"./" + name for name in archive.namelist() if name.endswith(".whl")} == set(manifest["wheels"])
         assert manifest["platforms"] == [platform]
-        assert len(manifest["wheels"]) == len(pythons)
-        assert all(any(tag in wheel for tag in tags) for wheel in manifest["wheels"])
+        assert {wheel.split("-")[2] for wheel in manifest["wheels"]} >= {"cp311", "cp313"}
+        assert all(tag in wheel for wheel in manifest["wheels"])
+
+
+def test_a_wheel_is_used_only_if_its_hash_is_pinned(builder, empty_wheels, tmp_path, monkeypatch):
+    """A file of the right name with something else in it is fetched again, and refused if that does not help."""
+    fetched = []
+    monkeypatch.setattr(builder, "_download", lambda path: (fetched.append(path), path.write_bytes(b"")))
+    foreign, *others = builder.fetch_wheels(PLATFORM, empty_wheels)
+    assert others
+    assert not fetched
+    foreign.write_bytes(b"something else")
+    assert foreign in builder.fetch_wheels(PLATFORM, empty_wheels)
+    assert fetched == [foreign]
+    monkeypatch.setattr(builder, "_download", lambda path: path.write_bytes(b"something else again"))
+    foreign.unlink()
+    with pytest.raises(SystemExit, match=r"not the wheel that tools.wheels\.sha256 pins"):
+        builder.build(PLATFORM, tmp_path, empty_wheels)
+    assert not list(tmp_path.glob("*.zip"))
+
+
+def test_pins_are_of_one_version_for_every_platform(builder):
+    names = [name.split("-") for name in builder.WHEELS]
+    assert len({(distribution, version) for distribution, version, *_ in names}) == 1
+    assert all(len(digest) == 64 and int(digest, 16) for digest in builder.WHEELS.values())
+    assert all(sum(tag in name for tag in builder.PLATFORMS.values()) == 1 for name in builder.WHEELS)
+
+
+def test_the_manifest_says_that_a_process_is_started():
+    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    assert "Python" in manifest["permissions"]["files"]
 
 
 def test_the_manifest_itself_names_no_wheels():

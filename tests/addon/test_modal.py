@@ -17,9 +17,8 @@ from mobius_flow.addon.live.snapshot import Snapshot  # noqa: E402
 from mobius_flow.addon.operators import CURVE_OT_mobius_flow_relax  # noqa: E402
 from mobius_flow.addon.properties import SETTINGS  # noqa: E402
 from mobius_flow.addon.session import State  # noqa: E402
+from processes import PATIENCE  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
-
-PATIENCE = 60.0
 
 
 class Operator:
@@ -317,7 +316,9 @@ def test_esc_while_keys_are_written(operator):
     actions = len(bpy.data.actions)
     operator.start()
     operator.until(lambda: operator.run._writing is not None or operator.run.state is State.FINISHING)
+    end = time.monotonic() + PATIENCE
     while operator.run._prepared is None:
+        assert time.monotonic() < end
         time.sleep(0.01)
     operator.run._writing = operator.run._session.writing(operator.run._prepared)
     next(operator.run._writing)

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 import sys
 from contextlib import contextmanager
 
@@ -12,6 +11,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from mobius_flow.addon import movie, rendering  # noqa: E402
+from processes import finished  # noqa: E402
 
 FRAMES, MOVING = 8, 5  # the last frames are like the fifth
 STATE = ("file_format", "color_mode", "color_depth", "compression")
@@ -208,7 +208,7 @@ export.write_movie("a.mp4", list(relax(curve, RelaxOptions(max_iterations=3))), 
 )
 def test_a_signal_ends_it_tidily(tmp_path, number, status):
     command = [sys.executable, "-c", PROCESS, str(int(number))]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    done = finished(command, cwd=tmp_path)
     assert [line for line in done.stdout.split("\n") if line.isdigit()] == ["1", "2", "3"], done.stderr
     assert done.returncode == status
     assert os.listdir(tmp_path) == []

@@ -2,15 +2,13 @@
 
 import json
 import os
-import signal
-import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
 from mobius_flow.cli import main, outputs
 from mobius_flow.core import METHODS, read_curve, write_curve
+from processes import finished
 from shapes import regular_polygon, torus_trefoil
 
 
@@ -66,19 +64,8 @@ def test_knot(tmp_path):
 
 
 def test_module_is_the_same_program():
-    done = subprocess.run([sys.executable, "-m", "mobius_flow", "methods"], capture_output=True, text=True, check=True)
+    done = finished([sys.executable, "-m", "mobius_flow", "methods"])
     assert done.stdout.startswith("lbfgs\t")
-
-
-def test_interrupt_writes_the_best_curve(trefoil, tmp_path):
-    out, report = tmp_path / "o.txt", tmp_path / "r.json"
-    command = [sys.executable, "-m", "mobius_flow", "relax", trefoil, out, "--report", report]
-    process = subprocess.Popen([*command, "--tolerance", "1e-30", "--vertices", "300", "--method", "flow-l2"])
-    time.sleep(4)
-    process.send_signal(signal.SIGINT)
-    assert process.wait(30) == 130
-    assert json.loads(report.read_text())["status"] == "interrupted"
-    assert len(read_curve(out)) == 300
 
 
 def test_an_interrupted_film_keeps_report_and_trajectory(trefoil, tmp_path, monkeypatch, capsys):

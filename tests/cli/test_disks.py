@@ -12,6 +12,7 @@ from mobius_flow.cli import main
 from mobius_flow.cli.outputs import OUTPUTS
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.curve.io import FORMATS
+from processes import finished
 from shapes import torus_trefoil
 
 SHORT = ["--vertices", "60", "--max-iterations", "2", "--quiet"]
@@ -118,7 +119,7 @@ def test_files_that_may_not_grow(trefoil: str, tmp_path: Path) -> None:
         (tmp_path / name).write_text("old")
     extras = [word for name, option in EXTRAS.items() for word in (option, str(tmp_path / name))]
     command = [sys.executable, "-c", LIMITED, "relax", trefoil, str(tmp_path / "o.obj"), *extras, *SHORT]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = finished(command)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
     for name in names:

@@ -13,6 +13,7 @@ import pytest
 from mobius_flow.cli import main
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, minimize, read_curve, write_curve
 from mobius_flow.core.verify import verify
+from processes import running
 from shapes import regular_polygon, torus_trefoil
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals")
@@ -39,11 +40,11 @@ def test_a_signal_keeps_curve_report_and_trajectory(trefoil: Path, tmp_path: Pat
     out, report, trajectory = tmp_path / "o.txt", tmp_path / "r.json", tmp_path / "t.npz"
     arguments = ["relax", trefoil, out, "--report", report, "--trajectory", trajectory, *ENDLESS]
     command = [sys.executable, "-c", TALKATIVE, *map(str, arguments)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with running(command) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "running\n"
         process.send_signal(number)
-        _, error = process.communicate(timeout=60)
+        _, error = process.communicate()
     assert process.returncode == 130
     assert error.startswith("interrupted: the curve reached so far is kept")
     assert error.count("\n") == 1
@@ -125,12 +126,11 @@ def test_a_kill_while_writing_leaves_a_whole_file(tmp_path: Path, kind: str) -> 
     write_curve(source, curve)
     for pause in (0.0007, 0.0053, 0.0111):
         command = [sys.executable, "-c", ENDLESS_WRITES, kind, str(source), str(target)]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        with running(command) as process:
             assert process.stdout is not None
             assert process.stdout.readline() == "written\n"
             with pytest.raises(subprocess.TimeoutExpired):
                 process.wait(pause)
-            process.kill()
         if kind == "report":
             assert json.loads(target.read_text())["vertices"] == len(curve)
         elif kind == "trajectory":

@@ -16,8 +16,9 @@ from mobius_flow.core.curve.remesh import (
     remesh,
     superfluous,
 )
+from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
-from shapes import hopf_link, regular_polygon, shared_knot, torus_trefoil
+from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 
 
 def near_strands(gap: float) -> Curve:
@@ -92,7 +93,7 @@ def test_stages_begin_where_the_mesh_changes_even_to_the_same_size():
 
 def test_famous_unknot_adaptively(tmp_path):
     trajectory = Trajectory()
-    result = minimize(shared_knot("unknot_culprit.txt"), RelaxOptions(adaptive=True), trajectory.add)
+    result = minimize(knot("culprit"), RelaxOptions(adaptive=True), trajectory.add)
     assert result.energies[-1] < 4.01
     trajectory.save(tmp_path / "t.npz")
     assert verify(tmp_path / "t.npz").accepted
@@ -103,7 +104,7 @@ def test_granny_has_no_minimiser_and_is_told_so(adaptive, tmp_path):
     """A composite knot's strands pull tight for ever: that is no convergence."""
     trajectory = Trajectory()
     options = RelaxOptions(vertices=100, resolve=True, adaptive=adaptive, tolerance=3e-3)
-    result = minimize(shared_knot("granny_3_1+3_1.txt"), options, trajectory.add)
+    result = minimize(lattice_knot("3_1#3_1"), options, trajectory.add)
     assert result.status is Status.STALLED
     assert "pull tight" in result.message
     assert result.certified
@@ -112,7 +113,7 @@ def test_granny_has_no_minimiser_and_is_told_so(adaptive, tmp_path):
 
 
 def test_resolve_goes_on_until_strands_are_resolved():
-    result = minimize(shared_knot("3_1.txt"), RelaxOptions(vertices=60, resolve=True))
+    result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, resolve=True))
     assert result.status is Status.CONVERGED
     assert len(result.curve) > 60
     assert Objective().barrier.value(result.curve) == 0

@@ -93,6 +93,22 @@ REFUSED: dict[str, tuple[Array, str]] = {
 }
 
 
+@pytest.mark.parametrize(
+    ("parts", "reason"),
+    [
+        (
+            [TREFOIL * 1e5, TREFOIL + 1e6, TREFOIL * 1e-5 - 1e6],
+            r"component 3 is only 0.0003.* long in a link 2.*e\+06 wide",
+        ),
+        ([TREFOIL, TREFOIL + 1e6], r"component . is only 31.* long in a link 1e\+06 wide"),
+    ],
+)
+def test_parts_too_small_for_their_distances_are_named(parts: list[Array], reason: str) -> None:
+    """Far apart as they are, moving strands would not help."""
+    with pytest.raises(CurveError, match=reason + ", too small or too far away .* relax it by itself"):
+        relax(Curve.from_components(parts))
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_hostile_curves_that_are_refused(name: str) -> None:
     vertices, reason = REFUSED[name]

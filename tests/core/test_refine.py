@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, OptionError
 from mobius_flow.core.curve.refine import DEFAULT_VERTICES, MOST_VERTICES, refine, subdivide
-from shapes import hopf_link, regular_polygon, shared_knot
+from shapes import hopf_link, lattice_knot, regular_polygon
 
 
 def contains(curve: Curve, refined: Curve) -> bool:
@@ -58,9 +58,45 @@ def test_neighbours_become_nearer_than_strands():
     assert np.diff(np.sort(along[:, 0])).max() < 0.2
 
 
-@pytest.mark.parametrize("name", ["unknot_thistlethwaite.txt", "3_1.txt", "unknot_ochiai1.txt"])
+def kite(degrees: float, cuts: int) -> Curve:
+    """A plane quadrangle with one corner of the given angle, its sides cut into pieces, uneven ones if several."""
+    half = np.deg2rad(degrees) / 2
+    side = np.array([np.cos(half), np.sin(half), 0.0])
+    steps = np.linspace(0, 1, cuts + 1)[1:, None] ** 1.5
+    tail = np.array([[side[0] + np.sin(half), 0.0, 0.0]])
+    return Curve(np.concatenate([np.zeros((1, 3)), steps * side, tail, (steps * side * [1, -1, 1])[::-1]]))
+
+
+@pytest.mark.parametrize("cuts", [1, 7])
+@pytest.mark.parametrize("degrees", [90, 61, 60, 59.9, 45, 20, 5, 1])
+def test_a_sharp_corner_is_no_near_strand(degrees, cuts):
+    """Its sides are as near to each other at every scale; only the tail's angle adds up with the number of pieces."""
+    curve = kite(degrees, cuts)
+    assert DEFAULT_VERTICES <= len(refine(curve)) <= DEFAULT_VERTICES + len(curve)
+
+
+def test_triangles_get_no_more_vertices_than_squares():
+    assert len(refine(regular_polygon(3))) <= DEFAULT_VERTICES + 3
+    five = Curve.from_components([regular_polygon(3).vertices + 10 * k for k in range(5)])
+    assert len(refine(five)) <= 5 * (DEFAULT_VERTICES + 3)
+
+
+@pytest.mark.parametrize("gap", [0.02, 0.005])
+@pytest.mark.parametrize("round_the_end", [False, True])
+def test_strands_side_by_side_are_near_though_a_bend_joins_them(gap, round_the_end):
+    """A hairpin, square or round: the way round its end does not make it a corner."""
+    t = np.linspace(-np.pi / 2, np.pi / 2, 16) if round_the_end else np.array([-np.pi / 2, np.pi / 2])
+    end = np.stack([1 + 0.5 * gap * np.cos(t), 0.5 * gap * np.sin(t)], axis=1)
+    hairpin = Curve(np.concatenate([[[0.0, -0.5 * gap]], end, [[0.0, 0.5 * gap], [-1.0, 1.0], [-1.0, -1.0]]]))
+    assert hairpin.length / DEFAULT_VERTICES > gap
+    refined = refine(hairpin)
+    middle = (refined.vertices[:, 0] > 0.01) & (refined.vertices[:, 0] < 0.99)
+    assert refined.edge_lengths[middle].max() <= 1.2 * gap
+
+
+@pytest.mark.parametrize("name", ["3_1", "6_2", "L5a1"])
 def test_lattice_polygons(name):
-    curve = shared_knot(name)
+    curve = lattice_knot(name)
     refined = refine(curve)
     assert contains(curve, refined)
     assert refined.edge_lengths.max() <= 1.0

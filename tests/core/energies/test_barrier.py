@@ -10,8 +10,9 @@ from mobius_flow.core.energies.barrier import cutoff
 from mobius_flow.core.energies.contributions import Contributions
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.energies.near_pairs import near_pairs
+from mobius_flow.core.knots import knot
 from mobius_flow.core.taylor import taylor_slope
-from shapes import regular_polygon, shared_knot
+from shapes import lattice_knot, regular_polygon
 from smooth_curves import SMOOTH_CURVES, random_polygon
 
 BARRIER = Barrier()
@@ -34,14 +35,16 @@ def test_one_pair(gap: float, midpoint: float, exact: float) -> None:
     assert pair.exact().value[0] == pytest.approx(exact, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "pairs"),
-    [("3_1.txt", -0.202695414, 160), ("unknot_thistlethwaite.txt", -48.923863456, 1684)],
-)
-def test_shared_knots(name: str, value: float, pairs: int) -> None:
-    curve = shared_knot(name)
-    assert BARRIER.value(curve) == pytest.approx(value, abs=1e-9)
-    assert 2 * len(near_pairs(curve)[0]) == pairs
+@pytest.mark.parametrize("curve", [lattice_knot("4_1"), knot("thistlethwaite")], ids=["lattice", "diagram"])
+def test_coarse_knots(curve: Curve) -> None:
+    """Pair by pair, the pairs found by their definition."""
+    found = brute_force_pairs(curve)
+    assert len(found) > 100
+    total, ends = 0.0, curve.vertices[np.stack([curve.mesh.tails, curve.mesh.heads], axis=1)]
+    for i, j in found:
+        pair = contributions(*ends[i].tolist(), *ends[j].tolist())
+        total += float(cutoff(pair.closeness().value)[0][0] * (pair.exact().value[0] - pair.midpoint().value[0]))
+    assert BARRIER.value(curve) == pytest.approx(2 * total, rel=1e-10)
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,9 @@ import pytest
 from mobius_flow.core import Curve, MoebiusEnergy, Objective
 from mobius_flow.core.energies import ENERGIES, Barrier, Energy, TwiceDifferentiable, moebius_kpoint
 from mobius_flow.core.energies.near_pairs import near_pairs
+from mobius_flow.core.knots import knot
 from mobius_flow.core.taylor import derivative_slope, hessian_slope, taylor_slope
-from shapes import regular_polygon, shared_knot
+from shapes import lattice_knot, regular_polygon
 from smooth_curves import dual_circles, random_polygon
 
 ENERGY = pytest.mark.parametrize("energy", [*ENERGIES.values(), moebius_kpoint(1)], ids=lambda e: e.name)
@@ -60,9 +61,8 @@ def test_objective_near_contact(gap: float) -> None:
     assert hessian_slope(Objective(), curve, v, largest) == pytest.approx(3, abs=0.05)
 
 
-@pytest.mark.parametrize("name", ["3_1.txt", "unknot_thistlethwaite.txt"])
-def test_objective_of_coarse_input(name: str) -> None:
-    curve = shared_knot(name)
+@pytest.mark.parametrize("curve", [lattice_knot("3_1"), knot("thistlethwaite")], ids=["lattice", "diagram"])
+def test_objective_of_coarse_input(curve: Curve) -> None:
     v = direction_for(curve)
     assert derivative_slope(Objective(), curve, v, largest=0.01) == pytest.approx(2, abs=0.01)
     assert hessian_slope(Objective(), curve, v, largest=0.01) == pytest.approx(3, abs=0.02)

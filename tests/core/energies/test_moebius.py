@@ -5,7 +5,8 @@ import pytest
 from energy_references import circle_density, disjoint_pairs, pair_sum
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.energies import ENERGIES
-from shapes import regular_polygon, shared_knot
+from mobius_flow.core.knots import knot
+from shapes import lattice_knot, regular_polygon
 from smooth_curves import SMOOTH_CURVES, dual_circles, random_polygon
 
 ENERGY = MoebiusEnergy()
@@ -94,9 +95,10 @@ def test_formula_of_the_local_contribution(dimension: int) -> None:
         assert formula >= 0
 
 
-@pytest.mark.parametrize(("name", "energy"), [("3_1.txt", 126.145173390), ("unknot_thistlethwaite.txt", 843.253289129)])
-def test_shared_knots(name: str, energy: float) -> None:
-    assert ENERGY.value(shared_knot(name)) == pytest.approx(energy, abs=1e-9)
+@pytest.mark.parametrize("curve", [lattice_knot("4_1"), knot("culprit")], ids=["lattice", "diagram"])
+def test_coarse_knots(curve: Curve) -> None:
+    expected = 4 + pair_sum(curve, circle_density, [0.5], [1.0])
+    assert ENERGY.value(curve) == pytest.approx(expected, rel=1e-12)
 
 
 def test_triangles_have_no_disjoint_edges() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core.knots import hard_unknot, knot, scramble, spiral, torus_knot
 from mobius_flow.core.knots.alexander import _PRIME, signature
-from shapes import hopf_link, regular_polygon, shared_knot
+from shapes import hopf_link, regular_polygon
 
 DETERMINANTS = {"0_1": 1, "3_1": 3, "4_1": 5, "5_1": 5, "5_2": 7, "6_1": 9, "6_2": 11, "6_3": 13, "7_7": 21, "8_19": 3}
 
@@ -40,11 +40,6 @@ def test_scrambles_and_turns_keep_it():
 )
 def test_unknots(curve):
     assert signature(curve).is_trivial
-
-
-@pytest.mark.parametrize("name", ["unknot_ochiai2", "unknot_ochiai3", "unknot_ochiai4", "unknot_fhw"])
-def test_famous_unknots(name):
-    assert signature(shared_knot(f"{name}.txt")).is_trivial
 
 
 def test_linking_numbers():
