@@ -9,11 +9,11 @@ import numpy as np
 from .collision import check_embedded, minimal_gap
 from .curve import Curve
 from .energies import MoebiusEnergy
-from .errors import CurveError, OptionError
+from .errors import CurveError
 from .iterate import Iterate, Status
 from .options import RelaxOptions
 from .run import Run
-from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
+from .setup import check_size, embedded_refinement, method_named, start_problem
 from .units import check_units
 
 NEAREST_STRANDS = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
@@ -95,8 +95,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     """
     options = RelaxOptions() if options is None else options
     method_named(options.method)
-    if options.vertices is not None and options.vertices > MOST_VERTICES:
-        raise OptionError(f"vertices is {options.vertices}; dense matrices have at most {MOST_VERTICES} rows")
+    check_size(curve, options.vertices)
     check_units(curve)
     check_embedded(curve)
     refined = embedded_refinement(curve, options.vertices)
@@ -129,9 +128,10 @@ def _check_gap(curve: Curve) -> None:
 def minimize(
     curve: Curve, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
 ) -> Result:
-    """Relax a curve to the end and return the result; a keyboard interrupt keeps the curve reached so far.
+    """Relax a curve to the end and return the result.
 
-    ``callback`` gets every iterate, unless an interrupt cuts it short.  Raises as `relax` does.
+    A keyboard interrupt, or a lack of memory, keeps the curve reached so far.  ``callback`` gets every iterate, unless
+    an interrupt cuts it short.  Raises as `relax` does.
     """
     options = RelaxOptions() if options is None else options
     started = time.perf_counter()
@@ -148,6 +148,10 @@ def minimize(
         if last is None:
             raise
         last = replace(last, status=Status.INTERRUPTED, message="interrupted: the curve reached so far is kept")
+    except MemoryError:
+        if last is None:
+            raise
+        last = replace(last, status=Status.STALLED, message="stalled: memory ran out; the curve reached so far is kept")
     assert last is not None, "relax yields at least its start"
     return Result(
         curve=last.curve,

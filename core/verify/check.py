@@ -18,7 +18,7 @@ import numpy as np
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .segments import Point, meet
-from .trajectory import TrajectoryError, stages
+from .trajectory import TrajectoryError, leg_count, stages
 from .transition import DifferentCurveError, common_vertices, straightened
 
 
@@ -71,11 +71,14 @@ class _Progress:
     frame: int | None = None
 
 
-def verify(path: Path | str) -> Verdict:
-    """Check a trajectory file; damaged files and failed checks give a verdict that is not accepted."""
+def verify(path: Path | str, callback: Callable[[int, int], None] | None = None) -> Verdict:
+    """Check a trajectory file; damaged files and failed checks give a verdict that is not accepted.
+
+    ``callback`` gets the number of legs checked and of legs in the file, after every leg.
+    """
     progress = _Progress()
     try:
-        _check_file(path, progress)
+        _check_file(path, progress, callback)
     except TrajectoryError as error:
         return Verdict(False, progress.stages, progress.legs, str(error))
     except (ContactError, DifferentCurveError) as failure:
@@ -85,7 +88,8 @@ def verify(path: Path | str) -> Verdict:
     return Verdict(True, progress.stages, progress.legs)
 
 
-def _check_file(path: Path | str, progress: _Progress) -> None:
+def _check_file(path: Path | str, progress: _Progress, callback: Callable[[int, int], None] | None) -> None:
+    total = 0 if callback is None else leg_count(path)
     last: FloatArray | None = None
     sizes: tuple[int, ...] = ()
     for stage in stages(path):
@@ -101,6 +105,8 @@ def _check_file(path: Path | str, progress: _Progress) -> None:
             progress.legs += 1
             _check_leg(last, frame, heads)
             last, progress.frame = frame, progress.frame + 1
+            if callback is not None:
+                callback(progress.legs, total)
 
 
 def _heads(sizes: Sequence[int]) -> IntArray:

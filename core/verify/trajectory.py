@@ -6,6 +6,7 @@ time (in Fortran order, one stage of bounded size), and memory is taken only for
 """
 
 import ast
+import lzma
 import operator
 import struct
 import zipfile
@@ -23,7 +24,16 @@ _MAX_HEADER = 1000
 _MAX_FRAME = 1 << 28  # bytes: eleven million vertices in space
 _MAX_FORTRAN = 1 << 28  # bytes of a whole stage in Fortran order, whose frames are scattered over it
 _MAX_SIZES = 1 << 24  # bytes
-_DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError)
+_DAMAGE = (
+    OSError,
+    EOFError,
+    zipfile.BadZipFile,
+    zlib.error,
+    lzma.LZMAError,
+    struct.error,
+    NotImplementedError,
+    RuntimeError,
+)
 
 
 class TrajectoryError(ValueError):
@@ -55,6 +65,16 @@ def stages(path: Path | str) -> Iterator[Stage]:
         raise
     except (*_DAMAGE, ValueError) as error:  # ValueError: a path with a null character
         raise TrajectoryError(f"the file cannot be read: {error}") from error
+
+
+def leg_count(path: Path | str) -> int:
+    """The number of legs that the headers of a file announce, 0 where they cannot be read."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = [f"stage_{k:03d}" for k in range(_count(archive))]
+            return sum(max(_header(archive.open(f"{name}.npy"), name)[0][0] - 1, 0) for name in names)
+    except (TrajectoryError, IndexError, ValueError, *_DAMAGE):
+        return 0
 
 
 def _count(archive: zipfile.ZipFile) -> int:
