@@ -34,7 +34,8 @@ def emit(text: str) -> None:
         raise
     except OSError as error:
         discard_output()
-        raise OutputStreamError(f"standard output cannot be written: {error.strerror or error}") from error
+        reason = "it is closed" if isinstance(error, io.UnsupportedOperation) else error.strerror or error
+        raise OutputStreamError(f"standard output cannot be written: {reason}") from error
 
 
 def discard_output() -> None:
