@@ -20,7 +20,6 @@ from . import curves, signals
 from . import options as relax_options
 from .places import check_places
 from .recovery import kept
-from .signals import INTERRUPTED
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,16 +64,18 @@ def run(options: argparse.Namespace) -> int:
         wanted = relax_options.from_arguments(options)
         planned = compare(file.curve, names, wanted, options.time_limit)
         options.notes.show()
-        runs, status = _collected(planned)
+        runs, interrupted = _collected(planned)
     if runs:
         failures = kept(options.output, lambda path: _write(path, WRITERS[suffix], runs))
         if failures:
             raise MobiusFlowError(failures[0])
-    return status
+    if interrupted:
+        raise KeyboardInterrupt
+    return 0
 
 
-def _collected(planned: Iterator[Run]) -> tuple[list[Run], int]:
-    """The runs that were finished, and the exit status."""
+def _collected(planned: Iterator[Run]) -> tuple[list[Run], bool]:
+    """The runs that were finished, and whether an interrupt came."""
     runs: list[Run] = []
     try:
         for result in planned:
@@ -83,9 +84,9 @@ def _collected(planned: Iterator[Run]) -> tuple[list[Run], int]:
             print(_line(result), file=sys.stderr, flush=True)
             signals.allow()
     except KeyboardInterrupt:
-        return runs, INTERRUPTED
+        return runs, True
     signals.hold()
-    return runs, 0
+    return runs, False
 
 
 def _write(path: str, writer: Callable[[Path, Sequence[Run]], None], runs: Sequence[Run]) -> None:

@@ -50,7 +50,7 @@ def _explained(error: Exception) -> tuple[str, int]:
     """The sentence and the exit status for an exception."""
     if isinstance(error, streams.OutputStreamError):
         return str(error), BAD_INPUT
-    if isinstance(error, ImportError):
+    if isinstance(error, ImportError | SyntaxError):
         return f"a Python module that is needed cannot be loaded: {error}", FAILED
     if isinstance(error, OSError):
         name = "" if error.filename is None else f"{error.filename}: "

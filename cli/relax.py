@@ -19,6 +19,7 @@ from .provenance import provenance
 from .recovery import kept
 
 EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1, Status.INTERRUPTED: 130}
+_STDOUT = "/dev/stdout"
 _DESCRIPTION = "Relax a curve: a tangled one in, one of less energy of the same knot type out."
 _EPILOG = """\
 examples:
@@ -53,6 +54,9 @@ def add_to(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Relax, write everything asked for, and return the exit status."""
     output = output_for(options.output, options.format)
+    for extra in ("report", "trajectory"):
+        if getattr(options, extra) == curves.STREAM:
+            setattr(options, extra, _STDOUT)
     wanted = relax_options.from_arguments(options)
     if (wanted.adaptive or wanted.resolve) and output.needs_iterates:
         raise OptionError(

@@ -70,6 +70,7 @@ def _receive(_number: int, _frame: FrameType | None) -> None:
     if time.monotonic() - _State.raised < _TOGETHER:
         return
     if _State.mode == _LEAVE:
+        _State.mode = _HOLD  # one sentence, also where another signal comes now
         with contextlib.suppress(OSError):
             os.write(2, b"mobius-flow: interrupted\n")
         os._exit(INTERRUPTED)
