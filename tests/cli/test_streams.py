@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow import __version__
-from mobius_flow.cli import main
+from mobius_flow.cli import main, progress
 from mobius_flow.cli.progress import leg_progress
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.curve.io import FORMATS
@@ -140,8 +140,11 @@ def test_a_stream_that_is_no_trajectory(monkeypatch: pytest.MonkeyPatch, capsys:
     assert "standard input: not a trajectory" in capsys.readouterr().err
 
 
-def test_verify_tells_how_far_it_is(trajectory: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("tqdm")
+def test_verify_tells_how_far_it_is(
+    trajectory: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tqdm = pytest.importorskip("tqdm")
+    monkeypatch.setattr(progress, "_bar", lambda **options: tqdm.tqdm(mininterval=0, leave=False, **options))
     seen: list[tuple[int, int]] = []
     assert verify(trajectory, lambda *counts: seen.append(counts)).accepted
     assert seen == [(1, 2), (2, 2)]
