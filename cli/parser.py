@@ -103,5 +103,5 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     found = top.parse_args(arguments)
     if found.command is None:
         top.print_help()
-        raise SystemExit(BAD_OPTIONS)
+        top.exit(BAD_OPTIONS, "mobius-flow: name a command")
     return found

@@ -145,9 +145,8 @@ def complaints(case: Case, room: Path, before: dict[str, bytes], outcome: Outcom
     if (case.signals or case.limits) and b"Traceback" in outcome.err and os.fsencode(ROOT) not in outcome.err:
         return []  # Python itself did not start
     lines = outcome.err.decode("utf-8", "replace").splitlines()
-    helped = not case.words  # help is no sentence
     several = "compare" in case.words and outcome.status == 130  # the methods that are done
-    if case.err == "pipe" and outcome.status in (2, 130) and not helped and not several and len(lines) != 1:
+    if case.err == "pipe" and outcome.status in (2, 130) and not several and len(lines) != 1:
         found.append(f"{len(lines)} lines instead of a sentence")
     return found + _losses(case, room, before, outcome)
 

@@ -153,7 +153,9 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_the_bare_command_prints_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 2
-    assert "exit status" in capsys.readouterr().out
+    printed = capsys.readouterr()
+    assert "exit status" in printed.out
+    assert printed.err == "mobius-flow: name a command\n"
 
 
 @pytest.mark.parametrize("command", ["relax", "energy", "verify", "compare", "knot", "bench", "methods"])
