@@ -64,18 +64,18 @@ def run(options: argparse.Namespace) -> int:
         wanted = relax_options.from_arguments(options)
         planned = compare(file.curve, names, wanted, options.time_limit)
         options.notes.show()
-        runs, interrupted = _collected(planned)
+        runs, ended_by = _collected(planned)
     if runs:
         failures = kept(options.output, lambda path: _write(path, WRITERS[suffix], runs))
         if failures:
             raise MobiusFlowError(failures[0])
-    if interrupted:
-        raise KeyboardInterrupt
+    if ended_by is not None:
+        raise ended_by
     return 0
 
 
-def _collected(planned: Iterator[Run]) -> tuple[list[Run], bool]:
-    """The runs that were finished, and whether an interrupt came."""
+def _collected(planned: Iterator[Run]) -> tuple[list[Run], BaseException | None]:
+    """The runs that were finished, and what ended them before all were."""
     runs: list[Run] = []
     try:
         for result in planned:
@@ -83,10 +83,10 @@ def _collected(planned: Iterator[Run]) -> tuple[list[Run], bool]:
             runs.append(result)
             print(_line(result), file=sys.stderr, flush=True)
             signals.allow()
-    except KeyboardInterrupt:
-        return runs, True
+    except (KeyboardInterrupt, MemoryError) as error:
+        return runs, error
     signals.hold()
-    return runs, False
+    return runs, None
 
 
 def _write(path: str, writer: Callable[[Path, Sequence[Run]], None], runs: Sequence[Run]) -> None:

@@ -45,8 +45,10 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         "output", metavar="OUT", help=f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
     )
     curves.add_format(parser)
-    parser.add_argument("--report", metavar="R.json", help="write what happened as JSON")
-    parser.add_argument("--trajectory", metavar="T.npz", help="write the certified path, for mobius-flow verify")
+    parser.add_argument("--report", metavar="R.json", help="write what happened as JSON; - is standard output")
+    parser.add_argument(
+        "--trajectory", metavar="T.npz", help="write the certified path, for mobius-flow verify; - is standard output"
+    )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
 

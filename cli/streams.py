@@ -16,8 +16,9 @@ def mend() -> None:
 
     A closed standard output refuses what is written, a closed or full standard error swallows it.
     """
-    while os.open(os.devnull, os.O_RDWR) < 2:  # so that no file of ours becomes a standard stream
-        pass
+    with contextlib.suppress(OSError):
+        while os.open(os.devnull, os.O_RDWR) < 2:  # so that no file of ours becomes a standard stream
+            pass
     if sys.stdout is None:
         sys.stdout = open(os.devnull, encoding="utf-8")  # noqa: SIM115 - for reading only
     elif isinstance(sys.stdout, io.TextIOWrapper):

@@ -172,16 +172,25 @@ def test_an_interrupt_ends_the_whole_bench() -> None:
         list(bench(curves, RelaxOptions(), interrupting))
 
 
+@pytest.mark.parametrize(("memory", "status", "said"), [(False, 130, "interrupted"), (True, 1, "not enough memory")])
 def test_compare_keeps_the_methods_that_are_done(
-    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    memory: bool,
+    status: int,
+    said: str,
 ) -> None:
     def interrupted(curve: Curve, methods: list[str], options: RelaxOptions, limit: float) -> Iterator[Run]:
         yield from compare(curve, methods[:1], options, limit)
+        if memory:
+            raise MemoryError
         send(signal.SIGTERM)
 
     monkeypatch.setattr(compare_command, "compare", interrupted)
     table = tmp_path / "c.json"
     words = ["compare", command[1], "--methods", "cg,lbfgs", "--max-iterations", "2", "-o", str(table)]
-    assert main(words) == 130
+    assert main(words) == status
     assert [run["method"] for run in json.loads(table.read_text())] == ["cg"]
-    assert capsys.readouterr().err.splitlines()[-1] == "mobius-flow: interrupted"
+    assert said in capsys.readouterr().err.splitlines()[-1]
