@@ -19,7 +19,6 @@ from .provenance import provenance
 from .recovery import kept
 
 EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1, Status.INTERRUPTED: 130}
-_STDOUT = "/dev/stdout"
 _DESCRIPTION = "Relax a curve: a tangled one in, one of less energy of the same knot type out."
 _EPILOG = """\
 examples:
@@ -45,20 +44,27 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         "output", metavar="OUT", help=f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
     )
     curves.add_format(parser)
-    parser.add_argument("--report", metavar="R.json", help="write what happened as JSON; - is standard output")
     parser.add_argument(
-        "--trajectory", metavar="T.npz", help="write the certified path, for mobius-flow verify; - is standard output"
+        "--report", type=_extra, metavar="R.json", help="write what happened as JSON; - is standard output"
+    )
+    parser.add_argument(
+        "--trajectory",
+        type=_extra,
+        metavar="T.npz",
+        help="write the certified path, for mobius-flow verify; - is standard output",
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
 
 
+def _extra(path: str) -> str:
+    """Where a report or trajectory goes: a file, or as a device standard output."""
+    return "/dev/stdout" if path == curves.STREAM else path
+
+
 def run(options: argparse.Namespace) -> int:
     """Relax, write everything asked for, and return the exit status."""
     output = output_for(options.output, options.format)
-    for extra in ("report", "trajectory"):
-        if getattr(options, extra) == curves.STREAM:
-            setattr(options, extra, _STDOUT)
     wanted = relax_options.from_arguments(options)
     if (wanted.adaptive or wanted.resolve) and output.needs_iterates:
         raise OptionError(

@@ -10,6 +10,7 @@ from typing import BinaryIO
 from ...errors import CurveFileError
 
 MAX_BYTES = 8 << 20  # a hundred thousand vertices with all their digits
+MAX_LINES = 500_000
 _INTEGER = re.compile(r"[+-]?[0-9]+", re.ASCII)
 _LONGEST_INTEGER = 18  # digits; beyond that it is no count or index of anything in memory
 
@@ -52,6 +53,8 @@ class Source:
         if len(data) > MAX_BYTES:
             raise CurveFileError(path, f"longer than {MAX_BYTES >> 20} MB, which no curve that can be used is")
         text = _decode(path, data).replace("\r\n", "\n").replace("\r", "\n")
+        if text.count("\n") > MAX_LINES:
+            raise CurveFileError(path, f"more than {MAX_LINES} lines, which no curve that can be used has")
         source = cls(path, text, hashlib.sha256(data).hexdigest())
         if not source.text.strip():
             raise source.error("the file is empty")

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from mobius_flow.core.curve.io import FORMATS, load_curve, read_curve
-from mobius_flow.core.curve.io.source import MAX_BYTES
+from mobius_flow.core.curve.io.source import MAX_BYTES, MAX_LINES
 from mobius_flow.core.errors import CurveError, CurveFileError
 
 V = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
@@ -150,6 +150,15 @@ def test_files_longer_than_any_curve(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"long{suffix}"
     path.write_bytes(b"0 0 0\n" * (MAX_BYTES // 6 + 1))
     with pytest.raises(CurveFileError, match=r"longer than 8 MB"):
+        read_curve(path)
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
+def test_more_lines_than_any_curve_has(tmp_path: Path, suffix: str, end: str) -> None:
+    path = tmp_path / f"long{suffix}"
+    path.write_bytes(f"0 0 0{end}".encode() * (MAX_LINES + 1))
+    with pytest.raises(CurveFileError, match=r"more than 500000 lines"):
         read_curve(path)
 
 
