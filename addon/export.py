@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from ..core import Iterate, MobiusFlowError
 from ..core.collision import is_free
+from ..core.errors import OutputError
 from ..core.files import atomic_write
 from ..core.termination import termination_raises
 from . import film, rendering
@@ -131,5 +132,4 @@ def _make(path: Target, write: Callable[[Path], None]) -> None:
             shutil.copymode(temporary, made)
             made.replace(temporary)
     except (OSError, RuntimeError) as error:
-        reason = getattr(error, "strerror", None) or str(error).strip()
-        raise MobiusFlowError(f"{path}: cannot be written: {reason}") from error
+        raise OutputError(os.fspath(path), error) from error

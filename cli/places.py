@@ -43,8 +43,10 @@ def check_place(path: str) -> None:
         return
     try:
         _check_file(Path(path))
+    except MobiusFlowError:
+        raise
     except (OSError, ValueError) as error:  # a ValueError for a null character
-        raise error if isinstance(error, MobiusFlowError) else OutputError(path, error) from error
+        raise OutputError(path, error) from error
 
 
 def _check_file(path: Path) -> None:
