@@ -67,8 +67,10 @@ def _check_directory(path: Path, directory: Path) -> None:
     if not os.access(directory, os.W_OK):
         raise MobiusFlowError(f"{path}: is write-protected")
     trial = directory / f".{secrets.token_hex(8)}"
-    trial.touch(exist_ok=False)  # the only way to know
-    trial.unlink()
+    try:
+        trial.touch(exist_ok=False)  # the only way to know
+    finally:
+        trial.unlink(missing_ok=True)
 
 
 def is_file(path: str) -> bool:

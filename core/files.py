@@ -3,6 +3,7 @@
 import errno
 import os
 import secrets
+import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -107,16 +108,18 @@ def _replace(temporary: Path, target: Path, found: os.stat_result | None) -> boo
 
 def _copy(source: Path, target: Path, found: os.stat_result | None) -> None:
     """Write a file's contents into one that exists; a regular file gets its old contents back if that fails."""
-    data = source.read_bytes()
     stream = None if found is None else own_stream(found)
     if stream is not None or (found is not None and not stat.S_ISREG(found.st_mode)):
-        with open(target if stream is None else stream, "wb", closefd=stream is None) as device:
-            device.write(data)
+        with (
+            source.open("rb") as file,
+            open(target if stream is None else stream, "wb", closefd=stream is None) as device,
+        ):
+            shutil.copyfileobj(file, device)
         return
     with target.open("r+b", buffering=0) as file:
         old = file.read()
         try:
-            _overwrite(file.fileno(), data)
+            _overwrite(file.fileno(), source.read_bytes())
         except BaseException:
             _overwrite(file.fileno(), old)
             raise

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.cli import compare as compare_command
-from mobius_flow.cli import main, signals
+from mobius_flow.cli import main, outputs, signals
 from mobius_flow.cli.progress import Progress
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Trajectory, read_curve, write_curve
 from mobius_flow.core.bench import SETS, bench
@@ -143,6 +143,32 @@ def test_a_signal_after_the_last_step_costs_nothing(
     assert main([*command, "--max-iterations", "3"]) == 130
     check_results(tmp_path, "iteration_limit")
     assert capsys.readouterr().err == "mobius-flow: interrupted\n"
+
+
+@pytest.mark.parametrize("before", [False, True])
+def test_a_film_can_be_interrupted(
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: bool
+) -> None:
+    """Also that of a run which was interrupted itself."""
+    update = Progress.update
+
+    def interrupted(self: Progress, iterate: Iterate) -> None:
+        update(self, iterate)
+        if before and iterate.index == 2:
+            send(signal.SIGTERM)
+
+    def film(path: str, *_arguments: object) -> None:
+        send(signal.SIGTERM)
+        Path(path).write_text("too late")
+
+    monkeypatch.setattr(Progress, "update", interrupted)
+    monkeypatch.setattr(signals, "_TOGETHER", 0.0)
+    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
+    monkeypatch.setattr(outputs.export, "write_movie", film)
+    command[2] = str(tmp_path / "film.mp4")
+    assert main([*command, "--max-iterations", "3"]) == 130
+    assert sorted(os.listdir(tmp_path)) == ["r.json", "t.npz", "trefoil.txt"]
+    assert json.loads((tmp_path / "r.json").read_text())["iterations"] == (2 if before else 3)
 
 
 def test_memory_that_runs_out_keeps_the_curve(
