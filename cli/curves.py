@@ -11,7 +11,7 @@ from ..core import Curve, CurveError, CurveFileError, MobiusFlowError, write_cur
 from ..core.curve.io import FORMATS, CurveFile, Format, format_of, load_curve
 from .streams import OutputStreamError, emit
 
-STREAM = "-"
+STREAM, DEVICE = "-", "/dev/stdout"
 INPUT, OUTPUT = "standard input", "standard output"
 
 

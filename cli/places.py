@@ -11,7 +11,7 @@ from pathlib import Path
 from ..core import MobiusFlowError
 from ..core.errors import OutputError
 from ..core.files import status_of
-from .curves import OUTPUT, STREAM
+from .curves import DEVICE, OUTPUT, STREAM
 
 Identity = tuple[int | str, ...]
 
@@ -37,9 +37,9 @@ def check_places(source: str, outputs: Mapping[str, str | None]) -> None:
 
 def check_place(path: str) -> None:
     """Raise a MobiusFlowError unless a file can be there."""
+    if path in (STREAM, DEVICE) and (sys.stdout is None or not sys.stdout.writable()):
+        raise MobiusFlowError(f"{OUTPUT} is closed; name a file")
     if path == STREAM:
-        if sys.stdout is None or not sys.stdout.writable():
-            raise MobiusFlowError(f"{OUTPUT} is closed; name a file")
         return
     try:
         _check_file(Path(path))

@@ -59,7 +59,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
 
 def _extra(path: str) -> str:
     """Where a report or trajectory goes: a file, or as a device standard output."""
-    return "/dev/stdout" if path == curves.STREAM else path
+    return curves.DEVICE if path == curves.STREAM else path
 
 
 def run(options: argparse.Namespace) -> int:

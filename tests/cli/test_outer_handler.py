@@ -112,6 +112,13 @@ def test_work_is_done_without_standard_error(trefoil: str, tmp_path: Path, end: 
 
 
 @linux
+@pytest.mark.parametrize("outputs", ["-", "o.txt --report -", "o.txt --trajectory /dev/stdout"])
+def test_results_do_not_go_to_a_closed_stream(trefoil: str, tmp_path: Path, outputs: str) -> None:
+    done = shell(f'cd {tmp_path} && flow relax "$1" {outputs} >&-', trefoil)
+    assert (done.returncode, done.stderr) == (2, "mobius-flow: standard output is closed; name a file\n")
+
+
+@linux
 def test_a_reader_who_leaves(trefoil: str) -> None:
     done = shell("flow bench knots --only 3_1,4_1-scrambled --max-iterations 1 | head -c 1", trefoil)
     assert done.stderr == ""
