@@ -163,7 +163,8 @@ def _losses(case: Case, room: Path, before: dict[str, bytes], outcome: Outcome) 
         ours = name.startswith(RESULTS)
         if name in before and after[name] != before[name] and not (ours and _whole(room / name)):
             found.append(f"{name} has changed")
-        if name not in before and not (ours and _whole(room / name)):
+        named = any(word.endswith(f"={name}") or word == name for word in case.words)
+        if name not in before and not ((ours or named) and _whole(room / name)):
             found.append(f"{name} is left behind")
     told = case.err == "pipe"
     left = [path for path in (room / "scratch").iterdir() if told and os.fsencode(path) not in outcome.err]
@@ -199,12 +200,13 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0, help="number of the first command")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", choices=KINDS)
+    parser.add_argument("--only", choices=KINDS, metavar="KIND", help=", ".join(KINDS))
+    parser.add_argument("--patience", type=float, default=PATIENCE, help="seconds a command may take")
     options = parser.parse_args()
     statuses: Counter[int] = Counter()
     slowest, largest, bad = (0.0, ""), (0, ""), 0
     for number in range(options.first, options.first + options.count):
-        kind, case, outcome, wrong = judged(number, options.seed, options.only)
+        kind, case, outcome, wrong = judged(number, options.seed, options.only, options.patience)
         statuses[outcome.status] += 1
         words = " ".join(word[:60] for word in case.words)
         slowest, largest = max(slowest, (outcome.seconds, words)), max(largest, (outcome.memory, words))
