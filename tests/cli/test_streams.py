@@ -181,7 +181,7 @@ import pathlib, re, sys
 from mobius_flow.cli import main
 status = main(sys.argv[1:])
 # not ru_maxrss, in which the process that started this one counts
-print(status, re.search("VmHWM:\\s*(\\d+) kB", pathlib.Path("/proc/self/status").read_text())[1])
+print(status, re.search("VmHWM: *\t* *([0-9]+) kB", pathlib.Path("/proc/self/status").read_text())[1])
 """
 
 
