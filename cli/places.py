@@ -74,8 +74,11 @@ def _check_directory(path: Path, directory: Path) -> None:
 
 
 def is_file(path: str) -> bool:
-    """Whether an output is a file rather than a stream or device, which may make its writer wait."""
-    found = None if path == STREAM else status_of(path)
+    """Whether a path is one of a file, or of nothing yet, rather than of a stream or device, where one may wait."""
+    try:
+        found = status_of(path)
+    except (OSError, ValueError):
+        return True
     return path != STREAM and (found is None or stat.S_ISREG(found.st_mode))
 
 

@@ -3,7 +3,9 @@
 import argparse
 import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import NamedTuple
 
 from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Trajectory, minimize, write_curve
 from ..core.curve.io import FORMATS
@@ -16,7 +18,7 @@ from .outputs import OUTPUTS, Output, admit, output_for
 from .places import check_places, is_file
 from .progress import Progress
 from .provenance import provenance
-from .recovery import kept
+from .recovery import Write, kept
 
 EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1, Status.INTERRUPTED: 130}
 _DESCRIPTION = "Relax a curve: a tangled one in, one of less energy of the same knot type out."
@@ -107,44 +109,46 @@ def _relax(
     return result, iterates
 
 
+class _Job(NamedTuple):
+    """A result to be written; see `kept`. Those that take long, or for ever, can be interrupted, and come last."""
+
+    path: str
+    write: Write
+    rescue: Write | None = None
+    name: str | None = None
+    interruptible: bool = False
+
+
 def _write_all(
-    options: argparse.Namespace,
-    output: Output,
-    result: Result,
-    iterates: list[Iterate],
-    origin: Mapping[str, object],
+    options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
 ) -> None:
     """Write report, trajectory and curve or scene: the others are written all the same where one cannot be."""
     failures = []
-    if options.report is not None:
-        _hold_for(options.report)
-        failures += kept(options.report, lambda path: _write_report(path, result, origin))
-    if options.trajectory is not None:
-        _hold_for(options.trajectory)
-        failures += kept(options.trajectory, _trajectory(iterates, origin).save)
-    failures += _write_output(options, output, result, iterates)
+    for job in sorted(_jobs(options, output, result, iterates, origin), key=lambda job: job.interruptible):
+        (signals.allow if job.interruptible else signals.hold)()
+        failures += kept(job.path, job.write, job.rescue, job.name)
     if failures:
         raise MobiusFlowError("; ".join(failures))
     signals.allow()
 
 
-def _write_output(options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate]) -> list[str]:
-    """Last of all, since a film takes a minute, in which it may be interrupted."""
+def _jobs(
+    options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
+) -> Iterator[_Job]:
+    for path, write in (
+        (options.report, lambda path: _write_report(path, result, origin)),
+        (options.trajectory, lambda path: _trajectory(iterates, origin).save(path)),
+    ):
+        if path is not None:
+            yield _Job(path, write, interruptible=not is_file(path))
     shown = not options.quiet and sys.stderr.isatty()
-
-    def write(path: str) -> None:
-        output.write(path, result, iterates, shown)
-
-    if output.needs_iterates:
-        signals.allow()
-        return kept(options.output, write, lambda path: write_curve(path, result.curve), f"{options.output}.obj")
-    _hold_for(options.output)
-    return kept(options.output, write, name=f"curve.{options.format or 'txt'}" if options.output == "-" else None)
-
-
-def _hold_for(path: str) -> None:
-    """Let signals wait while a file is written; a pipe or a device may never take what is written to it."""
-    (signals.hold if is_file(path) else signals.allow)()
+    job = _Job(options.output, lambda path: output.write(path, result, iterates, shown))
+    if output.needs_iterates:  # a film takes a minute
+        plain = partial(write_curve, curve=result.curve)
+        yield job._replace(rescue=plain, name=f"{options.output}.obj", interruptible=True)
+    else:
+        name = f"curve.{options.format or 'txt'}" if options.output == curves.STREAM else None
+        yield job._replace(name=name, interruptible=not is_file(options.output))
 
 
 def _trajectory(iterates: list[Iterate], origin: Mapping[str, object]) -> Trajectory:

@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
 @contextmanager
 def _seekable(path: str) -> Iterator[str]:
     """A file with the same contents that can be read from its end: itself, or a copy of a stream."""
-    if path != STREAM and not _is_stream(path):
+    if is_file(path):
         yield path
         return
     if path == STREAM and sys.stdin is None:
@@ -63,13 +63,6 @@ def _seekable(path: str) -> Iterator[str]:
             with open(path, "rb") as stream:
                 _spool(path, stream, copy)
         yield copy
-
-
-def _is_stream(path: str) -> bool:
-    try:
-        return not is_file(path)
-    except (OSError, ValueError):
-        return False  # an impossible name, for which there is a verdict too
 
 
 def _spool(name: str, stream: BinaryIO, target: str) -> None:

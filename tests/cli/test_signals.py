@@ -145,6 +145,27 @@ def test_a_signal_after_the_last_step_costs_nothing(
     assert capsys.readouterr().err == "mobius-flow: interrupted\n"
 
 
+def test_files_come_before_streams_that_may_be_interrupted(
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    update = Progress.update
+
+    def interrupted(self: Progress, iterate: Iterate) -> None:
+        update(self, iterate)
+        if iterate.status.value == "iteration_limit":
+            send(signal.SIGTERM)
+
+    monkeypatch.setattr(Progress, "update", interrupted)
+    os.mkfifo(tmp_path / "pipe")
+    reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    command[4] = str(tmp_path / "pipe")
+    assert main([*command, "--max-iterations", "3"]) == 130
+    assert os.read(reader, 100) == b""
+    os.close(reader)
+    assert len(read_curve(tmp_path / "o.txt")) == 60
+    assert verify(tmp_path / "t.npz").accepted
+
+
 @pytest.mark.parametrize("before", [False, True])
 def test_a_film_can_be_interrupted(
     command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: bool
