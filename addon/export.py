@@ -33,14 +33,16 @@ _TERMINATED = 143  # the status that a shell gives to a process ended by SIGTERM
 
 
 def require_blender() -> None:
-    """Raise a MobiusFlowError that says what to install if Blender's Python module is missing."""
+    """Raise a MobiusFlowError that says what to install if Blender's Python module, or a library of it, is missing."""
     try:
         import bpy  # noqa: F401
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         raise MobiusFlowError(
             "writing .blend, .mp4 and .png needs Blender's Python module, which is not installed; "
             "install it with: pip install 'mobius-flow[blender]' (Python 3.11 or 3.13)"
         ) from error
+    except ImportError as error:
+        raise MobiusFlowError(f"Blender's Python module, which is installed, cannot be loaded: {error}") from error
 
 
 def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:

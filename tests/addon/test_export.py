@@ -1,5 +1,6 @@
 """Scenes, pictures and films of a relaxation, whole or not at all."""
 
+import builtins
 import os
 import subprocess
 import sys
@@ -200,3 +201,19 @@ def test_lines_of_drivers_are_kept_out(capfd):
         os.write(2, b"EGL Error\n")
     os.write(2, b"ours\n")
     assert capfd.readouterr() == ("", "ours\n")
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [(ModuleNotFoundError, "pip install"), (ImportError("libEGL.so.1: cannot open"), "cannot be loaded: libEGL.so.1")],
+)
+def test_a_missing_module_and_a_missing_library_of_it(monkeypatch, error, said):
+    def importing(name, *arguments):
+        if name == "bpy":
+            raise error
+        return real(name, *arguments)
+
+    real = builtins.__import__
+    monkeypatch.setattr(builtins, "__import__", importing)
+    with pytest.raises(MobiusFlowError, match=said):
+        export.require_blender()
