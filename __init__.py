@@ -4,6 +4,8 @@ The same tree is a Blender extension and a Python package. Nothing is imported h
 asks for it, so the library works where there is no Blender.
 """
 
+__version__ = "0.1.0"
+
 
 def register() -> None:
     """Register the Blender extension (called by Blender)."""

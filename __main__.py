@@ -10,10 +10,14 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 def main() -> int:
     """Run the command line and return its exit status."""
-    # relative, so that it is the same program however the package is called
-    from .cli import main as run
+    try:
+        # relative, so that it is the same program however the package is called
+        from .cli.process import run
 
-    return run()
+        return run()
+    except KeyboardInterrupt:  # in the moment before signals are handled
+        print("mobius-flow: interrupted", file=sys.stderr)
+        return 130
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from ..core import Iterate, MobiusFlowError
 from ..core.collision import is_free
+from ..core.errors import OutputError
 from ..core.files import atomic_write
 from ..core.termination import termination_raises
 from . import film, rendering
@@ -32,14 +33,16 @@ _TERMINATED = 143  # the status that a shell gives to a process ended by SIGTERM
 
 
 def require_blender() -> None:
-    """Raise a MobiusFlowError that says what to install if Blender's Python module is missing."""
+    """Raise a MobiusFlowError that says what to install if Blender's Python module, or a library of it, is missing."""
     try:
         import bpy  # noqa: F401
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         raise MobiusFlowError(
             "writing .blend, .mp4 and .png needs Blender's Python module, which is not installed; "
             "install it with: pip install 'mobius-flow[blender]' (Python 3.11 or 3.13)"
         ) from error
+    except ImportError as error:
+        raise MobiusFlowError(f"Blender's Python module, which is installed, cannot be loaded: {error}") from error
 
 
 def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
@@ -131,5 +134,4 @@ def _make(path: Target, write: Callable[[Path], None]) -> None:
             shutil.copymode(temporary, made)
             made.replace(temporary)
     except (OSError, RuntimeError) as error:
-        reason = getattr(error, "strerror", None) or str(error).strip()
-        raise MobiusFlowError(f"{path}: cannot be written: {reason}") from error
+        raise OutputError(os.fspath(path), error) from error

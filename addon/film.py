@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core import Iterate, MobiusFlowError
+from ..core import Curve, Iterate, MobiusFlowError
 from ..core.curve import Mesh
 from ..core.types import FloatArray
 from . import camera, stage, tube
@@ -56,6 +56,12 @@ def spatial(vertices: FloatArray) -> FloatArray:
     return np.pad(vertices, ((0, 0), (0, 3 - vertices.shape[1])))
 
 
+def check_dimension(curve: Curve) -> None:
+    """Raise a MobiusFlowError if a curve is not in the plane or in space."""
+    if curve.dimension > 3:
+        raise MobiusFlowError(f"the curve has {curve.dimension} coordinates; Blender shows curves in 2 or 3 dimensions")
+
+
 def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
     """Collect the iterates of a run in the numbers that Blender will store.
 
@@ -70,8 +76,7 @@ def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
             "the number of vertices changes during this run, which keyframes cannot follow; "
             "leave adaptive and resolve out"
         )
-    if start.dimension > 3:
-        raise MobiusFlowError(f"the curve has {start.dimension} coordinates; Blender shows curves in 2 or 3 dimensions")
+    check_dimension(start)
     origin = Origin.of(spatial(start.vertices))
     motion = Motion(origin.to_local)
     for iterate in iterates:

@@ -73,14 +73,17 @@ def _set_size(scene: "bpy.types.Scene", width: int, height: int) -> None:
 
 
 def workbench_works() -> bool:
-    """Try Workbench in a process of its own, since without a graphics driver it ends the process it runs in."""
+    """Try Workbench in a process of its own, since without a graphics driver it ends the process it runs in.
+
+    It is isolated: neither the working directory nor the environment tells where its modules are.
+    """
     import bpy
 
     with tempfile.TemporaryDirectory() as room:
         trial = _TRIAL.format(path=os.path.join(room, "trial.png"))
         blender = bpy.app.binary_path
         options = ["--background", "--factory-startup", "--python-exit-code", "1", "--python-expr"]
-        command = [blender, *options, trial] if blender else [sys.executable, "-c", trial]
+        command = [blender, *options, trial] if blender else [sys.executable, "-I", "-c", trial]
         try:
             done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
         except (OSError, subprocess.TimeoutExpired):
@@ -113,14 +116,18 @@ def render_still(scene: "bpy.types.Scene", path: Path, compression: int = 15) ->
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep Blender's own lines, which it prints past Python, out of standard output."""
-    sys.stdout.flush()
-    saved = os.dup(1)
+    """Keep the lines that Blender and graphics drivers print, past Python, out of standard output and error."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+    saved = [os.dup(number) for number in (1, 2)]
     sink = os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(sink, 1)
+        for number in (1, 2):
+            os.dup2(sink, number)
         yield
     finally:
-        os.dup2(saved, 1)
-        os.close(saved)
+        for number, descriptor in zip((1, 2), saved, strict=True):
+            os.dup2(descriptor, number)
+            os.close(descriptor)
         os.close(sink)

@@ -4,57 +4,97 @@ import argparse
 import csv
 import json
 import math
+import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core import METHODS, read_curve
+from ..core import METHODS, MobiusFlowError
 from ..core.compare import Run, compare
-from ..core.errors import MobiusFlowError, OptionError
+from ..core.curve.io import FORMATS
+from ..core.errors import OptionError, OutputError, choice
 from ..core.files import atomic_write
-from ..core.setup import method_named
+from . import curves, signals
 from . import options as relax_options
+from .places import check_places
+from .recovery import kept
 
 if TYPE_CHECKING:
-    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+    from matplotlib.figure import Figure
+
+_EPILOG = """\
+example:
+  mobius-flow compare knot.txt --methods lbfgs,flow-moebius,flow-l2 --time-limit 20 -o figure.png
+
+exit status: 0; 2 on bad input or bad options, or where OUT cannot be written; 130 interrupted, where the methods that
+are done are written all the same
+"""
 
 
-def add_to(subparsers: "Subparsers") -> None:
-    """Add the subcommand."""
-    parser = subparsers.add_parser("compare", help="compare descent methods on a curve", description=__doc__)
-    parser.add_argument("input", metavar="IN", help="closed polygons: .txt/.xyz, .obj, .vect or .json")
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description = "Compare methods on a curve: energy against iterations and seconds, like Figure 3 of [RS21]."
+    parser.epilog = _EPILOG
+    parser.add_argument("input", metavar="IN", help=f"closed polygons: {', '.join(FORMATS)}, or - for standard input")
+    curves.add_format(parser)
     parser.add_argument(
         "--methods", metavar="A,B,…", help=f"names, comma separated (default: all: {','.join(METHODS)})"
     )
     parser.add_argument("--time-limit", type=float, default=30.0, metavar="S", help="seconds per method (30)")
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"one of {', '.join(WRITERS)}")
     relax_options.add_to(parser, method=False)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Compare, write the figure or table, and print one line per method."""
-    path = Path(options.output)
-    if path.suffix.lower() not in WRITERS:
-        raise OptionError(f"{path}: unknown suffix {path.suffix!r}; outputs end in {', '.join(WRITERS)}")
+    suffix = Path(options.output).suffix.lower()
+    if suffix not in WRITERS:
+        guess, _, _ = choice(suffix, WRITERS).rpartition("choose")
+        raise OptionError(f"{options.output}: unknown suffix {suffix!r}; {guess}outputs end in {', '.join(WRITERS)}")
+    if WRITERS[suffix] is _write_figure:
+        _figure_class()
     if not (math.isfinite(options.time_limit) and options.time_limit > 0):
         raise OptionError(f"time-limit is {options.time_limit}; it must be a finite number of seconds above 0")
     names = list(METHODS) if options.methods is None else [name.strip() for name in options.methods.split(",")]
-    for name in names:
-        method_named(name)
-    wanted = relax_options.from_arguments(options)
-    runs = []
-    for result in compare(read_curve(options.input), names, wanted, options.time_limit):
-        runs.append(result)
-        print(_line(result), file=sys.stderr, flush=True)
+    check_places(options.input, {"OUT": options.output})
+    file = curves.read(options.input, options.format)
+    with curves.refusals(file):
+        wanted = relax_options.from_arguments(options)
+        planned = compare(file.curve, names, wanted, options.time_limit)
+        options.notes.show()
+        runs, ended_by = _collected(planned)
+    if runs:
+        failures = kept(options.output, lambda path: _write(path, WRITERS[suffix], runs))
+        if failures:
+            raise MobiusFlowError(failures[0])
+    if ended_by is not None:
+        raise ended_by
+    return 0
+
+
+def _collected(planned: Iterator[Run]) -> tuple[list[Run], BaseException | None]:
+    """The runs that were finished, and what ended them before all were."""
+    runs: list[Run] = []
+    try:
+        for result in planned:
+            signals.hold()
+            runs.append(result)
+            print(_line(result), file=sys.stderr, flush=True)
+            signals.allow()
+    except (KeyboardInterrupt, MemoryError) as error:
+        return runs, error
+    signals.hold()
+    return runs, None
+
+
+def _write(path: str, writer: Callable[[Path, Sequence[Run]], None], runs: Sequence[Run]) -> None:
     try:
         with atomic_write(path) as temporary:
-            WRITERS[path.suffix.lower()](temporary, runs)
-    except OSError as error:
-        raise MobiusFlowError(f"{path}: cannot be written: {error.strerror or error}") from error
-    return 0
+            writer(temporary, runs)
+    except (OSError, ValueError) as error:
+        raise OutputError(path, error) from error
 
 
 def _line(run: Run) -> str:
@@ -78,13 +118,7 @@ def _write_csv(path: Path, runs: Sequence[Run]) -> None:
 
 
 def _write_figure(path: Path, runs: Sequence[Run]) -> None:
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise MobiusFlowError(
-            "figures need matplotlib, which is not installed; try pip install matplotlib, or write .csv or .json"
-        ) from error
-    figure = Figure(figsize=(13, 6), layout="constrained")
+    figure = _figure_class()(figsize=(13, 6), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     for index, run in enumerate(runs):
         style = {"color": f"C{index % 10}", "linestyle": ("-", "--", ":")[index // 10 % 3], "linewidth": 1.4}
@@ -97,6 +131,20 @@ def _write_figure(path: Path, runs: Sequence[Run]) -> None:
         axes.grid(alpha=0.3)
     figure.legend(*left.get_legend_handles_labels(), loc="outside right center", fontsize="small")
     figure.savefig(path, dpi=130)
+
+
+def _figure_class() -> "type[Figure]":
+    backend = os.environ.pop("MPLBACKEND", None)  # for windows, of which there are none here; it may be nonsense
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise MobiusFlowError(
+            "figures need matplotlib, which is not installed; try pip install matplotlib, or write .csv or .json"
+        ) from error
+    finally:
+        if backend is not None:
+            os.environ["MPLBACKEND"] = backend
+    return Figure
 
 
 WRITERS: Mapping[str, Callable[[Path, Sequence[Run]], None]] = {

@@ -2,27 +2,41 @@
 
 import argparse
 import json
-from typing import TYPE_CHECKING
 
-from ..core import read_curve
+from ..core import CurveError
+from ..core.curve.io import FORMATS
 from ..core.energies import ENERGIES
 from ..core.measure import measure
+from ..core.setup import energy_named
+from . import curves
+from .streams import emit
 
-if TYPE_CHECKING:
-    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+MAX_VERTICES = 50_000  # a minute or so: the time grows with the square
+_EPILOG = """\
+examples:
+  mobius-flow energy knot.txt
+  mobius-flow knot figure-eight - | mobius-flow energy - --json
+
+exit status: 0, or 2 on bad input or bad options
+"""
 
 
-def add_to(subparsers: "Subparsers") -> None:
-    """Add the subcommand."""
-    parser = subparsers.add_parser("energy", help="print the energy of a curve", description=__doc__)
-    parser.add_argument("input", metavar="IN", help="curve: .txt/.xyz, .obj, .vect or .json")
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description, parser.epilog = "Print the energy of a curve.", _EPILOG
+    parser.add_argument("input", metavar="IN", help=f"curve: {', '.join(FORMATS)}, or - for standard input")
+    curves.add_format(parser)
     parser.add_argument("--energy", default="moebius", metavar="NAME", help=f"one of {', '.join(ENERGIES)}")
     parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the energy."""
-    value = measure(read_curve(options.input), options.energy)
-    print(json.dumps({"name": options.energy, "energy": value}) if options.json else repr(value))
+    energy_named(options.energy)  # before a large file is read
+    file = curves.read(options.input, options.format)
+    with curves.refusals(file):
+        if len(file.curve) > MAX_VERTICES:
+            raise CurveError(f"the curve has {len(file.curve)} vertices; energies are for at most {MAX_VERTICES}")
+        value = measure(file.curve, options.energy)
+    emit(json.dumps({"name": options.energy, "energy": value}) if options.json else repr(value))
     return 0

@@ -1,25 +1,33 @@
 """``mobius-flow knot``: write a named knot as a curve file."""
 
 import argparse
-from typing import TYPE_CHECKING
 
-from ..core import write_curve
+from ..core.curve.io import FORMATS
 from ..core.knots import knot
+from . import curves
+from .places import check_place
 
-if TYPE_CHECKING:
-    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+_EPILOG = """\
+examples:
+  mobius-flow knot 3_1 trefoil.txt
+  mobius-flow knot "T(3,5)" - --format obj
+
+exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
+"""
 
 
-def add_to(subparsers: "Subparsers") -> None:
-    """Add the subcommand."""
-    parser = subparsers.add_parser("knot", help="write a named knot", description=__doc__)
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description, parser.epilog = "Write a named knot as a curve.", _EPILOG
     parser.add_argument("name", metavar="NAME", help='such as 3_1, goeritz, hopf, "T(3,5)" or "braid(1,-2,1,-2)"')
-    parser.add_argument("output", metavar="OUT", help="curve: .txt/.xyz, .obj, .vect or .json")
+    parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(FORMATS)}, or - for standard output")
+    curves.add_format(parser)
     parser.add_argument("--vertices", type=int, metavar="N", help="number of vertices")
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Make the knot and write it."""
-    write_curve(options.output, knot(options.name, vertices=options.vertices))
+    curves.format_for(options.output, options.format)
+    check_place(options.output)
+    curves.write(options.output, knot(options.name, vertices=options.vertices), options.format)
     return 0

@@ -1,58 +1,66 @@
-"""Parse the command line, run the subcommand, and turn errors into one line and an exit status."""
+"""Run the subcommand, and turn whatever ends it into one line and an exit status.
 
-import argparse
-import logging
-import os
+This module imports nothing that takes time: what a subcommand needs is imported under the same handler.
+"""
+
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
 
-from ..core.errors import MobiusFlowError
-from ..core.termination import termination_raises
-from . import bench, compare, energy, knot, methods, relax, verify
+from . import signals, streams
 
-COMMANDS = (relax, energy, verify, compare, knot, bench, methods)
-BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
-
-
-class _Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line."""
-
-    def error(self, message: str) -> NoReturn:
-        print(one_line(f"{self.prog}: {message} (see {self.prog} --help)"), file=sys.stderr)
-        raise SystemExit(BAD_INPUT)
-
-
-def one_line(text: str) -> str:
-    """A sentence in which names with line ends, or what no terminal can show, are written with backslashes."""
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
-
-
-def parser() -> argparse.ArgumentParser:
-    """The parser of the whole command line."""
-    top = _Parser(prog="mobius-flow", description="Relax and untangle knotted curves by their Möbius energy.")
-    subparsers = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)
-    for command in COMMANDS:
-        command.add_to(subparsers)
-    return top
+FINE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, signals.INTERRUPTED
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``mobius-flow`` with the arguments (by default the process's) and return the exit status."""
-    logging.basicConfig(format="mobius-flow: %(message)s", level=logging.WARNING, stream=sys.stderr)
     try:
-        options = parser().parse_args(arguments)
-        with termination_raises(KeyboardInterrupt()):  # so that the best curve is kept, as with Ctrl-C
-            return int(options.run(options))
+        return _run(arguments)
     except SystemExit as ended:
         return int(ended.code or 0)
-    except MobiusFlowError as error:
-        print(one_line(f"mobius-flow: {error}"), file=sys.stderr)
-        return BAD_INPUT
     except KeyboardInterrupt:
-        print("mobius-flow: interrupted", file=sys.stderr)
-        return INTERRUPTED
-    except BrokenPipeError:
-        # the reader of our output has left; point stdout elsewhere so that Python's exit is quiet too
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _end("interrupted", INTERRUPTED)
+    except BrokenPipeError:  # the reader of our output has left, and needs no sentence
         return FAILED
+    except MemoryError:
+        return _end("there is not enough memory for this; use fewer vertices", FAILED)
+    except Exception as error:
+        return _end(*_explained(error))
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    from .notes import Notes
+    from .parser import parse
+
+    options = parse(arguments)
+    with Notes() as notes, signals.raised():
+        options.notes = notes
+        status = int(options.run(options))
+        if not getattr(options, "quiet", False):
+            notes.show()
+        return status
+
+
+def _end(sentence: str, status: int) -> int:
+    if sys.stderr is not None:
+        print(streams.one_line(f"mobius-flow: {sentence}"), file=sys.stderr)
+    return status
+
+
+def _explained(error: Exception) -> tuple[str, int]:
+    """The sentence and the exit status for an exception."""
+    if isinstance(error, streams.OutputStreamError):
+        return str(error), BAD_INPUT
+    if isinstance(error, ImportError | SyntaxError):
+        return f"a Python module that is needed cannot be loaded: {error}", FAILED
+    if isinstance(error, OSError):
+        name = "" if error.filename is None else f"{error.filename}: "
+        return f"{name}{error.strerror or error}", BAD_INPUT
+    from ..core.errors import MobiusFlowError
+
+    if isinstance(error, MobiusFlowError):
+        return str(error), BAD_INPUT
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    place = "" if trace is None else f" ({trace.tb_frame.f_code.co_filename}, line {trace.tb_lineno})"
+    return f"an error of the program, please report it: {type(error).__name__}: {error}{place}", FAILED

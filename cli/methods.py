@@ -1,22 +1,18 @@
 """``mobius-flow methods``: the descent methods, one per line."""
 
 import argparse
-from typing import TYPE_CHECKING
 
 from ..core.descent import METHODS
-
-if TYPE_CHECKING:
-    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+from .streams import emit
 
 
-def add_to(subparsers: "Subparsers") -> None:
-    """Add the subcommand."""
-    parser = subparsers.add_parser("methods", help="list the descent methods", description=__doc__)
-    parser.set_defaults(run=run)
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description = "List the descent methods: name, a tab, what it is."
+    parser.epilog = "exit status: 0"
 
 
 def run(options: argparse.Namespace) -> int:
     """Print name, a tab, and what it is."""
-    for name, method in METHODS.items():
-        print(f"{name}\t{method.description}")
+    emit("\n".join(f"{name}\t{method.description}" for name, method in METHODS.items()))
     return 0

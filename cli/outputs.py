@@ -1,15 +1,16 @@
 """What `relax` can write, by suffix: curve files, and keyframed or rendered scenes where Blender's module is there."""
 
-import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from ..addon import export
-from ..core import Iterate, MobiusFlowError, Result, write_curve
-from ..core.curve.io import FORMATS
+from ..addon import export, film
+from ..core import Curve, Iterate, MobiusFlowError, Result
+from ..core.curve.io import FORMATS, Format
+from ..core.errors import choice
+from . import curves
 from .progress import show_frames
 
 Writer = Callable[[str, Result, Sequence[Iterate], bool], None]
@@ -17,29 +18,49 @@ Writer = Callable[[str, Result, Sequence[Iterate], bool], None]
 
 @dataclass(frozen=True)
 class Output:
-    """One kind of output: how it is written (and whether progress may be shown), and what it needs."""
+    """One kind of output.
+
+    Parameters
+    ----------
+    write
+        Writes it; the last argument is whether progress may be shown.
+    admit
+        Raises a MobiusFlowError if it cannot hold a curve.
+    needs_iterates
+        Whether it shows the whole run.
+    check
+        Raises a MobiusFlowError if something it needs is not installed.
+    """
 
     write: Writer
+    admit: Callable[[Curve], None]
     needs_iterates: bool = False
     check: Callable[[], None] = lambda: None
 
 
-def _write_curve(path: str, result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
-    write_curve(path, result.curve)
+def _curve_output(name: str | None, form: Format) -> Output:
+    def write(path: str, result: Result, _iterates: Sequence[Iterate], _shown: bool) -> None:
+        curves.write(path, result.curve, name)
+
+    def admit(curve: Curve) -> None:
+        curves.text_of(curve, form)
+
+    return Output(write, admit)
 
 
-def _need_blender() -> None:
-    export.require_blender()
+def _blender_output(write: Writer) -> Output:
+    # the function is looked up when it is called, as all of export's
+    return Output(write, film.check_dimension, needs_iterates=True, check=lambda: export.require_blender())
 
 
 def _blender_writer(function: str) -> Writer:
-    def write(path: str, result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
+    def write(path: str, _result: Result, iterates: Sequence[Iterate], _shown: bool) -> None:
         getattr(export, function)(path, iterates)
 
     return write
 
 
-def _write_movie(path: str, result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
+def _write_movie(path: str, _result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
     try:
         export.write_movie(path, iterates, show_frames if shown else None)
     except KeyboardInterrupt:
@@ -49,38 +70,37 @@ def _write_movie(path: str, result: Result, iterates: Sequence[Iterate], shown: 
 
 
 OUTPUTS: Mapping[str, Output] = MappingProxyType(
-    {suffix: Output(_write_curve) for suffix in FORMATS}
+    {suffix: _curve_output(None, form) for suffix, form in FORMATS.items()}
     | {
-        ".blend": Output(_blender_writer("write_blend"), needs_iterates=True, check=_need_blender),
-        ".mp4": Output(_write_movie, needs_iterates=True, check=_need_blender),
-        ".png": Output(_blender_writer("write_still"), needs_iterates=True, check=_need_blender),
+        ".blend": _blender_output(_blender_writer("write_blend")),
+        ".mp4": _blender_output(_write_movie),
+        ".png": _blender_output(_blender_writer("write_still")),
     }
 )
 
 
-def output_for(path: str) -> Output:
-    """The kind of output a path asks for, after what can be checked before the work begins.
+def output_for(path: str, name: str | None = None) -> Output:
+    """The kind of output that a path's suffix or ``--format`` asks for, if what it needs is installed.
 
     Raises
     ------
     MobiusFlowError
-        If the suffix is unknown, the directory does not exist, or Blender's module is needed and missing.
+        If the suffix is unknown and no format named, or Blender's module is needed and missing.
     """
-    target = Path(path)
-    if target.suffix.lower() not in OUTPUTS:
-        raise MobiusFlowError(f"{path}: unknown suffix {target.suffix!r}; outputs end in {', '.join(OUTPUTS)}")
-    check_place(path)
-    output = OUTPUTS[target.suffix.lower()]
+    suffix = Path(path).suffix
+    if suffix.lower() not in OUTPUTS:
+        if name is None and path != curves.STREAM:
+            guess, _, _ = choice(suffix, OUTPUTS).rpartition("choose")
+            raise MobiusFlowError(f"{path}: unknown suffix {suffix!r}; {guess}outputs end in {', '.join(OUTPUTS)}")
+        return _curve_output(name, curves.format_for(path, name))
+    output = OUTPUTS[suffix.lower()]
     output.check()
     return output
 
 
-def check_place(path: str) -> None:
-    """Raise a MobiusFlowError unless a file can be there, before hours of work are put into it."""
-    target = Path(path)
-    if not target.parent.is_dir():
-        raise MobiusFlowError(f"{path}: the directory {target.parent} does not exist")
-    if target.is_dir():
-        raise MobiusFlowError(f"{path}: is a directory; name a file")
-    if not os.access(target if target.exists() else target.parent, os.W_OK):
-        raise MobiusFlowError(f"{path}: is write-protected")
+def admit(output: Output, path: str, curve: Curve) -> None:
+    """Raise a MobiusFlowError that names the output if it cannot hold the curve."""
+    try:
+        output.admit(curve)
+    except MobiusFlowError as error:
+        raise MobiusFlowError(f"{path}: {error}") from error

@@ -1,7 +1,9 @@
-"""The progress of a relaxation on a terminal, with tqdm where it is installed."""
+"""Progress on a terminal, with tqdm where it is installed."""
 
 import math
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Any
 
@@ -16,11 +18,7 @@ class Progress:
         self._bar: Any = None
         self._start: float | None = None
         if shown:
-            try:
-                from tqdm import tqdm
-            except ImportError:
-                return
-            self._bar = tqdm(total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}", leave=False)
+            self._bar = _bar(total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}")
 
     def __enter__(self) -> "Progress":
         return self
@@ -43,6 +41,31 @@ class Progress:
         self._bar.set_postfix_str(
             f"iteration {iterate.index}, energy {iterate.energy:.6g}, gradient {iterate.gradient_norm:.2g}"
         )
+
+
+@contextmanager
+def leg_progress(shown: bool) -> Iterator[Callable[[int, int], None] | None]:
+    """Give what shows the numbers of legs that are checked and of all, or None where nothing can be shown."""
+    bar = _bar(unit=" legs") if shown else None
+    if bar is None:
+        yield None
+        return
+
+    def show(done: int, total: int) -> None:
+        bar.total = total or None
+        bar.update(done - bar.n)
+
+    with bar:
+        yield show
+
+
+def _bar(**options: Any) -> Any:
+    """A bar of tqdm that vanishes in the end; None if it is not installed."""
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        return None
+    return tqdm(leave=False, **options)
 
 
 def show_frames(done: int, total: int) -> None:

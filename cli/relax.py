@@ -3,98 +3,167 @@
 import argparse
 import json
 import sys
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import NamedTuple
 
-from ..core import Curve, Iterate, RelaxOptions, Result, Status, Trajectory, minimize, read_curve
-from ..core.errors import MobiusFlowError, OptionError
+from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Trajectory, minimize, write_curve
+from ..core.curve.io import FORMATS
+from ..core.errors import OptionError, OutputError
 from ..core.files import atomic_write
+from . import curves, signals
 from . import options as relax_options
-from .outputs import OUTPUTS, Output, check_place, output_for
+from .notes import Notes
+from .outputs import OUTPUTS, Output, admit, output_for
+from .places import check_places, is_file
 from .progress import Progress
-
-if TYPE_CHECKING:
-    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+from .provenance import provenance
+from .recovery import Write, kept
 
 EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1, Status.INTERRUPTED: 130}
+_DESCRIPTION = "Relax a curve: a tangled one in, one of less energy of the same knot type out."
+_EPILOG = """\
+examples:
+  mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
+  mobius-flow relax knot.txt film.mp4 --method trust-region
+  mobius-flow knot 8_19 - | mobius-flow relax - - --format txt | mobius-flow energy -
+
+exit status:
+  0    it converged, or stopped at the limit asked for
+  1    it is stuck; the best curve, the report and the trajectory are written all the same
+  2    bad input or bad options, or an output that cannot be written; one line says what and where
+  130  interrupted by Ctrl-C, SIGTERM or SIGHUP; the best curve, the report and the trajectory are written
+
+What cannot be written in the end is kept in a temporary directory that the message names.
+"""
 
 
-def add_to(subparsers: "Subparsers") -> None:
-    """Add the subcommand."""
-    parser = subparsers.add_parser("relax", help="relax a curve", description=__doc__)
-    parser.add_argument("input", metavar="IN", help="closed polygons: .txt/.xyz, .obj, .vect or .json")
-    parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(OUTPUTS)}")
-    parser.add_argument("--report", metavar="R.json", help="write what happened as JSON")
-    parser.add_argument("--trajectory", metavar="T.npz", help="write the certified path, for mobius-flow verify")
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description, parser.epilog = _DESCRIPTION, _EPILOG
+    parser.add_argument("input", metavar="IN", help=f"closed polygons: {', '.join(FORMATS)}, or - for standard input")
+    parser.add_argument(
+        "output", metavar="OUT", help=f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
+    )
+    curves.add_format(parser)
+    parser.add_argument(
+        "--report", type=_extra, metavar="R.json", help="write what happened as JSON; - is standard output"
+    )
+    parser.add_argument(
+        "--trajectory",
+        type=_extra,
+        metavar="T.npz",
+        help="write the certified path, for mobius-flow verify; - is standard output",
+    )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
-    parser.set_defaults(run=run)
+
+
+def _extra(path: str) -> str:
+    """Where a report or trajectory goes: a file, or as a device standard output."""
+    return curves.DEVICE if path == curves.STREAM else path
 
 
 def run(options: argparse.Namespace) -> int:
     """Relax, write everything asked for, and return the exit status."""
-    output = output_for(options.output)
-    for extra in (options.report, options.trajectory):
-        if extra is not None:
-            check_place(extra)
+    output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
     if (wanted.adaptive or wanted.resolve) and output.needs_iterates:
         raise OptionError(
             f"{options.output}: keyframes need a fixed mesh; leave --adaptive and --resolve out, or write a curve file"
         )
-    curve = read_curve(options.input)
-    result, iterates, trajectory = _relax(curve, wanted, output, options)
-    failures = []
-    if options.report is not None:
-        failures += _failure(lambda: _write_report(options.report, result))
-    if options.trajectory is not None:
-        failures += _failure(lambda: trajectory.save(options.trajectory))
-    # last, since a film takes a minute, in which it may be interrupted
-    shown = not options.quiet and sys.stderr.isatty()
-    failures += _failure(lambda: output.write(options.output, result, iterates, shown))
-    if failures:
-        raise MobiusFlowError("; ".join(failures))
+    check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
+    file = curves.read(options.input, options.format)
+    admit(output, options.output, file.curve)
+    origin = provenance(wanted, file)
+    with curves.refusals(file):
+        result, iterates = _relax(file.curve, wanted, output, options)
+    _write_all(options, output, result, iterates, origin)
     if not options.quiet:
         print(_summary(result), file=sys.stderr)
     return EXIT_STATUS[result.status]
 
 
-def _failure(write: Callable[[], None]) -> list[str]:
-    """Write something, and return why that failed: the other outputs are written all the same."""
-    try:
-        write()
-    except MobiusFlowError as error:
-        return [str(error)]
-    return []
-
-
 def _relax(
     curve: Curve, wanted: RelaxOptions, output: Output, options: argparse.Namespace
-) -> tuple[Result, list[Iterate], Trajectory]:
+) -> tuple[Result, list[Iterate]]:
+    """Run to the end or an interrupt. Signals interrupt steps only: neither what is recorded nor the end is lost."""
     iterates: list[Iterate] = []
     recorded = output.needs_iterates or options.trajectory is not None
+    notes: Notes = options.notes
     with Progress(wanted, shown=not options.quiet and sys.stderr.isatty()) as progress:
 
         def on_iterate(iterate: Iterate) -> None:
+            signals.hold()
             if recorded:
                 iterates.append(iterate)
+            if iterate.index == 0 and not options.quiet:
+                notes.show()  # the curve is accepted: there will be no refusal
             progress.update(iterate)
+            if iterate.status is Status.RUNNING:
+                signals.allow()
 
         result = minimize(curve, wanted, on_iterate)
     if recorded and not (iterates and iterates[-1].curve is result.curve):
         iterates.append(result.last)  # the interrupt came before it was recorded
-    trajectory = Trajectory()
+    return result, iterates
+
+
+class _Job(NamedTuple):
+    """A result to be written; see `kept`. Those that take long, or for ever, can be interrupted, and come last."""
+
+    path: str
+    write: Write
+    rescue: Write | None = None
+    name: str | None = None
+    interruptible: bool = False
+
+
+def _write_all(
+    options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
+) -> None:
+    """Write report, trajectory and curve or scene: the others are written all the same where one cannot be."""
+    failures = []
+    for job in sorted(_jobs(options, output, result, iterates, origin), key=lambda job: job.interruptible):
+        (signals.allow if job.interruptible else signals.hold)()
+        failures += kept(job.path, job.write, job.rescue, job.name)
+    if failures:
+        raise MobiusFlowError("; ".join(failures))
+    signals.allow()
+
+
+def _jobs(
+    options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
+) -> Iterator[_Job]:
+    for path, write in (
+        (options.report, lambda path: _write_report(path, result, origin)),
+        (options.trajectory, lambda path: _trajectory(iterates, origin).save(path)),
+    ):
+        if path is not None:
+            yield _Job(path, write, interruptible=not is_file(path))
+    shown = not options.quiet and sys.stderr.isatty()
+    job = _Job(options.output, lambda path: output.write(path, result, iterates, shown))
+    if output.needs_iterates:  # a film takes a minute
+        plain = partial(write_curve, curve=result.curve)
+        yield job._replace(rescue=plain, name=f"{options.output}.obj", interruptible=True)
+    else:
+        name = f"curve.{options.format or 'txt'}" if options.output == curves.STREAM else None
+        yield job._replace(name=name, interruptible=not is_file(options.output))
+
+
+def _trajectory(iterates: list[Iterate], origin: Mapping[str, object]) -> Trajectory:
+    trajectory = Trajectory(origin)
     for iterate in iterates:
         trajectory.add(iterate)
-    return result, iterates, trajectory
+    return trajectory
 
 
-def _write_report(path: str, result: Result) -> None:
+def _write_report(path: str, result: Result, origin: Mapping[str, object] | None = None) -> None:
     try:
         with atomic_write(path) as temporary:
-            temporary.write_text(json.dumps(result.report(), indent=1) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise MobiusFlowError(f"{path}: cannot be written: {error.strerror or error}") from error
+            temporary.write_text(json.dumps(result.report() | dict(origin or {}), indent=1) + "\n", encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise OutputError(path, error) from error
 
 
 def _summary(result: Result) -> str:

@@ -1,23 +1,75 @@
 """``mobius-flow verify``: check a trajectory independently of the run that wrote it."""
 
 import argparse
-from typing import TYPE_CHECKING
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from typing import BinaryIO
 
+from ..core import MobiusFlowError
 from ..core.verify import verify
+from .curves import INPUT, STREAM
+from .places import is_file
+from .progress import leg_progress
+from .streams import emit
 
-if TYPE_CHECKING:
-    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+MAX_BYTES = 4 << 30  # of a stream, which is copied to a temporary file: archives are read from their ends
+_PIECE = 1 << 20
+_EPILOG = """\
+examples:
+  mobius-flow verify path.npz
+  mobius-flow relax knot.txt out.txt --quiet --trajectory /dev/stdout | mobius-flow verify - --json
+
+exit status:
+  0    accepted: free of contact, with proof
+  1    rejected; the line, or "reason" of the JSON, says why and where
+  2    bad options
+  130  interrupted
+"""
 
 
-def add_to(subparsers: "Subparsers") -> None:
-    """Add the subcommand."""
-    parser = subparsers.add_parser("verify", help="check a trajectory for contact", description=__doc__)
-    parser.add_argument("trajectory", metavar="T.npz", help="as written by relax --trajectory")
-    parser.set_defaults(run=run)
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description, parser.epilog = "Check a trajectory for contact, independently of the run.", _EPILOG
+    parser.add_argument("trajectory", metavar="T.npz", help="as written by relax --trajectory, or - for standard input")
+    parser.add_argument("--json", action="store_true", help="print the verdict as JSON")
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the verdict; exit status 0 if the trajectory is free of contact, 1 if not."""
-    verdict = verify(options.trajectory)
-    print(verdict)
+    with _seekable(options.trajectory) as path, leg_progress(sys.stderr.isatty()) as progress:
+        verdict = verify(path, progress)
+    emit(json.dumps(asdict(verdict)) if options.json else str(verdict))
     return 0 if verdict.accepted else 1
+
+
+@contextmanager
+def _seekable(path: str) -> Iterator[str]:
+    """A file with the same contents that can be read from its end: itself, or a copy of a stream."""
+    if is_file(path):
+        yield path
+        return
+    if path == STREAM and sys.stdin is None:
+        raise MobiusFlowError(f"{INPUT} is closed")
+    with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
+        copy = os.path.join(room, "trajectory.npz")
+        if path == STREAM:
+            _spool(INPUT, sys.stdin.buffer, copy)
+        else:
+            with open(path, "rb") as stream:
+                _spool(path, stream, copy)
+        yield copy
+
+
+def _spool(name: str, stream: BinaryIO, target: str) -> None:
+    with open(target, "wb") as copy:
+        while piece := stream.read(_PIECE):
+            if copy.tell() == 0 and not piece.startswith(b"PK"):
+                raise MobiusFlowError(f"{name}: not a trajectory: an .npz file starts with the letters PK")
+            if copy.tell() > MAX_BYTES:
+                raise MobiusFlowError(f"{name}: longer than {MAX_BYTES >> 30} GB; verify a file")
+            copy.write(piece)

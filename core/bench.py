@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from .curve import Curve
-from .iterate import Iterate
+from .iterate import Iterate, Status
 from .knots import (
     HARD_UNKNOTS,
     braid_word,
@@ -86,10 +86,12 @@ SETS: Mapping[str, Curves] = MappingProxyType({"knots": KNOTS, "primes": PRIMES}
 
 
 def bench(curves: Curves, options: RelaxOptions, callback: Callable[[Iterate], None] | None = None) -> Iterator[Row]:
-    """Relax curves one by one."""
+    """Relax curves one by one; a keyboard interrupt ends the bench, not only the curve at hand."""
     for name, make in curves.items():
         curve = make()
         before = signature(curve)
         result = minimize(curve, options, callback)
+        if result.status is Status.INTERRUPTED:
+            raise KeyboardInterrupt
         after = signature(result.curve)
         yield Row(name, len(curve), result, before == after, after.is_trivial)

@@ -4,10 +4,13 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from .curve import Curve, refine
+from .collision import check_embedded
+from .curve import Curve
 from .iterate import Status
 from .options import RelaxOptions
 from .relax import relax
+from .setup import check_size, embedded_refinement, start_problem
+from .units import check_units
 
 
 @dataclass(frozen=True)
@@ -32,13 +35,18 @@ class Run:
 
 
 def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_limit: float) -> Iterator[Run]:
-    """Yield one run per method, all from the same refined curve, each ended at ``time_limit`` seconds.
+    """Give one run per method, all from the same refined curve, each ended at ``time_limit`` seconds.
 
-    Raises as `relax` does.
+    Whether every method can be run is looked at before the first one is. Raises as `relax` does.
     """
-    start = refine(curve, options.vertices)
-    for method in methods:
-        yield _run(start, replace(options, method=method, vertices=len(start)), time_limit)
+    check_size(curve, options.vertices)
+    check_units(curve)
+    check_embedded(curve)
+    start = embedded_refinement(curve, options.vertices)
+    each = [replace(options, method=method, vertices=len(start)) for method in methods]
+    for wanted in each:
+        start_problem(start, wanted)
+    return (_run(start, wanted, time_limit) for wanted in each)
 
 
 def _run(start: Curve, options: RelaxOptions, time_limit: float) -> Run:

@@ -1,5 +1,7 @@
 """Errors that a user can act on: one sentence saying what, where, and what to do."""
 
+import difflib
+from collections.abc import Iterable
 from pathlib import Path
 
 
@@ -8,7 +10,14 @@ class MobiusFlowError(ValueError):
 
 
 class CurveError(MobiusFlowError):
-    """A curve that cannot be used: too few points, not finite, touching itself, ..."""
+    """A curve that cannot be used: too few points, not finite, touching itself, ...
+
+    ``vertex`` is the index (from 0) of a vertex at the place, for those who know in which line of a file it stands.
+    """
+
+    def __init__(self, message: str, vertex: int | None = None) -> None:
+        super().__init__(message)
+        self.vertex = vertex
 
 
 class OptionError(MobiusFlowError):
@@ -22,3 +31,25 @@ class CurveFileError(CurveError):
         place = f"{path}" if line is None else f"{path}, line {line}"
         super().__init__(f"{place}: {reason}")
         self.path, self.line, self.reason = Path(path), line, reason
+
+
+class OutputError(MobiusFlowError):
+    """A file that cannot be written; the message names it and the reason."""
+
+    def __init__(self, path: Path | str, error: Exception) -> None:
+        super().__init__(f"{path}: cannot be written: {getattr(error, 'strerror', None) or str(error).strip()}")
+
+
+def choice(name: str, known: Iterable[str]) -> str:
+    """Say what can be chosen instead of an unknown name, the likeliest first.
+
+    Examples
+    --------
+    >>> choice("lbgfs", ["lbfgs", "cg"])
+    'did you mean lbfgs? choose one of lbfgs, cg'
+    """
+    known = list(known)
+    by_lower = {key.lower(): key for key in known}
+    close = difflib.get_close_matches(name.lower(), by_lower, n=1)
+    guess = f"did you mean {by_lower[close[0]]}? " if close else ""
+    return f"{guess}choose one of {', '.join(known)}"

@@ -13,7 +13,7 @@ from .errors import CurveError, OptionError
 from .iterate import Iterate, Status
 from .options import RelaxOptions
 from .run import Run
-from .setup import MOST_VERTICES, embedded_refinement, method_named, start_problem
+from .setup import check_size, embedded_refinement, method_named, start_problem
 from .units import centred, check_units
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
@@ -99,8 +99,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     if not isinstance(options, RelaxOptions):
         raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
     method_named(options.method)
-    if options.vertices is not None and options.vertices > MOST_VERTICES:
-        raise OptionError(f"vertices is {options.vertices}; dense matrices have at most {MOST_VERTICES} rows")
+    check_size(curve, options.vertices)
     check_units(curve)
     check_embedded(curve)
     refined = embedded_refinement(curve, options.vertices)
@@ -141,9 +140,10 @@ def _with_rises_told(iterates: Iterator[Iterate]) -> Iterator[Iterate]:
 def minimize(
     curve: Curve, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
 ) -> Result:
-    """Relax a curve to the end and return the result; a keyboard interrupt keeps the curve reached so far.
+    """Relax a curve to the end and return the result.
 
-    ``callback`` gets every iterate, unless an interrupt cuts it short.  Raises as `relax` does.
+    A keyboard interrupt, or a lack of memory, keeps the curve reached so far.  ``callback`` gets every iterate, unless
+    an interrupt cuts it short.  Raises as `relax` does.
     """
     if callback is not None and not callable(callback):
         raise OptionError(f"callback is of type {type(callback).__name__}; give a function of one Iterate")
@@ -162,6 +162,10 @@ def minimize(
         if last is None:
             raise
         last = replace(last, status=Status.INTERRUPTED, message="interrupted: the curve reached so far is kept")
+    except MemoryError:
+        if last is None:
+            raise
+        last = replace(last, status=Status.STALLED, message="stalled: memory ran out; the curve reached so far is kept")
     assert last is not None, "relax yields at least its start"
     return Result(
         curve=last.curve,

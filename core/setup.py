@@ -9,8 +9,8 @@ from .collision import check_gap, minimal_gap, survives_rounding
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
 from .descent import METHODS, Method, Problem
-from .energies import ENERGIES, Barrier, MoebiusEnergy, Objective
-from .errors import CurveError, OptionError
+from .energies import ENERGIES, Barrier, Energy, MoebiusEnergy, Objective
+from .errors import CurveError, OptionError, choice
 from .metrics import METRICS, MoebiusMetric
 from .options import RelaxOptions
 from .types import FloatArray
@@ -21,6 +21,11 @@ EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between
 MOST_VERTICES = 12_000  # some six matrices of so many rows make 7 GB
 
 
+def energy_named(name: str) -> Energy:
+    """Look an energy up; an OptionError lists the known ones."""
+    return named(ENERGIES, "energy", name)
+
+
 def method_named(name: str) -> Method:
     """Look a method up; an OptionError lists the known ones."""
     return named(METHODS, "method", name)
@@ -29,8 +34,25 @@ def method_named(name: str) -> Method:
 def named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
     """Look an entry of a registry up; an OptionError lists the known ones."""
     if name not in table:
-        raise OptionError(f"{kind} {name!r} is unknown; choose one of {', '.join(table)}")
+        raise OptionError(f"{kind} {name!r:.60} is unknown; {choice(name, table)}")
     return table[name]
+
+
+def check_size(curve: Curve, vertices: int | None = None) -> None:
+    """Refuse more vertices than dense matrices can have rows, before anything is made of them.
+
+    Raises
+    ------
+    CurveError, OptionError
+        If the curve has too many vertices, or too many are asked for.
+    """
+    if vertices is not None and vertices > MOST_VERTICES:
+        raise OptionError(f"vertices is {vertices!s:.40}; dense matrices have at most {MOST_VERTICES} rows")
+    if len(curve) > MOST_VERTICES:
+        raise CurveError(
+            f"the curve has {len(curve)} vertices; dense matrices of more than {MOST_VERTICES} rows do not fit into "
+            "memory; thin the curve out or relax its components apart"
+        )
 
 
 def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
@@ -63,15 +85,11 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
         If an option names something unknown, or a method and an energy do not go together.
     """
     method = method_named(options.method)
-    if len(curve) > MOST_VERTICES:
-        raise CurveError(
-            f"the curve has {len(curve)} vertices; dense matrices of more than {MOST_VERTICES} rows do not fit into "
-            "memory; thin the curve out or relax its components apart"
-        )
+    check_size(curve)
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
-    energy = named(ENERGIES, "energy", options.energy)
+    energy = energy_named(options.energy)
     objective = Objective(energy, Barrier(replaces_midpoint=isinstance(energy, MoebiusEnergy)))
     second_order = method.rule.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:

@@ -1,13 +1,15 @@
 """The certified path of a relaxation as a file that others can check."""
 
+import json
 import os
 import zipfile
-from pathlib import Path
+from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .curve import Curve
-from .errors import MobiusFlowError
+from .errors import MobiusFlowError, OutputError
 from .files import atomic_write
 from .iterate import Iterate
 from .types import FloatArray, IntArray
@@ -18,10 +20,17 @@ class Trajectory:
 
     Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, …; a new stage begins
     where the mesh changes.  Coordinates are the user's, in double: what was proved is about exactly
-    these numbers.
+    these numbers.  Where the run came from is kept as JSON in ``provenance``, an array of one string, which `verify`
+    does not look at.
+
+    Parameters
+    ----------
+    provenance
+        Plain values, such as the version and the options; None leaves the array out.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, provenance: Mapping[str, object] | None = None) -> None:
+        self._provenance = provenance
         self._stages: list[tuple[tuple[int, ...], list[FloatArray]]] = []
         self._last: Curve | None = None
         self._last_index = -1
@@ -50,21 +59,23 @@ class Trajectory:
         """Whether it is the run's next iterate, or the last one again with another status."""
         return iterate.index == self._last_index + 1 or iterate.curve is self._last
 
-    def arrays(self) -> dict[str, FloatArray | IntArray]:
+    def arrays(self) -> dict[str, FloatArray | IntArray | NDArray[np.str_]]:
         """The arrays of the file, by name."""
-        named: dict[str, FloatArray | IntArray] = {}
+        named: dict[str, FloatArray | IntArray | NDArray[np.str_]] = {}
+        if self._provenance is not None:
+            named["provenance"] = np.array(json.dumps(self._provenance))
         for k, (sizes, frames) in enumerate(self._stages):
             named[f"stage_{k:03d}"] = np.stack(frames)
             named[f"component_sizes_{k:03d}"] = np.array(sizes, dtype=np.intp)
         return named
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the trajectory as .npz, whole or not at all; a MobiusFlowError says why it cannot be."""
+        """Write the trajectory as .npz, whole or not at all; an OutputError says why it cannot be."""
         try:
             with atomic_write(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
                 # as numpy.savez_compressed does, which leaves the archive open, and loud, when the disk is full
                 for name, array in self.arrays().items():
                     with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
                         np.lib.format.write_array(member, array, allow_pickle=False)  # type: ignore[no-untyped-call]
-        except OSError as error:
-            raise MobiusFlowError(f"{Path(path)}: cannot be written: {error.strerror or error}") from error
+        except (OSError, ValueError) as error:  # a ValueError for a path with a null character
+            raise OutputError(os.fspath(path), error) from error

@@ -17,7 +17,8 @@ def check_units(curve: Curve) -> None:
     k = int(sizes.argmax())
     if sizes[k] > LARGEST:
         place = ", ".join(f"{x:.6g}" for x in curve.vertices[k])
-        raise CurveError(f"vertex {k + 1}, ({place}), has a coordinate beyond {LARGEST:g}; use a larger unit of length")
+        reason = f"vertex {k + 1}, ({place}), has a coordinate beyond {LARGEST:g}; use a larger unit of length"
+        raise CurveError(reason, vertex=k)
     width = float(np.ptp(curve.vertices, axis=0).max())
     if 0 < width < 1 / LARGEST:
         raise CurveError(f"the curve is only {width:.3g} wide, less than {1 / LARGEST:g}; use a smaller unit of length")

@@ -42,7 +42,8 @@ def _check_repeated(curve: Curve) -> None:
         component, k, n = _place(curve.mesh, int(same[0]))
         raise CurveError(
             f"component {component}: vertices {k} and {k % n + 1} are the same point "
-            f"{_point(curve.vertices[same[0]])}; remove one of them"
+            f"{_point(curve.vertices[same[0]])}; remove one of them",
+            vertex=int(same[0]),
         )
 
 
@@ -60,7 +61,8 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
         component, k, n = _place(curve.mesh, vertex)
         raise CurveError(
             f"component {component}: edge {k} doubles back on edge {(k - 2) % n + 1} at vertex {k}, "
-            f"{_point(curve.vertices[vertex])}; move or remove that vertex"
+            f"{_point(curve.vertices[vertex])}; move or remove that vertex",
+            vertex=vertex,
         )
 
 
@@ -68,7 +70,8 @@ def _check_crossings(curve: Curve, points: FloatArray) -> None:
     touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
     for i, j in touching(curve, points):
         where = _meeting_point(curve.vertices[[i, curve.mesh.heads[i], j, curve.mesh.heads[j]]])
-        raise CurveError(f"{_names(curve.mesh, i, j)} touch or cross near {_point(where)}; move the strands apart")
+        reason = f"{_names(curve.mesh, i, j)} touch or cross near {_point(where)}; move the strands apart"
+        raise CurveError(reason, vertex=i)
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:

@@ -1,5 +1,6 @@
 """Scenes, pictures and films of a relaxation, whole or not at all."""
 
+import builtins
 import os
 import sys
 
@@ -184,3 +185,35 @@ def test_a_read_only_directory(tmp_path, iterates):
         assert os.listdir(tmp_path) == []
     finally:
         tmp_path.chmod(0o700)
+
+
+def test_the_trial_of_workbench_runs_nothing_of_the_working_directory(tmp_path, monkeypatch):
+    mark = tmp_path / "mark"
+    (tmp_path / "bpy.py").write_text(f"open({str(mark)!r}, 'w').close()\n")
+    monkeypatch.chdir(tmp_path)
+    rendering.workbench_works()
+    assert not mark.exists()
+
+
+def test_lines_of_drivers_are_kept_out(capfd):
+    with rendering.quiet():
+        os.write(1, b"Blender\n")
+        os.write(2, b"EGL Error\n")
+    os.write(2, b"ours\n")
+    assert capfd.readouterr() == ("", "ours\n")
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [(ModuleNotFoundError, "pip install"), (ImportError("libEGL.so.1: cannot open"), "cannot be loaded: libEGL.so.1")],
+)
+def test_a_missing_module_and_a_missing_library_of_it(monkeypatch, error, said):
+    def importing(name, *arguments):
+        if name == "bpy":
+            raise error
+        return real(name, *arguments)
+
+    real = builtins.__import__
+    monkeypatch.setattr(builtins, "__import__", importing)
+    with pytest.raises(MobiusFlowError, match=said):
+        export.require_blender()

@@ -87,3 +87,24 @@ def test_a_full_disk_gives_one_sentence(tmp_path: Path) -> None:
     target.symlink_to("/dev/full")
     with pytest.raises(CurveFileError, match="cannot be written: No space left"):
         write_curve(target, Curve(np.eye(3)))
+
+
+@pytest.mark.skipif(os.name != "posix", reason="named pipes")
+def test_a_pipe_gets_the_whole_contents_at_the_end(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.txt"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    with atomic_write(pipe) as temporary:
+        temporary.write_text("all of it")
+        assert temporary.suffix == ".txt"
+        assert temporary.is_file()
+    assert os.read(reader, 100) == b"all of it"
+    os.close(reader)
+    assert list(tmp_path.iterdir()) == [pipe]
+
+
+def test_long_suffixes_fit(tmp_path: Path) -> None:
+    target = tmp_path / ("a." + "b" * 250)
+    with atomic_write(target) as temporary:
+        temporary.write_text("x")
+    assert target.read_text() == "x"

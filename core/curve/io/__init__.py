@@ -4,6 +4,6 @@ To add a format, write one module with ``read(source) -> list[Polygon]`` and ``w
 give it a line in :data:`FORMATS`; reading, error messages and the atomic replacement are shared.
 """
 
-from .formats import FORMATS, Format, read_curve, write_curve
+from .formats import FORMATS, CurveFile, Format, format_of, load_curve, read_curve, write_curve
 
-__all__ = ["FORMATS", "Format", "read_curve", "write_curve"]
+__all__ = ["FORMATS", "CurveFile", "Format", "format_of", "load_curve", "read_curve", "write_curve"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from .source import Source
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Link:
     """An edge between two vertices (indices from 0), and the line that says so."""
 

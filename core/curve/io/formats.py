@@ -1,13 +1,13 @@
 """The table of curve formats, and the two functions that look into it."""
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import TextIO
+from typing import BinaryIO, TextIO
 
-from ...errors import CurveError, CurveFileError
+from ...errors import CurveError, CurveFileError, choice
 from ...files import atomic_write
 from ..curve import Curve, check_is_curve
 from . import json_lists, obj, vect, xyz
@@ -47,6 +47,56 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
 )
 
 
+@dataclass(frozen=True, eq=False)
+class CurveFile:
+    """A curve as read, and the file around it.
+
+    Attributes
+    ----------
+    curve
+        The polygons, in the user's units.
+    source
+        The text, with its path and its hash.
+    """
+
+    curve: Curve
+    source: Source
+    _polygons: Sequence[Polygon]
+
+    def line_of(self, vertex: int) -> int | None:
+        """The line in which a vertex of the curve (index from 0) was read."""
+        part = int(self.curve.mesh.component[vertex])
+        return self._polygons[part].line_of(vertex - int(self.curve.mesh.offsets[part]))
+
+    def refusal(self, error: CurveError) -> CurveFileError:
+        """The same error with the file's name and, where it is about a vertex, the line."""
+        return self.source.error(str(error), None if error.vertex is None else self.line_of(error.vertex))
+
+
+def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream: BinaryIO | None = None) -> CurveFile:
+    """Read closed polygons and keep what errors that come later need.
+
+    Parameters
+    ----------
+    path
+        The file, or a name for the stream.
+    form
+        The format; None leaves it to the suffix.
+    stream
+        Where to read instead of opening ``path``.
+
+    Raises
+    ------
+    CurveFileError
+        As `read_curve` does.
+    """
+    path = Path(path)
+    form = format_of(path) if form is None else form
+    source = Source.load(path) if stream is None else Source.read(path, stream)
+    polygons = form.read(source)
+    return CurveFile(assemble(source, polygons), source, polygons)
+
+
 def read_curve(path: str | os.PathLike[str]) -> Curve:
     """Read closed polygons from a file; the suffix tells the format (see :data:`FORMATS`).
 
@@ -63,14 +113,11 @@ def read_curve(path: str | os.PathLike[str]) -> Curve:
     CurveFileError
         If the file cannot be read or is not what its suffix says; the message names file, line and reason.
     """
-    path = Path(path)
-    form = _format_of(path)
-    source = Source.load(path)
-    return assemble(source, form.read(source))
+    return load_curve(path).curve
 
 
-def write_curve(path: str | os.PathLike[str], curve: Curve) -> None:
-    """Write closed polygons to a file; the suffix tells the format (see :data:`FORMATS`).
+def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None = None) -> None:
+    """Write closed polygons to a file; the suffix tells the format (see :data:`FORMATS`) unless one is given.
 
     Coordinates are written with all their digits: reading the file gives the same doubles. The file
     appears whole or not at all.
@@ -81,6 +128,8 @@ def write_curve(path: str | os.PathLike[str], curve: Curve) -> None:
         The file to make or to replace.
     curve
         The curve to write.
+    form
+        The format; None leaves it to the suffix.
 
     Raises
     ------
@@ -89,7 +138,7 @@ def write_curve(path: str | os.PathLike[str], curve: Curve) -> None:
     """
     check_is_curve(curve)
     path = Path(path)
-    form = _format_of(path)
+    form = format_of(path) if form is None else form
     try:
         with atomic_write(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as stream:
             form.write(curve, stream)
@@ -101,9 +150,11 @@ def write_curve(path: str | os.PathLike[str], curve: Curve) -> None:
         raise CurveFileError(path, f"cannot be written: {error}") from error
 
 
-def _format_of(path: Path) -> Format:
+def format_of(path: Path) -> Format:
+    """The format that a suffix tells; a CurveFileError lists the known ones."""
     try:
         return FORMATS[path.suffix.lower()]
     except KeyError:
         found = f"unknown suffix {path.suffix!r}" if path.suffix else "no suffix"
-        raise CurveFileError(path, f"{found}; curve files end in {', '.join(FORMATS)}") from None
+        guess, _, _ = choice(path.suffix, FORMATS).rpartition("choose")
+        raise CurveFileError(path, f"{found}; {guess}curve files end in {', '.join(FORMATS)}") from None

@@ -9,6 +9,7 @@ from ...errors import CurveError
 from ..curve import Curve
 from .source import Source
 
+MAX_DIMENSION = 16  # embeddedness is looked at in each of its planes
 _log = logging.getLogger(__name__)
 
 
@@ -34,12 +35,15 @@ def assemble(source: Source, polygons: Sequence[Polygon]) -> Curve:
     Raises
     ------
     CurveFileError
-        If there is none, one has fewer than 3 vertices, a coordinate is not finite, or dimensions differ;
-        the message names the component, the vertex and the line.
+        If there is none, one has fewer than 3 vertices, a coordinate is not finite, or dimensions differ or are too
+        many; the message names the component, the vertex and the line.
     """
     if not polygons:
         raise source.error("no vertex found; give at least one closed polygon")
     dimension = len(polygons[0].points[0]) if polygons[0].points else 0
+    if dimension > MAX_DIMENSION:
+        reason = f"vertices have {dimension} coordinates; there may be at most {MAX_DIMENSION}"
+        raise source.error(reason, polygons[0].line_of(0))
     components = []
     for number, polygon in enumerate(polygons, start=1):
         _check_points(source, number, polygon, dimension)

@@ -1,12 +1,16 @@
 """The text of a curve file, and errors that point into it."""
 
+import hashlib
 import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import BinaryIO
 
 from ...errors import CurveFileError
 
+MAX_BYTES = 8 << 20  # a hundred thousand vertices with all their digits
+MAX_LINES = 500_000
 _INTEGER = re.compile(r"[+-]?[0-9]+", re.ASCII)
 _LONGEST_INTEGER = 18  # digits; beyond that it is no count or index of anything in memory
 
@@ -21,21 +25,37 @@ class Source:
         Where it comes from, for messages.
     text
         Its contents, with line ends as ``\\n``.
+    sha256
+        Of its bytes, in hexadecimal digits.
     """
 
     path: Path
     text: str
+    sha256: str
 
     @classmethod
     def load(cls, path: Path) -> "Source":
-        """Read a text file; raises CurveFileError if it is missing, empty or not UTF-8 text."""
+        """Read a text file; raises CurveFileError if it is missing, empty, too long or not UTF-8 text."""
         try:
-            data = path.read_bytes()
+            stream = path.open("rb")
+        except (OSError, ValueError) as error:  # a ValueError for a path with a null character
+            raise CurveFileError(path, f"cannot be read: {getattr(error, 'strerror', None) or error}") from error
+        with stream:
+            return cls.read(path, stream)
+
+    @classmethod
+    def read(cls, path: Path, stream: BinaryIO) -> "Source":
+        """Read a stream, which need not end; otherwise as `load`."""
+        try:
+            data = stream.read(MAX_BYTES + 1)
         except OSError as error:
             raise CurveFileError(path, f"cannot be read: {error.strerror or error}") from error
-        except ValueError as error:  # a path with a null character
-            raise CurveFileError(path, f"cannot be read: {error}") from error
-        source = cls(path, _decode(path, data).replace("\r\n", "\n").replace("\r", "\n"))
+        if len(data) > MAX_BYTES:
+            raise CurveFileError(path, f"longer than {MAX_BYTES >> 20} MB, which no curve that can be used is")
+        text = _decode(path, data).replace("\r\n", "\n").replace("\r", "\n")
+        if text.count("\n") > MAX_LINES:
+            raise CurveFileError(path, f"more than {MAX_LINES} lines, which no curve that can be used has")
+        source = cls(path, text, hashlib.sha256(data).hexdigest())
         if not source.text.strip():
             raise source.error("the file is empty")
         return source

@@ -1,12 +1,14 @@
 """Every bad file gives one sentence that names the file, the line and the reason; never a traceback."""
 
+import json
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from mobius_flow.core.curve.io import FORMATS, read_curve
-from mobius_flow.core.errors import CurveFileError
+from mobius_flow.core.curve.io import FORMATS, load_curve, read_curve
+from mobius_flow.core.curve.io.source import MAX_BYTES, MAX_LINES
+from mobius_flow.core.errors import CurveError, CurveFileError
 
 V = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
@@ -141,3 +143,41 @@ def test_any_bytes_give_a_curve_or_one_sentence(tmp_path: Path, suffix: str, dat
         message = str(error)
     assert message is None or message.startswith(str(path))
     assert message is None or "\n" not in message
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_files_longer_than_any_curve(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"long{suffix}"
+    path.write_bytes(b"0 0 0\n" * (MAX_BYTES // 6 + 1))
+    with pytest.raises(CurveFileError, match=r"longer than 8 MB"):
+        read_curve(path)
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
+def test_more_lines_than_any_curve_has(tmp_path: Path, suffix: str, end: str) -> None:
+    path = tmp_path / f"long{suffix}"
+    path.write_bytes(f"0 0 0{end}".encode() * (MAX_LINES + 1))
+    with pytest.raises(CurveFileError, match=r"more than 500000 lines"):
+        read_curve(path)
+
+
+def test_dimensions_beyond_all_use(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps([[float(k == i) for k in range(17)] for i in range(17)]))
+    with pytest.raises(CurveFileError, match=r"line 1: vertices have 17 coordinates; there may be at most 16"):
+        read_curve(path)
+
+
+def test_later_errors_find_file_and_line(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text("# two triangles\n0 0 0\n1 0 0\n0 1 0\n\n0 0 5\n# here\n1 0 5\n0 1 5\n")
+    file = load_curve(path)
+    assert [file.line_of(vertex) for vertex in range(6)] == [2, 3, 4, 6, 8, 9]
+    assert str(file.refusal(CurveError("bad", vertex=4))) == f"{path}, line 8: bad"
+    assert str(file.refusal(CurveError("bad"))) == f"{path}: bad"
+
+
+def test_misspelt_suffixes(tmp_path: Path) -> None:
+    with pytest.raises(CurveFileError, match=r"did you mean \.vect\?"):
+        read_curve(tmp_path / "a.vct")

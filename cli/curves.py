@@ -1,0 +1,74 @@
+"""Curves from and to files and, as ``-``, the standard streams."""
+
+import argparse
+import io
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..core import Curve, CurveError, CurveFileError, MobiusFlowError, write_curve
+from ..core.curve.io import FORMATS, CurveFile, Format, format_of, load_curve
+from .streams import OutputStreamError, emit
+
+STREAM, DEVICE = "-", "/dev/stdout"
+INPUT, OUTPUT = "standard input", "standard output"
+
+
+def add_format(parser: argparse.ArgumentParser) -> None:
+    """Add the option that tells what the suffix does not."""
+    parser.add_argument(
+        "--format",
+        metavar="F",
+        choices=[suffix[1:] for suffix in FORMATS],
+        help=f"what - and files without a known suffix hold: {', '.join(s[1:] for s in FORMATS)} (default for -: txt)",
+    )
+
+
+def format_for(path: str, name: str | None) -> Format:
+    """The format that a file's suffix or else ``--format`` tells; raises CurveFileError if neither does."""
+    if Path(path).suffix.lower() in FORMATS:
+        return format_of(Path(path))
+    if name is None and path != STREAM:
+        return format_of(Path(path))
+    return FORMATS[f".{name or 'txt'}"]
+
+
+def read(path: str, name: str | None = None) -> CurveFile:
+    """Read a curve; raises CurveFileError."""
+    form = format_for(path, name)
+    if path != STREAM:
+        return load_curve(path, form)
+    if sys.stdin is None:
+        raise CurveFileError(INPUT, "is closed")
+    return load_curve(INPUT, form, sys.stdin.buffer)
+
+
+def write(path: str, curve: Curve, name: str | None = None) -> None:
+    """Write a curve; raises MobiusFlowError, or BrokenPipeError where nobody reads standard output."""
+    form = format_for(path, name)
+    if path != STREAM:
+        write_curve(path, curve, form)
+        return
+    try:
+        emit(text_of(curve, form))
+    except OutputStreamError as error:
+        raise MobiusFlowError(str(error)) from error
+
+
+def text_of(curve: Curve, form: Format) -> str:
+    """What a file of the curve would hold, without its last line end; raises CurveError if the format can't hold it."""
+    text = io.StringIO()
+    form.write(curve, text)
+    return text.getvalue().rstrip("\n")
+
+
+@contextmanager
+def refusals(file: CurveFile) -> Iterator[None]:
+    """Add the file's name and the line to errors about its curve."""
+    try:
+        yield
+    except CurveFileError:
+        raise
+    except CurveError as error:
+        raise file.refusal(error) from error

@@ -1,0 +1,96 @@
+"""Where results go, looked at before hours of work are put into them."""
+
+import os
+import secrets
+import stat
+import sys
+from collections.abc import Mapping
+from itertools import combinations
+from pathlib import Path
+
+from ..core import MobiusFlowError
+from ..core.errors import OutputError
+from ..core.files import status_of
+from .curves import DEVICE, OUTPUT, STREAM
+
+Identity = tuple[int | str, ...]
+
+
+def check_places(source: str, outputs: Mapping[str, str | None]) -> None:
+    """Raise a MobiusFlowError unless all outputs can be written and are files of their own.
+
+    Parameters
+    ----------
+    source
+        The input.
+    outputs
+        The path of each, by its name on the command line; those that are None are not wanted.
+    """
+    wanted = {name: path for name, path in outputs.items() if path is not None}
+    for path in wanted.values():
+        check_place(path)
+    named = [("IN", source, _identity(source, 0)), *((k, path, _identity(path, 1)) for k, path in wanted.items())]
+    for (first, _, one), (second, path, other) in combinations(named, 2):
+        if one is not None and one == other:
+            raise MobiusFlowError(f"{path}: {first} and {second} are the same file; give each one of its own")
+
+
+def check_place(path: str) -> None:
+    """Raise a MobiusFlowError unless a file can be there."""
+    if path in (STREAM, DEVICE) and (sys.stdout is None or not sys.stdout.writable()):
+        raise MobiusFlowError(f"{OUTPUT} is closed; name a file")
+    if path == STREAM:
+        return
+    try:
+        _check_file(Path(path))
+    except MobiusFlowError:
+        raise
+    except (OSError, ValueError) as error:  # a ValueError for a null character
+        raise OutputError(path, error) from error
+
+
+def _check_file(path: Path) -> None:
+    found = status_of(path)
+    if found is None:
+        _check_directory(path, Path(os.path.realpath(path)).parent)
+    elif stat.S_ISDIR(found.st_mode):
+        raise MobiusFlowError(f"{path}: is a directory; name a file")
+    elif not os.access(path, os.W_OK):
+        raise MobiusFlowError(f"{path}: is write-protected")
+    elif stat.S_ISREG(found.st_mode):
+        path.open("r+b").close()
+
+
+def _check_directory(path: Path, directory: Path) -> None:
+    if not directory.is_dir():
+        raise MobiusFlowError(f"{path}: cannot be written: the directory {path.parent} does not exist")
+    if not os.access(directory, os.W_OK):
+        raise MobiusFlowError(f"{path}: is write-protected")
+    trial = directory / f".{secrets.token_hex(8)}"
+    try:
+        trial.touch(exist_ok=False)  # the only way to know
+    finally:
+        trial.unlink(missing_ok=True)
+
+
+def is_file(path: str) -> bool:
+    """Whether a path is one of a file, or of nothing yet, rather than of a stream or device, where one may wait."""
+    try:
+        found = status_of(path)
+    except (OSError, ValueError):
+        return True
+    return path != STREAM and (found is None or stat.S_ISREG(found.st_mode))
+
+
+def _identity(path: str, stream: int) -> Identity | None:
+    """What two names of one file have in common; None for terminals and the like, which may be named twice."""
+    try:
+        found = os.fstat(stream) if path == STREAM else status_of(path)
+        if found is None:
+            target = Path(os.path.realpath(path))
+            parent = target.parent.stat()
+            return parent.st_dev, parent.st_ino, os.path.normcase(target.name)
+    except (OSError, ValueError):
+        return None  # a missing input, which has its own sentence
+    regular = stat.S_ISREG(found.st_mode) or stat.S_ISFIFO(found.st_mode)
+    return (found.st_dev, found.st_ino) if regular else None

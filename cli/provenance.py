@@ -1,0 +1,34 @@
+"""Where a result comes from: enough to make it again, bit for bit with the same libraries and BLAS threads."""
+
+import os
+import platform
+from dataclasses import asdict
+
+import numpy
+import scipy
+
+from .. import __version__
+from ..core import RelaxOptions
+from ..core.curve.io import CurveFile
+
+
+def provenance(options: RelaxOptions, file: CurveFile) -> dict[str, object]:
+    """The version, the options as used, the input and its hash, the BLAS threads and the libraries, as plain values."""
+    return {
+        "version": __version__,
+        "options": asdict(options),
+        "input": {"name": str(file.source.path), "sha256": file.source.sha256},
+        "blas_threads": _blas_threads(),
+        "python": platform.python_version(),
+        "numpy": numpy.__version__,
+        "scipy": scipy.__version__,
+    }
+
+
+def _blas_threads() -> int:
+    """The number of threads of OpenBLAS by its own rule."""
+    for name in ("OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"):
+        value = os.environ.get(name, "")
+        if value.isdecimal() and int(value) > 0:
+            return int(value)
+    return os.cpu_count() or 1

@@ -1,0 +1,85 @@
+"""Ctrl-C, SIGTERM and SIGHUP interrupt the work, and wait while results are written.
+
+The first signal raises KeyboardInterrupt; from then on, and wherever `hold` was called, signals wait until `allow`. So
+neither a second signal nor one at an odd moment costs the results of a run.
+"""
+
+import contextlib
+import math
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from types import FrameType
+from typing import Any
+
+INTERRUPTED = 130
+_NUMBERS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+_UNSET = (signal.SIG_DFL, signal.default_int_handler)  # what is neither ignored, as by nohup, nor someone else's
+_TOGETHER = 1.0  # seconds in which signals count as one: a terminal and a parent process often send one each
+_LEAVE, _RAISE, _HOLD = "leave", "raise", "hold"
+
+
+class _State:
+    """What the next signal does, whether one is waiting, and when the last one was raised."""
+
+    mode = _RAISE
+    waiting = False
+    raised = -math.inf  # by the monotonic clock
+
+
+def hold() -> None:
+    """Let signals wait."""
+    _State.mode = _HOLD
+
+
+def allow() -> None:
+    """Let signals interrupt again, first of all one that has been waiting."""
+    _State.mode = _RAISE
+    if _State.waiting:
+        _interrupt()
+
+
+@contextlib.contextmanager
+def raised() -> Iterator[None]:
+    """Let signals raise KeyboardInterrupt in a block; those that are ignored or handled by others are left alone."""
+    mode, previous = _State.mode, _install()
+    _State.mode, _State.waiting, _State.raised = _RAISE, False, -math.inf
+    try:
+        yield
+    finally:
+        _State.mode = mode
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+
+def leave_at_once() -> None:
+    """Let signals end the process with one sentence, for as long as there is nothing to lose, such as in imports."""
+    _State.mode = _LEAVE
+    _install()
+
+
+def _install() -> dict[int, Any]:
+    if threading.current_thread() is not threading.main_thread():
+        return {}
+    return {number: signal.signal(number, _receive) for number in _NUMBERS if signal.getsignal(number) in _UNSET}
+
+
+def _receive(_number: int, _frame: FrameType | None) -> None:
+    if time.monotonic() - _State.raised < _TOGETHER:
+        return
+    if _State.mode == _LEAVE:
+        _State.mode = _HOLD  # one sentence, also where another signal comes now
+        with contextlib.suppress(OSError):
+            os.write(2, b"mobius-flow: interrupted\n")
+        os._exit(INTERRUPTED)
+    if _State.mode == _HOLD:
+        _State.waiting = True
+        return
+    _interrupt()
+
+
+def _interrupt() -> None:
+    _State.mode, _State.waiting, _State.raised = _HOLD, False, time.monotonic()
+    raise KeyboardInterrupt
