@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..core import OptionError
 from ..core.types import FloatArray
 from .exchange import write_points
 from .motion import Keys
 
 if TYPE_CHECKING:
     import bpy
+
+LAST_FRAME = 1_048_574  # of any scene; up to it, 32-bit numbers tell a sixteenth of a frame apart
+FRAMES_PER_ITERATE = (0.1, 10_000.0)
 
 _LINEAR = 1  # 'LINEAR' among the interpolations of a keyframe, as arrays of them are written in one call
 
@@ -41,6 +45,11 @@ class KeyOptions:
         Wanted number of keys, see `Motion.keys`.
     fit_bevel
         Draw the curve as the thickest tube that does not touch itself, at every key.
+
+    Raises
+    ------
+    OptionError
+        If a value is outside its range.
     """
 
     output: Output = Output.SHAPE_KEYS
@@ -49,9 +58,29 @@ class KeyOptions:
     max_keys: int | None = None
     fit_bevel: bool = False
 
+    def __post_init__(self) -> None:
+        if not abs(self.start_frame) <= LAST_FRAME:  # not a number is refused too
+            raise OptionError(f"Start Frame is {self.start_frame:g}; it must be from {-LAST_FRAME} to {LAST_FRAME}")
+        low, high = FRAMES_PER_ITERATE
+        if not low <= self.frames_per_iterate <= high:
+            raise OptionError(f"Frames/Iterate is {self.frames_per_iterate:g}; it must be from {low:g} to {high:g}")
+
+    def check_room(self, iterations: int) -> None:
+        """Raise an OptionError if so many iterations would be keyed to beyond the last frame of a scene."""
+        end = self.start_frame + self.frames_per_iterate * iterations
+        if self.output is not Output.RESULT and end > LAST_FRAME:
+            raise OptionError(
+                f"The keys would go on to frame {end:.0f}, but Blender's last is {LAST_FRAME}; "
+                "give a smaller Start Frame, fewer Frames/Iterate or fewer Max Iterations"
+            )
+
     def scene_frames(self, keys: Keys) -> FloatArray:
-        """Scene frame of each key; shape (keys,)."""
-        return self.start_frame + self.frames_per_iterate * np.array([key.time for key in keys.keys])
+        """Scene frame of each key as Blender stores it, a 32-bit number, each later than the one before; (keys,)."""
+        times = np.array([key.time for key in keys.keys])
+        frames = (self.start_frame + self.frames_per_iterate * times).astype(np.float32)
+        for k in range(1, len(frames)):
+            frames[k] = max(frames[k], np.nextafter(frames[k - 1], np.float32(np.inf)))
+        return frames.astype(np.float64)
 
 
 def write(obj: "bpy.types.Object", keys: Keys, options: KeyOptions) -> None:
@@ -158,13 +187,18 @@ def all_fcurves() -> Iterator["bpy.types.FCurve"]:
     import bpy
 
     for action in bpy.data.actions:
-        if not hasattr(action, "slots"):  # Blender 4.3 and before
-            yield from action.fcurves
-            continue
-        for layer in action.layers:
-            for strip in layer.strips:
-                for channels in strip.channelbags:
-                    yield from channels.fcurves
+        yield from fcurves_of(action)
+
+
+def fcurves_of(action: "bpy.types.Action") -> Iterator["bpy.types.FCurve"]:
+    """Yield the F-curves of an action, in all versions of Blender."""
+    if not hasattr(action, "slots"):  # Blender 4.3 and before
+        yield from action.fcurves
+        return
+    for layer in action.layers:
+        for strip in layer.strips:
+            for channels in strip.channelbags:
+                yield from channels.fcurves
 
 
 class FCurves:

@@ -5,13 +5,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mobius_flow.addon.motion import Motion
+from mobius_flow.addon.placement import Link, Placement
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, relax
 from mobius_flow.core.collision import free_motion, is_free
 from shapes import regular_polygon, torus_trefoil
 
 
-def identity(vertices):
-    return vertices
+def at_rest(*counts):
+    """Objects with so many components each, all at the world's origin."""
+    return Link(tuple(Placement(np.eye(3), np.zeros(3)) for _ in counts), counts)
 
 
 def iterate(index, vertices, mesh_of, path=None, **changes):
@@ -29,7 +31,7 @@ def around(angle):
 
 
 def collected(curves, paths=()):
-    motion = Motion(identity)
+    motion = Motion(at_rest(len(curves[0].components)))
     for k, curve in enumerate(curves):
         motion.add(iterate(k, curve.vertices, curve, dict(paths).get(k)))
     return motion
@@ -81,7 +83,7 @@ def test_thinning_where_nothing_collides(limit):
 @pytest.mark.parametrize("limit", [None, 2, 6])
 def test_a_real_run_is_proved(limit):
     iterates = list(relax(torus_trefoil(48), RelaxOptions(max_iterations=40)))
-    motion = Motion(identity)
+    motion = Motion(at_rest(1))
     for each in iterates:
         motion.add(each)
     keys = motion.keys(is_free, limit)
@@ -108,7 +110,7 @@ def test_rounding_through_contact_is_counted():
 
 def test_an_uncertified_run_has_no_certified_result():
     curve = around(0.0)
-    motion = Motion(identity)
+    motion = Motion(at_rest(2))
     motion.add(iterate(0, curve.vertices, curve))
     motion.add(iterate(1, curve.vertices, curve, certified=False))
     assert not motion.result(is_free).certified
@@ -116,7 +118,7 @@ def test_an_uncertified_run_has_no_certified_result():
 
 def test_a_stalled_run_repeats_its_last_iterate():
     curve = around(0.0)
-    motion = Motion(identity)
+    motion = Motion(at_rest(2))
     motion.add(iterate(0, curve.vertices, curve))
     motion.add(iterate(0, curve.vertices, curve, status=Status.STALLED, message="stalled"))
     assert motion.last.status is Status.STALLED

@@ -88,7 +88,7 @@ def switched_off():
 def shared_data():
     obj = add_trefoil()
     bpy.context.scene.collection.objects.link(bpy.data.objects.new("Other", obj.data))
-    return "The curve data 'Knot' is shared"
+    return "'Knot' shares its curve data 'Knot' with other objects"
 
 
 def zero_scale():
