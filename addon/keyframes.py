@@ -105,6 +105,9 @@ def erase(obj: "bpy.types.Object") -> None:
     obj.shape_key_clear()
     for action in actions:
         bpy.data.actions.remove(action)
+    animation = obj.data.animation_data
+    if animation and not (animation.drivers or animation.nla_tracks):
+        obj.data.animation_data_clear()
 
 
 def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None) -> None:

@@ -56,6 +56,9 @@ class CURVE_OT_mobius_flow_relax(LiveRelax, bpy.types.Operator):  # noqa: N801 -
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        except MemoryError:
+            self.report({"ERROR"}, "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations")
+            return {"CANCELLED"}
         self.report({"INFO"} if report.clean else {"WARNING"}, report.sentence)
         return {"FINISHED"}
 
