@@ -8,7 +8,7 @@ from .live import registry
 from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_stop
 from .live.run import Run
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
-from .session import State, scope
+from .session import State
 
 
 class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
@@ -71,7 +71,8 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) 
         _value(box, "Iteration", f"{run.last.index}")
         _value(box, "Step", f"{run.last.step_size:.3g}")
         proved = run.last.certified if run.report is None else run.report.certified
-        _value(box, "Free of contact", scope(len(run.group.names)) if proved else "not proved everywhere")
+        whom = "with itself" if len(run.group.names) == 1 else "among themselves"
+        _value(box, "Free of contact", whom if proved else "not proved")
     if run.report is not None and run.report.radius is not None:
         _value(box, "Tube radius", f"{run.report.radius:.4g}")
     if run.message:

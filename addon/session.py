@@ -70,24 +70,16 @@ class Report:
     @property
     def sentence(self) -> str:
         """The same for people."""
-        proof = f"proved free of contact {self.scope}" if self.certified else "NOT proved free of contact everywhere"
+        # nothing but the curves that were relaxed is looked at
+        whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
+        proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
         animation = f"{self.keys} keys up to frame {self.last_frame:g}, " if self.keys > 1 else ""
         return f"{named(self.names)} {self.iterate.message.rstrip('.')}; {animation}{proof}"
-
-    @property
-    def scope(self) -> str:
-        """What the proof is about: nothing but the curves that were relaxed."""
-        return scope(len(self.names))
 
     @property
     def clean(self) -> bool:
         """Whether nothing needs the user's attention."""
         return self.certified and self.iterate.status is not Status.STALLED
-
-
-def scope(objects: int) -> str:
-    """With what so many curve objects, relaxed together, are proved free of contact."""
-    return "with itself" if objects == 1 else "with themselves and each other"
 
 
 @dataclass(frozen=True, eq=False)

@@ -118,6 +118,8 @@ class Run:
                 self._write()
         except MobiusFlowError as error:
             self._fail(str(error))
+        except MemoryError:
+            self._fail("Memory ran out; all is as it was")
         except Exception:
             self._fail("Something went wrong; all is as it was")
             raise

@@ -139,3 +139,59 @@ def test_one_unproved_leg_is_halved():
     keys = motion.keys(lambda _mesh, a, b: np.abs(b - a).max() < 0.3)
     assert [key.time for key in keys.keys] == [0, 0.25, 0.5, 0.75, 1]
     assert keys.certified
+
+
+def placed(linear, origin):
+    return Placement(np.array(linear, dtype=float), np.array(origin, dtype=float))
+
+
+TURNED = placed([[0, -2, 0], [0.5, 0, 0.1], [0, 0, -3]], [100, -7, 3])
+
+
+@pytest.mark.parametrize("placements", [(TURNED, placed(np.eye(3), [1, 2, 3])), (placed(np.eye(3), 3 * [0]), TURNED)])
+def test_chords_of_different_objects_are_proved_against_each_other(placements):
+    """Each square by itself may go straight; together the second must go round the first."""
+    link = Link(placements, (1, 1))
+    curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
+    motion = Motion(link)
+    for k, curve in enumerate(curves):
+        motion.add(iterate(k, curve.vertices, curve))
+    keys = motion.keys(is_free, limit=2)
+    mesh = curves[0].mesh
+    assert keys.certified
+    assert 2 < len(keys.keys) < 10
+    for a, b in pairwise(keys.keys):
+        world = [
+            np.concatenate([placements[k].to_world(key.points[mesh.slices[k]].astype(np.float64)) for k in (0, 1)])
+            for key in (a, b)
+        ]
+        assert is_free(mesh, *world)
+    for k, s in enumerate(mesh.slices):
+        alone = Motion(Link((placements[k],), (1,)))
+        for index, curve in enumerate(curves):
+            part = Curve(curve.vertices[s])
+            alone.add(iterate(index, part.vertices, part))
+        assert len(alone.keys(is_free, limit=2).keys) == 2
+
+
+def test_a_single_object_is_proved_in_its_own_numbers():
+    """In the common space of one object points are exactly what Blender stores, wherever the object is."""
+    curve = torus_trefoil(30)
+    stored = TURNED.to_local(curve.vertices).astype(np.float32)
+    link = Link((TURNED,), (1,))
+    assert np.array_equal(link.to_common(curve.mesh, stored), stored)
+    assert link.scales == (1.0,)
+
+
+def test_objects_placed_alike_are_proved_in_their_own_numbers():
+    curve = around(0.3)
+    link = Link((TURNED, TURNED), (1, 1))
+    stored = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
+    assert np.array_equal(link.to_common(curve.mesh, stored), stored)
+
+
+def test_the_common_space_is_the_first_objects():
+    curve = around(0.3)
+    link = Link((TURNED, placed(np.eye(3), [1, 2, 3])), (1, 1))
+    common = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))
+    np.testing.assert_allclose(TURNED.to_world(common), curve.vertices, atol=1e-13)
