@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core.types import FloatArray
-from .placement import Placement
 from .words import named
 
 if TYPE_CHECKING:
@@ -14,7 +13,6 @@ if TYPE_CHECKING:
 
 _SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}
 _MARGIN = 0.1  # of the diagonal of the curves' box
-_MOST = 1000  # objects that are looked at on every redraw
 
 
 def warning(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> str | None:
@@ -28,20 +26,25 @@ def warning(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"])
 
 def _near(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> list["bpy.types.Object"]:
     """Visible objects with a surface or a line whose boxes in the world overlap those of the curves, enlarged."""
-    if not objects:
+    everything = context.view_layer.objects
+    together = set(objects)
+    mine = np.array([obj in together for obj in everything], dtype=bool)
+    if not mine.any():
         return []
-    boxes = np.array([_box(obj) for obj in objects])
-    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
-    margin = _MARGIN * np.linalg.norm(high - low)
-    others = [obj for obj in context.visible_objects[:_MOST] if obj.type in _SOLID and obj not in objects]
-    if not others:
-        return []
-    theirs = np.array([_box(obj) for obj in others])
-    overlap = ((theirs[:, 0] <= high + margin) & (theirs[:, 1] >= low - margin)).all(axis=1)
-    return [obj for obj, near in zip(others, overlap, strict=True) if near]
+    low, high = _boxes(everything)
+    lowest, highest = low[mine].min(axis=0), high[mine].max(axis=0)
+    margin = _MARGIN * np.linalg.norm(highest - lowest)
+    overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
+    candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
+    return [obj for obj in candidates if obj.type in _SOLID and obj.visible_get()]
 
 
-def _box(obj: "bpy.types.Object") -> FloatArray:
-    """Lowest and highest coordinates in the world; shape (2, 3)."""
-    corners = Placement.of(obj).to_world(np.array(obj.bound_box, dtype=np.float64))
-    return np.stack([corners.min(axis=0), corners.max(axis=0)])
+def _boxes(objects: "bpy.types.bpy_prop_collection") -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest coordinates of objects in the world, each of shape (n, 3)."""
+    matrices = np.empty(16 * len(objects), dtype=np.float32)
+    corners = np.empty(24 * len(objects), dtype=np.float32)
+    objects.foreach_get("matrix_world", matrices)  # column by column
+    objects.foreach_get("bound_box", corners)
+    matrices = matrices.reshape(-1, 4, 4)
+    world = corners.reshape(-1, 8, 3) @ matrices[:, :3, :3] + matrices[:, 3:, :3]
+    return world.min(axis=1), world.max(axis=1)
