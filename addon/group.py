@@ -8,7 +8,7 @@ from ..core.curve import Mesh
 from ..core.types import FloatArray
 from . import bevel, keyframes
 from .exchange import read_link
-from .keyframes import KeyOptions
+from .key_options import KeyOptions
 from .member import Member
 from .motion import Keys
 from .placement import Frame

@@ -58,7 +58,7 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     reason = refusal(context)
     if reason and (run is None or any(obj not in objects for obj in selected_curves(context))):
         labels.sentence(layout, context, reason)
-    if unguarded := neighbours.warning(context, objects):
+    if (run or not reason) and (unguarded := neighbours.warning(context, objects)):
         labels.sentence(layout, context, unguarded, icon="ERROR")
 
 

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..core import METHODS, RelaxOptions
-from .keyframes import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output
+from .key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output
 
 _DEFAULTS = RelaxOptions()
 _KEY_DEFAULTS = KeyOptions()

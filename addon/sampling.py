@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import bpy
 
 _KINDS = {"BEZIER": "Bézier", "NURBS": "NURBS"}
+_MOST_QUESTIONS = 5
 
 
 def kind(spline: "bpy.types.Spline") -> str:
@@ -24,9 +25,12 @@ def smooth_splines(data: "bpy.types.Curve") -> list["bpy.types.Spline"]:
     return [spline for spline in data.splines if spline.type != "POLY"]
 
 
-def question(objects: Sequence["bpy.types.Object"]) -> str:
-    """Ask whether the smooth splines of objects may become polygons; raises as `sampled` does."""
-    return "; ".join(_question(obj) for obj in objects if smooth_splines(obj.data))
+def questions(objects: Sequence["bpy.types.Object"]) -> list[str]:
+    """Ask whether the smooth splines of objects may become polygons, a line each; raises as `sampled` does."""
+    smooth = [obj for obj in objects if smooth_splines(obj.data)]
+    lines = [_question(obj) for obj in smooth[:_MOST_QUESTIONS]]
+    more = len(smooth) - len(lines)
+    return [*lines, f"{more} more objects have smooth splines too"] if more else lines
 
 
 def _question(obj: "bpy.types.Object") -> str:

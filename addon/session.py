@@ -16,7 +16,7 @@ from ..core.curve import Mesh
 from ..core.types import FloatArray
 from . import bevel
 from .group import Group
-from .keyframes import KeyOptions, Output
+from .key_options import KeyOptions, Output
 from .motion import Keys, Motion, Proof
 from .placement import Frame
 from .words import named

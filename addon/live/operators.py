@@ -131,16 +131,17 @@ class CURVE_OT_mobius_flow_sample(bpy.types.Operator):  # noqa: N801
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Ask."""
         try:
-            self.question = sampling.question(selected_curves(context))
+            self.questions = sampling.questions(selected_curves(context))
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return set(context.window_manager.invoke_props_dialog(self, width=420))
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Show the question."""
-        self.layout.label(text=self.question, icon="QUESTION")
-        self.layout.label(text="For more or fewer points change the curve's Resolution U.")
+        """Show the questions."""
+        for question in self.questions:
+            self.layout.label(text=question, icon="QUESTION")
+        self.layout.label(text="For more or fewer points change the curve's Resolution Preview U.")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Relax with the answer."""

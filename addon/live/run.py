@@ -13,7 +13,7 @@ from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status
 from ...core.curve import Mesh
 from ...core.types import FloatArray
 from ..group import Group
-from ..keyframes import KeyOptions
+from ..key_options import KeyOptions
 from ..placement import Frame
 from ..session import Prepared, Report, Session, State
 from . import registry

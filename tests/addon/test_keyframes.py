@@ -8,7 +8,8 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored  # noqa: E402
-from mobius_flow.addon.keyframes import KeyOptions, Output, write  # noqa: E402
+from mobius_flow.addon.key_options import KeyOptions, Output  # noqa: E402
+from mobius_flow.addon.keyframes import write  # noqa: E402
 from mobius_flow.addon.motion import Key, Keys  # noqa: E402
 from mobius_flow.core import Curve, RelaxOptions  # noqa: E402
 from mobius_flow.core import relax as iterates_of  # noqa: E402

@@ -83,6 +83,14 @@ def test_a_segment_is_no_polygon():
     assert contents() == before
 
 
-def test_the_question_counts_points():
-    obj = smooth_link("BEZIER", 5)
-    assert sampling.question([obj]) == "'Knot' has 2 Bézier splines; they become polygons of 60 points in all"
+def test_the_questions_count_points():
+    question = "'Knot' has 2 Bézier splines; they become polygons of 60 points in all"
+    assert sampling.questions([smooth_link("BEZIER", 5)]) == [question]
+
+
+def test_of_many_objects_some_are_asked_about():
+    objects = [smooth_link("NURBS", 3) for _ in range(8)] + [add_curve([hopf_link(6).vertices[:6]])]
+    assert len(sampling.questions(objects[5:])) == 3
+    lines = sampling.questions(objects)
+    assert [line.split("'")[1] for line in lines[:-1]] == [obj.name for obj in objects[:5]]
+    assert lines[-1] == "3 more objects have smooth splines too"
