@@ -95,11 +95,11 @@ class Group:
                 relative = radii / radii[-1]
             yield from keyframes.writing(obj, keys.part(vertices), options, relative)
 
-    def restore(self) -> None:
-        """Put back what was there; what was deleted or changed by somebody else is left as it is."""
+    def restore(self) -> bool:
+        """Put back what was there, but for what somebody else deleted or changed; return whether all is as it was."""
         with outside_edit_mode(self.objects):
-            for member in self._members:
-                member.restore()
+            restored = [member.restore() for member in self._members]
+        return all(restored)
 
     def set_aside(self) -> None:
         """Put all splines back for a moment, because the file is being saved."""

@@ -78,14 +78,19 @@ class Member:
             return f"Points of '{self.name}' were added or removed"
         return f"'{self.name}' was given shape keys" if self._foreign_keys(data) else None
 
-    def restore(self) -> None:
-        """Put back what was there, even if the object is gone and its data is not, unless someone else changed it."""
+    def restore(self) -> bool:
+        """Put back what was there, even if the object is gone and its data is not, unless someone else changed it.
+
+        Return whether the object is as it was.
+        """
         data, obj = self.data, self.object
         if data is None or shape(data) != self._shape or self._foreign_keys(data):
-            return
-        if obj is not None and obj.data == data and self.keyed:
+            return False
+        owned = obj is not None and obj.data == data
+        if owned and self.keyed:
             keyframes.erase(obj)
         self._snapshot.restore(data)
+        return owned
 
     def set_aside(self) -> None:
         """Put the splines back for a moment, unless they are lost."""

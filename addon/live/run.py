@@ -101,7 +101,9 @@ class Run:
 
     def cancel(self, message: str = "Cancelled; all is as it was") -> None:
         """Put the curve back as it was."""
-        self._end(State.CANCELLED, message)
+        if not self.state.over:
+            self._close(State.CANCELLED, message)
+            self.group.restore()
 
     # -- what the timer does ------------------------------------------------------------------------------------
 
@@ -111,7 +113,7 @@ class Run:
             return
         try:
             if reason := self.group.lost():
-                self._end(State.LOST, f"{reason}; the relaxation has ended, and the rest is as it was")
+                self._lose(f"{reason}; the relaxation has ended")
             elif self.state is State.RUNNING:
                 self._take()
             elif self.state is State.FINISHING:
@@ -179,10 +181,13 @@ class Run:
         self.failed = True
         self.cancel(message)
 
-    def _end(self, state: State, message: str) -> None:
-        if not self.state.over:
-            self._close(state, message)
-            self.group.restore()
+    def _lose(self, message: str) -> None:
+        """End because of what somebody did to an object; what else there is is put back."""
+        self._close(State.LOST, message)
+        if self.group.restore():
+            self.message += ", and every curve is as it was"
+        elif len(self.group.names) > 1:
+            self.message += ", and the others are as they were"
 
     def _close(self, state: State, message: str) -> None:
         self.state, self.message = state, message

@@ -421,7 +421,8 @@ def test_what_happens_to_one_object_restores_the_others(operator, rings, act):
     said = act(second)
     assert operator.event() == {"CANCELLED"}
     assert operator.run.state is State.LOST
-    assert operator.reports[-1][1].startswith(said)
+    rest = "every curve is as it was" if act in (edit, move) else "the others are as they were"
+    assert operator.reports[-1][1] == f"{said}; the relaxation has ended, and {rest}"
     restored(first, before)
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
