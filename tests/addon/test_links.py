@@ -219,7 +219,17 @@ def vertex_parented(obj):
     return "its parent"
 
 
-@pytest.mark.parametrize("move", [keyed, driven, constrained, tracked, carried, vertex_parented])
+def on_a_path(obj):
+    obj.parent = add_curve([hopf_link(24).vertices[:24] + 9], "Path")
+    obj.parent.data.use_path = True
+    obj.parent.select_set(False)
+    return "its parent"
+
+
+MOVES = [keyed, driven, constrained, tracked, carried, vertex_parented, on_a_path]
+
+
+@pytest.mark.parametrize("move", MOVES)
 def test_places_of_several_must_stay(move):
     _, second = rings()
     mover = move(second)
@@ -228,7 +238,7 @@ def test_places_of_several_must_stay(move):
     assert said.startswith(f"'B' is moved by {mover}, and curves relaxed together must keep their places")
 
 
-@pytest.mark.parametrize("move", [keyed, driven, constrained, tracked, carried, vertex_parented])
+@pytest.mark.parametrize("move", MOVES)
 def test_a_single_curve_may_be_moved(move):
     first, second = rings()
     move(second)
