@@ -5,10 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..core import Curve
-from ..core.curve import Mesh
-from ..core.types import FloatArray
-from .keyframes import Output
-from .motion import Keys
 from .tube import free_radius, thickest_radius
 
 if TYPE_CHECKING:
@@ -21,12 +17,6 @@ def can_fit(data: "bpy.types.Curve") -> bool:
     """Whether a curve is drawn as a line or a plain round tube; any other shape is the user's own."""
     plain = data.bevel_mode == "ROUND" and data.taper_object is None and not data.extrude and not data.offset
     return plain and all(_radii_are_one(spline) for spline in data.splines)
-
-
-def radii(mesh: Mesh, keys: Keys, output: Output) -> FloatArray:
-    """Radius of the tube at every key, in the object's units; without shape keys the last one only."""
-    shown = keys.keys if output is Output.SHAPE_KEYS else keys.keys[-1:]
-    return np.array([fitting_radius(Curve(key.points.astype(np.float64), mesh)) for key in shown])
 
 
 def fitting_radius(curve: Curve) -> float:

@@ -8,7 +8,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..core.types import FloatArray
 from .keyframes import FCurves
-from .motion import Frame
+from .placement import Frame
 from .stage import Stage, add, place
 
 if TYPE_CHECKING:

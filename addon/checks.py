@@ -1,12 +1,13 @@
 """What cannot be relaxed, and why: one sentence for people, naming what to do about it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import sampling
 from .live import registry
+from .moving import what_moves
 
 if TYPE_CHECKING:
     import bpy
@@ -14,44 +15,56 @@ if TYPE_CHECKING:
 _FLATTEST = 1e-6  # smallest ratio of an object's scales that 32-bit matrices can be inverted with
 
 
-def refusal(context: "bpy.types.Context") -> str | None:
-    """Say why the active object cannot be relaxed, or return None if it can.
+def selected_curves(context: "bpy.types.Context") -> list["bpy.types.Object"]:
+    """The curve objects that are relaxed together: all that are selected, whichever is active."""
+    return [obj for obj in context.selected_objects if obj.type == "CURVE"]
 
-    Cheap enough for every redraw: only the coordinates of points are left for `exchange.read_curve` to check. Smooth
-    splines are no hindrance here, see `unsampled`.
+
+def refusal(context: "bpy.types.Context") -> str | None:
+    """Say why the selected curves cannot be relaxed, or return None if they can.
+
+    Cheap enough for every redraw: only coordinates and what is drawn for smooth splines are left for
+    `exchange.read_link` to check. Smooth splines are no hindrance here, see `unsampled`.
     """
     if reason := _running():
         return reason
-    obj = context.active_object
-    if obj is None or (obj.visible_get() and not obj.select_get()):  # hiding deselects
-        return "Select a curve object first"
-    return next((reason for check in _CHECKS for reason in check(obj)), None)
+    objects = selected_curves(context)
+    if not objects:
+        return _no_curve(context.active_object)
+    checks = _CHECKS if len(objects) == 1 else (*_CHECKS, _place)
+    return next((reason for obj in objects for check in checks for reason in check(obj)), None)
 
 
-def unsampled(obj: "bpy.types.Object") -> str | None:
+def unsampled(objects: Sequence["bpy.types.Object"]) -> str | None:
     """Say which spline must become a polygon first, or return None if there is none: nobody was asked yet."""
-    for k, spline in enumerate(obj.data.splines, 1):
-        if spline.type != "POLY":
-            return (
-                f"Spline {k} of '{obj.name}' is a {sampling.kind(spline)} spline; convert it to Poly first "
-                "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines"
-            )
+    for obj in objects:
+        for k, spline in enumerate(obj.data.splines, 1):
+            if spline.type != "POLY":
+                return (
+                    f"Spline {k} of '{obj.name}' is a {sampling.kind(spline)} spline; convert it to Poly first "
+                    "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines"
+                )
     return None
 
 
 def _running() -> str | None:
     run = registry.current()
-    return f"'{run.name}' is being relaxed; stop that first" if run else None
+    return f"{run.name} is being relaxed; stop that first" if run else None
 
 
-def _object(obj: "bpy.types.Object") -> Iterator[str]:
-    if obj.type != "CURVE":
-        kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
-        yield f"'{obj.name}' is of type {kind}; select a curve object, or convert it with Object > Convert > Curve"
-    elif obj.mode != "OBJECT":
+def _no_curve(obj: "bpy.types.Object | None") -> str:
+    """Say what is wrong with the active object where no curve is selected; hiding deselects."""
+    if obj is not None and obj.type == "CURVE" and not obj.visible_get():
+        return f"'{obj.name}' is hidden; show it first"
+    if obj is None or obj.type == "CURVE" or not obj.select_get():
+        return "Select a curve object first"
+    kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
+    return f"'{obj.name}' is of type {kind}; select a curve object, or convert it with Object > Convert > Curve"
+
+
+def _mode(obj: "bpy.types.Object") -> Iterator[str]:
+    if obj.mode != "OBJECT":
         yield f"'{obj.name}' is being edited; go back to Object Mode first"
-    elif not obj.visible_get():
-        yield f"'{obj.name}' is hidden; show it first"
 
 
 def _ownership(obj: "bpy.types.Object") -> Iterator[str]:
@@ -62,7 +75,7 @@ def _ownership(obj: "bpy.types.Object") -> Iterator[str]:
         yield f"'{obj.name}' is a library override; make it local first (Object > Relations > Make Local)"
     elif data.users - data.use_fake_user > 1:
         yield (
-            f"The curve data '{data.name}' is shared by several objects; make it single-user first "
+            f"'{obj.name}' shares its curve data '{data.name}' with other objects; make it single-user first "
             "(Object > Relations > Make Single User)"
         )
 
@@ -74,10 +87,15 @@ def _splines(obj: "bpy.types.Object") -> Iterator[str]:
     if not data.splines:
         yield f"'{obj.name}' has no splines; give it at least one closed poly spline"
     for k, spline in enumerate(data.splines, 1):
+        fewest = 2 if spline.type == "BEZIER" else 3
+        count = len(spline.bezier_points if spline.type == "BEZIER" else spline.points)
         if not spline.use_cyclic_u:
             yield f"Spline {k} of '{obj.name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)"
-        elif spline.type == "POLY" and len(spline.points) < 3:
-            yield f"Spline {k} of '{obj.name}' has fewer than 3 points; a closed curve needs at least 3"
+        elif count < fewest:
+            yield (
+                f"Spline {k} of '{obj.name}' has fewer than {fewest} points, too few for a closed curve; "
+                "give it more, or delete it"
+            )
 
 
 def _animation(obj: "bpy.types.Object") -> Iterator[str]:
@@ -86,9 +104,9 @@ def _animation(obj: "bpy.types.Object") -> Iterator[str]:
         yield f"'{obj.name}' has shape keys; remove them or relax a copy without them"
     animation = data.animation_data
     if animation and (animation.action or animation.nla_tracks):
-        yield f"The curve data '{data.name}' is animated; remove the animation or relax a copy without it"
+        yield f"The curve data of '{obj.name}' is animated; remove the animation or relax a copy without it"
     elif animation and any(driver.data_path.startswith("splines") for driver in animation.drivers):
-        yield f"Points of '{data.name}' are driven; remove the drivers or relax a copy without them"
+        yield f"Points of '{obj.name}' are driven; remove the drivers or relax a copy without them"
 
 
 def _transform(obj: "bpy.types.Object") -> Iterator[str]:
@@ -98,4 +116,12 @@ def _transform(obj: "bpy.types.Object") -> Iterator[str]:
         yield f"'{obj.name}' is scaled to nothing in some direction; give it a scale other than 0"
 
 
-_CHECKS = (_object, _ownership, _splines, _animation, _transform)
+def _place(obj: "bpy.types.Object") -> Iterator[str]:
+    if mover := what_moves(obj):
+        yield (
+            f"'{obj.name}' is moved by {mover}, and curves relaxed together must keep their places; "
+            "remove that, or relax each curve alone"
+        )
+
+
+_CHECKS = (_mode, _ownership, _splines, _animation, _transform)

@@ -13,6 +13,7 @@ from . import camera, stage, tube
 from .exchange import new_curve_data, write_points
 from .keyframes import write_shape_keys
 from .motion import Keys, Motion
+from .placement import Link, Placement
 
 if TYPE_CHECKING:
     import bpy
@@ -46,9 +47,9 @@ class Origin:
         location = np.zeros(3) if near and scale == 1.0 else (0.5 * (low + high)).astype(np.float32).astype(float)
         return cls(location, scale)
 
-    def to_local(self, vertices: FloatArray) -> FloatArray:
-        """World to object; shape (n, 3)."""
-        return (spatial(vertices) - self.location) / self.scale
+    def link(self, mesh: Mesh) -> Link:
+        """All components of a curve in one object here."""
+        return Link((Placement(self.scale * np.eye(3), self.location),), (len(mesh.component_sizes),))
 
 
 def spatial(vertices: FloatArray) -> FloatArray:
@@ -78,7 +79,7 @@ def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
         )
     check_dimension(start)
     origin = Origin.of(spatial(start.vertices))
-    motion = Motion(origin.to_local)
+    motion = Motion(origin.link(start.mesh))
     for iterate in iterates:
         motion.add(iterate)
     return motion, origin

@@ -1,57 +1,19 @@
 """Motion written into curve data: absolute shape keys with one F-curve, or an F-curve for every coordinate."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..core.types import FloatArray
 from .exchange import write_points
+from .key_options import KeyOptions, Output
 from .motion import Keys
 
 if TYPE_CHECKING:
     import bpy
 
 _LINEAR = 1  # 'LINEAR' among the interpolations of a keyframe, as arrays of them are written in one call
-
-
-class Output(Enum):
-    """What is left on the object in the end; the values name it for people."""
-
-    SHAPE_KEYS = "Shape Keys"
-    FCURVES = "F-Curves"
-    RESULT = "Result Only"
-
-
-@dataclass(frozen=True, kw_only=True)
-class KeyOptions:
-    """How a relaxation becomes an animation.
-
-    Parameters
-    ----------
-    output
-        What is left on the object.
-    start_frame
-        Scene frame of the start.
-    frames_per_iterate
-        Scene frames from one iterate to the next.
-    max_keys
-        Wanted number of keys, see `Motion.keys`.
-    fit_bevel
-        Draw the curve as the thickest tube that does not touch itself, at every key.
-    """
-
-    output: Output = Output.SHAPE_KEYS
-    start_frame: float = 1.0
-    frames_per_iterate: float = 1.0
-    max_keys: int | None = None
-    fit_bevel: bool = False
-
-    def scene_frames(self, keys: Keys) -> FloatArray:
-        """Scene frame of each key; shape (keys,)."""
-        return self.start_frame + self.frames_per_iterate * np.array([key.time for key in keys.keys])
 
 
 def write(obj: "bpy.types.Object", keys: Keys, options: KeyOptions) -> None:
@@ -76,6 +38,9 @@ def erase(obj: "bpy.types.Object") -> None:
     obj.shape_key_clear()
     for action in actions:
         bpy.data.actions.remove(action)
+    animation = obj.data.animation_data
+    if animation and not (animation.drivers or animation.nla_tracks):
+        obj.data.animation_data_clear()
 
 
 def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None) -> None:
@@ -158,13 +123,18 @@ def all_fcurves() -> Iterator["bpy.types.FCurve"]:
     import bpy
 
     for action in bpy.data.actions:
-        if not hasattr(action, "slots"):  # Blender 4.3 and before
-            yield from action.fcurves
-            continue
-        for layer in action.layers:
-            for strip in layer.strips:
-                for channels in strip.channelbags:
-                    yield from channels.fcurves
+        yield from fcurves_of(action)
+
+
+def fcurves_of(action: "bpy.types.Action") -> Iterator["bpy.types.FCurve"]:
+    """Yield the F-curves of an action, in all versions of Blender."""
+    if not hasattr(action, "slots"):  # Blender 4.3 and before
+        yield from action.fcurves
+        return
+    for layer in action.layers:
+        for strip in layer.strips:
+            for channels in strip.channelbags:
+                yield from channels.fcurves
 
 
 class FCurves:

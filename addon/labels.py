@@ -6,7 +6,7 @@ import blf
 import bpy
 
 _FONT = 0  # Blender's own
-_MARGIN = 86  # pixels beside the text at the usual scale: tabs, padding and the icon
+_MARGIN = 100  # pixels beside the text at the usual scale: tabs, padding, the frame of a box and the icon
 
 
 def sentence(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "INFO") -> None:

@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from ..core import Iterate
 from ..core.curve import Mesh
 from ..core.types import FloatArray
+from .placement import Frame, Link
 
-Frame = npt.NDArray[np.float32]
 Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
 
 _HALVINGS = 5  # of one leg; its keys are then still further apart in time than what Blender tells apart
@@ -50,18 +49,28 @@ class Keys:
         """Whether the whole animation was proved free of contact."""
         return self.unproved == 0
 
+    def part(self, vertices: slice) -> "Keys":
+        """The same keys for some of the vertices."""
+        return Keys(tuple(Key(key.time, key.points[vertices]) for key in self.keys), self.unproved)
+
+
+def frames_of(link: Link, iterate: Iterate) -> list[Frame]:
+    """The ends of an iterate's legs, or the iterate itself where there are none, as Blender will store them."""
+    ends = iterate.path or (iterate.curve.vertices,)
+    return [link.to_stored(iterate.curve.mesh, end).astype(np.float32) for end in ends]
+
 
 class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
     Parameters
     ----------
-    to_local
-        Takes vertices of an iterate, (n, m), to the object's coordinates, (n, 3).
+    link
+        Where the vertices of the iterates are stored, and in which space their motions are proved.
     """
 
-    def __init__(self, to_local: Callable[[FloatArray], FloatArray]) -> None:
-        self._to_local = to_local
+    def __init__(self, link: Link) -> None:
+        self._link = link
         self._start: Iterate | None = None
         self._last: Iterate | None = None
         self._keys: list[Key] = []
@@ -72,20 +81,19 @@ class Motion:
         if self._ends and not iterate.path:  # a run that stalls repeats its last iterate
             self._last = iterate
             return self._keys[-1].points
-        vertices = iterate.path or (iterate.curve.vertices,)
-        frames = [self._to_local(v).astype(np.float32) for v in vertices]
+        frames = frames_of(self._link, iterate)
+        self._start = self._start or iterate
+        self._last = iterate
         times = self._leg_times(iterate.index, frames)
         self._keys += map(Key, times, frames)
         self._ends.append(len(self._keys) - 1)
-        self._start = self._start or iterate
-        self._last = iterate
         return frames[-1]
 
     def _leg_times(self, index: int, frames: Sequence[Frame]) -> list[float]:
         """End times of the legs, so that the fastest vertex keeps its speed from leg to leg."""
         if len(frames) == 1:
             return [float(index)]
-        corners = [self._keys[-1].points, *frames]
+        corners = [self._common(frame) for frame in (self._keys[-1].points, *frames)]
         ways = [float(np.abs(b - a).max()) for a, b in pairwise(corners)]
         passed = np.cumsum(np.maximum(ways, 1e-3 * max(ways)))
         return [*(index - 1 + passed[:-1] / passed[-1]).tolist(), float(index)]
@@ -160,12 +168,17 @@ class Motion:
         return keys
 
     def _proved(self, start: Key, end: Key, free: Proof) -> bool:
-        return free(self.start.curve.mesh, start.points.astype(np.float64), end.points.astype(np.float64))
+        return free(self.start.curve.mesh, self._common(start.points), self._common(end.points))
 
     def _rounds_freely(self, iterate: Iterate, position: int, free: Proof) -> bool:
         """Whether rounding an iterate to the numbers that Blender stores pushes nothing through anything."""
-        exact = self._to_local(iterate.curve.vertices)
-        return free(iterate.curve.mesh, exact, self._keys[position].points.astype(np.float64))
+        mesh = iterate.curve.mesh
+        exact = self._link.to_stored(mesh, iterate.curve.vertices)
+        return free(mesh, self._common(exact), self._common(self._keys[position].points))
+
+    def _common(self, points: Frame | FloatArray) -> FloatArray:
+        """Stored points where motions are proved; shape (n, 3)."""
+        return self._link.to_common(self.start.curve.mesh, points)
 
 
 def _midpoint(a: Frame, b: Frame) -> Frame:

@@ -1,22 +1,27 @@
 """The operators: they check, start a session, and say what happened."""
 
+import re
 from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
-from ..core import MobiusFlowError
+from ..core import MobiusFlowError, OptionError
 from . import bevel
-from .checks import refusal, unsampled
+from .checks import refusal, selected_curves, unsampled
 from .exchange import new_curve_data, write_points
+from .group import Group
 from .live.operators import LiveRelax
 from .properties import SETTINGS, key_options, relax_options, settings
 from .session import Session
 
+_LARGEST = 1e30  # Blender computes with squares and products of such numbers
+_MOST_TURNS = 200  # of a torus knot, or strands of a braid: 200,000 points and a second
+
 
 class CURVE_OT_mobius_flow_relax(LiveRelax, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
-    """Relax the active curve without letting it pass through itself, and keep the motion as keyframes"""
+    """Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes"""
 
     bl_idname = "curve.mobius_flow_relax"
     bl_label = "Relax"
@@ -33,7 +38,7 @@ class CURVE_OT_mobius_flow_relax(LiveRelax, bpy.types.Operator):  # noqa: N801 -
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the active object can be relaxed; the tooltip says why not."""
+        """Whether the selected curves can be relaxed; the tooltip says why not."""
         reason = refusal(context)
         if reason:
             cls.poll_message_set(reason)
@@ -46,9 +51,13 @@ class CURVE_OT_mobius_flow_relax(LiveRelax, bpy.types.Operator):  # noqa: N801 -
         try:
             if reason := refusal(context) or self._unasked(context):
                 raise MobiusFlowError(reason)
-            report = Session(context.active_object, relax_options(values), key_options(values)).run()
+            group = Group(selected_curves(context))
+            report = Session(group, relax_options(values), key_options(values)).run()
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        except MemoryError:
+            self.report({"ERROR"}, "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations")
             return {"CANCELLED"}
         self.report({"INFO"} if report.clean else {"WARNING"}, report.sentence)
         return {"FINISHED"}
@@ -60,7 +69,7 @@ class CURVE_OT_mobius_flow_relax(LiveRelax, bpy.types.Operator):  # noqa: N801 -
         return {name: getattr(self if given(name) else scene, name) for name in SETTINGS}
 
     def _unasked(self, context: bpy.types.Context) -> str | None:
-        return None if self.sample_splines else unsampled(context.active_object)
+        return None if self.sample_splines else unsampled(selected_curves(context))
 
 
 class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noqa: N801
@@ -107,6 +116,7 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
 
         name = self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})"
         try:
+            self._check(name)
             curve = knot(name)
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
@@ -122,6 +132,17 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
         write_points(data, vertices.astype("f4"))
         object_data_add(context, data, operator=self)
         return {"FINISHED"}
+
+    def _check(self, name: str) -> None:
+        """Raise an OptionError for what would freeze the window, or is not a number."""
+        for label, value in (("Size", self.size), ("Thickness", self.thickness)):
+            if not value <= _LARGEST:
+                raise OptionError(f"{label} is {value:g}; it must be a number up to {_LARGEST:g}")
+        for number in re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))):
+            if int(number) > _MOST_TURNS:
+                raise OptionError(
+                    f"{name[:60]} has a number beyond {_MOST_TURNS}, which is too much for a window; use smaller ones"
+                )
 
     def _fits(self) -> bool:
         given = self.properties.is_property_set

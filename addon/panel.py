@@ -2,8 +2,8 @@
 
 import bpy
 
-from . import labels
-from .checks import refusal
+from . import labels, neighbours
+from .checks import refusal, selected_curves
 from .live import registry
 from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_stop
 from .live.run import Run
@@ -47,27 +47,32 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     run = registry.current()
     column = layout.column(align=True)
     column.scale_y = 1.3
-    column.operator(CURVE_OT_mobius_flow_relax.bl_idname, icon="PLAY")
+    objects = run.group.objects if run is not None else selected_curves(context)
+    text = f"Relax {len(objects)} Curves Together" if len(objects) > 1 else "Relax"
+    column.operator(CURVE_OT_mobius_flow_relax.bl_idname, text=text, icon="PLAY")
     row = column.row(align=True)
     paused = run is not None and run.state is State.PAUSED
     text, icon = ("Resume", "PLAY") if paused else ("Pause", "PAUSE")
     row.operator(CURVE_OT_mobius_flow_pause.bl_idname, text=text, icon=icon)
     row.operator(CURVE_OT_mobius_flow_stop.bl_idname, icon="SNAP_FACE")
     reason = refusal(context)
-    if reason and (run is None or context.active_object != run.object):
+    if reason and (run is None or any(obj not in objects for obj in selected_curves(context))):
         labels.sentence(layout, context, reason)
+    if (run or not reason) and (unguarded := neighbours.warning(context, objects)):
+        labels.sentence(layout, context, unguarded, icon="ERROR")
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:
     """What is known of the run that is going on, or of the last one."""
     box = layout.box().column(align=True)
-    _value(box, run.name, "Waiting for the render" if run.waits else run.state.value.capitalize())
+    _value(box, ", ".join(run.group.names), "Waiting for the render" if run.waits else run.state.value.capitalize())
     if run.last is not None:
         _value(box, "Energy", f"{run.last.energy:.4f}")
         _value(box, "Iteration", f"{run.last.index}")
         _value(box, "Step", f"{run.last.step_size:.3g}")
         proved = run.last.certified if run.report is None else run.report.certified
-        _value(box, "Certified", "free of contact" if proved else "no")
+        whom = "with itself" if len(run.group.names) == 1 else "among themselves"
+        _value(box, "Free of contact", whom if proved else "not proved")
     if run.report is not None and run.report.radius is not None:
         _value(box, "Tube radius", f"{run.report.radius:.4g}")
     if run.message:

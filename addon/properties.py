@@ -7,14 +7,14 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..core import METHODS, RelaxOptions
-from .keyframes import KeyOptions, Output
+from .key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output
 
 _DEFAULTS = RelaxOptions()
 _KEY_DEFAULTS = KeyOptions()
 _OUTPUT_DESCRIPTIONS = {
     Output.SHAPE_KEYS: "Absolute shape keys and one F-curve on their evaluation time: small, fast, renders anywhere",
     Output.FCURVES: "An F-curve for every coordinate of every point, for exporters that know no shape keys",
-    Output.RESULT: "Move the points to the relaxed curve, without animation",
+    Output.RESULT: "Move the points to the relaxed curves, without animation",
 }
 
 
@@ -58,7 +58,7 @@ def settings(options: set[str]) -> dict[str, Any]:
         ),
         "vertices": IntProperty(
             name="Vertices",
-            description="Number of points to refine the curve to; 0 chooses it by the distance between strands",
+            description="Points to refine the curves to, all together; 0 chooses it by the distance between strands",
             default=0,
             min=0,
             options=options,
@@ -72,17 +72,19 @@ def settings(options: set[str]) -> dict[str, Any]:
         ),
         "start_frame": IntProperty(
             name="Start Frame",
-            description="Frame at which the curve begins to move",
+            description="Frame at which the curves begin to move",
             default=int(_KEY_DEFAULTS.start_frame),
+            soft_min=-LAST_FRAME,
+            soft_max=LAST_FRAME,
             options=options,
         ),
         "frames_per_iterate": FloatProperty(
             name="Frames/Iterate",
             description="Number of frames from one iterate to the next",
             default=_KEY_DEFAULTS.frames_per_iterate,
-            min=0.1,
+            min=FRAMES_PER_ITERATE[0],
             soft_max=100.0,
-            max=10000.0,
+            max=FRAMES_PER_ITERATE[1],
             options=options,
         ),
         "max_keys": IntProperty(
@@ -97,7 +99,7 @@ def settings(options: set[str]) -> dict[str, Any]:
         ),
         "fit_bevel": BoolProperty(
             name="Fit Tube",
-            description="Draw the curve as the thickest round tube that does not touch itself, if it has a round bevel",
+            description="Draw the curves as the thickest round tubes that do not touch, where they have a round bevel",
             default=True,
             options=options,
         ),
@@ -124,7 +126,7 @@ def relax_options(values: dict[str, Any]) -> RelaxOptions:
 
 
 def key_options(values: dict[str, Any]) -> KeyOptions:
-    """The animation's options from the values of the settings."""
+    """The animation's options from the values of the settings; raises OptionError."""
     return KeyOptions(
         output=Output[values["keyframes"]],
         start_frame=values["start_frame"],

@@ -1,16 +1,18 @@
-"""Bézier and NURBS splines replaced by the polygons that Blender draws for them."""
+"""Bézier and NURBS splines seen as the polygons that Blender draws for them."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .motion import Frame
+from ..core import CurveError
+from .placement import Frame
 
 if TYPE_CHECKING:
     import bpy
 
 _KINDS = {"BEZIER": "Bézier", "NURBS": "NURBS"}
-POINT_VALUES = ("radius", "tilt", "weight_softbody")
+_MOST_QUESTIONS = 5
 
 
 def kind(spline: "bpy.types.Spline") -> str:
@@ -23,8 +25,15 @@ def smooth_splines(data: "bpy.types.Curve") -> list["bpy.types.Spline"]:
     return [spline for spline in data.splines if spline.type != "POLY"]
 
 
-def question(obj: "bpy.types.Object") -> str:
-    """Ask whether an object's smooth splines may become polygons."""
+def questions(objects: Sequence["bpy.types.Object"]) -> list[str]:
+    """Ask whether the smooth splines of objects may become polygons, a line each; raises as `sampled` does."""
+    smooth = [obj for obj in objects if smooth_splines(obj.data)]
+    lines = [_question(obj) for obj in smooth[:_MOST_QUESTIONS]]
+    more = len(smooth) - len(lines)
+    return [*lines, f"{more} more objects have smooth splines too"] if more else lines
+
+
+def _question(obj: "bpy.types.Object") -> str:
     smooth = smooth_splines(obj.data)
     kinds = " and ".join(sorted({kind(spline) for spline in smooth}))
     points = sum(len(points) for points, spline in zip(sampled(obj), obj.data.splines, strict=True) if spline in smooth)
@@ -34,18 +43,39 @@ def question(obj: "bpy.types.Object") -> str:
 
 
 def sampled(obj: "bpy.types.Object") -> list[Frame]:
-    """Points of all splines, each of shape (n, 3): smooth ones as drawn, at their own preview resolution."""
+    """Points of all splines, each of shape (n, 3): smooth ones as drawn, at their own preview resolution.
+
+    Raises
+    ------
+    CurveError
+        If no polygon is drawn for a spline.
+    """
+    loops = _drawn(obj.data)
+    if len(loops) != len(obj.data.splines):
+        raise CurveError(
+            f"'{obj.name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first"
+        )
+    for k, loop in enumerate(loops, 1):
+        if len(loop) < 3:
+            raise CurveError(
+                f"Spline {k} of '{obj.name}' is drawn with only {len(loop)} points; "
+                "raise its Resolution U, or give it more points"
+            )
+    return loops
+
+
+def _drawn(data: "bpy.types.Curve") -> list[Frame]:
     import bpy
 
-    data = obj.data.copy()
-    bare = bpy.data.objects.new("Sampled", data)
+    copy = data.copy()
+    bare = bpy.data.objects.new("Sampled", copy)
     try:
-        _strip(data)
+        _strip(copy)
         return _loops(bare.to_mesh())
     finally:
         bare.to_mesh_clear()
         bpy.data.objects.remove(bare)
-        bpy.data.curves.remove(data)
+        bpy.data.curves.remove(copy)
 
 
 def _strip(data: "bpy.types.Curve") -> None:
@@ -56,25 +86,11 @@ def _strip(data: "bpy.types.Curve") -> None:
 
 
 def _loops(mesh: "bpy.types.Mesh") -> list[Frame]:
-    """The closed chains of a mesh; each has one edge that leads from its last vertex back to its first."""
+    """The chains of a mesh: vertices one after the other, each joined to the next."""
     points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
     edges = np.empty(2 * len(mesh.edges), dtype=np.int32)
     mesh.vertices.foreach_get("co", points)
     mesh.edges.foreach_get("vertices", edges)
-    ends = np.sort(edges.reshape(-1, 2), axis=1)
-    closing = ends[ends[:, 1] - ends[:, 0] > 1]
-    return [points.reshape(-1, 3)[a : b + 1] for a, b in closing[closing[:, 0].argsort()]]
-
-
-def make_poly(spline: "bpy.types.Spline", count: int) -> None:
-    """Turn a smooth spline into a polygon of so many points, with its values in between; places are left open."""
-    points = spline.bezier_points if spline.type == "BEZIER" else spline.points
-    values = {name: np.empty(len(points), dtype=np.float32) for name in POINT_VALUES}
-    for name, array in values.items():
-        points.foreach_get(name, array)
-    spline.type = "POLY"
-    spline.points.add(count - len(spline.points))
-    place = np.arange(count) * len(values["radius"]) / count
-    for name, array in values.items():
-        closed = np.append(array, array[0])
-        spline.points.foreach_set(name, np.interp(place, np.arange(len(closed)), closed).astype(np.float32))
+    low, high = np.sort(edges.reshape(-1, 2), axis=1).T
+    starts = np.setdiff1d(np.arange(len(mesh.vertices)), high[high - low == 1])
+    return np.split(points.reshape(-1, 3), starts[1:]) if len(starts) else []

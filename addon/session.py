@@ -1,4 +1,4 @@
-"""One relaxation of one curve object: consumes iterates, then writes the animation.
+"""One relaxation of a group of curve objects: consumes iterates, then writes the animation.
 
 A plain class: a blocking operator runs it to its end, a modal one hands it the iterates of a worker (`live.run`).
 What it knows lives here and never in the file.
@@ -7,18 +7,19 @@ What it knows lives here and never in the file.
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status, relax
 from ..core.collision import is_free
+from ..core.curve import Mesh
 from ..core.types import FloatArray
-from . import bevel, keyframes
-from .exchange import Placement, insert_points, read_curve
-from .keyframes import KeyOptions, Output
-from .motion import Frame, Keys, Motion, Proof
-
-if TYPE_CHECKING:
-    import bpy
+from . import bevel
+from .group import Group
+from .key_options import KeyOptions, Output
+from .motion import Keys, Motion, Proof
+from .placement import Frame
+from .words import named
 
 Relaxation = Callable[[Curve, RelaxOptions], Iterator[Iterate]]
 
@@ -45,8 +46,8 @@ class Report:
 
     Attributes
     ----------
-    name
-        The object's name.
+    names
+        The objects' names.
     iterate
         The last iterate.
     keys
@@ -54,12 +55,12 @@ class Report:
     last_frame
         Scene frame of the last key.
     certified
-        Whether every motion shown was proved free of contact.
+        Whether every motion shown was proved free of contact, of each curve with itself and of all with each other.
     radius
-        Radius of the tube if it was fitted, in the object's units.
+        Radius of the tube if it was fitted, in the first object's units.
     """
 
-    name: str
+    names: tuple[str, ...]
     iterate: Iterate
     keys: int
     last_frame: float
@@ -69,9 +70,11 @@ class Report:
     @property
     def sentence(self) -> str:
         """The same for people."""
-        proof = "proved free of contact" if self.certified else "NOT proved free of contact everywhere"
+        # nothing but the curves that were relaxed is looked at
+        whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
+        proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
         animation = f"{self.keys} keys up to frame {self.last_frame:g}, " if self.keys > 1 else ""
-        return f"'{self.name}' {self.iterate.message.rstrip('.')}; {animation}{proof}"
+        return f"{named(self.names)} {self.iterate.message.rstrip('.')}; {animation}{proof}"
 
     @property
     def clean(self) -> bool:
@@ -81,19 +84,22 @@ class Report:
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """What is to be written: the keys, and the radius of the tube at each if it is fitted; shape (keys,)."""
+    """What is to be written: the keys, and the radius of the tube at each if it is fitted; shape (keys,).
+
+    Radii are in the common space of `Link`.
+    """
 
     keys: Keys
     radii: FloatArray | None
 
 
 class Session:
-    """A relaxation of a curve object.
+    """A relaxation of curve objects as one link.
 
     Parameters
     ----------
-    obj
-        A curve object that `checks.refusal` has nothing against, its transforms evaluated.
+    group
+        The objects.
     options, key_options
         What is asked for.
     relaxation, proof
@@ -102,32 +108,24 @@ class Session:
     Raises
     ------
     MobiusFlowError
-        If the curve cannot be relaxed; the message says why.
+        If the curves cannot be relaxed, or there is no room for their keys; the message says why.
     """
 
     def __init__(
         self,
-        obj: "bpy.types.Object",
+        group: Group,
         options: RelaxOptions,
         key_options: KeyOptions,
         relaxation: Relaxation = relax,
         proof: Proof = is_free,
     ) -> None:
-        self._uid = obj.session_uid
+        key_options.check_room(options.max_iterations)
+        self.group = group
         self._key_options = key_options
         self._proof = proof
-        self._curve = read_curve(obj)
-        self._motion = Motion(Placement.of(obj).to_local)
-        self._fits_bevel = key_options.fit_bevel and bevel.can_fit(obj.data)
-        self._iterates = relaxation(self._curve, options)
+        self._motion = Motion(group.link)
+        self._iterates = relaxation(group.curve, options)
         self.state = State.RUNNING
-
-    @property
-    def object(self) -> "bpy.types.Object | None":
-        """The object, found again whatever its name is now; None if it is gone."""
-        import bpy
-
-        return next((obj for obj in bpy.data.objects if obj.session_uid == self._uid), None)
 
     def step(self) -> bool:
         """Take in the next iterate; return whether more may come."""
@@ -158,44 +156,57 @@ class Session:
         keys = (
             self._motion.keys(self._proof, self._key_options.max_keys) if animated else self._motion.result(self._proof)
         )
-        mesh = self._motion.start.curve.mesh
-        return Prepared(keys, bevel.radii(mesh, keys, self._key_options.output) if self._fits_bevel else None)
+        fits = self._key_options.fit_bevel and self.group.fits_bevel
+        return Prepared(keys, self._radii(keys) if fits else None)
+
+    def _radii(self, keys: Keys) -> FloatArray:
+        """Radii of the tube at the keys, in the common space; without shape keys the last one only."""
+        shown = keys.keys if self._key_options.output is Output.SHAPE_KEYS else keys.keys[-1:]
+        mesh, common = self._mesh, self.group.link.to_common
+        return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh)) for key in shown])
+
+    @property
+    def _mesh(self) -> Mesh:
+        return self._motion.start.curve.mesh
 
     def write(self) -> Report:
-        """Write what was collected so far to the object, which is touched here for the first time.
+        """Write what was collected so far to the objects, which are touched here for the first time.
+
+        Whatever goes wrong, everything is put back as it was.
 
         Raises
         ------
         MobiusFlowError
-            If the object is gone.
+            If an object is gone.
         """
         prepared = self.prepare()
-        for _ in self.writing(prepared):
-            pass
+        if reason := self.group.lost():
+            self.state = State.LOST
+            raise MobiusFlowError(f"{reason} during the relaxation; nothing was written")
+        try:
+            for _ in self.writing(prepared):
+                pass
+        except BaseException:
+            self.group.restore()
+            raise
         return self.report(prepared)
 
     def writing(self, prepared: Prepared) -> Iterator[None]:
-        """Write in short pieces, so that a window can be drawn in between; raises as `write` does."""
-        obj = self.object
-        if obj is None:
-            self.state = State.LOST
-            raise MobiusFlowError("The curve object was deleted while it was being relaxed; nothing was written")
-        self.insert_points(obj.data)
-        radii = prepared.radii
-        if radii is not None:
-            bevel.fit(obj.data, float(radii[-1]))
-        yield from keyframes.writing(
-            obj, prepared.keys, self._key_options, None if radii is None else radii / radii[-1]
-        )
+        """Write in short pieces, so that a window can be drawn in between; all objects must be there."""
+        self.make_polygons()
+        yield from self.group.writing(self._mesh, prepared.keys, self._key_options, prepared.radii)
 
-    def insert_points(self, data: "bpy.types.Curve") -> None:
-        """Give the splines the points of the refined curve, if they do not have them yet."""
-        insert_points(data, self._curve, self._motion.start.curve)
+    def make_polygons(self) -> None:
+        """Give the splines the points of the refined curves, if they do not have them yet."""
+        self.group.make_polygons(self._motion.start.curve)
+
+    def show(self, frame: Frame) -> None:
+        """Move the points of all objects, as `take` returned them."""
+        self.group.show(self._mesh, frame)
 
     def report(self, prepared: Prepared) -> Report:
         """What was done, once it is written."""
-        obj, keys, radii = self.object, prepared.keys, prepared.radii
+        keys, radii = prepared.keys, prepared.radii
         last_frame = float(self._key_options.scene_frames(keys)[-1])
         radius = None if radii is None else float(radii[-1])
-        name = obj.name if obj else ""
-        return Report(name, self._motion.last, len(keys.keys), last_frame, keys.certified, radius)
+        return Report(self.group.names, self._motion.last, len(keys.keys), last_frame, keys.certified, radius)

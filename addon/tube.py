@@ -9,7 +9,7 @@ from ..core import Curve
 from ..core.curve import Mesh
 from ..core.curve.distances import arc_distance_of_pairs
 from ..core.types import FloatArray
-from .motion import Frame
+from .placement import Frame
 
 _THICKEST = 0.016  # of a component's length: a round circle's tube is then a tenth of its radius
 _DISTINCT = 3.0  # two points lie on different strands if they are this many times further apart along the curve
@@ -25,16 +25,31 @@ def thickest_radius(curve: Curve) -> float:
 def free_radius(curve: Curve, thickest: float) -> float:
     """Half the gap between strands of a curve, at most ``thickest``."""
     spacing = float(curve.edge_lengths.max())
-    tree = cKDTree(curve.vertices)
-    pairs = tree.query_pairs(2 * thickest / _AIR + spacing, output_type="ndarray")
-    i, j = pairs[:, 0], pairs[:, 1]
-    distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
-    distance = distance[arc_distance_of_pairs(curve, i, j) > _DISTINCT * distance]
-    if not distance.size:
+    nearest = _nearest_strands(curve, 2 * thickest / _AIR + spacing)
+    if nearest is None:
         return thickest
     # Edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side.
-    gap = np.sqrt(max(distance.min() ** 2 - 0.25 * spacing**2, 0.25 * distance.min() ** 2))
+    gap = np.sqrt(max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2))
     return min(thickest, 0.5 * _AIR * float(gap))
+
+
+def _nearest_strands(curve: Curve, furthest: float) -> float | None:
+    """Least distance between vertices of different strands, None if it is more than ``furthest``.
+
+    The radius of search doubles until it finds some: all pairs within the furthest would be too many where a long
+    curve is tightly wound, as there the nearest strands are much nearer.
+    """
+    tree = cKDTree(curve.vertices)
+    radius = float(np.median(curve.edge_lengths))
+    while True:
+        radius = min(2 * radius, furthest)
+        i, j = tree.query_pairs(radius, output_type="ndarray").T
+        distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
+        distance = distance[arc_distance_of_pairs(curve, i, j) > _DISTINCT * distance]
+        if distance.size:
+            return float(distance.min())
+        if radius >= furthest:
+            return None
 
 
 def animated_radii(mesh: Mesh, points: Sequence[Frame], frames: FloatArray) -> FloatArray:

@@ -12,14 +12,14 @@ from .modal import clear_status
 @persistent  # type: ignore[untyped-decorator]
 def _load_pre(*_: Any) -> None:
     if run := registry.current():
-        run.cancel(f"A file was loaded; the relaxation of '{run.name}' has ended")
+        run.cancel(f"A file was loaded; the relaxation of {run.name} has ended")
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _undo_pre(*_: Any) -> None:
     """The curve must be as undo knows it, and pointers into the file are about to become invalid."""
     if run := registry.current():
-        run.cancel(f"Undone; the relaxation of '{run.name}' has ended")
+        run.cancel(f"Undone; the relaxation of {run.name} has ended")
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -53,7 +53,7 @@ def register() -> None:
 def unregister() -> None:
     """End what is running, and listen no more."""
     if run := registry.current():
-        run.cancel("Möbius Flow was disabled; the curve is as it was")
+        run.cancel("Möbius Flow was disabled; all is as it was")
     registry.forget()
     if bpy.app.timers.is_registered(clear_status):
         bpy.app.timers.unregister(clear_status)

@@ -71,7 +71,7 @@ class Loop:
     def abandon(self) -> None:
         """Blender is closing the window of the run, or its file."""
         self._abandoned = True
-        self.run.cancel("The window was closed; the curve is as it was")
+        self.run.cancel("The window was closed; all is as it was")
 
     def _show(self, context: bpy.types.Context) -> None:
         self._shown = self._seen()
@@ -93,10 +93,10 @@ def status_line(run: Run) -> str:
     if run.waits:
         return f"{run.name}: waiting for the render"
     if run.state is State.FINISHING:
-        return f"{run.name}: proving and writing keys   |   Esc: put the curve back"
+        return f"{run.name}: proving and writing keys   |   Esc: put all back"
     where = f"iterate {run.last.index}, energy {run.last.energy:.4f}" if run.last else "starting"
     paused = "paused at " if run.state is State.PAUSED else ""
-    return f"{run.name}: {paused}{where}   |   Enter: keep this shape   |   Esc: put the curve back"
+    return f"{run.name}: {paused}{where}   |   Enter: keep this shape   |   Esc: put all back"
 
 
 def redraw_views(manager: bpy.types.WindowManager) -> None:

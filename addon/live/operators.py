@@ -7,7 +7,7 @@ import bpy
 
 from ...core import MobiusFlowError
 from .. import sampling
-from ..checks import refusal
+from ..checks import refusal, selected_curves, unsampled
 from ..properties import key_options, relax_options
 from ..session import State
 from . import registry
@@ -23,13 +23,12 @@ class LiveRelax:
     loop: Loop | None = None
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Relax the active curve live; ask first if smooth splines have to become polygons."""
+        """Relax the selected curves live; ask first if smooth splines have to become polygons."""
         if bpy.app.background or context.window is None:
             return set(self.execute(context))
         context.view_layer.update()
-        obj = context.active_object
         values = self.values(context)
-        if sampling.smooth_splines(obj.data) and not self.sample_splines:
+        if unsampled(selected_curves(context)) and not self.sample_splines:
             return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
         return self.begin(context, values)
 
@@ -38,7 +37,7 @@ class LiveRelax:
         try:
             if reason := refusal(context):
                 raise MobiusFlowError(reason)
-            run = Run(context.active_object, relax_options(values), key_options(values))
+            run = Run(selected_curves(context), relax_options(values), key_options(values))
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -131,12 +130,17 @@ class CURVE_OT_mobius_flow_sample(bpy.types.Operator):  # noqa: N801
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Ask."""
-        self.question = sampling.question(context.active_object)
+        try:
+            self.questions = sampling.questions(selected_curves(context))
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         return set(context.window_manager.invoke_props_dialog(self, width=420))
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Show the question."""
-        self.layout.label(text=self.question, icon="QUESTION")
+        """Show the questions."""
+        for question in self.questions:
+            self.layout.label(text=question, icon="QUESTION")
         self.layout.label(text="For more or fewer points change the curve's Resolution Preview U.")
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -11,8 +11,7 @@ import numpy as np
 
 from ...core import Curve, Iterate, Mesh, RelaxOptions, Status
 from ...core.types import FloatArray
-from ..exchange import Placement
-from ..motion import Frame
+from ..placement import Link, Placement
 
 Message = tuple[dict[str, Any], list[FloatArray]]
 
@@ -46,16 +45,19 @@ def _exactly(stream: BinaryIO, size: int) -> bytes:
     return data
 
 
-def pack_job(curve: Curve, options: RelaxOptions, placement: Placement) -> Message:
+def pack_job(curve: Curve, options: RelaxOptions, link: Link) -> Message:
     """What the worker is asked to do."""
-    header = {"sizes": curve.mesh.component_sizes, "options": asdict(options)}
-    return header, [curve.vertices, placement.linear, placement.origin]
+    header = {"sizes": curve.mesh.component_sizes, "options": asdict(options), "counts": link.counts}
+    linear = np.stack([placement.linear for placement in link.placements])
+    origins = np.stack([placement.origin for placement in link.placements])
+    return header, [curve.vertices, linear, origins]
 
 
-def unpack_job(message: Message) -> tuple[Curve, RelaxOptions, Placement]:
+def unpack_job(message: Message) -> tuple[Curve, RelaxOptions, Link]:
     """The inverse of `pack_job`."""
-    header, (vertices, linear, origin) = message
-    return Curve(vertices, Mesh(tuple(header["sizes"]))), RelaxOptions(**header["options"]), Placement(linear, origin)
+    header, (vertices, linear, origins) = message
+    link = Link(tuple(map(Placement, linear, origins)), tuple(header["counts"]))
+    return Curve(vertices, Mesh(tuple(header["sizes"]))), RelaxOptions(**header["options"]), link
 
 
 def pack_iterate(iterate: Iterate, proved: Sequence[str]) -> Message:
@@ -75,8 +77,8 @@ def unpack_iterate(message: Message) -> tuple[Iterate, list[str]]:
     return Iterate(curve=curve, path=tuple(path), status=status, message=header["message"], **values), header["proved"]
 
 
-def digest(start: Frame, end: Frame) -> str:
-    """Name of the straight motion between two frames in Blender's numbers: exactly these bits, nothing else."""
-    hashed = hashlib.blake2b(start.astype(np.float32).tobytes(), digest_size=16)
-    hashed.update(end.astype(np.float32).tobytes())
+def digest(start: FloatArray, end: FloatArray) -> str:
+    """Name of the straight motion between two arrays of vertices: exactly these bits, nothing else."""
+    hashed = hashlib.blake2b(start.tobytes(), digest_size=16)
+    hashed.update(end.tobytes())
     return hashed.hexdigest()

@@ -16,7 +16,7 @@ from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.types import FloatArray
-from ..exchange import Placement
+from ..placement import Link
 from . import wire
 from .job import messages
 
@@ -35,14 +35,14 @@ class Worker:
     ----------
     curve, options
         What is to be relaxed, as for `core.relax`.
-    placement
-        Where the object is: motions are proved in its own coordinates too.
+    link
+        Where Blender stores the vertices: motions of the stored ones are proved too.
     processes
         Whether to try a process at all.
     """
 
-    def __init__(self, curve: Curve, options: RelaxOptions, placement: Placement, processes: bool = True) -> None:
-        self._job = wire.pack_job(curve, options, placement)
+    def __init__(self, curve: Curve, options: RelaxOptions, link: Link, processes: bool = True) -> None:
+        self._job = wire.pack_job(curve, options, link)
         self._proved: set[str] = set()
         self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
         self._closed = threading.Event()
@@ -83,9 +83,7 @@ class Worker:
 
     def is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
         """As `core.collision.is_free`, but most motions were proved by the worker already."""
-        if wire.digest(start, end) in self._proved and _is_single(start) and _is_single(end):
-            return True
-        return bool(is_free(mesh, start, end))
+        return wire.digest(start, end) in self._proved or bool(is_free(mesh, start, end))
 
     def close(self) -> None:
         """End the process now and the thread with it; harmless to repeat."""
@@ -135,11 +133,6 @@ def _replies(process: "subprocess.Popen[bytes]", job: wire.Message) -> Iterator[
     wire.write(process.stdin, job)
     while True:
         yield wire.read(process.stdout)
-
-
-def _is_single(points: FloatArray) -> bool:
-    """Whether doubles are single-precision numbers: only then do they have a digest of their own."""
-    return bool((points.astype(np.float32) == points).all())
 
 
 def _start() -> "subprocess.Popen[bytes] | None":

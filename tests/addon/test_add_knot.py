@@ -9,6 +9,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import contents, sentence, stored  # noqa: E402
+from mobius_flow.addon import tube  # noqa: E402
 from mobius_flow.core import Curve  # noqa: E402
 from mobius_flow.core.collision import check_embedded  # noqa: E402
 from mobius_flow.core.knots import knot  # noqa: E402
@@ -71,7 +72,19 @@ def test_an_added_knot_can_be_relaxed():
 
 @pytest.mark.parametrize(
     "options",
-    [{"knot": "nonsense"}, {"knot": ""}, {"kind": "TORUS", "p": 0, "q": 3}, {"kind": "TORUS", "p": 10**6, "q": 7}],
+    [
+        {"knot": "nonsense"},
+        {"knot": ""},
+        {"kind": "TORUS", "p": 0, "q": 3},
+        {"kind": "TORUS", "p": 10**6, "q": 7},
+        {"kind": "TORUS", "p": 3, "q": -201},
+        {"knot": "m torus( 500, 501 )"},
+        {"knot": "braid(" + ",".join(map(str, range(1, 300))) + ")"},
+        {"size": float("nan")},
+        {"size": float("inf")},
+        {"thickness": float("nan")},
+        {"thickness": float("inf")},
+    ],
 )
 def test_what_is_no_knot_is_refused(options):
     before = contents()
@@ -87,3 +100,15 @@ def test_not_in_edit_mode():
     with pytest.raises(RuntimeError, match="Object Mode"):
         bpy.ops.curve.mobius_flow_add_knot()
     bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@pytest.mark.parametrize(("p", "q"), [(60, 61), (61, 60), (3, 200)])
+def test_strands_wound_tightly_do_not_take_all_pairs_of_points(monkeypatch, p, q):
+    """All pairs within the thickest tube of T(60, 61) would be a hundred million."""
+    looked_at = []
+    counted = tube.arc_distance_of_pairs
+    monkeypatch.setattr(tube, "arc_distance_of_pairs", lambda c, i, j: looked_at.append(len(i)) or counted(c, i, j))
+    bpy.ops.curve.mobius_flow_add_knot(kind="TORUS", p=p, q=q)
+    obj = bpy.context.object
+    assert obj.data.bevel_depth > 0
+    assert 0 < sum(looked_at) < 40 * len(obj.data.splines[0].points)

@@ -8,7 +8,8 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored  # noqa: E402
-from mobius_flow.addon.keyframes import KeyOptions, Output, write  # noqa: E402
+from mobius_flow.addon.key_options import KeyOptions, Output  # noqa: E402
+from mobius_flow.addon.keyframes import write  # noqa: E402
 from mobius_flow.addon.motion import Key, Keys  # noqa: E402
 from mobius_flow.core import Curve, RelaxOptions  # noqa: E402
 from mobius_flow.core import relax as iterates_of  # noqa: E402
@@ -128,3 +129,25 @@ def test_thinned_keys_are_proved(capfd):
     frames = keys.reshape(len(blocks), -1, 3).astype(np.float64)
     for a, b in pairwise(frames):
         assert is_free(mesh, a, b)
+
+
+@pytest.mark.parametrize("start", [-1_048_574, 0, 16_777, 1_048_000])
+def test_keys_stay_apart_in_blenders_numbers(start):
+    """Keys of short legs lie nearer together than 32 bits tell frames apart; none may fall on another."""
+    times = np.concatenate([k + np.array([0, 1e-7, 2e-7, 0.5, 0.5 + 1e-9]) for k in range(50)])
+    points = np.zeros((3, 3), dtype=np.float32)
+    keys = Keys(tuple(Key(float(time), points) for time in times), 0)
+    options = KeyOptions(start_frame=start)
+    frames = options.scene_frames(keys)
+    assert (np.diff(frames.astype(np.float32)) > 0).all()
+    np.testing.assert_allclose(frames, start + times, atol=0.3)
+
+
+def test_keys_near_the_last_frame_are_all_there():
+    obj = add_trefoil()
+    expected = library_frames(obj, max_iterations=8)
+    relax(max_iterations=8, start_frame=1_048_500)
+    (curve,) = fcurves(obj.data.shape_keys)
+    assert [point.co[0] for point in curve.keyframe_points] == [1_048_500 + k for k in range(9)]
+    for k, points in enumerate(expected):
+        np.testing.assert_array_equal(evaluated(obj, 1_048_500 + k), points)

@@ -5,13 +5,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mobius_flow.addon.motion import Motion
+from mobius_flow.addon.placement import Link, Placement
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, relax
 from mobius_flow.core.collision import free_motion, is_free
 from shapes import regular_polygon, torus_trefoil
 
 
-def identity(vertices):
-    return vertices
+def at_rest(*counts):
+    """Objects with so many components each, all at the world's origin."""
+    return Link(tuple(Placement(np.eye(3), np.zeros(3)) for _ in counts), counts)
 
 
 def iterate(index, vertices, mesh_of, path=None, **changes):
@@ -29,7 +31,7 @@ def around(angle):
 
 
 def collected(curves, paths=()):
-    motion = Motion(identity)
+    motion = Motion(at_rest(len(curves[0].components)))
     for k, curve in enumerate(curves):
         motion.add(iterate(k, curve.vertices, curve, dict(paths).get(k)))
     return motion
@@ -81,7 +83,7 @@ def test_thinning_where_nothing_collides(limit):
 @pytest.mark.parametrize("limit", [None, 2, 6])
 def test_a_real_run_is_proved(limit):
     iterates = list(relax(torus_trefoil(48), RelaxOptions(max_iterations=40)))
-    motion = Motion(identity)
+    motion = Motion(at_rest(1))
     for each in iterates:
         motion.add(each)
     keys = motion.keys(is_free, limit)
@@ -108,7 +110,7 @@ def test_rounding_through_contact_is_counted():
 
 def test_an_uncertified_run_has_no_certified_result():
     curve = around(0.0)
-    motion = Motion(identity)
+    motion = Motion(at_rest(2))
     motion.add(iterate(0, curve.vertices, curve))
     motion.add(iterate(1, curve.vertices, curve, certified=False))
     assert not motion.result(is_free).certified
@@ -116,7 +118,7 @@ def test_an_uncertified_run_has_no_certified_result():
 
 def test_a_stalled_run_repeats_its_last_iterate():
     curve = around(0.0)
-    motion = Motion(identity)
+    motion = Motion(at_rest(2))
     motion.add(iterate(0, curve.vertices, curve))
     motion.add(iterate(0, curve.vertices, curve, status=Status.STALLED, message="stalled"))
     assert motion.last.status is Status.STALLED
@@ -137,3 +139,59 @@ def test_one_unproved_leg_is_halved():
     keys = motion.keys(lambda _mesh, a, b: np.abs(b - a).max() < 0.3)
     assert [key.time for key in keys.keys] == [0, 0.25, 0.5, 0.75, 1]
     assert keys.certified
+
+
+def placed(linear, origin):
+    return Placement(np.array(linear, dtype=float), np.array(origin, dtype=float))
+
+
+TURNED = placed([[0, -2, 0], [0.5, 0, 0.1], [0, 0, -3]], [100, -7, 3])
+
+
+@pytest.mark.parametrize("placements", [(TURNED, placed(np.eye(3), [1, 2, 3])), (placed(np.eye(3), 3 * [0]), TURNED)])
+def test_chords_of_different_objects_are_proved_against_each_other(placements):
+    """Each square by itself may go straight; together the second must go round the first."""
+    link = Link(placements, (1, 1))
+    curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
+    motion = Motion(link)
+    for k, curve in enumerate(curves):
+        motion.add(iterate(k, curve.vertices, curve))
+    keys = motion.keys(is_free, limit=2)
+    mesh = curves[0].mesh
+    assert keys.certified
+    assert 2 < len(keys.keys) < 10
+    for a, b in pairwise(keys.keys):
+        world = [
+            np.concatenate([placements[k].to_world(key.points[mesh.slices[k]].astype(np.float64)) for k in (0, 1)])
+            for key in (a, b)
+        ]
+        assert is_free(mesh, *world)
+    for k, s in enumerate(mesh.slices):
+        alone = Motion(Link((placements[k],), (1,)))
+        for index, curve in enumerate(curves):
+            part = Curve(curve.vertices[s])
+            alone.add(iterate(index, part.vertices, part))
+        assert len(alone.keys(is_free, limit=2).keys) == 2
+
+
+def test_a_single_object_is_proved_in_its_own_numbers():
+    """In the common space of one object points are exactly what Blender stores, wherever the object is."""
+    curve = torus_trefoil(30)
+    stored = TURNED.to_local(curve.vertices).astype(np.float32)
+    link = Link((TURNED,), (1,))
+    assert np.array_equal(link.to_common(curve.mesh, stored), stored)
+    assert link.scales == (1.0,)
+
+
+def test_objects_placed_alike_are_proved_in_their_own_numbers():
+    curve = around(0.3)
+    link = Link((TURNED, TURNED), (1, 1))
+    stored = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
+    assert np.array_equal(link.to_common(curve.mesh, stored), stored)
+
+
+def test_the_common_space_is_the_first_objects():
+    curve = around(0.3)
+    link = Link((TURNED, placed(np.eye(3), [1, 2, 3])), (1, 1))
+    common = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))
+    np.testing.assert_allclose(TURNED.to_world(common), curve.vertices, atol=1e-13)

@@ -1,11 +1,14 @@
-"""What is not relaxed stays as it is: other objects, animation that is there already, other files."""
+"""What is not relaxed stays as it is, and is named: other objects, animation that is there already, other files."""
 
 import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy")
 
-from blender_scenes import add_hopf_link, add_trefoil, fcurves, relax, show, stored  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, fcurves, relax, show, stored  # noqa: E402
+from mathutils import Euler  # noqa: E402
+from mobius_flow.addon.neighbours import warning  # noqa: E402
+from shapes import hopf_link, regular_polygon  # noqa: E402
 
 
 def keyed(block):
@@ -13,11 +16,12 @@ def keyed(block):
     return [(curve.data_path, [tuple(point.co) for point in curve.keyframe_points]) for curve in fcurves(block)]
 
 
-def test_of_two_selected_objects_only_the_active_one_is_relaxed():
-    other, obj = add_hopf_link(), add_trefoil()
-    before, moving = stored(other.data), stored(obj.data)
-    assert other.select_get()
-    assert obj.select_get()
+def test_what_is_not_selected_stays():
+    other = add_hopf_link()
+    other.select_set(False)
+    before = stored(other.data)
+    obj = add_trefoil()
+    moving = stored(obj.data)
     relax(max_iterations=3)
     np.testing.assert_array_equal(stored(other.data), before)
     assert other.data.shape_keys is None
@@ -26,9 +30,11 @@ def test_of_two_selected_objects_only_the_active_one_is_relaxed():
 
 def test_two_objects_one_after_the_other():
     first, second = add_trefoil(), add_hopf_link()
+    first.select_set(False)
     relax(max_iterations=3)
     result = stored(second.data)
-    bpy.context.view_layer.objects.active = first
+    first.select_set(True)
+    second.select_set(False)
     relax(max_iterations=3)
     np.testing.assert_array_equal(stored(second.data), result)
     assert {obj.data.shape_keys is not None for obj in (first, second)} == {True}
@@ -75,3 +81,61 @@ def test_a_library_is_never_written_to(tmp_path):
     np.testing.assert_array_equal(stored(obj.data), before)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "mine.blend"))
     assert library.read_bytes() == contents
+
+
+def box(name, place, visible=True):
+    """An unselected mesh object with a corner at the origin and another at (1, 1, 1)."""
+    data = bpy.data.meshes.new(name)
+    data.from_pydata([(0, 0, 0), (1, 1, 1)], [(0, 1)], [])
+    obj = show(bpy.data.objects.new(name, data))
+    obj.location = place
+    obj.select_set(False)
+    obj.hide_set(not visible)
+    return obj
+
+
+def said(*objects):
+    bpy.context.view_layer.update()
+    return warning(bpy.context, objects)
+
+
+def test_what_is_near_is_named():
+    obj = add_curve([regular_polygon(20).vertices])
+    assert said(obj) is None
+    box("Far", (3, 0, 0))
+    assert said(obj) is None
+    box("Near", (1.1, 0, 0))
+    assert said(obj) == "Only selected curves are kept apart; 'Near' nearby is not"
+    obj.location.x = 2
+    assert said(obj) == "Only selected curves are kept apart; 'Far' and 'Near' nearby are not"
+
+
+def test_many_are_counted():
+    obj = add_curve([regular_polygon(20).vertices])
+    for k in range(9):
+        box(f"Box {k}", (0, 0, 0))
+    assert said(obj).endswith("; 'Box 0', 'Box 1', 'Box 2' and 6 more nearby are not")
+
+
+def test_a_ring_that_is_not_selected_is_named():
+    vertices = hopf_link(24).vertices
+    first, second = add_curve([vertices[:24]], "A"), add_curve([vertices[24:]], "B")
+    assert said(first) == "Only selected curves are kept apart; 'B' nearby is not"
+    assert said(first, second) is None
+
+
+def test_only_what_is_seen_and_solid_is_named():
+    obj = add_curve([regular_polygon(20).vertices])
+    box("Hidden", (0, 0, 0), visible=False)
+    show(bpy.data.objects.new("Empty", None))
+    show(bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera")))
+    assert said(obj) is None
+
+
+def test_boxes_are_those_in_the_world():
+    obj = add_curve([regular_polygon(20).vertices])
+    other = box("Turned", (5, 0, 0))
+    other.scale = (6, 1, 1)
+    assert said(obj) is None
+    other.rotation_euler = Euler((0, 0, np.pi))
+    assert "'Turned'" in said(obj)

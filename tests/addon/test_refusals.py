@@ -6,6 +6,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, relax, sentence, show  # noqa: E402
+from mobius_flow.addon import sampling  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
 
 
@@ -88,7 +89,7 @@ def switched_off():
 def shared_data():
     obj = add_trefoil()
     bpy.context.scene.collection.objects.link(bpy.data.objects.new("Other", obj.data))
-    return "The curve data 'Knot' is shared"
+    return "'Knot' shares its curve data 'Knot' with other objects"
 
 
 def zero_scale():
@@ -154,6 +155,16 @@ def flat():
     return "2D"
 
 
+def stray_bezier():
+    add_curve([torus_trefoil(9).vertices, [[9, 9, 9]]], kind="BEZIER")
+    return "Spline 2 of 'Knot' has fewer than 2 points"
+
+
+def stray_nurbs():
+    add_curve([torus_trefoil(9).vertices, [[9, 9, 9], [9, 9, 8]]], kind="NURBS")
+    return "Spline 2 of 'Knot' has fewer than 3 points"
+
+
 def crossing():
     add_curve([[[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]]])
     return "touch"
@@ -202,6 +213,8 @@ CASES = [
     animated,
     driven,
     flat,
+    stray_bezier,
+    stray_nurbs,
     crossing,
     double_point,
     touching_components,
@@ -267,3 +280,44 @@ def test_an_unknown_method_is_a_type_error():
     add_trefoil()
     with pytest.raises(TypeError, match="magic"):
         bpy.ops.curve.mobius_flow_relax(method="magic")
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_stray_smooth_spline_changes_nothing(kind, count):
+    """Refused before anything is touched, whether or not one has agreed to polygons."""
+    stray = torus_trefoil(9).vertices[:count] + 9
+    obj = add_curve([torus_trefoil(9).vertices, stray, torus_trefoil(9).vertices + 20], kind=kind)
+    obj.data.resolution_u = 1  # two Bézier points are drawn as a segment then
+    assert "Spline 2 of 'Knot'" in refused(sample_splines=True)
+
+
+def test_splines_that_are_not_drawn_are_refused(monkeypatch):
+    add_curve([torus_trefoil(9).vertices, torus_trefoil(9).vertices + 9], kind="NURBS")
+    drawn = sampling._drawn
+    monkeypatch.setattr(sampling, "_drawn", lambda data: drawn(data)[1:])
+    assert "draws nothing for" in refused(sample_splines=True)
+
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"frames_per_iterate": NAN}, "Frames/Iterate is nan; it must be from 0.1 to 10000"),
+        ({"tolerance": NAN}, "tolerance is nan"),
+        ({"start_frame": 2**24}, "Start Frame is 1.67772e+07; it must be from -1048574 to 1048574"),
+        ({"start_frame": -(2**24)}, "it must be from -1048574 to 1048574"),
+        ({"start_frame": 1_048_000}, "The keys would go on to frame 1050000, but Blender's last is 1048574"),
+        ({"frames_per_iterate": 10_000.0}, "The keys would go on to frame 20000001"),
+    ],
+)
+def test_frames_that_a_scene_does_not_have(options, said):
+    add_trefoil()
+    assert said in refused(**options)
+
+
+def test_without_keys_there_is_room_anywhere():
+    add_trefoil()
+    relax(keyframes="RESULT", start_frame=1_048_000, max_iterations=2000, vertices=60)

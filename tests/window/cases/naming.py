@@ -21,7 +21,7 @@ def case() -> Steps:
     obj().name, obj().data.name = "Renamed", "Renamed too"
     window().scene.frame_set(7)
     yield from reaches(run().last.index + 2)
-    assert run().name == "Renamed"
+    assert run().name == "'Renamed'"
 
     shown = points()
     bpy.ops.wm.save_as_mainfile(filepath=FILE)

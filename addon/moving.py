@@ -1,0 +1,44 @@
+"""What moves an object: places of curves that are relaxed together must stay."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from .keyframes import fcurves_of
+
+if TYPE_CHECKING:
+    import bpy
+
+_TRANSFORMS = ("location", "rotation", "scale", "delta_", "matrix", "parent")
+
+
+def what_moves(obj: "bpy.types.Object") -> str | None:
+    """Say what may move an object or one of its parents by itself, or return None if nothing does."""
+    return next(_movers(obj), None)
+
+
+def _movers(obj: "bpy.types.Object") -> Iterator[str]:
+    animation = obj.animation_data
+    if animation and animation.nla_tracks:
+        yield "an NLA track"
+    if animation and animation.action and _transforms(fcurves_of(animation.action)):
+        yield "animation"
+    if animation and _transforms(animation.drivers):
+        yield "a driver"
+    if any(not constraint.mute for constraint in obj.constraints):
+        yield "a constraint"
+    if obj.rigid_body:
+        yield "physics"
+    if obj.parent:
+        yield from _parental(obj)
+
+
+def _parental(obj: "bpy.types.Object") -> Iterator[str]:
+    """A parent carries an object along when it moves, and some do when they change their shape or pose."""
+    if obj.parent_type != "OBJECT" or (obj.parent.type == "CURVE" and obj.parent.data.use_path):
+        yield "its parent"
+    for reason in _movers(obj.parent):
+        yield f"{reason} of its parent" if reason != "its parent" else reason
+
+
+def _transforms(curves: "Iterator[bpy.types.FCurve]") -> bool:
+    return any(curve.data_path.startswith(_TRANSFORMS) for curve in curves)
