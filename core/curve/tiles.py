@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..types import BoolArray
+from ..types import BoolArray, IntArray
 from .mesh import Mesh
 
 ROWS_TIMES_COLUMNS = 24_000  # doubles in one tile array; some ten of them should fit a second-level cache
@@ -23,13 +23,21 @@ class Tile(NamedTuple):
     excluded: BoolArray
 
 
-def pair_tiles(mesh: Mesh) -> Iterator[Tile]:
-    """Cover every unordered pair of edges with disjoint closures exactly once."""
+EdgePairIndices = tuple[IntArray, IntArray]
+"""Unordered pairs of edges (i, j), each of shape (pairs,)."""
+
+
+def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None) -> Iterator[Tile]:
+    """Cover every unordered pair of edges with disjoint closures exactly once, but for some that are left out."""
     n = mesh.size
+    left_out = np.sort(np.empty((2, 0), dtype=np.intp) if without is None else np.stack(without), axis=0)
     first = 0
     while first < n:
         last = min(n, first + max(1, ROWS_TIMES_COLUMNS // (n - first)))
-        yield Tile(slice(first, last), slice(first, n), _excluded(mesh, first, last))
+        excluded = _excluded(mesh, first, last)
+        row, column = left_out[:, (left_out[0] >= first) & (left_out[0] < last)] - first
+        excluded[row, column] = True
+        yield Tile(slice(first, last), slice(first, n), excluded)
         first = last
 
 

@@ -14,13 +14,11 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..curve import Curve
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 from .contributions import Contributions
 from .edge_pairs import EdgePairs, scatter_first, scatter_second
 from .jets import Jet
-from .near_pairs import FAR, near_pairs
-
-NEAR = 1.0  # of q, where the cutoff leaves 1; it reaches 0 at FAR
+from .near_pairs import FAR, NEAR, is_replaced, near_pairs
 
 
 @dataclass(frozen=True)
@@ -32,9 +30,14 @@ class Barrier:
     replaces_midpoint
         Whether the midpoint contributions are subtracted, as is right for the default energy that contains them.
         Other energies do not: theirs is Σ χ W_exact, a positive barrier on top of what they say themselves.
+    left_out
+        Whether the energy leaves the pairs with χ = 1 out (`replaced_pairs`), so that theirs is W_exact alone.  The sum
+        is the same, but nothing is added that is subtracted again: at a distance g that would be some 1/g² times the
+        rounding error of g, which drowns it from 10⁻⁸ of an edge on.
     """
 
     replaces_midpoint: bool = True
+    left_out: bool = False
 
     name: ClassVar[str] = "barrier"
     description: ClassVar[str] = "exact minus midpoint energy of near pairs of edges"
@@ -47,7 +50,7 @@ class Barrier:
         """B and its derivative with respect to the vertices, shape (n, m)."""
         total, derivative = 0.0, np.zeros_like(curve.vertices)
         for i, j in _blocks(curve, 4096):
-            jet = self._contributions(EdgePairs.of(curve, i, j))
+            jet = self._contributions(EdgePairs.of(curve, i, j), is_replaced(curve, i, j))
             total += float(jet.value.sum())
             derivative += scatter_first(curve.mesh, i, j, jet.first)
         return 2.0 * total, 2.0 * derivative  # unordered pairs are listed, the sum is over ordered ones
@@ -62,7 +65,8 @@ class Barrier:
         for i, j in _blocks(curve, 16384):
             # the jets' matrices, many of 3m × 3m for each pair, should stay in the processor's cache
             parts = [slice(first, first + 128) for first in range(0, len(i), 128)]
-            second = [self._contributions(EdgePairs.of(curve, i[s], j[s]).with_coordinates()).second for s in parts]
+            pairs = [(EdgePairs.of(curve, i[s], j[s]), is_replaced(curve, i[s], j[s])) for s in parts]
+            second = [self._contributions(p.with_coordinates(), replaced).second for p, replaced in pairs]
             total = total + scatter_second(curve.mesh, i, j, 2.0 * np.concatenate(second))
         return total
 
@@ -70,15 +74,17 @@ class Barrier:
         """D²B v for ``v`` of shape (n, m); shape (n, m)."""
         product = np.zeros_like(v)
         for i, j in _blocks(curve, 4096):
-            jet = self._contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v))
+            jet = self._contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v), is_replaced(curve, i, j))
             product += scatter_first(curve.mesh, i, j, jet.second[:, :, 0])
         return 2.0 * product
 
-    def _contributions(self, pairs: EdgePairs) -> Jet:
-        """χ (W_exact − W_mid) of pairs of edges."""
+    def _contributions(self, pairs: EdgePairs, replaced: BoolArray) -> Jet:
+        """χ (W_exact − W_mid) of pairs of edges, those ``replaced`` that have χ = 1."""
         w = Contributions(pairs)
         q = w.closeness()
-        excess = w.exact() - w.midpoint() if self.replaces_midpoint else w.exact()
+        excess = w.exact()
+        if self.replaces_midpoint:
+            excess = excess - (w.midpoint().where(~replaced) if self.left_out else w.midpoint())
         return q.compose(*cutoff(q.value)) * excess
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..types import FloatArray
+from ..types import BoolArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +51,12 @@ class Jet:
     def scaled(self, factor: float) -> "Jet":
         """The quantity times a number."""
         return Jet(factor * self.value, factor * self.first, factor * self.along, factor * self.second)
+
+    def where(self, kept: BoolArray) -> "Jet":
+        """The quantity for some pairs, shape (k,), and 0 for the others, even if it is infinite there."""
+        value, first = np.where(kept, self.value, 0.0), np.where(kept[:, None], self.first, 0.0)
+        along, second = np.where(kept[:, None], self.along, 0.0), np.where(kept[:, None, None], self.second, 0.0)
+        return Jet(value, first, along, second)
 
     def compose(self, value: FloatArray, slope: FloatArray, curvature: FloatArray) -> "Jet":
         """A function of the quantity, by its values and first and second derivatives there, each (k,)."""

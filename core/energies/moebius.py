@@ -10,30 +10,41 @@ Ishizeki and Nagasawa's density (1 − cos α)/r² at the midpoints.  A round ci
 from dataclasses import dataclass
 
 from ..curve import Curve
-from ..curve.tiles import pair_tiles
+from ..curve.tiles import EdgePairIndices, pair_tiles
 from ..types import FloatArray
 from .moebius_hessian import hessian
 from .moebius_hessian_product import hessian_product
 from .moebius_pairs import DerivativeSums, Edges, Pairs
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MoebiusEnergy:
-    """The plain midpoint sum, the energy that is reported as ``moebius``."""
+    """The plain midpoint sum, the energy that is reported as ``moebius``.
 
+    Parameters
+    ----------
+    without
+        Pairs of edges that are left out of the sum, because something else stands for them.
+    """
+
+    without: EdgePairIndices | None = None
     name = "moebius"
     description = "Möbius energy without arc distances, midpoint rule (Ishizeki–Nagasawa density)"
+
+    def leaving_out(self, pairs: EdgePairIndices) -> "MoebiusEnergy":
+        """The same sum without some pairs of edges."""
+        return MoebiusEnergy(pairs)
 
     def value(self, curve: Curve) -> float:
         """Energy E of the curve; 4 for a regular polygon."""
         edges = Edges.of(curve)
-        return _total(curve, sum(Pairs.of(edges, tile).energy() for tile in pair_tiles(curve.mesh)))
+        return _total(curve, sum(Pairs.of(edges, tile).energy() for tile in pair_tiles(curve.mesh, self.without)))
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
         edges = Edges.of(curve)
         total, sums = 0.0, DerivativeSums.zeros(*curve.vertices.shape)
-        for tile in pair_tiles(curve.mesh):
+        for tile in pair_tiles(curve.mesh, self.without):
             pairs = Pairs.of(edges, tile)
             total += pairs.energy()
             sums.add(tile, pairs.coefficients(), edges.vectors)
@@ -41,11 +52,11 @@ class MoebiusEnergy:
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative D²E, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
-        return hessian(curve)
+        return hessian(curve, self.without)
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
-        return hessian_product(curve, v)
+        return hessian_product(curve, v, self.without)
 
 
 def _total(curve: Curve, pairs: float) -> float:

@@ -17,19 +17,19 @@ from itertools import product
 import numpy as np
 
 from ..curve import Curve
-from ..curve.tiles import Tile, pair_tiles
+from ..curve.tiles import EdgePairIndices, Tile, pair_tiles
 from ..types import FloatArray
 from .hessian_blocks import CouplingPlanes, OwnBlocks
 from .moebius_pairs import Edges, Pairs
 
 
-def hessian(curve: Curve) -> FloatArray:
-    """D²E of the default energy, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
+def hessian(curve: Curve, without: EdgePairIndices | None = None) -> FloatArray:
+    """D²E of the default energy without some pairs, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
     edges = Edges.of(curve)
     coupling = CouplingPlanes(curve)
     own = OwnBlocks.zeros(*curve.vertices.shape)
     lengths = np.zeros(len(curve))  # Σ_J s_IJ ℓ_J
-    for tile in pair_tiles(curve.mesh):
+    for tile in pair_tiles(curve.mesh, without):
         pairs = Pairs.of(edges, tile)
         lengths[tile.rows] += pairs.s @ edges.vectors.ell[tile.columns]
         lengths[tile.columns] += edges.vectors.ell[tile.rows] @ pairs.s

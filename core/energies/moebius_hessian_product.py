@@ -11,18 +11,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ..curve import Curve
-from ..curve.tiles import Tile, pair_tiles
+from ..curve.tiles import EdgePairIndices, Tile, pair_tiles
 from ..types import FloatArray
 from .moebius_pairs import Coefficients, DerivativeSums, Edges, Pairs, Vectors
 
 
-def hessian_product(curve: Curve, v: FloatArray) -> FloatArray:
-    """D²E v for ``v`` of shape (n, m); shape (n, m)."""
+def hessian_product(curve: Curve, v: FloatArray, without: EdgePairIndices | None = None) -> FloatArray:
+    """D²E v for ``v`` of shape (n, m), E without some pairs; shape (n, m)."""
     edges = Edges.of(curve)
     motion = _Motion.of(curve, edges, v)
     sums = DerivativeSums.zeros(*v.shape)
     lengths = np.zeros(len(v))  # Σ_J s ℓ_J
-    for tile in pair_tiles(curve.mesh):
+    for tile in pair_tiles(curve.mesh, without):
         pairs = Pairs.of(edges, tile)
         lengths[tile.rows] += pairs.s @ edges.vectors.ell[tile.columns]
         lengths[tile.columns] += edges.vectors.ell[tile.rows] @ pairs.s

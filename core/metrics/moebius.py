@@ -24,7 +24,7 @@ from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
 # others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves it changes nothing.
-NEAREST = 1.0
+NEAREST = 0.25
 
 
 @dataclass(frozen=True)

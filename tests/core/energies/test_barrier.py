@@ -130,3 +130,34 @@ def test_touching_strands_give_no_nan() -> None:
     assert np.isfinite(value)
     assert value > Objective().value(crossing(1e-9))
     assert np.isfinite(derivative).all()
+
+
+@pytest.mark.parametrize("gap", [1e-4, 1e-6, 1e-8, 1e-9])
+def test_the_objective_keeps_its_digits_where_midpoint_energies_are_astronomical(gap: float) -> None:
+    """Two coaxial polygons: midpoint energies of some 1/g² would cancel to some 1/g, and leave rounding errors."""
+    t = 2 * np.pi * np.arange(40) / 40
+    ring = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
+    rng = np.random.default_rng(3)
+    curve = Curve.from_components([ring, ring + [0.0, 0.0, gap] + 0.05 * gap * rng.normal(size=ring.shape)])
+    value, derivative = Objective().value_and_derivative(curve)
+    # coordinates wrong by 10⁻¹⁶ are a gap wrong by 10⁻¹⁶/g
+    moved = curve.with_vertices(curve.vertices + 1e-16 * rng.normal(size=curve.vertices.shape))
+    assert Objective().value(moved) == pytest.approx(value, rel=1e-15 / gap)
+    v = gap * rng.normal(size=curve.vertices.shape)
+    ahead, behind = (Objective().value(curve.with_vertices(curve.vertices + h * v)) for h in (1e-3, -1e-3))
+    assert (ahead - behind) / 2e-3 == pytest.approx(float(np.sum(derivative * v)), rel=1e-3)
+
+
+def test_leaving_pairs_out_changes_nothing() -> None:
+    """Energy, derivative and second derivative are those of midpoint energy plus barrier."""
+    curve = lattice_knot("4_1")
+    plain, barrier, objective = MoebiusEnergy(), Barrier(), Objective()
+    v = np.random.default_rng(8).normal(size=curve.vertices.shape)
+    assert barrier.value(curve) != 0.0
+    assert objective.value(curve) == pytest.approx(plain.value(curve) + barrier.value(curve), rel=1e-12)
+    for found, parts in (
+        (objective.value_and_derivative(curve)[1], [e.value_and_derivative(curve)[1] for e in (plain, barrier)]),
+        (objective.hessian(curve), [e.hessian(curve) for e in (plain, barrier)]),
+        (objective.hessian_product(curve, v), [e.hessian_product(curve, v) for e in (plain, barrier)]),
+    ):
+        np.testing.assert_allclose(found, sum(parts), atol=1e-10 * np.abs(parts[0]).max())
