@@ -17,7 +17,7 @@ from .properties import SETTINGS, key_options, relax_options, settings
 from .session import Session
 
 _LARGEST = 1e30  # Blender computes with squares and products of such numbers
-_MOST_TURNS = 200  # of a torus knot, or strands of a braid: 200,000 points and a second
+_MOST_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
 
 
 class CURVE_OT_mobius_flow_relax(LiveRelax, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
