@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from ..core import METHODS, MobiusFlowError
 from ..core.compare import Run, compare
 from ..core.curve.io import FORMATS
-from ..core.errors import OptionError, OutputError, choice
+from ..core.errors import OptionError, OutputError, likeliest
 from ..core.files import atomic_write
 from . import curves, signals
 from . import options as relax_options
@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
     """Compare, write the figure or table, and print one line per method."""
     suffix = Path(options.output).suffix.lower()
     if suffix not in WRITERS:
-        guess, _, _ = choice(suffix, WRITERS).rpartition("choose")
+        guess = likeliest(suffix, WRITERS)
         raise OptionError(f"{options.output}: unknown suffix {suffix!r}; {guess}outputs end in {', '.join(WRITERS)}")
     if WRITERS[suffix] is _write_figure:
         _figure_class()

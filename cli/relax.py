@@ -159,9 +159,10 @@ def _trajectory(iterates: list[Iterate], origin: Mapping[str, object]) -> Trajec
 
 
 def _write_report(path: str, result: Result, origin: Mapping[str, object] | None = None) -> None:
+    text = json.dumps(result.report() | dict(origin or {}), indent=1) + "\n"
     try:
         with atomic_write(path) as temporary:
-            temporary.write_text(json.dumps(result.report() | dict(origin or {}), indent=1) + "\n", encoding="utf-8")
+            temporary.write_text(text, encoding="utf-8")
     except (OSError, ValueError) as error:
         raise OutputError(path, error) from error
 

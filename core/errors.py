@@ -49,7 +49,11 @@ def choice(name: str, known: Iterable[str]) -> str:
     'did you mean lbfgs? choose one of lbfgs, cg'
     """
     known = list(known)
+    return f"{likeliest(name, known)}choose one of {', '.join(known)}"
+
+
+def likeliest(name: str, known: Iterable[str]) -> str:
+    """Ask whether a known name was meant; empty if none is alike."""
     by_lower = {key.lower(): key for key in known}
     close = difflib.get_close_matches(name.lower(), by_lower, n=1)
-    guess = f"did you mean {by_lower[close[0]]}? " if close else ""
-    return f"{guess}choose one of {', '.join(known)}"
+    return f"did you mean {by_lower[close[0]]}? " if close else ""

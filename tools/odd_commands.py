@@ -144,7 +144,7 @@ def complaints(case: Case, room: Path, before: dict[str, bytes], outcome: Outcom
     found += [word.decode() for word in UNFORGIVABLE if word in outcome.err + outcome.out]
     if (case.signals or case.limits) and b"Traceback" in outcome.err and os.fsencode(ROOT) not in outcome.err:
         return []  # Python itself did not start
-    lines = outcome.err.decode("utf-8", "replace").splitlines()
+    lines = outcome.err.replace(b"\0", b"").decode("utf-8", "replace").splitlines()  # it may be UTF-16
     several = "compare" in case.words and outcome.status == 130  # the methods that are done
     if case.err == "pipe" and outcome.status in (2, 130) and not several and len(lines) != 1:
         found.append(f"{len(lines)} lines instead of a sentence")

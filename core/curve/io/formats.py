@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import BinaryIO, TextIO
 
-from ...errors import CurveError, CurveFileError, choice
+from ...errors import CurveError, CurveFileError, likeliest
 from ...files import atomic_write
 from ..curve import Curve, check_is_curve
 from . import json_lists, obj, vect, xyz
@@ -156,5 +156,5 @@ def format_of(path: Path) -> Format:
         return FORMATS[path.suffix.lower()]
     except KeyError:
         found = f"unknown suffix {path.suffix!r}" if path.suffix else "no suffix"
-        guess, _, _ = choice(path.suffix, FORMATS).rpartition("choose")
+        guess = likeliest(path.suffix, FORMATS)
         raise CurveFileError(path, f"{found}; {guess}curve files end in {', '.join(FORMATS)}") from None
