@@ -141,10 +141,10 @@ def test_whatever_a_command_raises(
     status: int,
     words: str,
 ) -> None:
-    def failing(_curve: object) -> None:
+    def failing(*_: object) -> None:
         raise error
 
-    monkeypatch.setattr("mobius_flow.cli.energy.check_units", failing)
+    monkeypatch.setattr("mobius_flow.cli.energy.measure", failing)
     assert main(["energy", trefoil]) == status
     said = capsys.readouterr().err
     assert words in said
