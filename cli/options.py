@@ -30,7 +30,10 @@ def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
     group.add_argument("--energy", default=defaults.energy, metavar="NAME", help=_choice(ENERGIES, defaults.energy))
     group.add_argument("--metric", metavar="NAME", help=_choice(METRICS, "the method's own"))
     group.add_argument(
-        "--quadrature-points", type=int, default=1, metavar="k", help="Gauss points per edge of the metric J_C (1)"
+        "--quadrature-points",
+        type=int,
+        metavar="k",
+        help="Gauss points per edge of the metric J_C (default: the energy's)",
     )
     group.add_argument("--penalty", type=float, metavar="α", help="weight of length errors in the penalty methods")
     group.add_argument(

@@ -19,8 +19,6 @@ from .stability import stability
 from .types import FloatArray
 
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
-# energies that do not change with size, and so gain by letting one part of a composite shrink for ever
-CONFORMAL = frozenset({"moebius", "vertex", "edge", "moebius-k2", "moebius-k3"})
 COMPOSITE_KNOT = 140.0  # less energy than any composite: two trefoils (74.4 each) less a circle make 144.8,
 COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
 
@@ -47,7 +45,8 @@ def judged(point: Point, iterate: Iterate, options: RelaxOptions) -> tuple[Itera
             if options.escape_saddles and found.index:
                 iterate = replace(iterate, status=Status.RUNNING, message="")
                 way_down = found.directions[0], float(found.eigenvalues[0])
-    if iterate.status is Status.CONVERGED and options.energy in CONFORMAL:
+    # an energy that does not see size gains by letting one part of a composite shrink for ever
+    if iterate.status is Status.CONVERGED and point.problem.objective.energy.scale_exponent == 0.0:
         iterate = _unless_composite(iterate, point.problem.constraints.parts)
     if iterate.status is Status.RUNNING and iterate.index >= options.max_iterations:
         message = f"stopped after {iterate.index} iterations, as asked for"

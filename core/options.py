@@ -46,7 +46,7 @@ class RelaxOptions:
     metric
         Name of the metric, see ``mobius_flow.core.metrics.METRICS``; None is the method's own.
     quadrature_points
-        Gauss points per edge of the metric J_C.
+        Gauss points per edge of the metric J_C; None takes the energy's own rule.
     penalty
         Weight α of the length penalty of the infeasible methods; None is their default.
     stability
@@ -75,7 +75,7 @@ class RelaxOptions:
     vertices: int | None = None
     energy: str = "moebius"
     metric: str | None = None
-    quadrature_points: int = 1
+    quadrature_points: int | None = None
     penalty: float | None = None
     adaptive: bool = False
     resolve: bool = False
@@ -91,7 +91,7 @@ class RelaxOptions:
             raise OptionError(f"tolerance is {self.tolerance}; it must be a finite number above 0")
         if self.vertices is not None and self.vertices < 3:
             raise OptionError(f"vertices is {self.vertices}; it must be 3 or more")
-        if not 1 <= self.quadrature_points <= MOST_QUADRATURE_POINTS:
+        if self.quadrature_points is not None and not 1 <= self.quadrature_points <= MOST_QUADRATURE_POINTS:
             raise OptionError(
                 f"quadrature_points is {self.quadrature_points!s:.40}; it must be from 1 to {MOST_QUADRATURE_POINTS}"
             )

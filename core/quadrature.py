@@ -1,9 +1,11 @@
-"""Gauss–Legendre quadrature on [0, 1]."""
+"""Quadrature rules on [0, 1], which energies and metrics use on every edge."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from .errors import OptionError
 from .types import FloatArray, frozen
 
 
@@ -12,3 +14,45 @@ def gauss_legendre(points: int) -> tuple[FloatArray, FloatArray]:
     """Points and weights on [0, 1], each of shape (points,), exact for polynomials of degree 2·points − 1."""
     x, w = np.polynomial.legendre.leggauss(points)  # type: ignore[no-untyped-call]
     return frozen(0.5 * (x + 1.0)), frozen(0.5 * w)
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A quadrature rule on [0, 1].
+
+    Parameters
+    ----------
+    points, weights
+        t_i in [0, 1] and ω_i, as many of one as of the other; the weights add up to 1.
+
+    Raises
+    ------
+    OptionError
+        If they are anything else.
+    """
+
+    points: tuple[float, ...]
+    weights: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not self.points or len(self.points) != len(self.weights):
+            raise OptionError(
+                f"the rule has {len(self.points)} points, {len(self.weights)} weights; give as many of both, 1 or more"
+            )
+        if not all(0.0 <= t <= 1.0 for t in self.points):
+            raise OptionError(f"points are {self.points}; they must lie between 0 and 1")
+        if not abs(sum(self.weights) - 1.0) < 1e-12:
+            raise OptionError(f"weights are {self.weights}; they must add up to 1")
+
+    @classmethod
+    def gauss(cls, points: int) -> "Rule":
+        """Gauss–Legendre rule with ``points`` points, 1 or more; it is of order 2·points."""
+        if points < 1:
+            raise OptionError(f"points is {points}; the quadrature needs 1 point per edge or more")
+        t, omega = gauss_legendre(points)
+        return cls(tuple(t.tolist()), tuple(omega.tolist()))
+
+
+TAIL = Rule((0.0,), (1.0,))
+MIDPOINT = Rule((0.5,), (1.0,))
+ENDS = Rule((0.0, 1.0), (0.5, 0.5))

@@ -9,10 +9,11 @@ from .collision import check_gap, minimal_gap, survives_rounding
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
 from .descent import METHODS, Method, Problem
-from .energies import ENERGIES, Barrier, Energy, MoebiusEnergy, Objective
+from .energies import ENERGIES, Energy, Objective
 from .errors import CurveError, OptionError, choice
-from .metrics import METRICS, MoebiusMetric
+from .metrics import METRICS, Metric
 from .options import RelaxOptions
+from .quadrature import Rule
 from .types import FloatArray
 from .units import Units
 
@@ -90,7 +91,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
     energy = energy_named(options.energy)
-    objective = Objective(energy, Barrier(replaces_midpoint=isinstance(energy, MoebiusEnergy)))
+    objective = Objective.of(energy)
     second_order = method.rule.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:
         raise OptionError(
@@ -99,14 +100,18 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     if (options.stability or options.escape_saddles) and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
     metric = method.metric if options.metric is None else named(METRICS, "metric", options.metric)
-    if options.quadrature_points > 1:
-        if not isinstance(metric, MoebiusMetric):
-            raise OptionError(
-                f"quadrature_points is {options.quadrature_points}; metric {metric.name!r} has no such rule"
-            )
-        metric = MoebiusMetric(options.quadrature_points)
+    metric = metric.with_rule(_rule(metric, energy, options.quadrature_points))
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     return Problem(curve.mesh, objective, metric, constraints, units, geometry)
+
+
+def _rule(metric: Metric, energy: Energy, points: int | None) -> Rule:
+    """The energy's quadrature rule, as Section 6.1.2 of [RS21] has it, or the one that is asked for."""
+    if points is None:
+        return energy.rule
+    if metric.rule is None:
+        raise OptionError(f"quadrature_points is {points}; metric {metric.name!r} has no such rule")
+    return Rule.gauss(points)
 
 
 def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:

@@ -18,7 +18,7 @@ from .step import NoStep, Step
 _CONSTRAINED = Constrained()
 
 
-class Rule(Protocol):
+class StepRule(Protocol):
     """How a method gets from point to point."""
 
     @property
@@ -47,7 +47,7 @@ class Method:
 
     name: str
     description: str
-    rule: Rule
+    rule: StepRule
     metric: Metric = METRICS["moebius"]
     geometry: Geometry = _CONSTRAINED
 

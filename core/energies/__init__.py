@@ -1,10 +1,11 @@
 """Energies of polygons: one file each, and the table they are chosen from."""
 
+from ..quadrature import Rule
 from .barrier import Barrier
 from .density import Density
 from .edge import EDGE_ENERGY
 from .energy import Energy, TwiceDifferentiable
-from .kpoint import KPointEnergy, Rule
+from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
 from .moebius_kpoint import moebius_kpoint
 from .objective import Objective

@@ -14,6 +14,7 @@ class ArcDensity:
     """
 
     constant = 0.0
+    scale_exponent = -2.0
 
     def value(self, pairs: PointPairs) -> FloatArray:
         """F of every pair."""

@@ -89,6 +89,10 @@ class Density(Protocol):
     def constant(self) -> float:
         """What the energy has besides the integral, per component."""
 
+    @property
+    def scale_exponent(self) -> float:
+        """s of F(λ x, λ y) = λˢ F(x, y)."""
+
     def value(self, pairs: PointPairs) -> FloatArray:
         """F of every pair, shape (rows, columns)."""
 

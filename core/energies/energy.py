@@ -3,6 +3,8 @@
 from typing import Protocol
 
 from ..curve import Curve
+from ..curve.tiles import EdgePairIndices
+from ..quadrature import Rule
 from ..types import FloatArray
 
 
@@ -17,11 +19,30 @@ class Energy(Protocol):
     def description(self) -> str:
         """One line for lists."""
 
+    @property
+    def rule(self) -> Rule:
+        """Where on the edges it looks; J_C looks at the same places unless told otherwise."""
+
+    @property
+    def scale_exponent(self) -> float:
+        """s of E(λ P) = λˢ E(P); 0 for energies that do not see size."""
+
+    @property
+    def contains_midpoint_pairs(self) -> bool:
+        """Whether the midpoint energies that the barrier replaces are part of it; then it has `leaving_out`."""
+
     def value(self, curve: Curve) -> float:
         """The energy of the curve."""
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """The energy and its derivative with respect to the vertices, shape (n, m)."""
+
+
+class WithMidpointPairs(Energy, Protocol):
+    """An energy part of which the barrier replaces."""
+
+    def leaving_out(self, pairs: EdgePairIndices) -> Energy:
+        """The same without some pairs of edges."""
 
 
 class TwiceDifferentiable(Energy, Protocol):

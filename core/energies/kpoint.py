@@ -12,53 +12,10 @@ import numpy as np
 from ..curve import Curve
 from ..curve.distances import points_at
 from ..curve.tiles import Tile, pair_tiles
-from ..errors import OptionError
-from ..quadrature import gauss_legendre
+from ..quadrature import Rule
 from ..types import FloatArray
 from .density import Density, PointPairs, PointSet
 from .kpoint_sums import KPointSums
-
-
-@dataclass(frozen=True)
-class Rule:
-    """A quadrature rule on [0, 1].
-
-    Parameters
-    ----------
-    points, weights
-        t_i in [0, 1] and ω_i, as many of one as of the other; the weights add up to 1.
-
-    Raises
-    ------
-    OptionError
-        If they are anything else.
-    """
-
-    points: tuple[float, ...]
-    weights: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        if not self.points or len(self.points) != len(self.weights):
-            raise OptionError(
-                f"the rule has {len(self.points)} points, {len(self.weights)} weights; give as many of both, 1 or more"
-            )
-        if not all(0.0 <= t <= 1.0 for t in self.points):
-            raise OptionError(f"points are {self.points}; they must lie between 0 and 1")
-        if not abs(sum(self.weights) - 1.0) < 1e-12:
-            raise OptionError(f"weights are {self.weights}; they must add up to 1")
-
-    @classmethod
-    def gauss(cls, points: int) -> "Rule":
-        """Gauss–Legendre rule with ``points`` points, 1 or more; it is of order 2·points."""
-        if points < 1:
-            raise OptionError(f"points is {points}; the quadrature needs 1 point per edge or more")
-        t, omega = gauss_legendre(points)
-        return cls(tuple(t.tolist()), tuple(omega.tolist()))
-
-
-TAIL = Rule((0.0,), (1.0,))
-MIDPOINT = Rule((0.5,), (1.0,))
-ENDS = Rule((0.0, 1.0), (0.5, 0.5))
 
 
 @dataclass(frozen=True)
@@ -83,6 +40,12 @@ class KPointEnergy:
     density: Density
     rule: Rule
     arc_derivative: bool = True
+    contains_midpoint_pairs = False
+
+    @property
+    def scale_exponent(self) -> float:
+        """s of E(λ P) = λˢ E(P): the density's, and 2 for the double integral."""
+        return self.density.scale_exponent + 2.0
 
     def value(self, curve: Curve) -> float:
         """Energy of the curve."""

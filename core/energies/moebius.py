@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices, pair_tiles
+from ..quadrature import MIDPOINT
 from ..types import FloatArray
 from .moebius_hessian import hessian
 from .moebius_hessian_product import hessian_product
@@ -29,6 +30,9 @@ class MoebiusEnergy:
 
     without: EdgePairIndices | None = None
     name = "moebius"
+    rule = MIDPOINT
+    scale_exponent = 0.0
+    contains_midpoint_pairs = True
     description = "Möbius energy without arc distances, midpoint rule (Ishizeki–Nagasawa density)"
 
     def leaving_out(self, pairs: EdgePairIndices) -> "MoebiusEnergy":

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
+from ..quadrature import Rule
 from ..types import FloatArray
 from .density import Partials, PointPairs
-from .kpoint import KPointEnergy, Rule
+from .kpoint import KPointEnergy
 
 
 @dataclass(frozen=True)
@@ -12,6 +13,7 @@ class IshizekiNagasawaDensity:
     """F = (1 + ⟨τ_x, τ_y⟩ − 2 ⟨d, τ_x⟩⟨d, τ_y⟩/r²)/r² = (1 − cos α)/r² ≥ 0, so E = 4 + ∬ F."""
 
     constant = 4.0
+    scale_exponent = -2.0
 
     def value(self, pairs: PointPairs) -> FloatArray:
         """F of every pair."""

@@ -9,7 +9,7 @@ from ..curve import Curve
 from ..errors import OptionError
 from ..types import FloatArray
 from .barrier import Barrier
-from .energy import Energy, TwiceDifferentiable
+from .energy import Energy, TwiceDifferentiable, WithMidpointPairs
 from .moebius import MoebiusEnergy
 from .near_pairs import replaced_pairs
 
@@ -23,6 +23,11 @@ class Objective:
 
     name = "objective"
     description = "moebius + barrier, what relax descends on"
+
+    @classmethod
+    def of(cls, energy: Energy) -> "Objective":
+        """The objective of any energy: the barrier takes the place of what it has of it, or stands beside it."""
+        return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs))
 
     def value(self, curve: Curve) -> float:
         """The objective at the curve."""
@@ -59,7 +64,9 @@ class Objective:
         """
         if not self.barrier.replaces_midpoint:
             return self.energy, self.barrier
-        return cast(MoebiusEnergy, self.energy).leaving_out(replaced_pairs(curve)), replace(self.barrier, left_out=True)
+        return cast(WithMidpointPairs, self.energy).leaving_out(replaced_pairs(curve)), replace(
+            self.barrier, left_out=True
+        )
 
     def _twice_differentiable(self, energy: Energy) -> TwiceDifferentiable:
         if not self.has_hessian:

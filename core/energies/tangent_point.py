@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import OptionError
+from ..quadrature import ENDS
 from ..types import FloatArray
 from .density import Partials, PointPairs
-from .kpoint import ENDS, KPointEnergy
+from .kpoint import KPointEnergy
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,11 @@ class TangentPointDensity:
     beta: float = 6.0
 
     constant = 0.0
+
+    @property
+    def scale_exponent(self) -> float:
+        """|d ∧ τ|^α/r^β is a length to the α − β."""
+        return self.alpha - self.beta
 
     def __post_init__(self) -> None:
         if not self.alpha >= 2.0:

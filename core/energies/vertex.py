@@ -1,7 +1,8 @@
 """The vertex energy of Kusner and Sullivan: one point per edge, at its tail (Section 6.1.1 of [RS21])."""
 
+from ..quadrature import TAIL
 from .arc_density import ArcDensity
-from .kpoint import TAIL, KPointEnergy
+from .kpoint import KPointEnergy
 
 VERTEX_ENERGY = KPointEnergy(
     name="vertex",

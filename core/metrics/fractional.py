@@ -7,12 +7,12 @@ import numpy as np
 from ..curve import Curve
 from ..curve.distances import arc_distances
 from .inner_product import DenseInnerProduct, InnerProduct, check_dense
-from .local import mass
+from .local import WithoutRule, mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
 
 @dataclass(frozen=True)
-class FractionalMetric:
+class FractionalMetric(WithoutRule):
     """Σ ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/ϱ² + ∫ u v, midpoint rule, ϱ the distance along the curve."""
 
     name = "h3-2"

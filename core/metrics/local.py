@@ -5,10 +5,12 @@ which a component is 4 to 8 long, so that the two terms weigh alike.
 """
 
 from dataclasses import dataclass
+from typing import Self
 
 import scipy.sparse as sp
 
 from ..curve import Curve
+from ..quadrature import Rule
 from ..types import FloatArray
 from .inner_product import InnerProduct, SparseInnerProduct
 
@@ -32,8 +34,18 @@ def lumped_mass(curve: Curve) -> FloatArray:
     return 0.5 * curve.mesh.scatter(curve.edge_lengths, curve.edge_lengths)
 
 
+class WithoutRule:
+    """A metric whose integrals are exact or by one fixed rule."""
+
+    rule = None
+
+    def with_rule(self, _rule: Rule) -> Self:
+        """Itself."""
+        return self
+
+
 @dataclass(frozen=True)
-class L2Metric:
+class L2Metric(WithoutRule):
     """∫ u v."""
 
     name = "l2"
@@ -46,7 +58,7 @@ class L2Metric:
 
 
 @dataclass(frozen=True)
-class H1Metric:
+class H1Metric(WithoutRule):
     """∫ u' v' + ∫ u v."""
 
     name = "h1"
@@ -59,7 +71,7 @@ class H1Metric:
 
 
 @dataclass(frozen=True)
-class H2Metric:
+class H2Metric(WithoutRule):
     """∫ u'' v'' + ∫ u v, the second derivative by the lumped mass: K M⁻¹ K."""
 
     name = "h2"

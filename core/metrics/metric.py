@@ -3,6 +3,7 @@
 from typing import Protocol
 
 from ..curve import Curve
+from ..quadrature import Rule
 from .inner_product import InnerProduct
 
 
@@ -20,6 +21,13 @@ class Metric(Protocol):
     @property
     def extends_penalty(self) -> bool:
         """Whether penalised methods add the lengths' part to it (footnote 8 of [RS21])."""
+
+    @property
+    def rule(self) -> Rule | None:
+        """The quadrature rule for pairs of edges; None if there is nothing to choose."""
+
+    def with_rule(self, rule: Rule) -> "Metric":
+        """The same metric by another rule; itself if there is nothing to choose."""
 
     def at(self, curve: Curve) -> InnerProduct:
         """The inner product on functions along a curve.

@@ -10,13 +10,13 @@ and of 3. |∫ u ds|².  The Gram matrix is A ⊗ Id_m (footnote 6): only A, of 
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 from ..curve import Curve
 from ..curve.distances import arc_distances, points_at, squared_distances
-from ..errors import OptionError
-from ..quadrature import gauss_legendre
+from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray
 from .inner_product import DenseInnerProduct, InnerProduct, check_dense
 from .local import lumped_mass
@@ -33,38 +33,32 @@ class MoebiusMetric:
 
     Parameters
     ----------
-    points
-        Number k of Gauss–Legendre points per edge; 1 is the midpoint rule.
-
-    Raises
-    ------
-    OptionError
-        If ``points`` is below 1.
+    rule
+        The quadrature rule on every edge, by default the midpoint rule.
     """
 
-    points: int = 1
+    rule: Rule = MIDPOINT
     name = "moebius"
     description = "J_C of Theorem 4.1, extrinsic W^{3/2,2}"
     extends_penalty = True
 
-    def __post_init__(self) -> None:
-        if self.points < 1:
-            raise OptionError(f"points is {self.points}; the quadrature needs 1 point per edge or more")
+    def with_rule(self, rule: Rule) -> "MoebiusMetric":
+        """J_C by another rule."""
+        return MoebiusMetric(rule)
 
     def at(self, curve: Curve) -> InnerProduct:
         """Dense: every pair of edges weighs in."""
         check_dense(len(curve))
         mesh = curve.mesh
-        t, omega = gauss_legendre(self.points)
+        points = list(zip(self.rule.points, self.rule.weights, strict=True))
         seminorm = np.zeros((len(curve), len(curve)))  # weights of term 1
         matrix = np.zeros_like(seminorm)
-        for i, t_i in enumerate(t):
-            for j, t_j in enumerate(t):
-                inverse, density = _weights(curve, float(t_i), float(t_j))
-                inverse *= omega[i] * omega[j]
-                density *= omega[i] * omega[j]
-                seminorm += inverse
-                matrix += difference_form(density, mesh.interpolation(float(t_i)), mesh.interpolation(float(t_j)))
+        for (t_i, omega_i), (t_j, omega_j) in product(points, repeat=2):
+            inverse, density = _weights(curve, t_i, t_j)
+            inverse *= omega_i * omega_j
+            density *= omega_i * omega_j
+            seminorm += inverse
+            matrix += difference_form(density, mesh.interpolation(t_i), mesh.interpolation(t_j))
         slope = slopes(curve)
         matrix += difference_form(seminorm, slope, slope)
         weight = lumped_mass(curve)

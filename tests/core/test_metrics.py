@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import OptionError
+from mobius_flow.core import RelaxOptions
 from mobius_flow.core.metrics import METRICS, MoebiusMetric
 from mobius_flow.core.metrics.moebius import NEAREST
+from mobius_flow.core.quadrature import ENDS, TAIL, Rule
+from mobius_flow.core.setup import start_problem
 from scipy.integrate import quad
 from scipy.special import sici
 from shapes import hopf_link, regular_polygon, torus_trefoil
@@ -59,7 +61,9 @@ def test_quadrature_rules_agree_in_the_limit(points):
     errors = []
     for n in counts:
         u = np.cos(2 * np.pi * np.arange(n) / n)
-        errors.append(abs(u @ MoebiusMetric(points).at(regular_polygon(int(n))).apply(u) - closed_form("moebius", 1)))
+        errors.append(
+            abs(u @ MoebiusMetric(Rule.gauss(points)).at(regular_polygon(int(n))).apply(u) - closed_form("moebius", 1))
+        )
     assert -np.polyfit(np.log(counts), np.log(errors), 1)[0] > 0.9
 
 
@@ -71,8 +75,11 @@ def test_symmetric_positive_definite(metric, curve):
     assert np.linalg.eigvalsh(matrix)[0] > 0
 
 
-@pytest.mark.parametrize("points", [1, 2])
-def test_moebius_metric_against_its_definition(points):
+RULES = {"midpoint": Rule.gauss(1), "Gauss": Rule.gauss(2), "tails": TAIL, "ends": ENDS}
+
+
+@pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
+def test_moebius_metric_against_its_definition(rule):
     """The three terms summed pair by pair, on an uneven link two strands of which nearly touch."""
     rng = np.random.default_rng(17)
     curve = hopf_link(9)
@@ -80,13 +87,12 @@ def test_moebius_metric_against_its_definition(points):
     vertices[9:] += vertices[2] - vertices[12] + 1e-6
     curve = curve.with_vertices(vertices)
     u = rng.normal(size=len(curve))
-    assert u @ MoebiusMetric(points).at(curve).dense() @ u == pytest.approx(_by_definition(curve, u, points), rel=1e-12)
+    assert u @ MoebiusMetric(rule).at(curve).dense() @ u == pytest.approx(_by_definition(curve, u, rule), rel=1e-12)
 
 
-def _by_definition(curve, u, points):
+def _by_definition(curve, u, rule):
     mesh, ell = curve.mesh, curve.edge_lengths
-    t, omega = np.polynomial.legendre.leggauss(points)
-    t, omega = (t + 1) / 2, omega / 2
+    t, omega = rule.points, rule.weights
     at = np.concatenate([np.cumsum(ell[s]) - ell[s] for s in mesh.slices])
     total = float(np.sum(ell * (u[mesh.tails] + u[mesh.heads]) / 2)) ** 2
     for i in range(len(curve)):
@@ -94,8 +100,8 @@ def _by_definition(curve, u, points):
             if {mesh.tails[i], mesh.heads[i]} & {mesh.tails[j], mesh.heads[j]}:
                 continue
             slope = (u[mesh.heads[i]] - u[mesh.tails[i]]) / ell[i] - (u[mesh.heads[j]] - u[mesh.tails[j]]) / ell[j]
-            for a in range(points):
-                for b in range(points):
+            for a in range(len(t)):
+                for b in range(len(t)):
                     x = (1 - t[a]) * curve.vertices[mesh.tails[i]] + t[a] * curve.vertices[mesh.heads[i]]
                     y = (1 - t[b]) * curve.vertices[mesh.tails[j]] + t[b] * curve.vertices[mesh.heads[j]]
                     ui = (1 - t[a]) * u[mesh.tails[i]] + t[a] * u[mesh.heads[i]]
@@ -112,6 +118,20 @@ def _by_definition(curve, u, points):
     return total
 
 
-def test_bad_rule():
-    with pytest.raises(OptionError, match="points is 0"):
-        MoebiusMetric(0)
+@pytest.mark.parametrize(
+    ("energy", "rule"),
+    [
+        ("moebius", Rule.gauss(1)),
+        ("edge", Rule.gauss(1)),
+        ("vertex", TAIL),
+        ("moebius-k3", Rule.gauss(3)),
+        ("tangent-point", ENDS),
+    ],
+)
+def test_the_metric_has_the_energys_rule_unless_told_otherwise(energy, rule):
+    """Section 6.1.2 of the paper."""
+    assert start_problem(torus_trefoil(30), RelaxOptions(energy=energy)).metric.rule == rule
+    other = RelaxOptions(energy=energy, quadrature_points=2)
+    assert start_problem(torus_trefoil(30), other).metric.rule == Rule.gauss(2)
+    local = RelaxOptions(energy=energy, metric="h2")
+    assert start_problem(torus_trefoil(30), local).metric is METRICS["h2"]

@@ -23,7 +23,7 @@ from mobius_flow.core.descent.constrained import Constrained
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian
 from mobius_flow.core.descent.geometry import Geometry
-from mobius_flow.core.descent.methods import Rule
+from mobius_flow.core.descent.methods import StepRule
 from mobius_flow.core.descent.penalised import Penalised
 from mobius_flow.core.descent.searches import (
     Accelerated,
@@ -72,7 +72,7 @@ def test_line_searches_keep_their_promises(search: str, direction: str, geometry
         point = step.point
 
 
-RULES: dict[str, tuple[Rule, str]] = {
+RULES: dict[str, tuple[StepRule, str]] = {
     "trust region": (TrustRegion(), "constrained"),
     "backward Euler": (BackwardEuler(), "constrained"),
     "accelerated": (Accelerated(), "penalised"),
