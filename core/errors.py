@@ -24,6 +24,10 @@ class OptionError(MobiusFlowError):
     """An option outside its range; the message names the option and what is allowed."""
 
 
+class CurveOptionError(OptionError, CurveError):
+    """An option that does not fit a curve: both are named."""
+
+
 class CurveFileError(CurveError):
     """A curve file that cannot be read; the message names the file, the line and the reason."""
 

@@ -43,6 +43,8 @@ class Trajectory:
         MobiusFlowError
             If the iterate does not follow the last one, for then nobody has proved the motion between them.
         """
+        if not isinstance(iterate, Iterate):
+            raise MobiusFlowError(f"an Iterate is wanted, not an object of type {type(iterate).__name__}")
         if not self._follows(iterate):
             raise MobiusFlowError(
                 f"iterate {iterate.index} does not follow the {self._last_index + 1} iterates of this trajectory; "

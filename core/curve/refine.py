@@ -10,9 +10,9 @@ import heapq
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..errors import OptionError
+from ..errors import CurveOptionError
 from ..types import BoolArray, FloatArray, IntArray
-from .curve import Curve
+from .curve import Curve, check_is_curve
 from .distances import arc_distance_of_pairs, arc_positions, points_along
 from .mesh import Mesh
 
@@ -38,11 +38,14 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
 
     Raises
     ------
-    OptionError
+    CurveOptionError
         If fewer vertices are asked for than the curve has: corners are never cut.
     """
+    check_is_curve(curve)
     if vertices is not None and vertices < len(curve):
-        raise OptionError(f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more")
+        raise CurveOptionError(
+            f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more"
+        )
     spacing = target_spacing(curve)
     if vertices is not None:
         return subdivide(curve, _apportion(curve.edge_lengths / spacing, vertices))

@@ -62,6 +62,7 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     >>> knot("T(2,4)", 100).mesh.component_sizes
     (50, 50)
     """
+    name = str(name)  # a number is no name either, and is told so
     hard = _HARD.get(_unspaced(_plain(name)))
     if hard is not None:
         return diagram_knot(HARD_UNKNOTS[hard], vertices)

@@ -15,11 +15,13 @@ from mobius_flow.core import (
     Status,
     Trajectory,
     minimize,
+    read_curve,
     relax,
     setup,
     write_curve,
 )
 from mobius_flow.core.collision import is_free
+from mobius_flow.core.curve import refine
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import knot
 from mobius_flow.core.measure import measure
@@ -225,6 +227,10 @@ def test_bad_options(options, message):
         (lambda: measure(None), "a Curve is wanted, not an object of type NoneType"),
         (lambda: minimize(torus_trefoil(20), {"method": "cg"}), "options is of type dict; give RelaxOptions"),
         (lambda: relax(torus_trefoil(20), "lbfgs"), "options is of type str; give RelaxOptions"),
+        (lambda: refine([[0, 0, 0]]), "a Curve is wanted, not an object of type list"),
+        (lambda: Trajectory().add(5), "an Iterate is wanted, not an object of type int"),
+        (lambda: read_curve(5), "path is of type int; give the name of a file"),
+        (lambda: knot(5), "no knot is called '5'"),
         (lambda: minimize(torus_trefoil(20), callback=3), "callback is of type int; give a function"),
     ],
 )

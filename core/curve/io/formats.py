@@ -90,6 +90,8 @@ def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream:
     CurveFileError
         As `read_curve` does.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise CurveError(f"path is of type {type(path).__name__}; give the name of a file")
     path = Path(path)
     form = format_of(path) if form is None else form
     source = Source.load(path) if stream is None else Source.read(path, stream)
@@ -137,6 +139,8 @@ def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None 
         If the suffix is unknown, the format cannot hold the curve, or the file cannot be written.
     """
     check_is_curve(curve)
+    if not isinstance(path, str | os.PathLike):
+        raise CurveError(f"path is of type {type(path).__name__}; give the name of a file")
     path = Path(path)
     form = format_of(path) if form is None else form
     try:
