@@ -39,7 +39,8 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
 
     Whether every method can be run is looked at before the first one is. Raises as `relax` does.
     """
-    check_size(curve, options.vertices)
+    for method in methods:
+        check_size(curve, replace(options, method=method))
     check_units(curve)
     check_embedded(curve)
     start = embedded_refinement(curve, options.vertices)

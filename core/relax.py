@@ -99,7 +99,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     if not isinstance(options, RelaxOptions):
         raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
     method_named(options.method)
-    check_size(curve, options.vertices)
+    check_size(curve, options)
     check_units(curve)
     check_embedded(curve)
     refined = embedded_refinement(curve, options.vertices)

@@ -19,7 +19,6 @@ from .units import Units
 
 _Entry = TypeVar("_Entry")
 EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
-MOST_VERTICES = 12_000  # some six matrices of so many rows make 7 GB
 
 
 def energy_named(name: str) -> Energy:
@@ -39,21 +38,27 @@ def named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
     return table[name]
 
 
-def check_size(curve: Curve, vertices: int | None = None) -> None:
-    """Refuse more vertices than dense matrices can have rows, before anything is made of them.
+def check_size(curve: Curve, options: RelaxOptions) -> None:
+    """Refuse more vertices than the method's inner products have room for, before anything is made of them.
 
     Raises
     ------
     CurveError, OptionError
         If the curve has too many vertices, or too many are asked for.
     """
-    if vertices is not None and vertices > MOST_VERTICES:
-        raise OptionError(f"vertices is {vertices!s:.40}; dense matrices have at most {MOST_VERTICES} rows")
-    if len(curve) > MOST_VERTICES:
+    method = method_named(options.method)
+    most = min(metric.most_vertices for metric in (_metric(method, options), *method.rule.other_metrics))
+    if options.vertices is not None and options.vertices > most:
+        raise OptionError(f"vertices is {options.vertices!s:.40}; {method.name} has room and time for {most}")
+    if len(curve) > most:
         raise CurveError(
-            f"the curve has {len(curve)} vertices; dense matrices of more than {MOST_VERTICES} rows do not fit into "
-            "memory; thin the curve out or relax its components apart"
+            f"the curve has {len(curve)} vertices; {method.name} has room and time for {most}; "
+            "thin the curve out or relax its components apart"
         )
+
+
+def _metric(method: Method, options: RelaxOptions) -> Metric:
+    return method.metric if options.metric is None else named(METRICS, "metric", options.metric)
 
 
 def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
@@ -86,7 +91,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
         If an option names something unknown, or a method and an energy do not go together.
     """
     method = method_named(options.method)
-    check_size(curve)
+    check_size(curve, options)
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
@@ -99,7 +104,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
         )
     if (options.stability or options.escape_saddles) and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
-    metric = method.metric if options.metric is None else named(METRICS, "metric", options.metric)
+    metric = _metric(method, options)
     metric = metric.with_rule(_rule(metric, energy, options.quadrature_points))
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     return Problem(curve.mesh, objective, metric, constraints, units, geometry)

@@ -52,7 +52,8 @@ class Stepper:
         return step
 
     def _may_help(self, point: Point) -> bool:
-        return point.problem.geometry.prescribes and self._method is not HELPER
+        fits = len(point.vertices) <= HELPER.metric.most_vertices
+        return fits and point.problem.geometry.prescribes and self._method is not HELPER
 
     def _by(self, method: Method, point: Point) -> Step | NoStep:
         if method is not self._last:

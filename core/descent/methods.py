@@ -25,6 +25,10 @@ class StepRule(Protocol):
     def second_order(self) -> bool:
         """Whether it needs the energy's second derivative."""
 
+    @property
+    def other_metrics(self) -> tuple[Metric, ...]:
+        """Metrics that it needs besides the one that gradients are taken in."""
+
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Take one step, whose legs are proved as far as they can be."""
 

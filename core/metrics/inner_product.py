@@ -12,13 +12,13 @@ from scipy.linalg import blas, lapack
 from scipy.sparse.linalg import SuperLU
 
 from ..constraints import ConstraintDerivative
-from ..errors import CurveError
 from ..saddle import TangentSpace
 from ..saddle.dense import DenseTangentSpace, DenseWholeSpace, cholesky
 from ..saddle.sparse import SparseTangentSpace, SparseWholeSpace, factorised
 from ..types import FloatArray
 
 MOST_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
+MOST_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
 
 
 class InnerProduct(Protocol):
@@ -117,15 +117,6 @@ class SparseInnerProduct:
     @cached_property
     def _factor(self) -> SuperLU:
         return factorised(self._matrix)
-
-
-def check_dense(rows: int) -> None:
-    """Raise a CurveError if dense matrices of so many rows are too large."""
-    if rows > MOST_DENSE_ROWS:
-        raise CurveError(
-            f"the curve has {rows} vertices; dense matrices of more than {MOST_DENSE_ROWS} rows do not fit into "
-            "memory; thin the curve out or relax its components apart"
-        )
 
 
 def _filled(lower: FloatArray) -> FloatArray:

@@ -23,6 +23,10 @@ class Metric(Protocol):
         """Whether penalised methods add the lengths' part to it (footnote 8 of [RS21])."""
 
     @property
+    def most_vertices(self) -> int:
+        """Number of vertices up to which its inner products fit into memory."""
+
+    @property
     def rule(self) -> Rule | None:
         """The quadrature rule for pairs of edges; None if there is nothing to choose."""
 
@@ -30,10 +34,4 @@ class Metric(Protocol):
         """The same metric by another rule; itself if there is nothing to choose."""
 
     def at(self, curve: Curve) -> InnerProduct:
-        """The inner product on functions along a curve.
-
-        Raises
-        ------
-        CurveError
-            If the curve has more vertices than fit into memory.
-        """
+        """The inner product on functions along a curve of at most so many vertices."""

@@ -18,7 +18,7 @@ from ..curve import Curve
 from ..curve.distances import arc_distances, points_at, squared_distances
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray
-from .inner_product import DenseInnerProduct, InnerProduct, check_dense
+from .inner_product import MOST_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import lumped_mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
@@ -41,6 +41,7 @@ class MoebiusMetric:
     name = "moebius"
     description = "J_C of Theorem 4.1, extrinsic W^{3/2,2}"
     extends_penalty = True
+    most_vertices = MOST_DENSE_ROWS
 
     def with_rule(self, rule: Rule) -> "MoebiusMetric":
         """J_C by another rule."""
@@ -48,7 +49,6 @@ class MoebiusMetric:
 
     def at(self, curve: Curve) -> InnerProduct:
         """Dense: every pair of edges weighs in."""
-        check_dense(len(curve))
         mesh = curve.mesh
         points = list(zip(self.rule.points, self.rule.weights, strict=True))
         seminorm = np.zeros((len(curve), len(curve)))  # weights of term 1

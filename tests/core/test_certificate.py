@@ -89,7 +89,7 @@ class Forgetful:
 
     def __init__(self, limit: Limit) -> None:
         self._rule, self._limit, self._count = METHODS["lbfgs"].rule, limit, 0
-        self.second_order = False
+        self.second_order, self.other_metrics = False, ()
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         step, state = self._rule.step(point, state)

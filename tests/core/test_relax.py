@@ -17,7 +17,6 @@ from mobius_flow.core import (
     minimize,
     read_curve,
     relax,
-    setup,
     write_curve,
 )
 from mobius_flow.core.collision import is_free
@@ -25,6 +24,7 @@ from mobius_flow.core.curve import refine
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import knot
 from mobius_flow.core.measure import measure
+from mobius_flow.core.metrics import MoebiusMetric
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 from torus_energies import torus_knot_minimum
 
@@ -298,7 +298,7 @@ def test_noisy_circles_do_not_crumple(seed):
 
 
 def test_a_mesh_that_cannot_be_finer_ends_the_run_in_good_order(monkeypatch):
-    monkeypatch.setattr(setup, "MOST_VERTICES", 80)
+    monkeypatch.setattr(MoebiusMetric, "most_vertices", 80)
     result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, resolve=True))
     assert len(result.curve) == 60
     assert result.status is Status.STALLED

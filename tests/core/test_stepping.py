@@ -14,6 +14,7 @@ class Stubborn:
     """A rule that never finds a step, and counts how often it is asked."""
 
     second_order = False
+    other_metrics = ()
 
     def __init__(self):
         self.asked = 0

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...metrics import Metric
 from ...types import FloatArray
 from ..problem import Point
 from ..state import State
@@ -37,6 +38,7 @@ class Accelerated:
 
     search: WeakWolfe = field(default_factory=WeakWolfe)
     second_order: ClassVar[bool] = False
+    other_metrics: ClassVar[tuple[Metric, ...]] = ()
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Extrapolate, then take a gradient step from there; the path has both legs."""

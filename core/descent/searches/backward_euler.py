@@ -58,6 +58,11 @@ class BackwardEuler:
         check_fields(self, first_step=positive, growth=(1.0, math.inf), newton_iterations=positive)
         check_fields(self, newton_tolerance=(0.0, 1.0), krylov_iterations=positive, krylov_tolerance=(0.0, 1.0))
 
+    @property
+    def other_metrics(self) -> tuple[Metric, ...]:
+        """The preconditioner."""
+        return (self.preconditioner,)
+
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Take one step."""
         tau = self.first_step if state.memory is None else self.growth * state.memory

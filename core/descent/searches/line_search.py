@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
+from ...metrics import Metric
 from ...types import FloatArray
 from ..directions import Direction
 from ..problem import Point
@@ -24,6 +25,7 @@ class LineSearch:
     direction: Direction
     search: AlongLine
     second_order: ClassVar[bool] = False
+    other_metrics: ClassVar[tuple[Metric, ...]] = ()
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Take one step; a remembering direction that fails is tried again without its memory."""

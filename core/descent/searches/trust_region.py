@@ -14,6 +14,7 @@ from scipy.linalg import eigh
 
 from ...checks import check_fields
 from ...errors import OptionError
+from ...metrics import Metric
 from ...types import FloatArray
 from ..directions.newton import LinearMap, lagrangian_hessian, newton_direction
 from ..problem import Point
@@ -64,6 +65,7 @@ class TrustRegion:
     underway: Armijo = field(default_factory=Armijo)
     max_trials: int = 40
     second_order: ClassVar[bool] = True
+    other_metrics: ClassVar[tuple[Metric, ...]] = ()
 
     def __post_init__(self) -> None:
         positive = (0.0, math.inf)
