@@ -46,7 +46,7 @@ def _property(option: Option, options: set[str]) -> Any:
 
 def _item(choices: Collection[str], name: str) -> tuple[str, str, str, str, int]:
     """A name to choose; it keeps its number in files when others are added."""
-    description = choices[name].description if isinstance(choices, Mapping) else ""
+    description = getattr(choices[name], "description", "") if isinstance(choices, Mapping) else ""
     return name, name, description, "NONE", zlib.crc32(name.encode()) & 0x7FFFFFFF
 
 

@@ -1,6 +1,7 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
 from dataclasses import dataclass
+from functools import partial
 
 from .descent import METHODS
 from .energies import ENERGIES
@@ -9,6 +10,7 @@ from .metrics import METRICS
 from .option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
+_advanced = partial(option, group="advanced")
 
 
 @documented
@@ -31,73 +33,57 @@ class RelaxOptions:
         None,
         "Vertices",
         "number of vertices to refine to, those of all components together",
-        automatic="so many that neighbours are nearer than strands, Section 6.1.3 of [RS21]",
+        automatic="so many that neighbours are nearer than strands",  # Section 6.1.3 of [RS21]
         low=3,
         metavar="N",
     )
-    energy: str = option(
-        "moebius", "Energy", "what is minimised, with a barrier between strands", choices=ENERGIES, group="advanced"
+    energy: str = _advanced("moebius", "Energy", "what is minimised, with a barrier between strands", choices=ENERGIES)
+    metric: str | None = _advanced(
+        None, "Metric", "inner product that gradients are taken in", automatic="the method's own", choices=METRICS
     )
-    metric: str | None = option(
-        None,
-        "Metric",
-        "inner product that gradients are taken in",
-        automatic="the method's own",
-        choices=METRICS,
-        group="advanced",
-    )
-    quadrature_points: int = option(
+    quadrature_points: int = _advanced(
         1,
         "Quadrature Points",
         "Gauss points per edge of the metric J_C; work grows with their square",
         low=1,
         high=16,
         metavar="k",
-        group="advanced",
     )
-    penalty: float | None = option(
+    penalty: float | None = _advanced(
         None,
         "Length Penalty",
         "weight of length errors in the penalty methods",
         automatic="the method's own",
         low=0,
         metavar="α",
-        group="advanced",
     )
-    edge_lengths: str = option(
+    edge_lengths: str = _advanced(
         "auto",
         "Edge Lengths",
-        "target lengths, equal within each component or kept as in the refined start; automatically they are kept where "
-        "they, or the gaps between edges, differ by more than 10:1 and evening them out would crumple the curve",
+        "target lengths, equal within each component or kept as in the refined start; auto keeps them only where they, "
+        "or the gaps between edges, differ by more than 10:1, and evening them out would crumple the curve",
         choices=EDGE_LENGTHS,
         metavar="L",
-        group="advanced",
     )
-    adaptive: bool = option(
+    adaptive: bool = _advanced(
         False,
         "Adaptive Mesh",
         "split and collapse edges during the run, so that neighbours stay nearer than strands",
-        group="advanced",
         keyframes=False,
     )
-    resolve: bool = option(
+    resolve: bool = _advanced(
         False,
         "Resolve",
         "go on with more vertices, up to 3.5 times as many, while strands end nearer than the mesh resolves",
-        group="advanced",
         keyframes=False,
     )
-    stability: bool = option(
+    stability: bool = _advanced(
         False,
         "Stability",
         "tell whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian",
-        group="advanced",
     )
-    escape_saddles: bool = option(
-        False,
-        "Escape Saddles",
-        "tell whether a converged curve is a minimum, and go on downhill from a saddle",
-        group="advanced",
+    escape_saddles: bool = _advanced(
+        False, "Escape Saddles", "tell whether a converged curve is a minimum, and go on downhill from a saddle"
     )
 
     def __post_init__(self) -> None:
