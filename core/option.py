@@ -62,7 +62,7 @@ class Option:
     automatic: str = ""
     low: float = -math.inf
     high: float = math.inf
-    choices: Collection[str] | None = None
+    choices: Collection[str] | None = field(default=None, repr=False)
     metavar: str = "NAME"
     group: Literal["basic", "advanced"] = "basic"
     keyframes: bool = True
