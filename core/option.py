@@ -7,6 +7,7 @@ import math
 import sys
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
+from inspect import cleandoc
 from numbers import Integral, Real
 from types import MappingProxyType
 from typing import Any, Literal, TypeVar, get_args, get_type_hints
@@ -107,7 +108,7 @@ def declared(owner: type) -> list[Option]:
 
 def documented(owner: _Class) -> _Class:
     """Put the options into a dataclass's docstring."""
-    entries = [f"    {each.name}\n        {each.sentence('None')}.\n" for each in declared(owner)]
-    before, raises, after = str(owner.__doc__).partition("    Raises\n")
-    owner.__doc__ = f"{before}    Parameters\n    ----------\n{''.join(entries)}\n{raises}{after}"
+    entries = [f"{each.name}\n    {each.sentence('None')}.\n" for each in declared(owner)]
+    before, raises, after = cleandoc(str(owner.__doc__)).partition("Raises\n")
+    owner.__doc__ = f"{before}Parameters\n----------\n{''.join(entries)}\n{raises}{after}"
     return owner

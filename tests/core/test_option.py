@@ -25,7 +25,7 @@ def test_every_option_says_what_it_does(each):
     assert not each.help.endswith(".")
     assert each.sentence()[0].isupper()
     assert bool(each.automatic) == (each.default is None)
-    assert f"    {each.name}\n        {each.sentence('None')}.\n" in RelaxOptions.__doc__
+    assert f"\n{each.name}\n    {each.sentence('None')}.\n" in RelaxOptions.__doc__
 
 
 def test_names_come_from_the_registries():
@@ -89,8 +89,8 @@ def test_what_is_allowed_is_taken(options):
 
 
 def test_docstrings_list_the_options():
-    parameters, raises = Oven.__doc__.split("    Raises\n")
-    assert "    minutes\n        How long it takes; None: until brown.\n    shelf\n" in parameters
+    parameters, raises = Oven.__doc__.split("\n\nRaises\n")
+    assert "\nminutes\n    How long it takes; None: until brown.\nshelf\n" in parameters
     assert "burn" in raises
 
 
