@@ -98,6 +98,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     options = RelaxOptions() if options is None else options
     if not isinstance(options, RelaxOptions):
         raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
+    method_named(options.method)
     check_size(curve, options.vertices)
     check_units(curve)
     check_embedded(curve)
