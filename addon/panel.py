@@ -8,6 +8,7 @@ from .live import registry
 from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_stop
 from .live.run import Run
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
+from .properties import shown
 from .session import State
 
 
@@ -25,7 +26,7 @@ class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming s
         settings = context.scene.mobius_flow
         layout.use_property_split = True
         layout.use_property_decorate = False
-        _column(layout, settings, "method", "tolerance", "max_iterations", "vertices")
+        _column(layout, settings, *(option.name for option in shown("basic")))
         _column(layout, settings, "keyframes")
         if settings.keyframes != "RESULT":
             _column(layout, settings, "start_frame", "frames_per_iterate", "max_keys")
@@ -36,6 +37,23 @@ class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming s
         elif context.active_object and context.active_object.type == "CURVE":
             _value(layout, "Tube radius", f"{context.active_object.data.bevel_depth:.4g}")
         layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
+
+
+class VIEW3D_PT_mobius_flow_advanced(bpy.types.Panel):  # noqa: N801
+    """The options for those who know the mathematics."""
+
+    bl_label = "Advanced"
+    bl_parent_id = "VIEW3D_PT_mobius_flow"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - read by Blender
+    bl_category = "Möbius Flow"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Show them all."""
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        _column(self.layout, context.scene.mobius_flow, *(option.name for option in shown("advanced")))
 
 
 def add_menu_entry(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:

@@ -1,16 +1,21 @@
 """The settings, on `Scene.mobius_flow` and, for scripts, on the operator too."""
 
+import math
 import zlib
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ..core import METHODS, RelaxOptions
+from ..core import RelaxOptions
+from ..core.option import Option, declared
 from .key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output
 
-_DEFAULTS = RelaxOptions()
 _KEY_DEFAULTS = KeyOptions()
+_TINY = 1e-37  # just above the smallest of 32-bit numbers that are computed with
+_PROPERTIES = {bool: BoolProperty, int: IntProperty, float: FloatProperty}
+_AUTOMATIC = "AUTO"  # stands for None among names, as 0 does among numbers
 _OUTPUT_DESCRIPTIONS = {
     Output.SHAPE_KEYS: "Absolute shape keys and one F-curve on their evaluation time: small, fast, renders anywhere",
     Output.FCURVES: "An F-curve for every coordinate of every point, for exporters that know no shape keys",
@@ -18,51 +23,43 @@ _OUTPUT_DESCRIPTIONS = {
 }
 
 
-def _method_items() -> list[tuple[str, str, str, str, int]]:
-    """The methods of the core; each keeps its number in files when others are added."""
-    return [
-        (name, name, method.description, "NONE", zlib.crc32(name.encode()) & 0x7FFFFFFF)
-        for name, method in METHODS.items()
-    ]
-
-
 def _output_items() -> list[tuple[str, str, str]]:
     return [(output.name, output.value, _OUTPUT_DESCRIPTIONS[output]) for output in Output]
 
 
+def shown(group: str | None = None) -> list[Option]:
+    """The options of a relaxation, of one group or all, that Blender has settings for."""
+    return [each for each in declared(RelaxOptions) if each.keyframes and group in (None, each.group)]
+
+
+def _property(option: Option, options: set[str]) -> Any:
+    """The property that is an option of a relaxation."""
+    automatic = option.default is None
+    words: dict[str, Any] = {"name": option.label, "options": options}
+    if option.choices is None:
+        words |= {"description": option.sentence("0"), "default": option.default or option.kind()}
+        return _PROPERTIES[option.kind](**words, **_bounds(option))
+    items = [(_AUTOMATIC, "Automatic", option.automatic, "NONE", 0)] if automatic else []
+    items += [_item(option.choices, name) for name in option.choices]
+    return EnumProperty(**words, description=option.sentence(), items=items, default=option.default or _AUTOMATIC)
+
+
+def _item(choices: Collection[str], name: str) -> tuple[str, str, str, str, int]:
+    """A name to choose; it keeps its number in files when others are added."""
+    description = getattr(choices[name], "description", "") if isinstance(choices, Mapping) else ""
+    return name, name, description, "NONE", zlib.crc32(name.encode()) & 0x7FFFFFFF
+
+
+def _bounds(option: Option) -> dict[str, Any]:
+    low = option.low + (_TINY if option.kind is float else 0)  # floats leave the bound itself out
+    interval = {"min": low if option.default is not None else min(low, 0), "max": option.high}
+    bounds = {name: option.kind(bound) for name, bound in interval.items() if math.isfinite(bound)}
+    return bounds | ({"precision": 6} if option.kind is float else {})
+
+
 def settings(options: set[str]) -> dict[str, Any]:
     """Declare the settings as properties with the given options."""
-    return {
-        "method": EnumProperty(
-            name="Method",
-            description="How the energy is minimised",
-            items=_method_items(),
-            default=_DEFAULTS.method,
-            options=options,
-        ),
-        "tolerance": FloatProperty(
-            name="Tolerance",
-            description="Stop when the projected gradient is this small, relative to the root of the energy",
-            default=_DEFAULTS.tolerance,
-            min=1e-12,
-            max=1.0,
-            precision=6,
-            options=options,
-        ),
-        "max_iterations": IntProperty(
-            name="Max Iterations",
-            description="Stop after this many iterations",
-            default=_DEFAULTS.max_iterations,
-            min=0,
-            options=options,
-        ),
-        "vertices": IntProperty(
-            name="Vertices",
-            description="Points to refine the curves to, all together; 0 chooses it by the distance between strands",
-            default=0,
-            min=0,
-            options=options,
-        ),
+    return {option.name: _property(option, options) for option in shown()} | {
         "keyframes": EnumProperty(
             name="Keyframes",
             description="What the animation is written as",
@@ -117,12 +114,9 @@ class MobiusFlowSettings(bpy.types.PropertyGroup):
 
 def relax_options(values: dict[str, Any]) -> RelaxOptions:
     """The core's options from the values of the settings; raises OptionError."""
-    return RelaxOptions(
-        method=values["method"],
-        max_iterations=values["max_iterations"],
-        tolerance=values["tolerance"],
-        vertices=values["vertices"] or None,
-    )
+    wanted = {option.name: values[option.name] for option in shown()}
+    automatic = [option.name for option in shown() if option.default is None and wanted[option.name] in (0, _AUTOMATIC)]
+    return RelaxOptions(**wanted | dict.fromkeys(automatic))
 
 
 def key_options(values: dict[str, Any]) -> KeyOptions:

@@ -6,7 +6,7 @@ from bpy.props import PointerProperty
 from .live import handlers
 from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_sample, CURVE_OT_mobius_flow_stop
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
-from .panel import VIEW3D_PT_mobius_flow, add_menu_entry
+from .panel import VIEW3D_PT_mobius_flow, VIEW3D_PT_mobius_flow_advanced, add_menu_entry
 from .properties import MobiusFlowSettings
 
 _CLASSES = (
@@ -17,6 +17,7 @@ _CLASSES = (
     CURVE_OT_mobius_flow_sample,
     CURVE_OT_mobius_flow_add_knot,
     VIEW3D_PT_mobius_flow,
+    VIEW3D_PT_mobius_flow_advanced,
 )
 
 

@@ -11,6 +11,7 @@ from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status
 from ..core.curve.io import FORMATS
 from ..core.errors import OptionError, OutputError
 from ..core.files import atomic_write
+from ..core.option import declared
 from . import curves, signals
 from . import options as relax_options
 from .notes import Notes
@@ -68,10 +69,10 @@ def run(options: argparse.Namespace) -> int:
     """Relax, write everything asked for, and return the exit status."""
     output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
-    if (wanted.adaptive or wanted.resolve) and output.needs_iterates:
-        raise OptionError(
-            f"{options.output}: keyframes need a fixed mesh; leave --adaptive and --resolve out, or write a curve file"
-        )
+    moving = [option for option in declared(RelaxOptions) if not option.keyframes]
+    if output.needs_iterates and any(getattr(wanted, option.name) for option in moving):
+        names = " and ".join(map(relax_options.flag, moving))
+        raise OptionError(f"{options.output}: keyframes need a fixed mesh; leave {names} out, or write a curve file")
     check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
     file = curves.read(options.input, options.format)
     admit(output, options.output, file.curve)

@@ -1,116 +1,94 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
-import math
-import sys
-from collections.abc import Mapping
 from dataclasses import dataclass
-from numbers import Integral, Real
-from types import MappingProxyType
-from typing import cast, get_args, get_type_hints
+from functools import partial
 
-import numpy as np
-
+from .descent import METHODS
+from .energies import ENERGIES
 from .errors import OptionError
+from .metrics import METRICS
+from .option import declared, documented, option
 
-MOST_QUADRATURE_POINTS = 16  # work grows with the square
 EDGE_LENGTHS = ("auto", "equal", "keep")
+_advanced = partial(option, group="advanced")
 
 
-_KINDS: Mapping[type, tuple[tuple[type, ...], str]] = MappingProxyType(  # what a value may be; NumPy's are welcome
-    {
-        int: ((Integral,), "a whole number"),
-        float: ((Real,), "a number"),
-        str: ((str,), "a name"),
-        bool: ((bool, np.bool_), "True or False"),
-    }
-)
-
-
+@documented
 @dataclass(frozen=True, kw_only=True)
 class RelaxOptions:
     """What `relax` is asked to do.
 
-    Parameters
-    ----------
-    method
-        Name of a descent method, see ``mobius_flow.core.descent.METHODS``.
-    max_iterations
-        Stop after this many accepted steps.
-    tolerance
-        Stop when the projected gradient's metric norm is at most ``tolerance * sqrt(E)``.
-    vertices
-        Number of vertices to refine to; None chooses it so that neighbouring vertices are nearer
-        than strands (Section 6.1.3 of [RS21]).
-    energy
-        Name of the energy, see ``mobius_flow.core.energies.ENERGIES``; the barrier is added to every one.
-    metric
-        Name of the metric, see ``mobius_flow.core.metrics.METRICS``; None is the method's own.
-    quadrature_points
-        Gauss points per edge of the metric J_C; None takes the energy's own rule.
-    penalty
-        Weight α of the length penalty of the infeasible methods; None is their default.
-    stability
-        Tell whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian.
-    escape_saddles
-        Do so, and go on downhill from a saddle.
-    adaptive
-        Split and collapse edges during the run, so that neighbours stay nearer than strands.  The number of vertices
-        changes from iterate to iterate, which point keyframes cannot follow.
-    resolve
-        When a curve has converged but strands are nearer than its mesh resolves, go on with half as many vertices
-        more, up to 3.5 times the first number.
-    edge_lengths
-        Targets ℓ⁰: "equal" within each component, "keep" those of the refined start, or "auto": equal unless they,
-        or the gaps between edges, differ by more than 10:1, where evening them out would crumple the curve.
-
     Raises
     ------
     OptionError
-        If a value is outside its range.
+        If a value is of a wrong type, outside its range or unknown, or two options do not go together.
     """
 
-    method: str = "lbfgs"
-    max_iterations: int = 2000
-    tolerance: float = 1e-4
-    vertices: int | None = None
-    energy: str = "moebius"
-    metric: str | None = None
-    quadrature_points: int | None = None
-    penalty: float | None = None
-    adaptive: bool = False
-    resolve: bool = False
-    edge_lengths: str = "auto"
-    stability: bool = False
-    escape_saddles: bool = False
+    method: str = option("lbfgs", "Method", "how the energy is minimised", choices=METHODS, metavar="M")
+    max_iterations: int = option(2000, "Max Iterations", "stop after this many accepted steps", low=0, metavar="K")
+    tolerance: float = option(
+        1e-4, "Tolerance", "stop when the projected gradient's metric norm is at most this times √E", low=0, metavar="T"
+    )
+    vertices: int | None = option(
+        None,
+        "Vertices",
+        "number of vertices to refine to, those of all components together",
+        automatic="so many that neighbours are nearer than strands",  # Section 6.1.3 of [RS21]
+        low=3,
+        metavar="N",
+    )
+    energy: str = _advanced("moebius", "Energy", "what is minimised, with a barrier between strands", choices=ENERGIES)
+    metric: str | None = _advanced(
+        None, "Metric", "inner product that gradients are taken in", automatic="the method's own", choices=METRICS
+    )
+    quadrature_points: int | None = _advanced(
+        None,
+        "Quadrature Points",
+        "Gauss points per edge of the metric J_C; work grows with their square",
+        automatic="the energy's own",
+        low=1,
+        high=16,
+        metavar="k",
+    )
+    penalty: float | None = _advanced(
+        None,
+        "Length Penalty",
+        "weight of length errors in the penalty methods",
+        automatic="the method's own",
+        low=0,
+        metavar="α",
+    )
+    edge_lengths: str = _advanced(
+        "auto",
+        "Edge Lengths",
+        "target lengths, equal within each component or kept as in the refined start; auto keeps them only where they, "
+        "or the gaps between edges, differ by more than 10:1, and evening them out would crumple the curve",
+        choices=EDGE_LENGTHS,
+        metavar="L",
+    )
+    adaptive: bool = _advanced(
+        False,
+        "Adaptive Mesh",
+        "split and collapse edges during the run, so that neighbours stay nearer than strands",
+        keyframes=False,
+    )
+    resolve: bool = _advanced(
+        False,
+        "Resolve",
+        "go on with more vertices, up to 3.5 times as many, while strands end nearer than the mesh resolves",
+        keyframes=False,
+    )
+    stability: bool = _advanced(
+        False,
+        "Stability",
+        "tell whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian",
+    )
+    escape_saddles: bool = _advanced(
+        False, "Escape Saddles", "tell whether a converged curve is a minimum, and go on downhill from a saddle"
+    )
 
     def __post_init__(self) -> None:
-        self._check_types()
-        if self.max_iterations < 0:
-            raise OptionError(f"max_iterations is {self.max_iterations}; it must be 0 or more")
-        if not (math.isfinite(self.tolerance) and self.tolerance > 0):
-            raise OptionError(f"tolerance is {self.tolerance}; it must be a finite number above 0")
-        if self.vertices is not None and self.vertices < 3:
-            raise OptionError(f"vertices is {self.vertices}; it must be 3 or more")
-        if self.quadrature_points is not None and not 1 <= self.quadrature_points <= MOST_QUADRATURE_POINTS:
-            raise OptionError(
-                f"quadrature_points is {self.quadrature_points!s:.40}; it must be from 1 to {MOST_QUADRATURE_POINTS}"
-            )
-        if self.penalty is not None and not (math.isfinite(self.penalty) and self.penalty > 0):
-            raise OptionError(f"penalty is {self.penalty}; it must be a finite number above 0")
+        for each in declared(type(self)):
+            each.check(getattr(self, each.name))
         if self.adaptive and self.edge_lengths != "auto":
             raise OptionError("an adaptive mesh makes its own edge_lengths; leave one of the two options out")
-        if self.edge_lengths not in EDGE_LENGTHS:
-            raise OptionError(f"edge_lengths is {self.edge_lengths!r}; choose one of {', '.join(EDGE_LENGTHS)}")
-
-    def _check_types(self) -> None:
-        for name, hint in get_type_hints(type(self)).items():
-            value = getattr(self, name)
-            kinds = get_args(hint) or (hint,)  # of "int | None" both
-            if value is None and type(None) in kinds:
-                continue
-            types, noun = _KINDS[kinds[0]]
-            # bool is a kind of int, but no number
-            if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
-                raise OptionError(f"{name} is {value!r:.40}; it must be {noun}")
-            if isinstance(value, Real) and abs(cast(float, value)) > sys.float_info.max:
-                raise OptionError(f"{name} is too large for a number of this program")

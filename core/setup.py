@@ -5,12 +5,13 @@ from typing import TypeVar
 
 import numpy as np
 
+from .checks import check_known
 from .collision import check_gap, minimal_gap, survives_rounding
 from .constraints import Constraints, weighted_barycenter
 from .curve import Curve, refine
 from .descent import METHODS, Method, Problem
 from .energies import ENERGIES, Energy, Objective
-from .errors import CurveError, OptionError, choice
+from .errors import CurveError, OptionError
 from .metrics import METRICS, Metric
 from .options import RelaxOptions
 from .quadrature import Rule
@@ -33,8 +34,7 @@ def method_named(name: str) -> Method:
 
 def named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
     """Look an entry of a registry up; an OptionError lists the known ones."""
-    if name not in table:
-        raise OptionError(f"{kind} {name!r:.60} is unknown; {choice(name, table)}")
+    check_known(kind, name, table)
     return table[name]
 
 

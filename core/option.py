@@ -1,0 +1,114 @@
+"""Options declared once: a dataclass's field carries what people read of it and which values it takes.
+
+From that follow its checks, the arguments of the command line, and Blender's settings and panels.
+"""
+
+import math
+import sys
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, fields
+from inspect import cleandoc
+from numbers import Integral, Real
+from types import MappingProxyType
+from typing import Any, Literal, TypeVar, get_args, get_type_hints
+
+import numpy as np
+
+from .checks import check_known, check_number
+from .errors import OptionError
+
+_Class = TypeVar("_Class", bound=type)
+_KINDS: Mapping[type, tuple[tuple[type, ...], str]] = MappingProxyType(  # what a value may be; NumPy's are welcome
+    {
+        int: ((Integral,), "a whole number"),
+        float: ((Real,), "a number"),
+        str: ((str,), "a name"),
+        bool: ((bool, np.bool_), "True or False"),
+    }
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Option:
+    """What there is to say of an option.
+
+    Attributes
+    ----------
+    name, kind, default
+        Name, type and default of the field; where the default is None, None is allowed.
+    label
+        Its title in a window.
+    help
+        What it does: a phrase with neither a capital at its start nor a full stop.
+    automatic
+        What None means, where it is allowed.
+    low, high
+        Bounds of a number; a float is to be finite, and above its lower one.
+    choices
+        The names it takes: a registry, or a few words.
+    metavar
+        What stands for its value in the command line's help.
+    group
+        Whether it is for everybody or for those who know the mathematics.
+    keyframes
+        Whether keyframes can follow the run: they belong to points, so that no option that changes the number of
+        vertices on the way is among Blender's settings, and the command line refuses such a one for a film.
+    """
+
+    name: str
+    kind: type
+    default: Any
+    label: str
+    help: str
+    automatic: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    choices: Collection[str] | None = field(default=None, repr=False)
+    metavar: str = "NAME"
+    group: Literal["basic", "advanced"] = "basic"
+    keyframes: bool = True
+
+    def sentence(self, none: str = "") -> str:
+        """The help by itself, without a full stop; ``none`` is how None, if it is allowed, is written."""
+        return self.help[0].upper() + self.help[1:] + (f"; {none}: {self.automatic}" if none and self.automatic else "")
+
+    def check(self, value: object) -> None:
+        """Raise an OptionError, which says what is allowed, unless the option can have this value."""
+        if value is None and self.default is None:
+            return
+        types, noun = _KINDS[self.kind]
+        # bool is a kind of int, but no number
+        if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
+            raise OptionError(f"{self.name} is {value!r:.40}; it must be {noun}")
+        if isinstance(value, str) and self.choices is not None:
+            check_known(self.name, value, self.choices)
+        elif isinstance(value, Real) and self.kind is not bool:
+            self._check_number(value)
+
+    def _check_number(self, value: Any) -> None:
+        if abs(value) > sys.float_info.max:
+            raise OptionError(f"{self.name} is too large for a number of this program")
+        if self.kind is float:
+            check_number(self.name, value, self.low, self.high)
+        elif not self.low <= value <= self.high:
+            allowed = f"{self.low} or more" if math.isinf(self.high) else f"from {self.low} to {self.high}"
+            raise OptionError(f"{self.name} is {value!s:.40}; it must be {allowed}")
+
+
+def option(default: Any, label: str, help: str, **more: Any) -> Any:
+    """A field with its default and the other attributes of its `Option`."""
+    return field(default=default, metadata={"label": label, "help": help, **more})
+
+
+def declared(owner: type) -> list[Option]:
+    """The options that are the fields of a dataclass, in order."""
+    kinds = {name: (get_args(hint) or (hint,))[0] for name, hint in get_type_hints(owner).items()}  # int of int | None
+    return [Option(name=f.name, kind=kinds[f.name], default=f.default, **f.metadata) for f in fields(owner)]
+
+
+def documented(owner: _Class) -> _Class:
+    """Put the options into a dataclass's docstring."""
+    entries = [f"{each.name}\n    {each.sentence('None')}.\n" for each in declared(owner)]
+    before, raises, after = cleandoc(str(owner.__doc__)).partition("Raises\n")
+    owner.__doc__ = f"{before}Parameters\n----------\n{''.join(entries)}\n{raises}{after}"
+    return owner

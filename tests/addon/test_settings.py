@@ -1,0 +1,195 @@
+"""The scene's settings, the operator's and the panels are the library's options: none is declared a second time."""
+
+from dataclasses import asdict, dataclass
+from io import BytesIO
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_trefoil, relax, sentence, stored  # noqa: E402
+from mobius_flow.addon import panel, properties  # noqa: E402
+from mobius_flow.addon.live import wire  # noqa: E402
+from mobius_flow.addon.placement import Link, Placement  # noqa: E402
+from mobius_flow.core import Curve, OptionError, RelaxOptions, minimize  # noqa: E402
+from mobius_flow.core.option import declared, option  # noqa: E402
+from shapes import torus_trefoil  # noqa: E402
+
+SHOWN = {each.name: each for each in declared(RelaxOptions) if each.keyframes}
+GIVEN = {
+    "method": "penalty-lbfgs",
+    "max_iterations": 3,
+    "tolerance": 0.125,
+    "vertices": 90,
+    "energy": "moebius-k2",
+    "metric": "moebius",
+    "quadrature_points": 2,
+    "penalty": 8.0,
+    "edge_lengths": "keep",
+    "stability": True,
+    "escape_saddles": True,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneMore(RelaxOptions):
+    """With options that nothing but these lines know of."""
+
+    patience: float | None = option(None, "Patience", "how long to wait", automatic="for ever", low=0, high=9)
+    colour: str = option("red", "Colour", "what it looks like", choices=("red", "blue"), group="advanced")
+
+
+def owners():
+    operator = bpy.ops.curve.mobius_flow_relax.get_rna_type()
+    return bpy.context.scene.mobius_flow.bl_rna.properties, operator.properties
+
+
+def scene_values():
+    scene = bpy.context.scene.mobius_flow
+    return {name: getattr(scene, name) for name in properties.SETTINGS}
+
+
+@pytest.mark.parametrize("each", SHOWN.values(), ids=SHOWN)
+def test_every_option_is_a_setting_of_scene_and_operator(each):
+    for owner in owners():
+        shown = owner[each.name]
+        assert shown.name == each.label
+        assert shown.description.startswith(each.sentence())
+        if each.choices is not None:
+            automatic = ["AUTO"] if each.default is None else []
+            assert [item.identifier for item in shown.enum_items] == automatic + list(each.choices)
+            assert len({item.value for item in shown.enum_items}) == len(shown.enum_items)
+        elif each.kind is not bool:
+            assert shown.hard_min == pytest.approx(0 if each.default is None else each.low)
+            assert shown.hard_max >= min(each.high, 2**31 - 1)
+        assert ("; 0: " in shown.description) == (each.default is None and each.choices is None)
+
+
+def test_what_changes_the_mesh_is_left_out():
+    assert set(GIVEN) == set(SHOWN)
+    for owner in owners():
+        assert "adaptive" not in owner
+        assert "resolve" not in owner
+
+
+def test_defaults_are_the_librarys():
+    options = asdict(properties.relax_options(scene_values()))
+    assert options.pop("tolerance") == pytest.approx(RelaxOptions().tolerance)
+    assert options == {name: value for name, value in asdict(RelaxOptions()).items() if name != "tolerance"}
+
+
+@pytest.mark.parametrize("name", GIVEN)
+def test_every_option_can_be_set(name):
+    setattr(bpy.context.scene.mobius_flow, name, GIVEN[name])
+    assert getattr(properties.relax_options(scene_values()), name) == GIVEN[name]
+
+
+def test_names_keep_their_numbers_in_files(tmp_path):
+    owner = bpy.context.scene.mobius_flow.bl_rna.properties
+    numbers = {"method": ("flow-l2", 1455206817), "energy": ("edge", 1963381606), "metric": ("h2", 606773968)}
+    for name, (item, number) in numbers.items():
+        assert owner[name].enum_items[item].value == number
+        setattr(bpy.context.scene.mobius_flow, name, item)
+    assert owner["metric"].enum_items["AUTO"].value == 0
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert bpy.context.scene.mobius_flow.metric == "AUTO"
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    for name, (item, _) in numbers.items():
+        assert getattr(bpy.context.scene.mobius_flow, name) == item
+
+
+def drawn(cls):
+    """The settings that a panel shows."""
+    names = []
+
+    class Layout:
+        def column(self, align=False):
+            return self
+
+        def prop(self, _owner, name):
+            names.append(name)
+
+    cls.draw(SimpleNamespace(layout=Layout()), bpy.context)
+    return names
+
+
+def test_the_advanced_panel_shows_its_group():
+    advanced = panel.VIEW3D_PT_mobius_flow_advanced
+    assert advanced.is_registered
+    assert advanced.bl_parent_id == panel.VIEW3D_PT_mobius_flow.__name__
+    assert "DEFAULT_CLOSED" in advanced.bl_options
+    names = drawn(advanced)
+    assert names == [name for name, each in SHOWN.items() if each.group == "advanced"]
+    assert {"energy", "metric", "quadrature_points", "penalty", "edge_lengths", "stability"} < set(names)
+    assert [each.name for each in properties.shown("basic")] == [name for name in SHOWN if name not in names]
+
+
+def test_options_that_nothing_else_knows_of_appear_by_themselves(monkeypatch):
+    monkeypatch.setattr(properties, "RelaxOptions", OneMore)
+    declaration = properties.settings(set())
+    patience, colour = declaration["patience"].keywords, declaration["colour"].keywords
+    assert patience["description"] == "How long to wait; 0: for ever"
+    assert (patience["min"], patience["max"], patience["default"]) == (0.0, 9.0, 0.0)
+    assert ([item[0] for item in colour["items"]], colour["default"]) == (["red", "blue"], "red")
+    assert "colour" in drawn(panel.VIEW3D_PT_mobius_flow_advanced)
+    values = scene_values() | {"patience": 0.0, "colour": "blue"}
+    assert asdict(properties.relax_options(values))["patience"] is None
+    assert properties.relax_options(values | {"patience": 2.0}).patience == 2.0
+    with pytest.raises(OptionError, match=r"patience is 10\.0; it must be a finite number above 0 and at most 9"):
+        properties.relax_options(values | {"patience": 10.0})
+
+
+@pytest.mark.parametrize(("name", "value"), [("max_iterations", -1), ("quadrature_points", 17), ("tolerance", 0.0)])
+def test_settings_stay_within_the_bounds(name, value):
+    setattr(bpy.context.scene.mobius_flow, name, value)
+    assert getattr(bpy.context.scene.mobius_flow, name) != value
+    properties.relax_options(scene_values())
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"penalty": 5.0}, "penalty is 5.0; the method keeps lengths and has no penalty"),
+        ({"quadrature_points": 2, "metric": "l2"}, "metric 'l2' has no such rule"),
+        ({"method": "trust-region", "energy": "edge"}, "second derivative"),
+        ({"method": "penalty-cg", "stability": True}, "penalises lengths"),
+    ],
+)
+def test_options_that_do_not_go_together(options, said):
+    add_trefoil()
+    with pytest.raises(RuntimeError) as error:
+        bpy.ops.curve.mobius_flow_relax(**options)
+    assert said in sentence(error.value)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"energy": "edge", "metric": "h2", "edge_lengths": "keep"},
+        {"method": "penalty-lbfgs", "metric": "h3-2", "penalty": 8.0},
+        {"energy": "moebius-k2", "quadrature_points": 2},
+    ],
+    ids=str,
+)
+def test_the_result_is_the_librarys(options):
+    obj = add_trefoil()
+    start = Curve.from_components([stored(obj.data).astype(np.float64)])
+    wanted = {"max_iterations": 6} | options
+    relax(keyframes="RESULT", **wanted)
+    result = minimize(start, RelaxOptions(**wanted)).curve.vertices
+    np.testing.assert_array_equal(stored(obj.data), result.astype(np.float32))
+    plain = minimize(start, RelaxOptions(max_iterations=6)).curve.vertices
+    assert not np.array_equal(stored(obj.data), plain.astype(np.float32))
+
+
+def test_the_worker_is_sent_every_option():
+    options = RelaxOptions(**GIVEN)
+    curve = torus_trefoil(30)
+    pipe = BytesIO()
+    wire.write(pipe, wire.pack_job(curve, options, Link((Placement(np.eye(3), np.zeros(3)),), (1,))))
+    pipe.seek(0)
+    _, received, _ = wire.unpack_job(wire.read(pipe))
+    assert received == options

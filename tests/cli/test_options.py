@@ -1,0 +1,100 @@
+"""The command line's options are the library's: nothing of them is declared a second time."""
+
+import argparse
+from dataclasses import asdict, dataclass
+
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.cli import options as relax_options
+from mobius_flow.core import OptionError, RelaxOptions, write_curve
+from mobius_flow.core.option import declared, option
+from shapes import torus_trefoil
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneMore(RelaxOptions):
+    """With an option that nothing but this line knows of."""
+
+    patience: float | None = option(None, "Patience", "how long to wait", automatic="for ever", low=0, high=9)
+
+
+def parsed(*words, **keywords):
+    parser = argparse.ArgumentParser()
+    relax_options.add_to(parser, **keywords)
+    return relax_options.from_arguments(parser.parse_args(words))
+
+
+def test_every_option_stands_in_the_help(capsys):
+    assert main(["relax", "--help"]) == 0
+    shown = capsys.readouterr().out
+    words = " ".join(shown.split()).replace("- ", "-")
+    for each in declared(RelaxOptions):
+        assert f"\n  --{each.name.replace('_', '-')} " in shown
+        assert each.help.replace("- ", "-") in words
+        if each.kind is not bool:
+            assert f"(default: {each.automatic or each.default})" in words
+        for name in each.choices or ():
+            assert name in words
+
+
+def test_defaults_are_the_librarys():
+    assert parsed() == RelaxOptions() == parsed(method=False)
+
+
+GIVEN = {
+    "method": "penalty-cg",
+    "max_iterations": 7,
+    "tolerance": 0.5,
+    "vertices": 90,
+    "energy": "edge",
+    "metric": "h1",
+    "quadrature_points": 3,
+    "penalty": 2.5,
+    "edge_lengths": "keep",
+    "adaptive": True,
+    "resolve": True,
+    "stability": True,
+    "escape_saddles": True,
+}
+
+
+@pytest.mark.parametrize("each", declared(RelaxOptions), ids=lambda each: each.name)
+def test_every_option_can_be_given(each):
+    value = GIVEN[each.name]
+    words = [relax_options.flag(each), *([] if value is True else [str(value)])]
+    assert asdict(parsed(*words)) == asdict(RelaxOptions()) | {each.name: value}
+
+
+def test_one_more_option_appears_by_itself(monkeypatch):
+    monkeypatch.setattr(relax_options, "RelaxOptions", OneMore)
+    assert parsed().patience is None
+    assert parsed("--patience", "2.5").patience == 2.5
+    with pytest.raises(OptionError, match=r"patience is 9\.5; it must be a finite number above 0 and at most 9"):
+        parsed("--patience", "9.5")
+    parser = argparse.ArgumentParser()
+    relax_options.add_to(parser)
+    assert "how long to wait (default: for ever)" in " ".join(parser.format_help().split())
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--vertices", "2"], "vertices is 2; it must be 3 or more"),
+        (["--quadrature-points", "17"], "quadrature_points is 17; it must be from 1 to 16"),
+        (["--penalty", "0"], "penalty is 0.0; it must be a finite number above 0"),
+        (["--metric", "l7"], "metric 'l7' is unknown"),
+    ],
+)
+def test_bounds_hold_before_a_file_is_read(words, said, tmp_path, capsys):
+    assert main(["relax", str(tmp_path / "missing.txt"), str(tmp_path / "o.txt"), *words]) == 2
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("word", ["--adaptive", "--resolve"])
+def test_keyframes_follow_no_mesh_that_changes(word, tmp_path, capsys):
+    pytest.importorskip("bpy")
+    write_curve(tmp_path / "a.txt", torus_trefoil(60))
+    assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), word]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "keyframes need a fixed mesh; leave --adaptive and --resolve out, or write a curve file" in said
