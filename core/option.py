@@ -5,7 +5,7 @@ From that follow its checks, the arguments of the command line, and Blender's se
 
 import math
 import sys
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, fields
 from inspect import cleandoc
 from numbers import Integral, Real
@@ -46,6 +46,8 @@ class Option:
         Bounds of a number; a float is to be finite, and above its lower one.
     choices
         The names it takes: a registry, or a few words.
+    objects
+        What else than a name a script may give: what it is called, and whether a value is one.
     metavar
         What stands for its value in the command line's help.
     group
@@ -64,6 +66,7 @@ class Option:
     low: float = -math.inf
     high: float = math.inf
     choices: Collection[str] | None = field(default=None, repr=False)
+    objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
     metavar: str = "NAME"
     group: Literal["basic", "advanced"] = "basic"
     keyframes: bool = True
@@ -77,6 +80,10 @@ class Option:
         if value is None and self.default is None:
             return
         types, noun = _KINDS[self.kind]
+        if self.objects is not None:
+            if self.objects[1](value):
+                return
+            noun = f"{noun} or {self.objects[0]}"
         # bool is a kind of int, but no number
         if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
             raise OptionError(f"{self.name} is {value!r:.40}; it must be {noun}")

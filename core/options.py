@@ -1,16 +1,29 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from .descent import METHODS
-from .energies import ENERGIES
+from .energies import ENERGIES, Energy
 from .errors import OptionError
 from .metrics import METRICS
 from .option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
 _advanced = partial(option, group="advanced")
+
+
+def _are_lengths(value: object) -> bool:
+    if isinstance(value, str) or not isinstance(value, Sequence | np.ndarray):
+        return False
+    try:
+        lengths = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return False
+    return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
 
 
 @documented
@@ -37,7 +50,13 @@ class RelaxOptions:
         low=3,
         metavar="N",
     )
-    energy: str = _advanced("moebius", "Energy", "what is minimised, with a barrier between strands", choices=ENERGIES)
+    energy: str | Energy = _advanced(  # noqa: RUF009 (a field, made for this class)
+        "moebius",
+        "Energy",
+        "what is minimised, with a barrier between strands",
+        choices=ENERGIES,
+        objects=("an energy", lambda value: isinstance(value, Energy)),
+    )
     metric: str | None = _advanced(
         None, "Metric", "inner product that gradients are taken in", automatic="the method's own", choices=METRICS
     )
@@ -58,12 +77,13 @@ class RelaxOptions:
         low=0,
         metavar="α",
     )
-    edge_lengths: str = _advanced(
+    edge_lengths: str | tuple[float, ...] = _advanced(
         "auto",
         "Edge Lengths",
         "target lengths, equal within each component or kept as in the refined start; auto keeps them only where they, "
         "or the gaps between edges, differ by more than 10:1, and evening them out would crumple the curve",
         choices=EDGE_LENGTHS,
+        objects=("as many numbers above 0 as there are edges", _are_lengths),
         metavar="L",
     )
     adaptive: bool = _advanced(
@@ -90,5 +110,7 @@ class RelaxOptions:
     def __post_init__(self) -> None:
         for each in declared(type(self)):
             each.check(getattr(self, each.name))
+        if not isinstance(self.edge_lengths, str):
+            object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
         if self.adaptive and self.edge_lengths != "auto":
             raise OptionError("an adaptive mesh makes its own edge_lengths; leave one of the two options out")

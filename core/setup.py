@@ -94,14 +94,12 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     check_size(curve, options)
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
-    constraints = Constraints(_target_lengths(start, options), weighted_barycenter(start))
-    energy = energy_named(options.energy)
+    constraints = Constraints(_target_lengths(start, options, units.scale), weighted_barycenter(start))
+    energy = energy_named(options.energy) if isinstance(options.energy, str) else options.energy
     objective = Objective.of(energy)
     second_order = method.rule.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:
-        raise OptionError(
-            f"{method.name} with these options needs a second derivative; energy {options.energy} has none"
-        )
+        raise OptionError(f"{method.name} with these options needs a second derivative; energy {energy.name} has none")
     if (options.stability or options.escape_saddles) and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
     metric = _metric(method, options)
@@ -119,7 +117,15 @@ def _rule(metric: Metric, energy: Energy, points: int | None) -> Rule:
     return Rule.gauss(points)
 
 
-def _target_lengths(start: Curve, options: RelaxOptions) -> FloatArray:
+def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatArray:
+    """In the program's units, of which one is ``scale`` of the user's."""
+    if not isinstance(options.edge_lengths, str):
+        if len(options.edge_lengths) != len(start):
+            raise OptionError(
+                f"edge_lengths has {len(options.edge_lengths)} numbers, but the refined curve has {len(start)} edges; "
+                f"give one for each edge, and vertices={len(options.edge_lengths)}"
+            )
+        return np.array(options.edge_lengths) / scale
     uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
     if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and uneven):
         return start.edge_lengths

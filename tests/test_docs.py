@@ -34,11 +34,12 @@ def test_links_lead_somewhere(document):
             assert (document.parent / target).exists(), target
 
 
-def test_the_readme_example_runs():
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    example = re.search(r"```python\n(from mobius_flow.core.*?)```", readme, re.DOTALL)
+@pytest.mark.parametrize("document", ["README.md", "docs/energies.md"])
+def test_the_examples_run(document):
+    text = (ROOT / document).read_text(encoding="utf-8")
+    example = re.search(r"```python\n(from .*?)```", text, re.DOTALL)
     assert example is not None
-    exec(compile(example.group(1), "README.md", "exec"), {})
+    exec(compile(example.group(1), document, "exec"), {"__name__": document})
 
 
 def test_the_readme_has_both_commands():

@@ -1,6 +1,6 @@
 """What the program asks of an energy."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices
@@ -8,6 +8,7 @@ from ..quadrature import Rule
 from ..types import FloatArray
 
 
+@runtime_checkable
 class Energy(Protocol):
     """A differentiable function of the vertices, invariant under rigid motions."""
 

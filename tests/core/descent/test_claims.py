@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian, lagrangian_hessian_matrix
+from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.setup import start_problem
 from mobius_flow.core.stability import stability
 from mobius_flow.core.taylor import taylor_slope
@@ -165,9 +166,36 @@ def _graded(s: np.ndarray) -> np.ndarray:
     return np.concatenate([[0], np.cumsum(density) / density.sum()])
 
 
+def test_target_lengths_may_be_given_one_by_one():
+    curve = torus_trefoil(60)
+    wanted = 1e3 * curve.edge_lengths * (1 + 0.2 * np.cos(2 * np.pi * np.arange(60) / 60))
+    big = curve.with_vertices(1e3 * curve.vertices)
+    result = minimize(big, RelaxOptions(edge_lengths=wanted, vertices=60, max_iterations=60))
+    np.testing.assert_allclose(result.curve.edge_lengths, wanted, rtol=1e-8)
+    assert result.energies[-1] < result.energies[0]
+    assert RelaxOptions(edge_lengths=wanted) == RelaxOptions(edge_lengths=wanted.tolist())
+
+
+def test_an_energy_may_be_an_object():
+    """The same run by name and by object."""
+    by_name = RelaxOptions(energy="edge", vertices=60, max_iterations=5)
+    by_object = RelaxOptions(energy=ENERGIES["edge"], vertices=60, max_iterations=5)
+    curve = torus_trefoil(60)
+    assert minimize(curve, by_name).energies == minimize(curve, by_object).energies
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        ({"energy": 5}, "energy is 5; it must be a name or an energy"),
+        (
+            {"edge_lengths": [1.0, -1.0]},
+            "a name or as many numbers above 0 as there are edges",
+        ),
+        (
+            {"edge_lengths": np.ones(59), "vertices": 60},
+            "has 59 numbers, but the refined curve has 60 edges",
+        ),
         ({"energy": "gravity"}, "energy 'gravity' is unknown; choose one of moebius"),
         ({"metric": "l7"}, "metric 'l7' is unknown; choose one of l2"),
         ({"quadrature_points": 0}, "quadrature_points is 0"),
