@@ -12,6 +12,8 @@ _EPILOG = """\
 example:
   mobius-flow bench knots --only unknot-lattice-40,8_19
 
+The column "energy" is the Möbius energy of the result, as mobius-flow energy prints it.
+
 exit status:
   0    every type was kept, every unknot became a circle, every proof is there
   1    not so; the row says what

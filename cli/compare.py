@@ -28,7 +28,7 @@ _EPILOG = """\
 example:
   mobius-flow compare knot.txt --methods lbfgs,flow-moebius,flow-l2 --time-limit 20 -o figure.png
 
-The column, or key, "energy" of a table is the objective: the energy and what keeps strands apart.
+The column, or key, "energy" of a table is the objective: the energy with the barrier between near strands.
 
 exit status: 0; 2 on bad input or bad options, or where OUT cannot be written; 130 interrupted, where the methods that
 are done are written all the same
