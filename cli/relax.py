@@ -30,7 +30,8 @@ examples:
 
 exit status:
   0    it converged, or stopped at the limit asked for
-  1    it is stuck, or pulls tight for ever as composite knots do; the best curve, the report and the trajectory are written all the same
+  1    it is stuck, or pulls tight for ever as composite knots do;
+       the best curve, the report and the trajectory are written all the same
   2    bad input or bad options, or an output that cannot be written; one line says what and where
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; the best curve, the report and the trajectory are written
 
