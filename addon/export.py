@@ -39,7 +39,7 @@ def require_blender() -> None:
     except ModuleNotFoundError as error:
         raise MobiusFlowError(
             "writing .blend, .mp4 and .png needs Blender's Python module, which is not installed; "
-            "install it with: pip install 'mobius-flow[blender]' (Python 3.11 or 3.13)"
+            'install it with pip install bpy, or in a clone pip install ".[blender]" (Python 3.11 or 3.13)'
         ) from error
     except ImportError as error:
         raise MobiusFlowError(f"Blender's Python module, which is installed, cannot be loaded: {error}") from error

@@ -1,6 +1,7 @@
 """The curve objects that are relaxed together as one link; a single object is a group of one."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from ..core import Curve
@@ -97,8 +98,10 @@ class Group:
 
     def restore(self) -> bool:
         """Put back what was there, but for what somebody else deleted or changed; return whether all is as it was."""
-        with outside_edit_mode(self.objects):
-            restored = [member.restore() for member in self._members]
+        with outside_edit_mode(self.objects), ExitStack() as everything:
+            restored: list[bool] = []
+            for member in self._members:  # each of them, even if one cannot be put back
+                everything.callback(lambda member=member: restored.append(member.restore()))
         return all(restored)
 
     def set_aside(self) -> None:

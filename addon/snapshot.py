@@ -134,9 +134,11 @@ def outside_edit_mode(objects: Sequence["bpy.types.Object"]) -> Iterator[None]:
         yield
         return
     bpy.ops.object.mode_set(mode="OBJECT")
-    yield
-    bpy.ops.object.mode_set(mode=mode)
-    bpy.ops.ed.undo_push(message="Relaxation Ended")
+    try:
+        yield
+    finally:
+        bpy.ops.object.mode_set(mode=mode)
+        bpy.ops.ed.undo_push(message="Relaxation Ended")
 
 
 def _points(spline: "bpy.types.Spline") -> Any:

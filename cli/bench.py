@@ -3,7 +3,6 @@
 import argparse
 
 from ..core.bench import SETS, Row, bench
-from ..core.energies import MoebiusEnergy
 from ..core.errors import OptionError, choice
 from . import options as relax_options
 from .streams import emit
@@ -12,6 +11,8 @@ CIRCLE = 4.02  # energy below which an unknot counts as a circle
 _EPILOG = """\
 example:
   mobius-flow bench knots --only unknot-lattice-40,8_19
+
+The column "energy" is the Möbius energy of the result, as mobius-flow energy prints it.
 
 exit status:
   0    every type was kept, every unknot became a circle, every proof is there
@@ -24,7 +25,12 @@ exit status:
 def add_to(parser: argparse.ArgumentParser) -> None:
     """Describe the subcommand."""
     parser.description, parser.epilog = "Relax hard curves and compare their knot types before and after.", _EPILOG
-    parser.add_argument("set", choices=list(SETS), help="hard curves of all kinds, or the table to ten crossings")
+    parser.add_argument(
+        "set",
+        metavar=f"{{{','.join(SETS)}}}",
+        choices=list(SETS),
+        help="hard curves of all kinds, or the table to ten crossings",
+    )
     parser.add_argument("--only", metavar="A,B,…", help=f"names, comma separated, such as {', '.join(SETS['knots'])}")
     relax_options.add_to(parser)
 
@@ -37,11 +43,14 @@ def run(options: argparse.Namespace) -> int:
         if name not in curves:
             raise OptionError(f"curve {name!r} is unknown; {choice(name, curves)}")
     wanted = relax_options.from_arguments(options)
-    emit(f"{'curve':18} {'vertices':>11} {'type':>8} {'energy':>12} {'steps':>6} {'seconds':>8}  certified  status")
+    width = max(map(len, ["curve", *names]))
+    emit(
+        f"{'curve':{width}} {'vertices':>11} {'type':>8} {'energy':>12} {'steps':>6} {'seconds':>8}  certified  status"
+    )
     good = True
     for row in bench({name: curves[name] for name in names}, wanted):
-        emit(_line(row))
-        round_circle = not row.name.startswith("unknot") or MoebiusEnergy().value(row.result.curve) < CIRCLE
+        emit(_line(row, width))
+        round_circle = not row.name.startswith("unknot") or row.result.final_energy < CIRCLE
         good &= row.same_type and row.result.certified and round_circle
     return 0 if good else 1
 
@@ -53,11 +62,11 @@ def _kind(row: Row) -> str:
     return "unknot" if row.trivial and is_knot else "kept"
 
 
-def _line(row: Row) -> str:
+def _line(row: Row, width: int) -> str:
     result = row.result
     counts = f"{row.vertices_given} → {len(result.curve)}"
     certified = "yes" if result.certified else "NO"
     return (
-        f"{row.name:18} {counts:>11} {_kind(row):>8} {result.energies[-1]:12.6f} {len(result.energies) - 1:6d} "
+        f"{row.name:{width}} {counts:>11} {_kind(row):>8} {result.final_energy:12.6f} {len(result.energies) - 1:6d} "
         f"{result.seconds:8.1f}  {certified:9}  {result.status.value}"
     )

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from ..core import METHODS, MobiusFlowError
 from ..core.compare import Run, compare
 from ..core.curve.io import FORMATS
-from ..core.errors import OptionError, OutputError, likeliest
+from ..core.errors import OptionError, OutputError, wrong_suffix
 from ..core.files import atomic_write
 from . import curves, signals
 from . import options as relax_options
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 _EPILOG = """\
 example:
   mobius-flow compare knot.txt --methods lbfgs,flow-moebius,flow-l2 --time-limit 20 -o figure.png
+
+The column, or key, "energy" of a table is the objective: the energy with the barrier between near strands.
 
 exit status: 0; 2 on bad input or bad options, or where OUT cannot be written; 130 interrupted, where the methods that
 are done are written all the same
@@ -51,8 +53,7 @@ def run(options: argparse.Namespace) -> int:
     """Compare, write the figure or table, and print one line per method."""
     suffix = Path(options.output).suffix.lower()
     if suffix not in WRITERS:
-        guess = likeliest(suffix, WRITERS)
-        raise OptionError(f"{options.output}: unknown suffix {suffix!r}; {guess}outputs end in {', '.join(WRITERS)}")
+        raise OptionError(f"{options.output}: {wrong_suffix(options.output, WRITERS, 'outputs')}")
     if WRITERS[suffix] is _write_figure:
         _figure_class()
     if not (math.isfinite(options.time_limit) and options.time_limit > 0):
@@ -99,7 +100,7 @@ def _write(path: str, writer: Callable[[Path, Sequence[Run]], None], runs: Seque
 
 def _line(run: Run) -> str:
     return (
-        f"{run.method:18} {run.status:16} energy {run.energy[-1]:.9g} after {len(run.energy) - 1} iterations, "
+        f"{run.method:18} {run.status:16} objective {run.energy[-1]:.9g} after {len(run.energy) - 1} iterations, "
         f"{run.seconds[-1]:.1f} s, gradient {run.gradient_norm[-1]:.2g}"
     )
 

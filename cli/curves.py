@@ -2,17 +2,20 @@
 
 import argparse
 import io
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from ..core import Curve, CurveError, CurveFileError, MobiusFlowError, write_curve
-from ..core.curve.io import FORMATS, CurveFile, Format, format_of, load_curve
+from ..core.curve.io import FORMATS, CurveFile, Format, load_curve
+from ..core.errors import wrong_suffix
 from .streams import OutputStreamError, emit
 
 STREAM, DEVICE = "-", "/dev/stdout"
 INPUT, OUTPUT = "standard input", "standard output"
+MAX_VERTICES = 50_000  # of curves that any command takes; their energy takes a minute or so, growing with the square
 
 
 def add_format(parser: argparse.ArgumentParser) -> None:
@@ -27,11 +30,15 @@ def add_format(parser: argparse.ArgumentParser) -> None:
 
 def format_for(path: str, name: str | None) -> Format:
     """The format that a file's suffix or else ``--format`` tells; raises CurveFileError if neither does."""
-    if Path(path).suffix.lower() in FORMATS:
-        return format_of(Path(path))
-    if name is None and path != STREAM:
-        return format_of(Path(path))
-    return FORMATS[f".{name or 'txt'}"]
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS and name is None and path != STREAM:
+        raise CurveFileError(path, wrong_suffix(path, FORMATS, "curve files") + unless_told(path))
+    return FORMATS.get(suffix) or FORMATS[f".{name or 'txt'}"]
+
+
+def unless_told(path: str) -> str:
+    """What else to do about a file's unknown suffix."""
+    return "" if os.path.isdir(path) else ", others need --format"
 
 
 def read(path: str, name: str | None = None) -> CurveFile:

@@ -11,7 +11,6 @@ from ..core.setup import energy_named
 from . import curves
 from .streams import emit
 
-MAX_VERTICES = 50_000  # a minute or so: the time grows with the square
 _EPILOG = """\
 examples:
   mobius-flow energy knot.txt
@@ -35,8 +34,10 @@ def run(options: argparse.Namespace) -> int:
     energy_named(options.energy)  # before a large file is read
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
-        if len(file.curve) > MAX_VERTICES:
-            raise CurveError(f"the curve has {len(file.curve)} vertices; energies are for at most {MAX_VERTICES}")
+        if len(file.curve) > curves.MAX_VERTICES:
+            raise CurveError(
+                f"the curve has {len(file.curve)} vertices; energies are for at most {curves.MAX_VERTICES}"
+            )
         value = measure(file.curve, options.energy)
     emit(json.dumps({"name": options.energy, "energy": value}) if options.json else repr(value))
     return 0

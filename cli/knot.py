@@ -1,16 +1,20 @@
 """``mobius-flow knot``: write a named knot as a curve file."""
 
 import argparse
+from typing import Any
 
+from ..core import CurveError
 from ..core.curve.io import FORMATS
-from ..core.knots import knot
+from ..core.knots import knot, knot_names
 from . import curves
 from .places import check_place
+from .streams import emit
 
 _EPILOG = """\
 examples:
   mobius-flow knot 3_1 trefoil.txt
   mobius-flow knot "T(3,5)" - --format obj
+  mobius-flow knot --list
 
 exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
 """
@@ -22,12 +26,27 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", metavar="NAME", help='such as 3_1, goeritz, hopf, "T(3,5)" or "braid(1,-2,1,-2)"')
     parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(FORMATS)}, or - for standard output")
     curves.add_format(parser)
-    parser.add_argument("--vertices", type=int, metavar="N", help="number of vertices")
+    parser.add_argument(
+        "--vertices", type=int, metavar="N", help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough)"
+    )
+    parser.add_argument("--list", action=_List, nargs=0, help="print the names, one per line, and exit")
+
+
+class _List(argparse.Action):
+    """Ends the command as ``--help`` does, whatever else is missing."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_arguments: Any) -> None:
+        emit("\n".join(knot_names()))
+        parser.exit()
 
 
 def run(options: argparse.Namespace) -> int:
     """Make the knot and write it."""
     curves.format_for(options.output, options.format)
     check_place(options.output)
-    curves.write(options.output, knot(options.name, vertices=options.vertices), options.format)
+    curve = knot(options.name, vertices=options.vertices)
+    if len(curve) > (most := curves.MAX_VERTICES):
+        told = f"{options.name[:60]} gets {len(curve)} vertices, and no command takes more than {most}"
+        raise CurveError(f"{told}; give --vertices {most}")
+    curves.write(options.output, curve, options.format)
     return 0

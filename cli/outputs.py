@@ -9,7 +9,7 @@ from types import MappingProxyType
 from ..addon import export, film
 from ..core import Curve, Iterate, MobiusFlowError, Result
 from ..core.curve.io import FORMATS, Format
-from ..core.errors import likeliest
+from ..core.errors import wrong_suffix
 from . import curves
 from .progress import show_frames
 
@@ -90,8 +90,7 @@ def output_for(path: str, name: str | None = None) -> Output:
     suffix = Path(path).suffix
     if suffix.lower() not in OUTPUTS:
         if name is None and path != curves.STREAM:
-            guess = likeliest(suffix, OUTPUTS)
-            raise MobiusFlowError(f"{path}: unknown suffix {suffix!r}; {guess}outputs end in {', '.join(OUTPUTS)}")
+            raise MobiusFlowError(f"{path}: {wrong_suffix(path, OUTPUTS, 'outputs')}{curves.unless_told(path)}")
         return _curve_output(name, curves.format_for(path, name))
     output = OUTPUTS[suffix.lower()]
     output.check()

@@ -1,7 +1,6 @@
 """The parser of the command line: subcommands are loaded when they are asked for."""
 
 import argparse
-import difflib
 import sys
 from collections.abc import Iterable, Sequence
 from importlib import import_module
@@ -45,6 +44,23 @@ class Parser(argparse.ArgumentParser):
         """End with one line."""
         self.exit(BAD_OPTIONS, f"{self.prog}: {message} (see {self.prog} --help)")
 
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Parse, and refuse what isn't known."""
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            self.error(self._unknown(unknown[0].partition("=")[0]))
+        return found, unknown
+
+    def _unknown(self, word: str) -> str:
+        if not word.startswith("-"):
+            return f"unexpected argument {word!r}"
+        from ..core.errors import likeliest
+
+        known = [option for option in self._option_string_actions if option.startswith("--")]
+        return f"option {word} is unknown; {likeliest(word, known)}".rstrip("; ")
+
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         """End with an exit status, and one line on standard error."""
         if message and sys.stderr is not None:
@@ -65,21 +81,11 @@ class Command(Parser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Load the subcommand, and refuse what it doesn't know."""
+        """Load the subcommand before its arguments are parsed."""
         module = import_module(f".{self.prog.rpartition(' ')[2]}", __package__)
         module.add_to(self)
         self.set_defaults(run=module.run)
-        found, unknown = super().parse_known_args(args, namespace)
-        if unknown:
-            self.error(self._unknown(unknown[0].partition("=")[0]))
-        return found, unknown
-
-    def _unknown(self, word: str) -> str:
-        if not word.startswith("-"):
-            return f"unexpected argument {word!r}"
-        known = [option for option in self._option_string_actions if option.startswith("--")]
-        close = difflib.get_close_matches(word, known, n=1)
-        return f"option {word} is unknown" + (f"; did you mean {close[0]}?" if close else "")
+        return super().parse_known_args(args, namespace)
 
 
 def closest(name: object, known: Iterable[Any]) -> str:

@@ -39,7 +39,7 @@ class Progress:
             self._start = max(distance, 1e-9)
         self._bar.n = max(self._bar.n, round(100 * (1 - distance / self._start)))
         self._bar.set_postfix_str(
-            f"iteration {iterate.index}, energy {iterate.energy:.6g}, gradient {iterate.gradient_norm:.2g}"
+            f"iteration {iterate.index}, objective {iterate.energy:.6g}, gradient {iterate.gradient_norm:.2g}"
         )
 
 

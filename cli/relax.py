@@ -31,10 +31,12 @@ examples:
 
 exit status:
   0    it converged, or stopped at the limit asked for
-  1    it is stuck; the best curve, the report and the trajectory are written all the same
+  1    it is stuck, or pulls tight for ever as composite knots do;
+       the best curve, the report and the trajectory are written all the same
   2    bad input or bad options, or an output that cannot be written; one line says what and where
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; the best curve, the report and the trajectory are written
 
+In the report "energy" is the objective at every iterate, "final_energy" the Möbius energy of the result.
 What cannot be written in the end is kept in a temporary directory that the message names.
 """
 
@@ -171,6 +173,7 @@ def _write_report(path: str, result: Result, origin: Mapping[str, object] | None
 def _summary(result: Result) -> str:
     certified = "certified free of contact" if result.certified else "NOT certified"
     return (
-        f"{result.message}; energy {result.energies[0]:.6g} → {result.energies[-1]:.9g} in "
-        f"{len(result.energies) - 1} iterations, {result.seconds:.1f} s, {certified}"
+        f"{result.message}; objective {result.energies[0]:.6g} → {result.energies[-1]:.9g} in "
+        f"{len(result.energies) - 1} iterations, {result.seconds:.1f} s, Möbius energy {result.final_energy:.9g}, "
+        f"{certified}"
     )

@@ -6,12 +6,12 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import asdict
 from typing import BinaryIO
 
 from ..core import MobiusFlowError
-from ..core.verify import verify
+from ..core.verify import Verdict, verify
 from .curves import INPUT, STREAM
 from .places import is_file
 from .progress import leg_progress
@@ -24,10 +24,12 @@ examples:
   mobius-flow verify path.npz
   mobius-flow relax knot.txt out.txt --quiet --trajectory /dev/stdout | mobius-flow verify - --json
 
+In JSON stages and frames are counted from 0, edges, as in "reason", from 1.
+
 exit status:
   0    accepted: free of contact, with proof
-  1    rejected; the line, or "reason" of the JSON, says why and where
-  2    bad options
+  1    rejected, also as damaged or no trajectory; the line, or "reason" of the JSON, says why and where
+  2    bad options, or a file that is missing or cannot be opened
   130  interrupted
 """
 
@@ -43,26 +45,38 @@ def run(options: argparse.Namespace) -> int:
     """Print the verdict; exit status 0 if the trajectory is free of contact, 1 if not."""
     with _seekable(options.trajectory) as path, leg_progress(sys.stderr.isatty()) as progress:
         verdict = verify(path, progress)
-    emit(json.dumps(asdict(verdict)) if options.json else str(verdict))
+    emit(json.dumps(_plain(verdict)) if options.json else str(verdict))
     return 0 if verdict.accepted else 1
+
+
+def _plain(verdict: Verdict) -> dict[str, object]:
+    """The verdict with edges counted as in its reason, from 1."""
+    return asdict(verdict) | {"edges": verdict.edges and [edge + 1 for edge in verdict.edges]}
 
 
 @contextmanager
 def _seekable(path: str) -> Iterator[str]:
     """A file with the same contents that can be read from its end: itself, or a copy of a stream."""
-    if is_file(path):
-        yield path
-        return
-    if path == STREAM and sys.stdin is None:
-        raise MobiusFlowError(f"{INPUT} is closed")
-    with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
-        copy = os.path.join(room, "trajectory.npz")
-        if path == STREAM:
-            _spool(INPUT, sys.stdin.buffer, copy)
-        else:
-            with open(path, "rb") as stream:
-                _spool(path, stream, copy)
-        yield copy
+    with _opened(path) as stream:
+        if is_file(path):
+            yield path
+            return
+        with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
+            copy = os.path.join(room, "trajectory.npz")
+            _spool(INPUT if path == STREAM else path, stream, copy)
+            yield copy
+
+
+def _opened(path: str) -> AbstractContextManager[BinaryIO]:
+    """The file, open, or standard input; a MobiusFlowError says why there is none."""
+    if path == STREAM:
+        if sys.stdin is None:
+            raise MobiusFlowError(f"{INPUT} is closed")
+        return nullcontext(sys.stdin.buffer)
+    try:
+        return open(path, "rb")
+    except (OSError, ValueError) as error:  # a ValueError for a null character
+        raise MobiusFlowError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
 
 
 def _spool(name: str, stream: BinaryIO, target: str) -> None:

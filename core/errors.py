@@ -1,7 +1,8 @@
 """Errors that a user can act on: one sentence saying what, where, and what to do."""
 
 import difflib
-from collections.abc import Iterable
+import os
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 
@@ -57,7 +58,17 @@ def choice(name: str, known: Iterable[str]) -> str:
 
 
 def likeliest(name: str, known: Iterable[str]) -> str:
-    """Ask whether a known name was meant; empty if none is alike."""
+    """Ask whether a known name was meant, one that begins so before one that is alike; empty if there is none."""
     by_lower = {key.lower(): key for key in known}
-    close = difflib.get_close_matches(name.lower(), by_lower, n=1)
+    begun = [key for key in by_lower if name and key.startswith(name.lower())]
+    close = begun or difflib.get_close_matches(name.lower(), by_lower, n=1)
     return f"did you mean {by_lower[close[0]]}? " if close else ""
+
+
+def wrong_suffix(path: Path | str, known: Collection[str], kind: str) -> str:
+    """Say why the suffix of a path does not tell what a file of some kind ("curve files") holds."""
+    if os.path.isdir(path):
+        return "is a directory; name a file"
+    suffix = Path(path).suffix
+    found = f"unknown suffix {suffix!r}" if suffix else "no suffix"
+    return f"{found}; {likeliest(suffix, known)}{kind} end in {', '.join(known)}"

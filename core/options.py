@@ -55,7 +55,7 @@ class RelaxOptions:
         "Energy",
         "what is minimised, with a barrier between strands",
         choices=ENERGIES,
-        objects=("an energy", lambda value: isinstance(value, Energy)),
+        objects=("an energy", lambda value: isinstance(value, Energy) and not isinstance(value, type)),
     )
     metric: str | None = _advanced(
         None, "Metric", "inner product that gradients are taken in", automatic="the method's own", choices=METRICS

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -57,6 +58,11 @@ class Result:
     negative_eigenvalues: int | None
     last: Iterate
 
+    @cached_property
+    def final_energy(self) -> float:
+        """The Möbius energy of the last curve, without what the objective adds: what ``mobius-flow energy`` prints."""
+        return MoebiusEnergy().value(centred(self.curve))
+
     def report(self) -> dict[str, object]:
         """The result as the plain values that ``--report`` writes."""
         return {
@@ -65,7 +71,7 @@ class Result:
             "iterations": len(self.energies) - 1,
             "seconds": self.seconds,
             "energy": list(self.energies),
-            "final_energy": MoebiusEnergy().value(centred(self.curve)),
+            "final_energy": self.final_energy,
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
             "max_edge_length_error": self.edge_length_error,

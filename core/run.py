@@ -167,7 +167,10 @@ class Run:
         if self._options.resolve:
             message = f"stalled: strands pull tight, nearer than {len(iterate.curve)} vertices resolve"
             return replace(iterate, status=Status.STALLED, message=message)
-        note = "; strands are nearer than this mesh resolves, and with more vertices there is less energy to reach"
+        note = (
+            "; strands are nearer than this mesh resolves, and with more vertices there is less energy to reach: "
+            "--resolve (resolve=True) or more vertices go on"
+        )
         return replace(iterate, message=iterate.message + note)
 
     def _advice(self) -> str:

@@ -41,7 +41,8 @@ class Trajectory:
         Raises
         ------
         MobiusFlowError
-            If the iterate does not follow the last one, for then nobody has proved the motion between them.
+            If the iterate cannot follow the last one, by its number or its mesh: nobody has proved the motion between
+            them.  That the iterates are those of one run is up to the caller, and found out by `verify`.
         """
         if not isinstance(iterate, Iterate):
             raise MobiusFlowError(f"an Iterate is wanted, not an object of type {type(iterate).__name__}")
@@ -58,8 +59,9 @@ class Trajectory:
         self._last, self._last_index = iterate.curve, iterate.index
 
     def _follows(self, iterate: Iterate) -> bool:
-        """Whether it is the run's next iterate, or the last one again with another status."""
-        return iterate.index == self._last_index + 1 or iterate.curve is self._last
+        """Whether it may be the run's next iterate, or is the last one again with another status."""
+        fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
+        return (iterate.index == self._last_index + 1 and fits) or iterate.curve is self._last
 
     def arrays(self) -> dict[str, FloatArray | IntArray | NDArray[np.str_]]:
         """The arrays of the file, by name."""

@@ -1,6 +1,7 @@
 """The documents keep up with the program."""
 
 import re
+import sys
 import tomllib
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from mobius_flow.core import METHODS
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.metrics import METRICS
+from processes import finished
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
@@ -40,6 +42,28 @@ def test_the_examples_run(document):
     example = re.search(r"```python\n(from .*?)```", text, re.DOTALL)
     assert example is not None
     exec(compile(example.group(1), document, "exec"), {"__name__": document})
+
+
+def test_the_readme_example_for_blender_runs():
+    pytest.importorskip("bpy")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    example = re.search(r"```python\n(import bpy.*?)```", readme, re.DOTALL)
+    assert example is not None
+    told = re.search(r"The operator takes the panel's settings: (.*?);", readme, re.DOTALL)
+    assert told is not None
+    names = re.findall(r"`([a-z_]+)`", told.group(1))
+    assert "max_keys" in names
+    code = example.group(1) + (
+        "assert bpy.context.object.data.shape_keys.animation_data\n"
+        f"assert set({names}) <= set(bpy.ops.curve.mobius_flow_relax.get_rna_type().properties.keys())\n"
+    )
+    done = finished([sys.executable, "-P", "-c", code])
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_readme_names_the_versions_of_blender():
+    least = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))["blender_version_min"]
+    assert f"Blender {least.removesuffix('.0')} or newer" in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_the_readme_has_both_commands():

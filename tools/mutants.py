@@ -144,6 +144,13 @@ MUTANTS = (
         f"{VERIFY}/test_segments.py::test_edges_that_meet_beside_a_multiple_root",
     ),
     Mutant(
+        "changes of mesh rounded to nothing",
+        "core/verify/transition.py",
+        "return moved, _rounded_up(largest)",
+        "return moved, float(largest)",
+        f"{VERIFY}/test_transitions.py::test_a_change_too_small_for_doubles_is_checked",
+    ),
+    Mutant(
         "triangles that collapse",
         "core/verify/filter.py",
         "chain([_triangles(heads)], _overlapping(",

@@ -3,7 +3,7 @@
 from .closures import braid_closure
 from .contacts import rope, spiral
 from .lattice import lattice_closure
-from .names import UnknownKnotError, braid_word, knot
+from .names import UnknownKnotError, braid_word, knot, knot_names
 from .planar import diagram_knot
 from .scrambles import scramble
 from .table import ALIASES, HARD_UNKNOTS, KNOTS
@@ -20,6 +20,7 @@ __all__ = [
     "diagram_knot",
     "hard_unknot",
     "knot",
+    "knot_names",
     "lattice_closure",
     "rope",
     "scramble",

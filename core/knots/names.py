@@ -4,33 +4,28 @@ import difflib
 import re
 
 from ..curve import Curve
-from ..errors import MobiusFlowError
+from ..errors import CurveError, MobiusFlowError
 from .braids import Word, connected_sum, mirror
 from .closures import braid_closure
 from .planar import diagram_knot
 from .table import ALIASES, HARD_UNKNOTS, KNOTS
 from .torus import torus_knot
 
-_TORUS = re.compile(r"t(?:orus)?\(([+-]?\d{1,6}),([+-]?\d{1,6})\)", re.ASCII)
-_BRAID = re.compile(r"braid\(((?:[+-]?\d{1,6}(?:,[+-]?\d{1,6})*)?)\)", re.ASCII)
+_CALL = re.compile(r"(t|torus|braid)\(([^()#]*)(\)?)")
+_NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
+_FORMS = "write T(p,q) or braid(1,-2,...)"
+_MOST_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
 _TABLE = {name.lower(): name for name in KNOTS}
 
 
 class UnknownKnotError(MobiusFlowError):
-    """A knot name that means nothing; the message gives close names and the grammar."""
+    """A knot name that means nothing; the message says which part of it is wrong, or gives close names."""
 
-    def __init__(self, name: str) -> None:
-        plain = _plain(name)
-        alike = [key for key in _TABLE if "_" in plain and key.startswith(plain.partition("_")[0] + "_")]
-        close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES, *HARD_UNKNOTS], n=3, cutoff=0.5)
-        advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""
-        super().__init__(
-            f"no knot is called {name[:60]!r}; {advice}known are 0_1 to 10_165, the links "
-            f"{', '.join(key for key in KNOTS if key[0] == 'L')}, the names {', '.join(ALIASES)}, "
-            f"the hard unknots {', '.join(HARD_UNKNOTS)}, "
-            "T(p,q), braid(1,-2,...), m before a name for the mirror image, and sums A#B"
-        )
+
+def knot_names() -> list[str]:
+    """The names of the table with its links, other words for them, and the hard unknots."""
+    return [*KNOTS, *(name.replace(" ", "-") for name in ALIASES), *HARD_UNKNOTS]
 
 
 def knot(name: str, vertices: int | None = None) -> Curve:
@@ -51,7 +46,7 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     Raises
     ------
     UnknownKnotError
-        If the name means nothing; the message lists close and known names.
+        If the name means nothing; the message gives close names.
     CurveError
         If the vertices are too few or a number is not allowed.
 
@@ -66,14 +61,15 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     hard = _HARD.get(_unspaced(_plain(name)))
     if hard is not None:
         return diagram_knot(HARD_UNKNOTS[hard], vertices)
-    torus = _TORUS.fullmatch(_squeezed(name))
-    if torus:
-        return torus_knot(int(torus[1]), int(torus[2]), vertices)
+    call = _call(_squeezed(name), name)
+    if call is not None and call[0] != "braid":
+        p, q = call[1]
+        return torus_knot(p, q, vertices)
     return braid_closure(braid_word(name), vertices)
 
 
 def braid_word(name: str) -> Word:
-    """Braid word of a name in the grammar of :func:`knot`; raises UnknownKnotError."""
+    """Braid word of a name in the grammar of :func:`knot`; raises UnknownKnotError, or CurveError as `knot` does."""
     word: Word = ()
     for part in _plain(name).split("#"):
         word = connected_sum(word, _prime_word(part.strip(), name))
@@ -82,25 +78,56 @@ def braid_word(name: str) -> Word:
 
 def _prime_word(part: str, name: str) -> Word:
     squeezed = _squeezed(part)
-    torus, braid = _TORUS.fullmatch(squeezed), _BRAID.fullmatch(squeezed)
-    if torus:
-        return _torus_word(int(torus[1]), int(torus[2]), name)
-    if braid:
-        return tuple(int(letter) for letter in braid[1].split(",") if letter)
+    call = _call(squeezed, name)
+    if call is not None:
+        return call[1] if call[0] == "braid" else _torus_word(*call[1])
     if part in ALIASES:
         return braid_word(ALIASES[part])
     if squeezed in _TABLE:
         return KNOTS[_TABLE[squeezed]]
     if part.startswith("m") and len(part) > 1:
         return mirror(_prime_word(part[1:].strip(), name))
-    raise UnknownKnotError(name)
+    raise _unknown(name)
 
 
-def _torus_word(p: int, q: int, name: str) -> Word:
+def _call(part: str, name: str) -> tuple[str, Word] | None:
+    """What stands before the bracket of T(p,q) or braid(…), and the numbers in it; None if it is none of these."""
+    match = _CALL.fullmatch(part)
+    if match is None:
+        return None
+    kind, inside, bracket = match.groups()
+    if not bracket:
+        raise UnknownKnotError(f"{name[:60]!r} has no closing bracket; {_FORMS}")
+    numbers = inside.split(",") if inside else []
+    for number in numbers:
+        if not _NUMBER.fullmatch(number):
+            raise UnknownKnotError(
+                f"{number[:30]!r} in {name[:60]!r} is not a whole number of up to 18 digits; {_FORMS}"
+            )
+    if kind != "braid" and len(numbers) != 2:
+        raise UnknownKnotError(f"{name[:60]!r} does not have two numbers; write T(p,q), such as T(2,5)")
+    return kind, tuple(map(int, numbers))
+
+
+def _unknown(name: str) -> UnknownKnotError:
+    plain = _plain(name)
+    alike = [key for key in _TABLE if "_" in plain and key.startswith(plain.partition("_")[0] + "_")]
+    close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES, *HARD_UNKNOTS], n=3, cutoff=0.5)
+    advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""
+    return UnknownKnotError(
+        f"no knot is called {name[:60]!r}; {advice}known are 0_1 to 10_165, links such as L2a1, words such as trefoil "
+        "or goeritz, T(p,q), braid(1,-2,...), m before a name for the mirror image, and sums A#B; "
+        "see mobius-flow knot --list"
+    )
+
+
+def _torus_word(p: int, q: int) -> Word:
     """(σ₁ … σ_{p−1})^q, for torus knots within sums and mirror images."""
+    if p * q == 0 or abs(p * q) > _MOST_LETTERS:
+        raise CurveError(
+            f"T({p},{q}) in a sum or mirror image needs p and q that are not 0, and |pq| ≤ {_MOST_LETTERS}"
+        )
     p, q = sorted((p, q), key=abs)
-    if p == 0 or abs(p * q) > 10_000:
-        raise UnknownKnotError(name)
     word = tuple(range(1, abs(p))) * abs(q)
     return word if p * q > 0 else mirror(word)
 

@@ -74,6 +74,8 @@ def count_legs(path: Path | str) -> int:
 
 def _count(archive: zipfile.ZipFile) -> int:
     names = archive.namelist()
+    if len(set(names)) < len(names):
+        raise TrajectoryError("the file has two arrays of one name")
     found = sorted(name for name in names if name.startswith("stage_"))
     wanted = [f"stage_{k:03d}.npy" for k in range(len(found))]
     if not found or found != sorted(wanted):
@@ -107,6 +109,7 @@ def _component_sizes(archive: zipfile.ZipFile, name: str) -> tuple[int, ...]:
         if dtype.kind not in "iu" or len(shape) != 1 or not 0 < shape[0] * dtype.itemsize <= _MAX_SIZES:
             raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be a list of whole numbers")
         data = _exactly(file, shape[0] * dtype.itemsize, name)
+        _check_end(file, name)
     sizes = tuple(np.frombuffer(data, dtype).tolist())
     if min(sizes) < 3:
         raise TrajectoryError(f"{name} has a component with {min(sizes)} vertices; a closed polygon has 3 or more")

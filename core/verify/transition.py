@@ -67,7 +67,7 @@ def straightened(polygon: FloatArray, kept: Sequence[int]) -> tuple[dict[int, Po
         If one of them is further away than rounding, or they are not in order.
     """
     moved: dict[int, Point] = {}
-    largest = 0.0
+    largest = Fraction(0)
     n = len(polygon)
     for a, b in zip(kept, [*kept[1:], kept[0] + n], strict=True):
         parameter = Fraction(0)
@@ -76,9 +76,14 @@ def straightened(polygon: FloatArray, kept: Sequence[int]) -> tuple[dict[int, Po
             change = max(abs(x - Fraction(y)) for x, y in zip(place, polygon[k % n].tolist(), strict=True))
             if not (parameter < at < 1 and change <= Fraction(_allowed(polygon[[k % n, a % n, b % n]]))):
                 raise DifferentCurveError(f"vertex {k % n} of the component is not on the edge between its neighbours")
-            largest = max(largest, float(change) * (1 + 1e-12))
+            largest = max(largest, change)
             moved[k % n], parameter = place, at
-    return moved, largest
+    return moved, _rounded_up(largest)
+
+
+def _rounded_up(x: Fraction) -> float:
+    """A double that is not less: of the smallest numbers too, which would become 0."""
+    return float(x) if Fraction(float(x)) >= x else math.nextafter(float(x), math.inf)
 
 
 def _onto_edge(p: FloatArray, u: FloatArray, v: FloatArray) -> tuple[Point, Fraction]:

@@ -205,7 +205,10 @@ def test_lines_of_drivers_are_kept_out(capfd):
 
 @pytest.mark.parametrize(
     ("error", "said"),
-    [(ModuleNotFoundError, "pip install"), (ImportError("libEGL.so.1: cannot open"), "cannot be loaded: libEGL.so.1")],
+    [
+        (ModuleNotFoundError, "pip install bpy,"),
+        (ImportError("libEGL.so.1: cannot open"), "cannot be loaded: libEGL.so.1"),
+    ],
 )
 def test_a_missing_module_and_a_missing_library_of_it(monkeypatch, error, said):
     def importing(name, *arguments):

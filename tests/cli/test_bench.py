@@ -13,6 +13,15 @@ def test_rows_and_status(capsys):
     assert " yes " in hopf
 
 
+def test_columns_are_as_wide_as_names(capsys):
+    names = ["unknot-freedman-he-wang", "3_1"]
+    assert main(["bench", "knots", "--only", ",".join(names), "--max-iterations", "0"]) == 1
+    header, *rows = capsys.readouterr().out.splitlines()
+    end = header.index(" type") + len(" type")
+    assert [row[:end].split()[-1] for row in rows] == ["unknot", "kept"]
+    assert all(row[end] == " " for row in rows)
+
+
 def test_an_unknot_that_is_no_circle_fails(capsys):
     assert main(["bench", "knots", "--only", "unknot-lattice-20", "--max-iterations", "1"]) == 1
     assert "iteration_limit" in capsys.readouterr().out

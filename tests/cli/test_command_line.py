@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mobius_flow.cli import main, outputs
 from mobius_flow.core import METHODS, read_curve, write_curve
+from mobius_flow.core.knots import knot, knot_names
 from processes import finished
 from shapes import regular_polygon, torus_trefoil
 
@@ -36,6 +37,26 @@ def test_relax_writes_curve_report_and_trajectory(trefoil, tmp_path, capsys):
     assert run("verify", trajectory) == 0
 
 
+def test_the_last_line_tells_objective_and_energy(tmp_path, capsys):
+    """They differ where strands are so near that the barrier acts."""
+    start, out, report = tmp_path / "in.txt", tmp_path / "out.txt", tmp_path / "r.json"
+    write_curve(start, knot("8_19", vertices=60))
+    assert run("relax", start, out, "--report", report, "--vertices", 60, "--max-iterations", 5) == 0
+    line, values = capsys.readouterr().err, json.loads(report.read_text())
+    assert run("energy", out) == 0
+    energy = float(capsys.readouterr().out)
+    assert values["final_energy"] == pytest.approx(energy)
+    assert abs(values["energy"][-1] - energy) > 1e-3 * energy
+    assert f"objective {values['energy'][0]:.6g} → {values['energy'][-1]:.9g} in 5 iterations" in line
+    assert f"Möbius energy {energy:.6g}" in line
+
+
+def test_compare_prints_objectives(trefoil, tmp_path, capsys):
+    assert run("compare", trefoil, "--methods", "cg", "--max-iterations", 1, "-o", tmp_path / "c.json") == 0
+    last = json.loads((tmp_path / "c.json").read_text())[0]["energy"][-1]
+    assert f"objective {last:.9g} after 1 iterations" in capsys.readouterr().err
+
+
 def test_quiet(trefoil, tmp_path, capsys):
     assert run("relax", trefoil, tmp_path / "o.txt", "--quiet", "--max-iterations", 1) == 0
     captured = capsys.readouterr()
@@ -61,6 +82,21 @@ def test_methods_are_names_and_descriptions(capsys):
 def test_knot(tmp_path):
     assert run("knot", "3_1", tmp_path / "k.vect") == 0
     assert len(read_curve(tmp_path / "k.vect")) > 10
+
+
+def test_knots_are_listed(capsys):
+    assert run("knot", "--list") == 0
+    names = capsys.readouterr().out.splitlines()
+    assert names == knot_names()
+
+
+def test_knots_that_no_command_reads_are_not_written(tmp_path, capsys):
+    path = tmp_path / "k.txt"
+    assert run("knot", "T(300,301)", path) == 2
+    assert "give --vertices 50000" in capsys.readouterr().err
+    assert not path.exists()
+    assert run("knot", "T(300,301)", path, "--vertices", 50_000) == 0
+    assert len(read_curve(path)) == 50_000
 
 
 def test_module_is_the_same_program():
@@ -113,7 +149,7 @@ def test_bad_curves_are_one_line_and_leave_nothing(name, tmp_path, capsys):
         (["--tolerance", "x"], "--tolerance"),
         (["--max-iterations", "-3"], "max_iterations"),
         (["--vertices", "5"], "vertices"),
-        (["--nonsense"], "nonsense"),
+        (["--nonsense"], "option --nonsense is unknown"),
     ],
 )
 def test_bad_options_are_one_line(arguments, expected, trefoil, tmp_path, capsys):
@@ -124,10 +160,33 @@ def test_bad_options_are_one_line(arguments, expected, trefoil, tmp_path, capsys
     assert not (tmp_path / "o.txt").exists()
 
 
-@pytest.mark.parametrize("out", ["o.gif", "no/such/o.txt", "."])
-def test_bad_outputs_are_refused_before_the_work(out, trefoil, tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["--nonsense"], "option --nonsense is unknown"),
+        (["bench"], "{knots,primes}"),
+    ],
+)
+def test_options_without_a_command_and_commands_without_arguments(arguments, expected, capsys):
+    assert run(*arguments) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert expected in error
+
+
+@pytest.mark.parametrize(
+    ("out", "expected"), [("o.gif", "--format"), ("no/such/o.txt", "does not exist"), (".", "is a directory")]
+)
+def test_bad_outputs_are_refused_before_the_work(out, expected, trefoil, tmp_path, capsys):
     assert run("relax", trefoil, tmp_path / out) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert expected in error
+
+
+def test_a_directory_is_no_input(tmp_path, capsys):
+    assert run("relax", tmp_path, tmp_path / "o.obj") == 2
+    assert capsys.readouterr().err == f"mobius-flow: {tmp_path}: is a directory; name a file\n"
 
 
 @pytest.mark.parametrize("option", ["--report", "--trajectory"])

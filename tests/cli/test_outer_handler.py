@@ -179,6 +179,9 @@ def test_help_has_exit_statuses_and_no_markup(command: str, capsys: pytest.Captu
     [
         (["relx"], "relax"),
         (["relax", "IN", "OUT", "--vertice", "5"], "--vertices"),
+        (["relax", "IN", "o.txt", "--max", "5"], "--max-iterations"),
+        (["relax", "IN", "o.txt", "--method", "trust"], "trust-region"),
+        (["--verison"], "--version"),
         (["relax", "IN", "o.txt", "--method", "lbgfs"], "lbfgs"),
         (["relax", "IN", "o.txt", "--energy", "moebus"], "moebius"),
         (["relax", "IN", "o.txt", "--metric", "moebus"], "moebius"),

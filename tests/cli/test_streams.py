@@ -131,7 +131,24 @@ def test_a_verdict_as_json(
     rejected = json.loads(capsys.readouterr().out)
     assert not rejected["accepted"]
     assert rejected["stage"] == rejected["frame"] == 0
-    assert len(rejected["edges"]) == 2
+    first, second = rejected["edges"]
+    assert f"edges {first} and {second} (counted from 1) meet" in rejected["reason"]
+
+
+@pytest.mark.parametrize("extra", [[], ["--json"]])
+def test_trajectories_that_cannot_be_read_are_bad_input(
+    extra: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in (tmp_path, tmp_path / "none.npz", "a\0b", ""):
+        assert main(["verify", str(path), *extra]) == 2
+        captured = capsys.readouterr()
+        assert captured.out == ""
+        assert captured.err.count("\n") == 1
+        assert f"{path}: cannot be read: ".replace("\0", "") in captured.err.replace("\\x00", "")
+    damaged = tmp_path / "damaged.npz"
+    damaged.write_bytes(b"PK\3\4 and no more")
+    assert main(["verify", str(damaged), *extra]) == 1
+    assert "cannot be read" in capsys.readouterr().out
 
 
 def test_a_stream_that_is_no_trajectory(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

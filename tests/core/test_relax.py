@@ -305,6 +305,14 @@ def test_a_mesh_that_cannot_be_finer_ends_the_run_in_good_order(monkeypatch):
     assert "nearer than 60 vertices resolve" in result.message
 
 
+def test_strands_that_are_too_near_for_the_mesh_come_with_a_remedy():
+    result = minimize(knot("5_1", 60), RelaxOptions(vertices=60))
+    assert result.status is Status.CONVERGED
+    assert "nearer than this mesh resolves" in result.message
+    assert "--resolve" in result.message
+    assert result.final_energy > result.energies[-1] + 1  # the midpoint rule does not see them well
+
+
 @pytest.mark.parametrize("name", ENERGIES)
 def test_energies_know_how_they_scale(name):
     curve = torus_trefoil(60)

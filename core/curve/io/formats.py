@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import BinaryIO, TextIO
 
-from ...errors import CurveError, CurveFileError, likeliest
+from ...errors import CurveError, CurveFileError, wrong_suffix
 from ...files import atomic_write
 from ..curve import Curve, check_is_curve
 from . import json_lists, obj, vect, xyz
@@ -159,6 +159,4 @@ def format_of(path: Path) -> Format:
     try:
         return FORMATS[path.suffix.lower()]
     except KeyError:
-        found = f"unknown suffix {path.suffix!r}" if path.suffix else "no suffix"
-        guess = likeliest(path.suffix, FORMATS)
-        raise CurveFileError(path, f"{found}; {guess}curve files end in {', '.join(FORMATS)}") from None
+        raise CurveFileError(path, wrong_suffix(path, FORMATS, "curve files")) from None

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian, lagrangian_hessian_matrix
-from mobius_flow.core.energies import ENERGIES
+from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
 from mobius_flow.core.setup import start_problem
 from mobius_flow.core.stability import stability
 from mobius_flow.core.taylor import taylor_slope
@@ -188,6 +188,7 @@ def test_an_energy_may_be_an_object():
     ("options", "message"),
     [
         ({"energy": 5}, "energy is 5; it must be a name or an energy"),
+        ({"energy": MoebiusEnergy}, "it must be a name or an energy"),
         (
             {"edge_lengths": [1.0, -1.0]},
             "a name or as many numbers above 0 as there are edges",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from knot_type import knot_invariants
 from mobius_flow.core.errors import CurveError, MobiusFlowError
-from mobius_flow.core.knots import KNOTS, UnknownKnotError, braid_word, knot
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, UnknownKnotError, braid_word, knot, knot_names
 
 SAME = {
     "3_1": ["trefoil", " Trefoil  Knot ", "TREFOIL", "3_1", "braid(1,1,1)", "braid( 1, 1,+1 )", "mm3_1"],
@@ -39,13 +39,19 @@ def test_handedness(name: str, genus: int, tau: int) -> None:
         ("3_2", "did you mean 3_1"),
         ("borromaen", "borromean"),
         ("11_1", "10_165"),
-        ("", "unknot"),
+        ("", "known are"),
         ("m", "known are"),
         ("#", "known are"),
         ("T(2)", "T(p,q)"),
-        ("braid(1,,2)", "braid"),
-        ("braid(1;2)", "braid"),
-        ("T(2,x)", "T(p,q)"),
+        ("T(1,2,3)", "two numbers"),
+        ("T(3,5", "no closing bracket"),
+        ("3_1#braid(1,2", "no closing bracket"),
+        ("braid(1,,2)", "'' in 'braid(1,,2)' is not a whole number"),
+        ("braid(1;2)", "'1;2' in 'braid(1;2)' is not a whole number"),
+        ("braid(1,-2,x)", "'x' in 'braid(1,-2,x)' is not a whole number"),
+        ("T(2,x)", "'x' in 'T(2,x)' is not a whole number"),
+        (f"T(2,{'9' * 5000})", "up to 18 digits"),
+        ("T[2,3]", "knot --list"),
         ("x" * 5000, "known are"),
     ],
 )
@@ -54,13 +60,21 @@ def test_unknown_names_list_close_and_known_ones(name: str, hint: str) -> None:
         knot(name)
     assert hint in str(caught.value)
     assert isinstance(caught.value, MobiusFlowError)
-    assert len(str(caught.value)) < 600
+    assert len(str(caught.value)) < 350
 
 
-@pytest.mark.parametrize("name", ["T(0,3)", "T(2,99999)", "braid(0)", "braid(1,999999)", "0_1#T(0,1)"])
+@pytest.mark.parametrize(
+    "name", ["T(0,3)", "T(2,99999)", "T(1000000,1000001)", "braid(0)", "braid(1,9999999)", "0_1#T(0,1)", "mT(200,300)"]
+)
 def test_numbers_that_are_not_allowed(name: str) -> None:
-    with pytest.raises(MobiusFlowError, match=r"T\(|letter|strands"):
+    with pytest.raises(CurveError, match=r"^(T\(\S+\) |letter|the braid has .* strands)"):
         knot(name)
+
+
+def test_listed_names_are_names() -> None:
+    names = knot_names()
+    assert {"3_1", "L5a1", "figure-eight", "haken"} < set(names)
+    assert all(name in HARD_UNKNOTS or braid_word(name) or name in ("0_1", "unknot", "circle") for name in names)
 
 
 @pytest.mark.parametrize("name", ["3_1", "10_123", "T(3,7)", "whitehead"])

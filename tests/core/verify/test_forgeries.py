@@ -189,6 +189,23 @@ def test_many_vertices_in_few_places_are_refused_at_once(tmp_path: Path, size: i
     assert "meet" in verdict.reason
 
 
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+@pytest.mark.parametrize("name", ["component_sizes_000.npy", "stage_000.npy"])
+def test_two_arrays_of_one_name(tmp_path: Path, name: str) -> None:
+    path = saved(tmp_path / "T.npz", small())
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr(name, archive.read(name))
+    assert not verify(path).accepted
+
+
+def test_more_sizes_than_announced(tmp_path: Path) -> None:
+    good, path = saved(tmp_path / "good.npz", small()), tmp_path / "T.npz"
+    with zipfile.ZipFile(good) as source, zipfile.ZipFile(path, "w") as archive:
+        for name in source.namelist():
+            archive.writestr(name, source.read(name) + (b"more" if name.startswith("component") else b""))
+    assert "longer than its header says" in verify(path).reason
+
+
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
 def test_methods_of_packing_that_numpy_does_not_use(tmp_path: Path, method: int) -> None:
     good, path = saved(tmp_path / "good.npz", small()), tmp_path / "T.npz"
