@@ -61,6 +61,11 @@ class Group:
         return [obj for member in self._members if (obj := member.object) is not None]
 
     @property
+    def modified(self) -> bool:
+        """Whether any of the objects is shown with modifiers."""
+        return any(modifier.show_viewport or modifier.show_render for obj in self.objects for modifier in obj.modifiers)
+
+    @property
     def fits_bevel(self) -> bool:
         """Whether any of the objects is drawn as a tube that may be fitted."""
         return any(member.fits_bevel for member in self._members)

@@ -58,6 +58,8 @@ class Report:
         Whether every motion shown was proved free of contact, of each curve with itself and of all with each other.
     radius
         Radius of the tube if it was fitted, in the first object's units.
+    modified
+        Whether modifiers change what is shown: proofs are about the curves themselves.
     """
 
     names: tuple[str, ...]
@@ -66,12 +68,14 @@ class Report:
     last_frame: float
     certified: bool
     radius: float | None
+    modified: bool
 
     @property
     def sentence(self) -> str:
         """The same for people."""
         # nothing but the curves that were relaxed is looked at
         whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
+        whom += ", before modifiers" if self.modified else ""
         proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
         animation = f"{self.keys} keys up to frame {self.last_frame:g}, " if self.keys > 1 else ""
         return f"{named(self.names)} {self.iterate.message.rstrip('.')}; {animation}{proof}"
@@ -209,4 +213,5 @@ class Session:
         keys, radii = prepared.keys, prepared.radii
         last_frame = float(self._key_options.scene_frames(keys)[-1])
         radius = None if radii is None else float(radii[-1])
-        return Report(self.group.names, self._motion.last, len(keys.keys), last_frame, keys.certified, radius)
+        group, last = self.group, self._motion.last
+        return Report(group.names, last, len(keys.keys), last_frame, keys.certified, radius, group.modified)

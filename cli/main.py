@@ -17,8 +17,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _run(arguments)
     except SystemExit as ended:
         return int(ended.code or 0)
-    except KeyboardInterrupt:
-        return _end("interrupted", INTERRUPTED)
+    except KeyboardInterrupt as interrupt:
+        return _end(str(interrupt) or "interrupted", INTERRUPTED)
     except BrokenPipeError:  # the reader of our output has left, and needs no sentence
         return FAILED
     except MemoryError:

@@ -4,6 +4,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from ..core import MobiusFlowError
@@ -14,6 +15,8 @@ Write = Callable[[str], None]
 def kept(path: str, write: Write, rescue: Write | None = None, name: str | None = None) -> list[str]:
     """Write a result; where that fails keep it in a temporary directory, and return the sentences that say so.
 
+    So it is where it is interrupted; the sentence is then that of the KeyboardInterrupt, which goes on.
+
     Parameters
     ----------
     path
@@ -23,22 +26,28 @@ def kept(path: str, write: Write, rescue: Write | None = None, name: str | None 
     rescue, name
         Another way to write it, and a file name, for the temporary directory: a curve instead of a film.
     """
+    keep = partial(_elsewhere, rescue or write, os.path.basename(name or path))
     try:
         write(path)
+    except KeyboardInterrupt as interrupt:
+        raise KeyboardInterrupt(keep(f"{path} is not written")) from interrupt
     except (MobiusFlowError, OSError, MemoryError) as error:
-        reason = str(error) if isinstance(error, MobiusFlowError) else f"{path}: {_said(error)}"
-    else:
-        return []
+        return [keep(str(error) if isinstance(error, MobiusFlowError) else f"{path}: {_said(error)}")]
+    return []
+
+
+def _elsewhere(write: Write, name: str, reason: str) -> str:
+    """Write to a temporary directory; return the reason for that, and the place if it could be done."""
     try:
-        place = Path(tempfile.mkdtemp(prefix="mobius-flow-"), os.path.basename(name or path))
+        place = Path(tempfile.mkdtemp(prefix="mobius-flow-"), name)
     except OSError:
-        return [reason]
+        return reason
     try:
-        (rescue or write)(str(place))
+        write(str(place))
     except (MobiusFlowError, OSError, MemoryError):
         shutil.rmtree(place.parent, ignore_errors=True)
-        return [reason]
-    return [f"{reason} (the result is kept as {place})"]
+        return reason
+    return f"{reason} (the result is kept as {place})"
 
 
 def _said(error: Exception) -> str:

@@ -121,18 +121,37 @@ class _Job(NamedTuple):
     name: str | None = None
     interruptible: bool = False
 
+    def begin(self, path: str) -> None:
+        """Write, and let signals interrupt it if it takes long."""
+        if self.interruptible:
+            signals.allow()
+        self.write(path)
+
 
 def _write_all(
     options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
 ) -> None:
     """Write report, trajectory and curve or scene: the others are written all the same where one cannot be."""
-    failures = []
+    failures: list[str] = []
+    interrupted = False
     for job in sorted(_jobs(options, output, result, iterates, origin), key=lambda job: job.interruptible):
-        (signals.allow if job.interruptible else signals.hold)()
-        failures += kept(job.path, job.write, job.rescue, job.name)
+        signals.hold()
+        try:
+            write = _give_up if interrupted and job.interruptible else job.begin
+            failures += kept(job.path, write, job.rescue or job.write, job.name)
+        except KeyboardInterrupt as interrupt:
+            interrupted = True
+            failures.append(str(interrupt))
+    if interrupted:
+        raise KeyboardInterrupt(f"interrupted: {'; '.join(failures)}")
     if failures:
         raise MobiusFlowError("; ".join(failures))
     signals.allow()
+
+
+def _give_up(_path: str) -> None:
+    """What takes long is not begun after an interrupt."""
+    raise KeyboardInterrupt
 
 
 def _jobs(

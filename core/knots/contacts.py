@@ -8,7 +8,7 @@ from ..curve import Curve
 from ..errors import CurveError
 from ..types import FloatArray
 
-_MOST_VERTICES = 1_000_000
+_MOST_VERTICES = 100_000  # twice what any command takes
 
 
 def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> Curve:

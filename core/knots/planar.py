@@ -16,7 +16,7 @@ from ..types import FloatArray, IntArray
 Crossing = tuple[int, int, int, int]
 _Dart = tuple[int, int]  # a crossing, and the place from 0 to 3 of an edge that leaves it
 
-_MOST_VERTICES = 1_000_000
+_MOST_VERTICES = 100_000  # twice what any command takes
 _ROUNDS = 4  # in which weights grow with the square roots of lengths; with many more some lines collapse
 _LIFT = 0.5  # of the shortest line from a crossing: the height of its strands above and below the plane
 

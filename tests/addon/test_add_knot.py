@@ -1,8 +1,5 @@
 """Knots from the Add menu."""
 
-import re
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -55,14 +52,6 @@ def test_a_fitted_tube_has_the_thickness_it_needs():
     fitted = thickness()
     assert fitted > 0.125
     assert thickness(fit_bevel=True, thickness=0.125) == fitted
-
-
-def test_the_readme_script_runs():
-    readme = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
-    script = re.search(r"```python\n(bpy\.ops.*?)```", readme, re.DOTALL)
-    exec(compile(script.group(1), "README.md", "exec"), {"bpy": bpy})
-    assert bpy.context.object.name == "5_1"
-    assert bpy.context.object.data.shape_keys
 
 
 def test_an_added_knot_can_be_relaxed():

@@ -150,6 +150,13 @@ def test_one_selected_of_two_is_proved_with_itself_only(capfd):
     assert second.data.shape_keys is not None
 
 
+def test_modifiers_are_not_part_of_the_proof(capfd):
+    objects = rings()
+    objects[1].modifiers.new("Array", "ARRAY")
+    relax(keyframes="RESULT", **SHORT)
+    assert "proved free of contact with themselves and each other, before modifiers" in capfd.readouterr().out
+
+
 def test_what_is_selected_besides_curves_is_not_relaxed():
     obj, _ = rings()
     show(bpy.data.objects.new("Mesh", bpy.data.meshes.new("Mesh")))

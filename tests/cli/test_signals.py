@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -167,8 +168,12 @@ def test_files_come_before_streams_that_may_be_interrupted(
 
 
 @pytest.mark.parametrize("before", [False, True])
-def test_a_film_can_be_interrupted(
-    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: bool
+def test_a_film_can_be_interrupted_and_the_curve_is_kept(
+    command: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    before: bool,
 ) -> None:
     """Also that of a run which was interrupted itself."""
     update = Progress.update
@@ -190,6 +195,33 @@ def test_a_film_can_be_interrupted(
     assert main([*command, "--max-iterations", "3"]) == 130
     assert sorted(os.listdir(tmp_path)) == ["r.json", "t.npz", "trefoil.txt"]
     assert json.loads((tmp_path / "r.json").read_text())["iterations"] == (2 if before else 3)
+    said = capsys.readouterr().err
+    kept = re.fullmatch(
+        r"mobius-flow: interrupted: .*film.mp4 is not written \(the result is kept as (.*obj)\)\n", said
+    )
+    assert kept is not None, said
+    assert len(read_curve(kept[1])) == 60
+
+
+def test_an_interrupt_while_a_report_is_written_keeps_the_curve_of_a_film_that_is_not_begun(
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    save = Trajectory.save
+
+    def interrupted_save(self: Trajectory, path: str) -> None:
+        send(signal.SIGTERM)
+        save(self, path)
+
+    def film(path: str, *_arguments: object) -> None:
+        Path(path).write_text("a film")
+
+    monkeypatch.setattr(Trajectory, "save", interrupted_save)
+    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
+    monkeypatch.setattr(outputs.export, "write_movie", film)
+    command[2] = str(tmp_path / "film.mp4")
+    assert main([*command, "--max-iterations", "3"]) == 130
+    assert sorted(os.listdir(tmp_path)) == ["r.json", "t.npz", "trefoil.txt"]
+    assert "kept as" in capsys.readouterr().err
 
 
 def test_memory_that_runs_out_keeps_the_curve(
