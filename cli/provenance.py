@@ -26,9 +26,10 @@ def provenance(options: RelaxOptions, file: CurveFile) -> dict[str, object]:
 
 
 def _blas_threads() -> int:
-    """The number of threads of OpenBLAS by its own rule."""
+    """The number of threads of OpenBLAS by its own rule: as many as it is told, but no more than processors."""
+    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     for name in ("OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"):
         value = os.environ.get(name, "")
         if value.isdecimal() and int(value) > 0:
-            return int(value)
-    return os.cpu_count() or 1
+            return min(int(value), processors)
+    return processors

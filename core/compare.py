@@ -5,7 +5,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from .collision import check_embedded
-from .curve import Curve
+from .curve import Curve, check_is_curve
+from .errors import OptionError
 from .iterate import Status
 from .options import RelaxOptions
 from .relax import relax
@@ -39,6 +40,9 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
 
     Whether every method can be run is looked at before the first one is. Raises as `relax` does.
     """
+    check_is_curve(curve)
+    if isinstance(methods, str):
+        raise OptionError(f"methods are {methods!r:.60}; give a list of names")
     for method in methods:
         check_size(curve, replace(options, method=method))
     check_units(curve)

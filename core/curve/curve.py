@@ -1,6 +1,6 @@
 """Closed polygons in R^m: the one value that everything else takes and gives."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -50,6 +50,8 @@ class Curve:
     @classmethod
     def from_components(cls, components: Sequence[npt.ArrayLike]) -> "Curve":
         """Join closed polygons, arrays (n_k, m) of one common m, into one curve (a link)."""
+        if not isinstance(components, Iterable):
+            raise CurveError(f"components are of type {type(components).__name__}; give a list of arrays")
         arrays = [_numbers(component, f"component {k + 1}") for k, component in enumerate(components)]
         for k, array in enumerate(arrays):
             if array.ndim != 2 or array.shape[1] != arrays[0].shape[-1]:

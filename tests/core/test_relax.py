@@ -20,6 +20,7 @@ from mobius_flow.core import (
     write_curve,
 )
 from mobius_flow.core.collision import is_free
+from mobius_flow.core.compare import compare
 from mobius_flow.core.curve import refine
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import knot
@@ -192,6 +193,16 @@ def test_every_energy_is_that_of_the_curve_given_back(offset):
     assert measure(result.curve) == result.report()["final_energy"]
 
 
+def test_a_trajectory_refuses_iterates_of_another_mesh():
+    first = list(relax(torus_trefoil(60), RelaxOptions(vertices=60, max_iterations=2)))
+    other = list(relax(torus_trefoil(60), RelaxOptions(vertices=70, max_iterations=3)))
+    trajectory = Trajectory()
+    for iterate in first:
+        trajectory.add(iterate)
+    with pytest.raises(MobiusFlowError, match="iterate 3 does not follow the 3 iterates"):
+        trajectory.add(other[3])
+
+
 def test_trajectory_starts_at_the_input_and_ends_at_the_output(tmp_path):
     trajectory = Trajectory()
     result = minimize(torus_trefoil(60), SHORT, trajectory.add)
@@ -228,6 +239,12 @@ def test_bad_options(options, message):
         (lambda: minimize(torus_trefoil(20), {"method": "cg"}), "options is of type dict; give RelaxOptions"),
         (lambda: relax(torus_trefoil(20), "lbfgs"), "options is of type str; give RelaxOptions"),
         (lambda: refine([[0, 0, 0]]), "a Curve is wanted, not an object of type list"),
+        (lambda: Curve.from_components(3), "components are of type int; give a list of arrays"),
+        (
+            lambda: list(compare([[0, 0, 0]], ["cg"], RelaxOptions(), 1.0)),
+            "a Curve is wanted, not an object of type list",
+        ),
+        (lambda: compare(torus_trefoil(20), "lbfgs", RelaxOptions(), 1.0), "methods are 'lbfgs'; give a list of names"),
         (lambda: Trajectory().add(5), "an Iterate is wanted, not an object of type int"),
         (lambda: read_curve(5), "path is of type int; give the name of a file"),
         (lambda: knot(5), "no knot is called '5'"),
