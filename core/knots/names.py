@@ -16,6 +16,7 @@ _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _MOST_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
+_MIRRORS = re.compile(r"(?:m\s*)+")
 _TABLE = {name.lower(): name for name in KNOTS}
 
 
@@ -85,9 +86,11 @@ def _prime_word(part: str, name: str) -> Word:
         return braid_word(ALIASES[part])
     if squeezed in _TABLE:
         return KNOTS[_TABLE[squeezed]]
-    if part.startswith("m") and len(part) > 1:
-        return mirror(_prime_word(part[1:].strip(), name))
-    raise _unknown(name)
+    mirrors = _MIRRORS.match(part)
+    if mirrors is None or mirrors.end() == len(part):
+        raise _unknown(name)
+    word = _prime_word(part[mirrors.end() :], name)  # no name begins with an m
+    return mirror(word) if mirrors[0].count("m") % 2 else word
 
 
 def _call(part: str, name: str) -> tuple[str, Word] | None:

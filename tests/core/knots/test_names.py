@@ -113,3 +113,11 @@ def test_too_many_vertices() -> None:
     for name, vertices in (("3_1", 10**9), ("braid(" + ",".join(["1,499"] * 9000) + ")", None)):
         with pytest.raises(CurveError, match="too many"):
             knot(name, vertices)
+
+
+def test_mirror_images_of_mirror_images() -> None:
+    assert braid_word("mm3_1") == braid_word("3_1") == braid_word("m m 3_1")
+    assert braid_word("mmm3_1") == braid_word("m3_1")
+    with pytest.raises(UnknownKnotError, match="no knot is called"):
+        knot(5000 * "m")
+    assert braid_word(5001 * "m" + "3_1") == braid_word("m3_1")
