@@ -62,7 +62,7 @@ class RelaxOptions:
     )
     quadrature_points: int | None = _advanced(
         None,
-        "Quadrature Points",
+        "Gauss Points",
         "Gauss points per edge of the metric J_C; work grows with their square",
         automatic="the energy's own",
         low=1,

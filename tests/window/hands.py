@@ -1,6 +1,7 @@
 """A user's hands: mouse and keys in the first window, and what can be seen there."""
 
 import importlib
+from collections.abc import Generator
 from typing import Any
 
 import bpy
@@ -81,14 +82,28 @@ def open_sidebar() -> Steps:
 
 def button(operator: str) -> Steps:
     """Find a button of the sidebar with the mouse and click it; an operator such as ``curve.mobius_flow_relax``."""
+    x, y = yield from found(operator)
+    yield from click(x, y)
+
+
+def below(operator: str) -> Generator[None, None, int]:
+    """The height at which a button of the sidebar ends."""
+    x, y = yield from found(operator)
+    while f"bpy.ops.{operator}(" in _under_mouse(region("UI")):
+        y -= 4
+        yield from move(x, y)
+    return y
+
+
+def found(operator: str) -> Generator[None, None, tuple[int, int]]:
+    """Find a button of the sidebar with the mouse, and where it is."""
     sidebar = region("UI")
     ys = range(sidebar.y + sidebar.height - 10, sidebar.y + 10, -10)
     for share, y in [(share, y) for share in (0.33, 0.7) for y in ys]:
         x = sidebar.x + int(share * sidebar.width)
         yield from move(x, y)
         if f"bpy.ops.{operator}(" in _under_mouse(sidebar):
-            yield from click(x, y)
-            return
+            return x, y
     raise AssertionError(f"no button for {operator}")
 
 
