@@ -5,7 +5,10 @@ import numpy as np
 from ..curve import Curve
 from .gap import minimal_gap
 
-UNITS = 2  # of the last place of the largest coordinate, by which coordinates of an inserted vertex may be wrong
+# Bound of the rounding errors of tail + t (head − tail), in units of the last place of the largest coordinate: one each
+# of the difference, which may be twice as large, and of the product, and half a one of the sum.  That of t itself only
+# moves the vertex along its edge.
+UNITS = 2.5
 
 
 def survives_rounding(curve: Curve) -> bool:
@@ -18,4 +21,4 @@ def survives_rounding(curve: Curve) -> bool:
     if curve.dimension > 3:
         return True
     rounding = UNITS * np.spacing(np.abs(curve.vertices).max()) * np.sqrt(curve.dimension)
-    return bool(minimal_gap(curve)[0] > 2.5 * rounding)
+    return bool(minimal_gap(curve)[0] > 2.1 * rounding)

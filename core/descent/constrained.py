@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..checks import check_fields
 from ..curve import Curve
 from ..errors import OptionError
+from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
 
@@ -33,13 +35,16 @@ class Constrained:
     contraction: float = 0.6
     prescribes = True
 
+    def __post_init__(self) -> None:
+        check_fields(self, tolerance=(0.0, 1.0), max_iterations=(0, np.inf), contraction=(0.0, 1.0))
+
     def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
         """The objective alone."""
         return problem.objective.value_and_derivative(curve)
 
-    def tangent_space(self, problem: "Problem", curve: Curve) -> TangentSpace:
+    def tangent_space(self, problem: "Problem", curve: Curve, inner: InnerProduct) -> TangentSpace:
         """ker DΦ."""
-        return problem.metric.at(curve).tangent_space(problem.constraints.derivative(curve))
+        return inner.tangent_space(problem.constraints.derivative(curve))
 
     def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
         """Φ."""

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Protocol
 
 from ..curve import Curve
+from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
 
@@ -20,8 +21,8 @@ class Geometry(Protocol):
     def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
         """What is minimised on the set, and its derivative, shape (n, m)."""
 
-    def tangent_space(self, problem: "Problem", curve: Curve) -> TangentSpace:
-        """Where directions at a curve lie, with the problem's metric."""
+    def tangent_space(self, problem: "Problem", curve: Curve, inner: InnerProduct) -> TangentSpace:
+        """Where directions at a curve lie, with the metric there."""
 
     def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
         """How far a curve is from the set; shape (rows of the constraints,)."""

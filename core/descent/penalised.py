@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..checks import check_fields
 from ..constraints import ConstraintDerivative
 from ..curve import Curve
-from ..errors import OptionError
+from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
 
@@ -36,8 +37,7 @@ class Penalised:
     prescribes = False
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.penalty) and self.penalty > 0.0):
-            raise OptionError(f"penalty is {self.penalty}; it must be a finite number above 0")
+        check_fields(self, penalty=(0.0, np.inf))
 
     def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
         """E_α and its derivative."""
@@ -48,11 +48,11 @@ class Penalised:
         pull = ConstraintDerivative.of_lengths(curve).apply_transpose(2.0 * weights * stretch)
         return energy + float(weights @ stretch**2), derivative + pull
 
-    def tangent_space(self, problem: "Problem", curve: Curve) -> TangentSpace:
+    def tangent_space(self, problem: "Problem", curve: Curve, inner: InnerProduct) -> TangentSpace:
         """The whole space."""
         penalty = self.penalty if problem.metric.extends_penalty else 0.0
         rows = ConstraintDerivative.of_lengths(curve)
-        return problem.metric.at(curve).whole_space(rows, penalty * problem.constraints.lengths)
+        return inner.whole_space(rows, penalty * problem.constraints.lengths)
 
     def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
         """Every polygon is allowed: 0."""

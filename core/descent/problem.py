@@ -9,7 +9,7 @@ from ..collision import FreeMotion, Limit, free_motion
 from ..constraints import Constraints
 from ..curve import Curve, Mesh
 from ..energies import Objective
-from ..metrics import Metric
+from ..metrics import InnerProduct, Metric
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from ..units import Units
@@ -125,9 +125,14 @@ class Point:
         return self.problem.geometry.residual(self.problem, self.curve)
 
     @cached_property
+    def inner_product(self) -> InnerProduct:
+        """The metric here, on functions along the curve."""
+        return self.problem.metric.at(self.curve)
+
+    @cached_property
     def tangent_space(self) -> TangentSpace:
         """Where directions lie, with the metric."""
-        return self.problem.geometry.tangent_space(self.problem, self.curve)
+        return self.problem.geometry.tangent_space(self.problem, self.curve, self.inner_product)
 
     @cached_property
     def _gradient_and_multipliers(self) -> tuple[FloatArray, FloatArray]:

@@ -47,6 +47,13 @@ def test_the_helper_goes_on_where_a_method_is_stuck(point):
     assert rule.asked == 1
 
 
+def test_it_is_not_asked_where_its_matrices_do_not_fit(point, monkeypatch):
+    monkeypatch.setattr(type(HELPER.metric), "most_vertices", len(point.vertices) - 1)
+    assert isinstance(Stepper(stubborn()).step(point), NoStep)
+    monkeypatch.setattr(type(HELPER.metric), "most_vertices", len(point.vertices))
+    assert isinstance(Stepper(stubborn()).step(point), Step)
+
+
 def test_it_is_not_asked_twice_in_vain(point):
     stepper = Stepper(stubborn())
     for _ in range(HELPS + 1):

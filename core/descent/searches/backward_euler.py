@@ -66,7 +66,7 @@ class BackwardEuler:
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Take one step."""
         tau = self.first_step if state.memory is None else self.growth * state.memory
-        own, constraints = point.problem.metric.at(point.curve), point.tangent_space.constraints
+        own, constraints = point.inner_product, point.tangent_space.constraints
         preconditioner = self.preconditioner.at(point.curve)
         share = 1.0
         limited_by = None

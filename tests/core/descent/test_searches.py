@@ -16,7 +16,7 @@ from descent_contracts import (
     taken,
     with_geometry,
 )
-from mobius_flow.core import Curve, Mesh, Objective, OptionError
+from mobius_flow.core import Curve, Objective, OptionError
 from mobius_flow.core.collision import FreeMotion, Limit
 from mobius_flow.core.descent import NoStep, Point, Problem, State, Step
 from mobius_flow.core.descent.constrained import Constrained
@@ -373,12 +373,9 @@ def test_escape_leaves_a_maximum_along_a_line() -> None:
         lambda: BackwardEuler(first_step=-1.0),
         lambda: Escape(longest=float("nan")),
         lambda: Penalised(-1.0),
+        lambda: Constrained(contraction=2.0),
     ],
 )
 def test_constants_are_checked(make: Callable[[], object]) -> None:
     with pytest.raises(OptionError, match="must"):
         make()
-
-
-def test_meshes_of_the_fixtures() -> None:
-    assert start().problem.mesh == Mesh((60,))

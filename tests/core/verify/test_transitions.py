@@ -61,7 +61,7 @@ def test_random_transitions(tmp_path: Path, unit: float) -> None:
         scale = 1.0 if unit < 1e-300 else unit * 2.0**50  # large numbers, in which the unit is a rounding error
         bent, strand = scale * bent, scale * strand
         bent[:3] += unit * rng.integers(-3, 4, size=(3, 3))
-        strand[:2] += unit * rng.integers(-3, 4, size=(2, 3)) + np.array([0.0, 0.0, 0.0])
+        strand[:2] += unit * rng.integers(-3, 4, size=(2, 3))
         try:
             expected = crosses(bent, strand)
         except DifferentCurveError:
