@@ -24,3 +24,17 @@ def empty_file(request):
     if bpy is not None:
         request.getfixturevalue("addon")
         bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+@pytest.fixture
+def operator():
+    """A double of the Relax operator; whatever a test did with it, no worker stays behind."""
+    from mobius_flow.addon.live import registry
+    from modal_operator import Operator
+
+    double = Operator(vertices=120)
+    yield double
+    if double.loop is not None:
+        double.run.cancel()
+        assert not double.run._worker._thread.is_alive()
+    assert registry.current() is None

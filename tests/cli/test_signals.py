@@ -130,9 +130,9 @@ def test_signals_while_results_are_written_cost_nothing(
     check_results(tmp_path, "interrupted")
 
 
-def test_a_signal_after_the_last_step_costs_nothing(
-    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.fixture
+def interrupted_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A signal comes after the last step, before the results are written."""
     update = Progress.update
 
     def interrupted(self: Progress, iterate: Iterate) -> None:
@@ -141,22 +141,19 @@ def test_a_signal_after_the_last_step_costs_nothing(
             send(signal.SIGTERM)
 
     monkeypatch.setattr(Progress, "update", interrupted)
+
+
+@pytest.mark.usefixtures("interrupted_at_the_end")
+def test_a_signal_after_the_last_step_costs_nothing(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main([*command, "--max-iterations", "3"]) == 130
     check_results(tmp_path, "iteration_limit")
     assert capsys.readouterr().err == "mobius-flow: interrupted\n"
 
 
-def test_files_come_before_streams_that_may_be_interrupted(
-    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    update = Progress.update
-
-    def interrupted(self: Progress, iterate: Iterate) -> None:
-        update(self, iterate)
-        if iterate.status.value == "iteration_limit":
-            send(signal.SIGTERM)
-
-    monkeypatch.setattr(Progress, "update", interrupted)
+@pytest.mark.usefixtures("interrupted_at_the_end")
+def test_files_come_before_streams_that_may_be_interrupted(command: list[str], tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
     command[4] = str(tmp_path / "pipe")

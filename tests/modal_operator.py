@@ -1,0 +1,77 @@
+"""A double of the Relax operator that is fed events by hand, and what curves are compared by afterwards."""
+
+import time
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+from mobius_flow.addon.operators import CURVE_OT_mobius_flow_relax
+from mobius_flow.addon.properties import SETTINGS
+from mobius_flow.addon.snapshot import Snapshot
+from processes import PATIENCE
+
+
+class Operator:
+    """A double of the operator: Blender does not let anybody else make one."""
+
+    modal = CURVE_OT_mobius_flow_relax.modal
+    cancel = CURVE_OT_mobius_flow_relax.cancel
+    begin = CURVE_OT_mobius_flow_relax.begin
+
+    def __init__(self, **values):
+        self.loop, self.reports, self.values = None, [], values
+
+    def report(self, kind, message):
+        self.reports.append((kind, message))
+
+    def start(self):
+        manager = SimpleNamespace(
+            event_timer_add=lambda *_, **__: object(),
+            event_timer_remove=lambda _: None,
+            modal_handler_add=lambda _: None,
+            windows=[],
+        )
+        self.context = SimpleNamespace(
+            window_manager=manager,
+            window=None,
+            active_object=bpy.context.active_object,
+            selected_objects=bpy.context.selected_objects,
+            scene=bpy.context.scene,
+        )
+        bpy.context.view_layer.update()
+        scene = bpy.context.scene.mobius_flow
+        return self.begin(self.context, {name: getattr(scene, name) for name in SETTINGS} | self.values)
+
+    def event(self, kind="TIMER", **keys):
+        modifiers = {"ctrl": False, "shift": False, "oskey": False} | keys
+        event = SimpleNamespace(type=kind, value="NOTHING" if kind == "TIMER" else "PRESS", **modifiers)
+        event.mouse_x = event.mouse_y = 0
+        return self.modal(self.context, event)
+
+    @property
+    def run(self):
+        return self.loop.run
+
+    def until(self, condition):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < end
+            result = self.event()
+            time.sleep(0.002)
+            if self.run.state.over:
+                return result
+        return None
+
+    def reach(self, index):
+        self.until(lambda: self.run.last is not None and self.run.last.index >= index)
+
+
+def restored(obj, before):
+    after = Snapshot(obj.data)
+    for old, new in zip(before._splines, after._splines, strict=True):
+        assert (old.type, old.count, old.settings) == (new.type, new.count, new.settings)
+        assert all(np.array_equal(old.points[name], new.points[name]) for name in old.points)
+
+
+def keys(obj):
+    return np.array([[p.co[:] for p in block.data] for block in obj.data.shape_keys.key_blocks])
