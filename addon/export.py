@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from ..core import Iterate, MobiusFlowError
 from ..core.collision import is_free
 from ..core.errors import OutputError
-from ..core.files import atomic_write
-from ..core.termination import termination_raises
+from ..core.system.files import atomic_write
+from ..core.system.signals import termination_raises
 from . import film, rendering
 from .movie import Progress, render_movie
 

@@ -11,10 +11,10 @@ from collections import Counter
 
 import numpy as np
 from mobius_flow.core import METHODS, Curve, MobiusFlowError, RelaxOptions, relax
+from mobius_flow.core.driver.options import EDGE_LENGTHS, MESHES
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import KNOTS, braid_closure, hard_unknot, knot, scramble
 from mobius_flow.core.knots.alexander import signature
-from mobius_flow.core.options import EDGE_LENGTHS
 
 # slow ones and those that change the mesh come up less often
 COMMON = ("lbfgs", "cg", "flow-moebius", "flow-h1", "flow-l2", "flow-h2", "penalty-lbfgs", "penalty-nesterov")
@@ -49,14 +49,13 @@ def random_options(rng: np.random.Generator, given: int) -> RelaxOptions:
     """Options of every kind for a curve of so many vertices; mostly coarse meshes, which are quick and harder."""
     method = str(rng.choice(COMMON if rng.random() < 0.8 else list(METHODS)))
     energies = [name for name in ENERGIES if not METHODS[method].rule.second_order or name == "moebius"]
-    adaptive = bool(rng.random() < 0.2)
+    mesh = str(rng.choice(MESHES, p=[0.7, 0.1, 0.2]))
     return RelaxOptions(
         method=method,
         energy=str(rng.choice(energies)) if rng.random() < 0.2 else "moebius",
-        adaptive=adaptive,
-        resolve=bool(rng.random() < 0.1),
+        mesh=mesh,
         vertices=int(given * rng.uniform(1.0, 2.0)) if rng.random() < 0.8 else None,
-        edge_lengths="auto" if adaptive else str(rng.choice(EDGE_LENGTHS)),
+        edge_lengths="auto" if mesh == "adaptive" else str(rng.choice(EDGE_LENGTHS)),
         max_iterations=int(rng.integers(1, 9)),
     )
 

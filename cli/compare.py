@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core import METHODS, MobiusFlowError
-from ..core.compare import Run, compare
 from ..core.curve.io import FORMATS
+from ..core.driver.compare import History, compare
 from ..core.errors import OptionError, OutputError, wrong_suffix
-from ..core.files import atomic_write
+from ..core.system.files import atomic_write
 from . import curves, signals
 from . import options as relax_options
 from .places import check_places
@@ -28,7 +28,8 @@ _EPILOG = """\
 example:
   mobius-flow compare knot.txt --methods lbfgs,flow-moebius,flow-l2 --time-limit 20 -o figure.png
 
-The column, or key, "energy" of a table is the objective: the energy with the barrier between near strands.
+The column, or key, "energy" of a table is the objective: the energy with the barrier between near strands. Where a
+method is stuck another one helps out: "fallback" tells the steps it took, which are dots in a figure.
 
 exit status: 0; 2 on bad input or bad options, or where OUT cannot be written; 130 interrupted, where the methods that
 are done are written all the same
@@ -75,9 +76,9 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _collected(planned: Iterator[Run]) -> tuple[list[Run], BaseException | None]:
+def _collected(planned: Iterator[History]) -> tuple[list[History], BaseException | None]:
     """The runs that were finished, and what ended them before all were."""
-    runs: list[Run] = []
+    runs: list[History] = []
     try:
         for result in planned:
             signals.hold()
@@ -90,7 +91,7 @@ def _collected(planned: Iterator[Run]) -> tuple[list[Run], BaseException | None]
     return runs, None
 
 
-def _write(path: str, writer: Callable[[Path, Sequence[Run]], None], runs: Sequence[Run]) -> None:
+def _write(path: str, writer: Callable[[Path, Sequence[History]], None], runs: Sequence[History]) -> None:
     try:
         with atomic_write(path) as temporary:
             writer(temporary, runs)
@@ -98,34 +99,35 @@ def _write(path: str, writer: Callable[[Path, Sequence[Run]], None], runs: Seque
         raise OutputError(path, error) from error
 
 
-def _line(run: Run) -> str:
+def _line(run: History) -> str:
     return (
         f"{run.method:18} {run.status:16} objective {run.energy[-1]:.9g} after {len(run.energy) - 1} iterations, "
         f"{run.seconds[-1]:.1f} s, gradient {run.gradient_norm[-1]:.2g}"
     )
 
 
-def _write_json(path: Path, runs: Sequence[Run]) -> None:
+def _write_json(path: Path, runs: Sequence[History]) -> None:
     path.write_text(json.dumps([asdict(run) for run in runs], indent=1) + "\n", encoding="utf-8")
 
 
-def _write_csv(path: Path, runs: Sequence[Run]) -> None:
+def _write_csv(path: Path, runs: Sequence[History]) -> None:
     with path.open("w", encoding="utf-8", newline="") as stream:
         table = csv.writer(stream)
-        table.writerow(["method", "status", "iteration", "seconds", "energy", "gradient_norm"])
+        table.writerow(["method", "status", "iteration", "seconds", "energy", "gradient_norm", "fallback"])
         for run in runs:
             rows = enumerate(zip(run.seconds, run.energy, run.gradient_norm, strict=True))
-            table.writerows([run.method, run.status, k, *values] for k, values in rows)
+            table.writerows([run.method, run.status, k, *values, int(k in run.fallback)] for k, values in rows)
 
 
-def _write_figure(path: Path, runs: Sequence[Run]) -> None:
+def _write_figure(path: Path, runs: Sequence[History]) -> None:
     figure = _figure_class()(figsize=(13, 6), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     for index, run in enumerate(runs):
         style = {"color": f"C{index % 10}", "linestyle": ("-", "--", ":")[index // 10 % 3], "linewidth": 1.4}
         label = run.method if run.status == "converged" else f"{run.method} ({run.status.replace('_', ' ')})"
-        left.plot(range(len(run.energy)), run.energy, label=label, **style)
-        right.plot(run.seconds, run.energy, **style)
+        helped = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)}
+        left.plot(range(len(run.energy)), run.energy, label=label, **style, **helped)
+        right.plot(run.seconds, run.energy, **style, **helped)
     left.set(xlabel="iterations", ylabel="objective", xscale="symlog", yscale="log")
     right.set(xlabel="seconds", xscale="log")
     for axes in (left, right):
@@ -148,7 +150,7 @@ def _figure_class() -> "type[Figure]":
     return Figure
 
 
-WRITERS: Mapping[str, Callable[[Path, Sequence[Run]], None]] = {
+WRITERS: Mapping[str, Callable[[Path, Sequence[History]], None]] = {
     ".png": _write_figure,
     ".svg": _write_figure,
     ".csv": _write_csv,

@@ -4,10 +4,10 @@ import argparse
 import json
 
 from ..core import CurveError
+from ..core.checks import check_known
 from ..core.curve.io import FORMATS
 from ..core.energies import ENERGIES
 from ..core.measure import measure
-from ..core.setup import energy_named
 from . import curves
 from .streams import emit
 
@@ -31,7 +31,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the energy."""
-    energy_named(options.energy)  # before a large file is read
+    check_known("energy", options.energy, ENERGIES)  # before a large file is read
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         if len(file.curve) > curves.MAX_VERTICES:

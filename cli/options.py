@@ -1,6 +1,7 @@
 """The options of a relaxation, shared by the subcommands that run one."""
 
 import argparse
+from collections.abc import Sequence
 from typing import Any
 
 from ..core import RelaxOptions
@@ -13,6 +14,9 @@ def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
     for option in declared(RelaxOptions):
         if method or option.name != "method":
             group.add_argument(flag(option), default=option.default, help=_help(option), **_values(option))
+            for word, value in option.shorthands.items():
+                text = f"the same as {flag(option)} {value}"
+                group.add_argument(f"--{word}", dest=option.name, action=_Farther, const=(option, value), help=text)
 
 
 def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
@@ -35,3 +39,16 @@ def _help(option: Option) -> str:
         return option.help
     choices = f": one of {', '.join(option.choices)}" if option.choices else ""
     return f"{option.help}{choices} (default: {option.automatic or option.default})"
+
+
+class _Farther(argparse.Action):
+    """A flag that stands for a choice; of several the one that comes last in the list of choices holds."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, const: tuple[Option, str], help: str) -> None:
+        super().__init__(option_strings, dest, nargs=0, const=const, default=const[0].default, help=help)
+
+    def __call__(self, _parser: Any, namespace: argparse.Namespace, _values: Any, _flag: str | None = None) -> None:
+        option, value = self.const
+        choices = list(option.choices)
+        given = getattr(namespace, self.dest)
+        setattr(namespace, self.dest, max(value, given, key=choices.index) if given in choices else given)

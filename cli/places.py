@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..core import MobiusFlowError
 from ..core.errors import OutputError
-from ..core.files import status_of
+from ..core.system.files import status_of
 from .curves import DEVICE, OUTPUT, STREAM
 
 Identity = tuple[int | str, ...]

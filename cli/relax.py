@@ -7,11 +7,23 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import NamedTuple
 
-from ..core import Curve, Iterate, MobiusFlowError, RelaxOptions, Result, Status, Trajectory, minimize, write_curve
+from ..core import (
+    Curve,
+    Iterate,
+    MobiusFlowError,
+    Outcome,
+    RelaxOptions,
+    Result,
+    Status,
+    Trajectory,
+    relax,
+    write_curve,
+)
 from ..core.curve.io import FORMATS
+from ..core.driver import Relaxation, finish
 from ..core.errors import OptionError, OutputError
-from ..core.files import atomic_write
 from ..core.option import declared
+from ..core.system.files import atomic_write
 from . import curves, signals
 from . import options as relax_options
 from .notes import Notes
@@ -31,7 +43,7 @@ examples:
 
 exit status:
   0    it converged, or stopped at the limit asked for
-  1    it is stuck, or pulls tight for ever as composite knots do;
+  1    it is stuck, or pulls tight without end as composite knots do;
        the best curve, the report and the trajectory are written all the same
   2    bad input or bad options, or an output that cannot be written; one line says what and where
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; the best curve, the report and the trajectory are written
@@ -72,8 +84,9 @@ def run(options: argparse.Namespace) -> int:
     output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
     moving = [option for option in declared(RelaxOptions) if not option.keyframes]
-    if output.needs_iterates and any(getattr(wanted, option.name) for option in moving):
-        names = " and ".join(map(relax_options.flag, moving))
+    changed = [relax_options.flag(each) for each in moving if getattr(wanted, each.name) != each.default]
+    if output.needs_iterates and changed:
+        names = " and ".join(changed)
         raise OptionError(f"{options.output}: keyframes need a fixed mesh; leave {names} out, or write a curve file")
     check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
     file = curves.read(options.input, options.format)
@@ -94,26 +107,36 @@ def _relax(
     iterates: list[Iterate] = []
     recorded = output.needs_iterates or options.trajectory is not None
     notes: Notes = options.notes
+    relaxation = relax(curve, wanted)
+    signals.hold()
     with Progress(wanted, shown=not options.quiet and sys.stderr.isatty()) as progress:
 
         def on_iterate(iterate: Iterate) -> None:
-            signals.hold()
             if recorded:
                 iterates.append(iterate)
             if iterate.index == 0 and not options.quiet:
                 notes.show()  # the curve is accepted: there will be no refusal
             progress.update(iterate)
-            if iterate.status is Status.RUNNING:
-                signals.allow()
 
-        result = minimize(curve, wanted, on_iterate)
-    if recorded and not (iterates and iterates[-1].curve is result.curve):
-        iterates.append(result.last)  # the interrupt came before it was recorded
-    return result, iterates
+        return finish(_interruptible(relaxation), wanted.method, on_iterate), iterates
+
+
+def _interruptible(relaxation: Relaxation) -> Relaxation:
+    """The same, interrupted by signals while it computes, and only then."""
+    while True:
+        signals.allow()
+        try:
+            iterate = next(relaxation)
+        except StopIteration as end:
+            signals.hold()
+            outcome: Outcome = end.value
+            return outcome
+        signals.hold()
+        yield iterate
 
 
 class _Job(NamedTuple):
-    """A result to be written; see `kept`. Those that take long, or for ever, can be interrupted, and come last."""
+    """A result to be written; see `kept`. Those that take long, or never end, can be interrupted, and come last."""
 
     path: str
     write: Write

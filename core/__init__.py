@@ -6,12 +6,9 @@
 from .curve import Curve, Mesh
 from .curve.io import read_curve, write_curve
 from .descent import METHODS
+from .driver import Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, minimize, relax
 from .energies import MoebiusEnergy, Objective
 from .errors import CurveError, CurveFileError, MobiusFlowError, OptionError
-from .iterate import Iterate, Status
-from .options import RelaxOptions
-from .relax import Result, minimize, relax
-from .trajectory import Trajectory
 
 __all__ = [
     "METHODS",
@@ -24,6 +21,7 @@ __all__ = [
     "MoebiusEnergy",
     "Objective",
     "OptionError",
+    "Outcome",
     "RelaxOptions",
     "Result",
     "Status",

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from .curve import Curve
-from .iterate import Iterate, Status
+from .driver import Iterate, RelaxOptions, Result, Status, minimize
 from .knots import (
     HARD_UNKNOTS,
     braid_word,
@@ -23,8 +23,6 @@ from .knots import (
 )
 from .knots import KNOTS as TABLE
 from .knots.alexander import signature
-from .options import RelaxOptions
-from .relax import Result, minimize
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Collection, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from .errors import OptionError, choice
+
+_Entry = TypeVar("_Entry")
 
 
 def check_fields(owner: Any, **intervals: tuple[float, float]) -> None:
@@ -25,3 +27,9 @@ def check_known(name: str, value: str, known: Collection[str]) -> None:
     if value not in known:
         found = f"{name} {value!r:.60} is unknown" if isinstance(known, Mapping) else f"{name} is {value!r:.60}"
         raise OptionError(f"{found}; {choice(value, known)}")
+
+
+def named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
+    """Look an entry of a registry up; an OptionError lists the known ones."""
+    check_known(kind, name, table)
+    return table[name]

@@ -1,9 +1,9 @@
 """The energy of a curve as it stands: what ``mobius-flow energy`` prints and a report's ``final_energy`` is."""
 
+from .checks import named
 from .collision import check_embedded, check_gap
 from .curve import Curve, check_is_curve
 from .energies import ENERGIES
-from .setup import named
 from .units import centred, check_units
 
 

@@ -70,6 +70,7 @@ class Option:
     metavar: str = "NAME"
     group: Literal["basic", "advanced"] = "basic"
     keyframes: bool = True
+    shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     def sentence(self, none: str = "") -> str:
         """The help by itself, without a full stop; ``none`` is how None, if it is allowed, is written."""

@@ -51,8 +51,7 @@ GIVEN = {
     "quadrature_points": 3,
     "penalty": 2.5,
     "edge_lengths": "keep",
-    "adaptive": True,
-    "resolve": True,
+    "mesh": "finer",
     "stability": True,
     "escape_saddles": True,
 }
@@ -90,11 +89,11 @@ def test_bounds_hold_before_a_file_is_read(words, said, tmp_path, capsys):
     assert said in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("word", ["--adaptive", "--resolve"])
+@pytest.mark.parametrize("word", ["--adaptive", "--resolve", "--mesh=finer"])
 def test_keyframes_follow_no_mesh_that_changes(word, tmp_path, capsys):
     pytest.importorskip("bpy")
     write_curve(tmp_path / "a.txt", torus_trefoil(60))
     assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), word]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
-    assert "keyframes need a fixed mesh; leave --adaptive and --resolve out, or write a curve file" in said
+    assert "keyframes need a fixed mesh; leave --mesh out, or write a curve file" in said

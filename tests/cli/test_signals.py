@@ -14,8 +14,8 @@ from mobius_flow.cli import main, outputs, signals
 from mobius_flow.cli.progress import Progress
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Trajectory, read_curve, write_curve
 from mobius_flow.core.bench import SETS, bench
-from mobius_flow.core.compare import Run, compare
-from mobius_flow.core.termination import termination_raises
+from mobius_flow.core.driver.compare import Run, compare
+from mobius_flow.core.system.signals import termination_raises
 from mobius_flow.core.verify import verify
 from shapes import torus_trefoil
 

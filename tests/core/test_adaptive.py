@@ -73,7 +73,7 @@ def test_collapse_keeps_far_vertices_and_few_per_component():
 )
 def test_adaptive_runs_are_certified_through_changes_of_mesh(curve, energy, tmp_path):
     trajectory = Trajectory()
-    result = minimize(curve, RelaxOptions(adaptive=True), trajectory.add)
+    result = minimize(curve, RelaxOptions(mesh="adaptive"), trajectory.add)
     assert result.status is Status.CONVERGED
     assert result.certified
     assert result.energies[-1] == pytest.approx(energy, rel=5e-3)
@@ -93,17 +93,17 @@ def test_stages_begin_where_the_mesh_changes_even_to_the_same_size():
 
 def test_famous_unknot_adaptively(tmp_path):
     trajectory = Trajectory()
-    result = minimize(knot("culprit"), RelaxOptions(adaptive=True), trajectory.add)
+    result = minimize(knot("culprit"), RelaxOptions(mesh="adaptive"), trajectory.add)
     assert result.energies[-1] < 4.01
     trajectory.save(tmp_path / "t.npz")
     assert verify(tmp_path / "t.npz").accepted
 
 
-@pytest.mark.parametrize("adaptive", [False, True])
-def test_granny_has_no_minimiser_and_is_told_so(adaptive, tmp_path):
+@pytest.mark.parametrize("mesh", ["finer", "adaptive"])
+def test_granny_has_no_minimiser_and_is_told_so(mesh, tmp_path):
     """A composite knot's strands pull tight for ever: that is no convergence."""
     trajectory = Trajectory()
-    options = RelaxOptions(vertices=100, resolve=True, adaptive=adaptive, tolerance=3e-3)
+    options = RelaxOptions(vertices=100, mesh=mesh, tolerance=3e-3)
     result = minimize(lattice_knot("3_1#3_1"), options, trajectory.add)
     assert result.status is Status.STALLED
     assert "pull tight" in result.message
@@ -113,7 +113,7 @@ def test_granny_has_no_minimiser_and_is_told_so(adaptive, tmp_path):
 
 
 def test_resolve_goes_on_until_strands_are_resolved():
-    result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, resolve=True))
+    result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, mesh="finer"))
     assert result.status is Status.CONVERGED
     assert len(result.curve) > 60
     assert Objective().barrier.value(result.curve) == 0
@@ -122,4 +122,4 @@ def test_resolve_goes_on_until_strands_are_resolved():
 
 def test_one_rule_for_edge_lengths():
     with pytest.raises(OptionError, match="adaptive mesh makes its own"):
-        RelaxOptions(adaptive=True, edge_lengths="keep")
+        RelaxOptions(mesh="adaptive", edge_lengths="keep")

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.core import METHODS, Curve, Iterate, RelaxOptions, Trajectory, minimize, relax
-from mobius_flow.core import run as driver
 from mobius_flow.core.collision import FreeMotion, Limit, survives_rounding
 from mobius_flow.core.descent import NoStep, Point, State, Step, problem
+from mobius_flow.core.driver import run as driver
 from mobius_flow.core.knots import knot
 from mobius_flow.core.types import FloatArray
 from mobius_flow.core.verify import verify
@@ -78,7 +78,7 @@ def test_the_start_is_the_input_to_the_last_digit() -> None:
 
 def test_changes_of_mesh_are_proved_too(proofs: Proofs) -> None:
     trajectory = Trajectory()
-    result = minimize(knot("4_1"), RelaxOptions(adaptive=True, max_iterations=12, vertices=75), trajectory.add)
+    result = minimize(knot("4_1"), RelaxOptions(mesh="adaptive", max_iterations=12, vertices=75), trajectory.add)
     assert result.certified
     assert len(trajectory.arrays()) >= 4
     assert assert_all_proved(trajectory, proofs) > 9
@@ -109,7 +109,7 @@ def certified(iterates: list[Iterate]) -> list[bool]:
 def test_one_step_without_proof_and_nothing_after_it_is_certified(
     limit: Limit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(driver, "method_named", lambda name: replace(METHODS["lbfgs"], rule=Forgetful(limit)))
+    monkeypatch.setattr(driver, "METHODS", {"lbfgs": replace(METHODS["lbfgs"], rule=Forgetful(limit))})
     iterates = list(relax(torus_trefoil(60), RelaxOptions(max_iterations=6, vertices=60)))
     assert certified(iterates) == [True] * 3 + [False] * 4
 
@@ -134,14 +134,14 @@ def far_polygons() -> list[Curve]:
     return [Curve(FAR_TRIANGLE), *[Curve(1e6 * shape + 1e9 * rng.choice([-1, 1], size=3)) for shape in shapes]]
 
 
-@pytest.mark.parametrize("adaptive", [False, True])
+@pytest.mark.parametrize("mesh", ["fixed", "adaptive"])
 @pytest.mark.parametrize("method", PENALISED)
 def test_part_of_a_proved_motion_is_proved_as_it_is_rounded(
-    method: str, adaptive: bool, proofs: Proofs, tmp_path: Path
+    method: str, mesh: str, proofs: Proofs, tmp_path: Path
 ) -> None:
     for curve in far_polygons():
         trajectory = Trajectory()
-        options = RelaxOptions(method=method, max_iterations=3, vertices=29, adaptive=adaptive)
+        options = RelaxOptions(method=method, max_iterations=3, vertices=29, mesh=mesh)
         assert minimize(curve, options, trajectory.add).certified
         assert_all_proved(trajectory, proofs)
         trajectory.save(tmp_path / "T.npz")

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from mobius_flow.core import RelaxOptions
+from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.metrics import METRICS, MoebiusMetric
 from mobius_flow.core.metrics.moebius import NEAREST
 from mobius_flow.core.quadrature import ENDS, TAIL, Rule
-from mobius_flow.core.setup import start_problem
 from scipy.integrate import quad
 from scipy.special import sici
 from shapes import hopf_link, regular_polygon, torus_trefoil

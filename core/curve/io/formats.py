@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import BinaryIO, TextIO
 
 from ...errors import CurveError, CurveFileError, wrong_suffix
-from ...files import atomic_write
+from ...system.files import atomic_write
 from ..curve import Curve, check_is_curve
 from . import json_lists, obj, vect, xyz
 from .polygons import Polygon, assemble

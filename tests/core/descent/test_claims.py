@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian, lagrangian_hessian_matrix
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.stability import stability
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
-from mobius_flow.core.setup import start_problem
-from mobius_flow.core.stability import stability
 from mobius_flow.core.taylor import taylor_slope
 from shapes import lattice_knot, torus_trefoil
 from torus_energies import torus_knot_minimum
@@ -136,10 +136,10 @@ def test_torus_knots_that_are_saddles_can_be_left(p, q, index):
     options = {"method": "trust-region", "tolerance": 1e-6, "vertices": 160, "max_iterations": 150}
     stuck = minimize(torus_knot(p, q, 160), RelaxOptions(stability=True, **options))
     assert stuck.status is Status.CONVERGED
-    assert stuck.negative_eigenvalues == index
+    assert stuck.outcome.negative_eigenvalues == index
     assert "saddle" in stuck.message
     free = minimize(torus_knot(p, q, 160), RelaxOptions(escape_saddles=True, **options))
-    assert free.negative_eigenvalues == 0
+    assert free.outcome.negative_eigenvalues == 0
     assert free.energies[-1] < stuck.energies[-1] - 1
     assert free.certified
 
@@ -156,7 +156,7 @@ def test_edge_length_distribution_hardly_matters():
     kept = minimize(graded, RelaxOptions(edge_lengths="keep", **options))
     equal = minimize(torus_trefoil(n), RelaxOptions(**options))
     assert kept.status is equal.status is Status.CONVERGED
-    assert kept.edge_length_error < 1e-7
+    assert kept.last.edge_length_error < 1e-7
     assert kept.energies[-1] == pytest.approx(equal.energies[-1], rel=5e-3)
 
 

@@ -27,8 +27,8 @@ RUNS: dict[str, tuple[str, RelaxOptions]] = {
     "Borromean rings": ("borromean", RelaxOptions(max_iterations=5, vertices=150)),
     "cinquefoil": ("5_1", RelaxOptions(max_iterations=5, vertices=120, edge_lengths="keep")),
     "seven crossings": ("7_4", RelaxOptions(max_iterations=4, vertices=200, method="implicit-moebius")),
-    "adaptive figure eight": ("4_1", RelaxOptions(max_iterations=20, vertices=75, adaptive=True)),
-    "adaptive Whitehead link": ("whitehead", RelaxOptions(max_iterations=17, vertices=100, adaptive=True)),
+    "adaptive figure eight": ("4_1", RelaxOptions(max_iterations=20, vertices=75, mesh="adaptive")),
+    "adaptive Whitehead link": ("whitehead", RelaxOptions(max_iterations=17, vertices=100, mesh="adaptive")),
 }
 SEEDS = range(5)
 
@@ -95,7 +95,7 @@ def test_the_runs_themselves_are_accepted(tmp_path: Path, name: str) -> None:
     verdict = verify(write(tmp_path / "T.npz", stages))
     assert verdict.accepted, str(verdict)
     assert verdict.legs == sum(len(frames) - 1 for _, frames in stages) > 2
-    assert (len(stages) > 1) == RUNS[name][1].adaptive
+    assert (len(stages) > 1) == (RUNS[name][1].mesh == "adaptive")
 
 
 @pytest.mark.parametrize("seed", SEEDS)

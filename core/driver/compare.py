@@ -4,18 +4,17 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from .collision import check_embedded
-from .curve import Curve, check_is_curve
-from .errors import OptionError
-from .iterate import Status
+from ..collision import check_embedded
+from ..curve import Curve, check_is_curve
+from ..errors import OptionError
+from ..units import check_units
 from .options import RelaxOptions
+from .prepare import check_size, embedded_refinement, start_problem
 from .relax import relax
-from .setup import check_size, embedded_refinement, start_problem
-from .units import check_units
 
 
 @dataclass(frozen=True)
-class Run:
+class History:
     """One method's history.
 
     Attributes
@@ -26,6 +25,8 @@ class Run:
         "converged", "iteration_limit", "stalled", or "time_limit".
     seconds, energy, gradient_norm
         At every iterate, the start first; seconds since the method began, set-up left out.
+    fallback
+        Iterates to which another method led, because this one was stuck.
     """
 
     method: str
@@ -33,9 +34,10 @@ class Run:
     seconds: tuple[float, ...]
     energy: tuple[float, ...]
     gradient_norm: tuple[float, ...]
+    fallback: tuple[int, ...]
 
 
-def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_limit: float) -> Iterator[Run]:
+def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_limit: float) -> Iterator[History]:
     """Give one run per method, all from the same refined curve, each ended at ``time_limit`` seconds.
 
     Whether every method can be run is looked at before the first one is. Raises as `relax` does.
@@ -54,22 +56,18 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
     return (_run(start, wanted, time_limit) for wanted in each)
 
 
-def _run(start: Curve, options: RelaxOptions, time_limit: float) -> Run:
-    seconds: list[float] = []
-    energy: list[float] = []
-    norm: list[float] = []
+def _run(start: Curve, options: RelaxOptions, time_limit: float) -> History:
     status = "time_limit"
+    rows: list[tuple[float, float, float]] = []
+    fallback: list[int] = []
+    relaxation = relax(start, options)
     began = time.perf_counter()
-    for iterate in relax(start, options):
-        now = time.perf_counter()
-        if not seconds:
-            began = now
-        if iterate.index == len(seconds):  # a stalled run yields its last iterate twice
-            seconds.append(now - began)
-            energy.append(iterate.energy)
-            norm.append(iterate.gradient_norm)
-        if iterate.status is not Status.RUNNING:
-            status = iterate.status.value
-        elif now - began > time_limit:
+    while not rows or rows[-1][0] <= time_limit:
+        try:
+            iterate = next(relaxation)
+        except StopIteration as end:
+            status = end.value.status.value
             break
-    return Run(options.method, status, tuple(seconds), tuple(energy), tuple(norm))
+        rows.append((time.perf_counter() - began, iterate.energy, iterate.gradient_norm))
+        fallback += [iterate.index] if iterate.method != options.method else []
+    return History(options.method, status, *zip(*rows, strict=True), fallback=tuple(fallback))

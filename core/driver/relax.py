@@ -1,62 +1,75 @@
 """The one driver: `relax` yields the iterates of a relaxation, `minimize` runs it to its end."""
 
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from .collision import check_embedded
-from .curve import Curve, check_is_curve
-from .energies import MoebiusEnergy
-from .errors import CurveError, OptionError
-from .iterate import Iterate, Status
+from ..checks import named
+from ..collision import check_embedded
+from ..curve import Curve, check_is_curve
+from ..descent import METHODS
+from ..energies import MoebiusEnergy
+from ..errors import CurveError, OptionError
+from ..units import centred, check_units
+from .iterate import Iterate
+from .loop import Relaxation, iterates
 from .options import RelaxOptions
+from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
+from .prepare import check_size, embedded_refinement, start_problem
 from .run import Run
-from .setup import check_size, embedded_refinement, method_named, start_problem
-from .units import centred, check_units
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
-RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
 
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """How a relaxation ended.
+    """How a relaxation ended, and where.
 
     Attributes
     ----------
-    curve
-        The last curve, in the user's units.
-    status, message
-        Why it ended, and the same in a sentence.
-    energies
-        The objective at every iterate, the start first.
-    seconds
-        Wall-clock time.
-    certified
-        Whether every motion from the (refined) start to the result was proved free of contact.
-    edge_length_error
-        max |log ℓ/ℓ⁰| over the edges.
-    method
-        Name of the method.
-    negative_eigenvalues
-        Of the Lagrangian's Hessian, if asked for: 0 at a minimum.
+    outcome
+        Why it ended.
     last
         The last iterate.
+    energies
+        The objective at every iterate, the start first.
+    fallback_steps
+        Iterates to which another method than the one asked for led.
+    seconds
+        Wall-clock time.
+    method
+        Name of the method that was asked for.
     """
 
-    curve: Curve
-    status: Status
-    message: str
-    energies: tuple[float, ...]
-    seconds: float
-    certified: bool
-    edge_length_error: float
-    method: str
-    negative_eigenvalues: int | None
+    outcome: Outcome
     last: Iterate
+    energies: tuple[float, ...]
+    fallback_steps: tuple[int, ...]
+    seconds: float
+    method: str
+
+    @property
+    def curve(self) -> Curve:
+        """The last curve, in the user's units."""
+        return self.last.curve
+
+    @property
+    def status(self) -> Status:
+        """Why it ended."""
+        return self.outcome.status
+
+    @property
+    def message(self) -> str:
+        """The same in a sentence."""
+        return self.outcome.message
+
+    @property
+    def certified(self) -> bool:
+        """Whether every motion from the (refined) start to the result was proved free of contact."""
+        return self.last.certified
 
     @cached_property
     def final_energy(self) -> float:
@@ -74,17 +87,19 @@ class Result:
             "final_energy": self.final_energy,
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
-            "max_edge_length_error": self.edge_length_error,
+            "max_edge_length_error": self.last.edge_length_error,
             "certified": self.certified,
             "method": self.method,
-            "negative_eigenvalues": self.negative_eigenvalues,
+            "fallback_steps": list(self.fallback_steps),
+            "negative_eigenvalues": self.outcome.negative_eigenvalues,
         }
 
 
-def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate]:
-    """Relax a curve: yield it refined, then every accepted step, the last with its final status.
+def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
+    """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
-    A run that cannot go on yields its last iterate once more, with status STALLED and an empty path.
+    In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from the ``value`` of the
+    generator's StopIteration, or from `minimize`.
 
     Parameters
     ----------
@@ -104,7 +119,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
     options = RelaxOptions() if options is None else options
     if not isinstance(options, RelaxOptions):
         raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
-    method_named(options.method)
+    named(METHODS, "method", options.method)
     check_size(curve, options)
     check_units(curve)
     check_embedded(curve)
@@ -113,8 +128,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Iterator[Iterate
         run = Run(start_problem(refined, options), refined, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(refined)}") from error
-    penalised = not method_named(options.method).geometry.prescribes  # its energy contains the lengths
-    return run.iterates() if penalised else _with_rises_told(run.iterates())
+    return iterates(run)
 
 
 def _remedy(curve: Curve) -> str:
@@ -129,20 +143,6 @@ def _remedy(curve: Curve) -> str:
     )
 
 
-def _with_rises_told(iterates: Iterator[Iterate]) -> Iterator[Iterate]:
-    """The same iterates; the last one's message tells how much energy it took to even edge lengths out, if any."""
-    last: Iterate | None = None
-    rises: list[float] = []
-    for iterate in iterates:
-        if last is not None and iterate.path and iterate.edge_length_error < last.edge_length_error:
-            rises += [iterate.energy - last.energy] if iterate.energy > (1.0 + RISE) * last.energy else []
-        last = iterate
-        if rises and iterate.status is not Status.RUNNING:
-            told = f"the energy rose in {len(rises)} of {iterate.index} steps, by {sum(rises):.3g} in all"
-            iterate = replace(iterate, message=f"{iterate.message}; {told}, while edge lengths were evened out")
-        yield iterate
-
-
 def minimize(
     curve: Curve, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
 ) -> Result:
@@ -153,35 +153,28 @@ def minimize(
     """
     if callback is not None and not callable(callback):
         raise OptionError(f"callback is of type {type(callback).__name__}; give a function of one Iterate")
-    options = RelaxOptions() if options is None else options
+    return finish(relax(curve, options), (options or RelaxOptions()).method, callback)
+
+
+def finish(relaxation: Relaxation, method: str, callback: Callable[[Iterate], None] | None = None) -> Result:
+    """Run a relaxation by a method to its end, as `minimize` does."""
     started = time.perf_counter()
     energies: list[float] = []
+    fallback: list[int] = []
     last: Iterate | None = None
     try:
-        for iterate in relax(curve, options):
-            if last is None or iterate.index > last.index:
-                energies.append(iterate.energy)
-            last = iterate
+        while True:
+            last = next(relaxation)
+            energies.append(last.energy)
+            if last.method != method:
+                fallback.append(last.index)
             if callback is not None:
-                callback(iterate)
-    except KeyboardInterrupt:
+                callback(last)
+    except StopIteration as end:
+        outcome = end.value
+    except (KeyboardInterrupt, MemoryError) as error:
         if last is None:
             raise
-        last = replace(last, status=Status.INTERRUPTED, message="interrupted: the curve reached so far is kept")
-    except MemoryError:
-        if last is None:
-            raise
-        last = replace(last, status=Status.STALLED, message="stalled: memory ran out; the curve reached so far is kept")
+        outcome = OUT_OF_MEMORY if isinstance(error, MemoryError) else INTERRUPTED
     assert last is not None, "relax yields at least its start"
-    return Result(
-        curve=last.curve,
-        status=last.status,
-        message=last.message,
-        energies=tuple(energies),
-        seconds=time.perf_counter() - started,
-        certified=last.certified,
-        edge_length_error=last.edge_length_error,
-        method=options.method,
-        negative_eigenvalues=last.negative_eigenvalues,
-        last=last,
-    )
+    return Result(outcome, last, tuple(energies), tuple(fallback), time.perf_counter() - started, method)

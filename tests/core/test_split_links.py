@@ -7,11 +7,11 @@ import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian
+from mobius_flow.core.driver.interventions.split_links import separate_parts
+from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.metrics import METRICS
-from mobius_flow.core.parting import separate_parts
-from mobius_flow.core.setup import start_problem
 from mobius_flow.core.taylor import taylor_slope
 
 

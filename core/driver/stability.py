@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, qr
 
-from .constraints import ConstraintDerivative
-from .descent import Point
-from .descent.directions.newton import lagrangian_hessian_matrix
-from .types import FloatArray
+from ..constraints import ConstraintDerivative
+from ..descent import Point
+from ..descent.directions.newton import lagrangian_hessian_matrix
+from ..types import FloatArray
 
 ZERO = 1e-5  # eigenvalues against J_C below this count as 0: rotations and sliding are flat directions
 

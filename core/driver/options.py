@@ -6,13 +6,14 @@ from functools import partial
 
 import numpy as np
 
-from .descent import METHODS
-from .energies import ENERGIES, Energy
-from .errors import OptionError
-from .metrics import METRICS
-from .option import declared, documented, option
+from ..descent import METHODS
+from ..energies import ENERGIES, Energy
+from ..errors import OptionError
+from ..metrics import METRICS
+from ..option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
+MESHES = ("fixed", "finer", "adaptive")
 _advanced = partial(option, group="advanced")
 
 
@@ -86,17 +87,16 @@ class RelaxOptions:
         objects=("as many numbers above 0 as there are edges", _are_lengths),
         metavar="L",
     )
-    adaptive: bool = _advanced(
-        False,
-        "Adaptive Mesh",
-        "split and collapse edges during the run, so that neighbours stay nearer than strands",
+    mesh: str = _advanced(
+        "fixed",
+        "Mesh",
+        "what becomes of the vertices: fixed; finer, more of them, up to 3.5 times as many, while strands end nearer "
+        "than the mesh resolves; adaptive, edges split and collapsed on the way so that neighbours stay nearer than "
+        "strands, and then the same",
+        choices=MESHES,
+        metavar="M",
         keyframes=False,
-    )
-    resolve: bool = _advanced(
-        False,
-        "Resolve",
-        "go on with more vertices, up to 3.5 times as many, while strands end nearer than the mesh resolves",
-        keyframes=False,
+        shorthands={"resolve": "finer", "adaptive": "adaptive"},
     )
     stability: bool = _advanced(
         False,
@@ -112,5 +112,5 @@ class RelaxOptions:
             each.check(getattr(self, each.name))
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
-        if self.adaptive and self.edge_lengths != "auto":
+        if self.mesh == "adaptive" and self.edge_lengths != "auto":
             raise OptionError("an adaptive mesh makes its own edge_lengths; leave one of the two options out")

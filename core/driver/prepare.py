@@ -1,41 +1,22 @@
 """From a curve and options to the problem that is solved."""
 
-from collections.abc import Mapping
-from typing import TypeVar
-
 import numpy as np
 
-from .checks import check_known
-from .collision import check_gap, minimal_gap, survives_rounding
-from .constraints import Constraints, weighted_barycenter
-from .curve import Curve, refine
-from .descent import METHODS, Method, Problem
-from .energies import ENERGIES, Energy, Objective
-from .errors import CurveError, OptionError
-from .metrics import METRICS, Metric
+from ..checks import named
+from ..collision import check_gap, minimal_gap, survives_rounding
+from ..constraints import Constraints, weighted_barycenter
+from ..curve import Curve, refine
+from ..curve.remesh import graded_spacing
+from ..descent import METHODS, Method, Problem
+from ..energies import ENERGIES, Energy, Objective
+from ..errors import CurveError, OptionError
+from ..metrics import METRICS, Metric
+from ..quadrature import Rule
+from ..types import FloatArray
+from ..units import Units
 from .options import RelaxOptions
-from .quadrature import Rule
-from .types import FloatArray
-from .units import Units
 
-_Entry = TypeVar("_Entry")
 EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
-
-
-def energy_named(name: str) -> Energy:
-    """Look an energy up; an OptionError lists the known ones."""
-    return named(ENERGIES, "energy", name)
-
-
-def method_named(name: str) -> Method:
-    """Look a method up; an OptionError lists the known ones."""
-    return named(METHODS, "method", name)
-
-
-def named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
-    """Look an entry of a registry up; an OptionError lists the known ones."""
-    check_known(kind, name, table)
-    return table[name]
 
 
 def check_size(curve: Curve, options: RelaxOptions) -> None:
@@ -46,7 +27,7 @@ def check_size(curve: Curve, options: RelaxOptions) -> None:
     CurveError, OptionError
         If the curve has too many vertices, or too many are asked for.
     """
-    method = method_named(options.method)
+    method = named(METHODS, "method", options.method)
     most = min(metric.most_vertices for metric in (_metric(method, options), *method.rule.other_metrics))
     if options.vertices is not None and options.vertices > most:
         raise OptionError(f"vertices is {options.vertices!s:.40}; {method.name} has room and time for {most}")
@@ -81,21 +62,21 @@ def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
 
 
 def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
-    """The problem of relaxing a refined curve: its lengths or equal ones, and its barycenter, are prescribed.
+    """The problem of relaxing a refined curve: target lengths, and its barycenter, are prescribed.
 
     Raises
     ------
     CurveError
-        If the curve has more vertices than dense matrices can have rows.
+        If the curve has more vertices than the method has room and time for.
     OptionError
         If an option names something unknown, or a method and an energy do not go together.
     """
-    method = method_named(options.method)
+    method = named(METHODS, "method", options.method)
     check_size(curve, options)
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options, units.scale), weighted_barycenter(start))
-    energy = energy_named(options.energy) if isinstance(options.energy, str) else options.energy
+    energy = named(ENERGIES, "energy", options.energy) if isinstance(options.energy, str) else options.energy
     objective = Objective.of(energy)
     second_order = method.rule.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:
@@ -126,7 +107,17 @@ def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatA
                 f"give one for each edge, and vertices={len(options.edge_lengths)}"
             )
         return np.array(options.edge_lengths) / scale
+    if options.mesh == "adaptive":
+        return _graded(start, options.vertices)
     uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
     if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and uneven):
         return start.edge_lengths
     return np.concatenate([np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices])
+
+
+def _graded(start: Curve, vertices: int | None) -> FloatArray:
+    """Lengths that follow the gaps between strands, the total of every component kept."""
+    spacing = graded_spacing(start, vertices)
+    for part in start.mesh.slices:
+        spacing[part] *= start.edge_lengths[part].sum() / spacing[part].sum()
+    return spacing

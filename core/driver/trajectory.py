@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from .curve import Curve
-from .errors import MobiusFlowError, OutputError
-from .files import atomic_write
+from ..curve import Curve
+from ..errors import MobiusFlowError, OutputError
+from ..system.files import atomic_write
+from ..types import FloatArray, IntArray
 from .iterate import Iterate
-from .types import FloatArray, IntArray
 
 
 class Trajectory:
@@ -51,17 +51,16 @@ class Trajectory:
                 f"iterate {iterate.index} does not follow the {self._last_index + 1} iterates of this trajectory; "
                 "it takes all iterates of one run, in order: make a new Trajectory for another run"
             )
-        if iterate.index > self._last_index and not iterate.path:
-            # the start, or the same curve on another mesh
-            self._stages.append((iterate.curve.mesh.component_sizes, [iterate.curve.vertices]))
-        elif iterate.index > self._last_index:
+        if iterate.path:
             self._stages[-1][1].extend(iterate.path)
+        else:  # the start, or the same curve on another mesh
+            self._stages.append((iterate.curve.mesh.component_sizes, [iterate.curve.vertices]))
         self._last, self._last_index = iterate.curve, iterate.index
 
     def _follows(self, iterate: Iterate) -> bool:
-        """Whether it may be the run's next iterate, or is the last one again with another status."""
-        fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
-        return (iterate.index == self._last_index + 1 and fits) or iterate.curve is self._last
+        """Whether it may be the run's next iterate."""
+        same_mesh = self._last is not None and iterate.curve.mesh == self._last.mesh
+        return iterate.index == self._last_index + 1 and same_mesh == bool(iterate.path)
 
     def arrays(self) -> dict[str, FloatArray | IntArray | NDArray[np.str_]]:
         """The arrays of the file, by name."""

@@ -1,0 +1,20 @@
+"""The driver: options and a curve in, proved iterates and an outcome out; its decisions are `interventions`."""
+
+from .iterate import Iterate
+from .options import RelaxOptions
+from .outcome import Outcome, Status
+from .relax import Relaxation, Result, finish, minimize, relax
+from .trajectory import Trajectory
+
+__all__ = [
+    "Iterate",
+    "Outcome",
+    "RelaxOptions",
+    "Relaxation",
+    "Result",
+    "Status",
+    "Trajectory",
+    "finish",
+    "minimize",
+    "relax",
+]

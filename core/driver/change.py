@@ -1,0 +1,27 @@
+"""What an intervention does to a run."""
+
+from dataclasses import dataclass
+
+from ..descent import Method, Point, Step
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """A step, perhaps, and then the same curve seen otherwise.
+
+    Attributes
+    ----------
+    step
+        A motion that comes first.
+    point
+        The curve reached, in another problem: with other constraints, or on another mesh.
+    method
+        What takes the steps from now on.
+    vertices
+        Number of vertices from now on where no strands are near.
+    """
+
+    step: Step | None = None
+    point: Point | None = None
+    method: Method | None = None
+    vertices: int | None = None

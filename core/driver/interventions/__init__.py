@@ -1,0 +1,37 @@
+"""What happens to a run beside its method's steps, one file each.
+
+An intervention is made for one run and called after every event: a step was taken, none was found, or the run is about
+to end.  It answers with the event, which may be told otherwise, or with what it does about it.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from ...descent import NoStep, Step
+from ..change import Change
+from ..outcome import Outcome
+from ..run import Run
+from .composite import Composite
+from .escape_saddle import EscapeSaddle
+from .fallback import Fallback
+from .finer_mesh import FinerMesh
+from .remesh import Remesh
+from .split_links import SplitLinks
+
+
+class Intervention(Protocol):
+    """What is called after every event."""
+
+    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+        """Answer with the event as the next ones are to see it, or with a change, which ends the round."""
+
+
+INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
+    SplitLinks,
+    EscapeSaddle,
+    Composite,
+    FinerMesh,
+    Fallback,
+    Remesh,
+)
+"""In the order in which they are asked."""

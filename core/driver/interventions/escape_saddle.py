@@ -1,0 +1,32 @@
+"""Minimum or saddle: counted where that is asked for, and left downhill."""
+
+from dataclasses import replace
+
+from ...descent import NoStep, Step
+from ...descent.searches import Escape
+from ..change import Change
+from ..outcome import MINIMUM, NO_WAY_DOWN, SADDLE, Outcome
+from ..run import Run
+from ..stability import stability
+
+
+class EscapeSaddle:
+    """Tell the index of a critical point; step off a saddle along its most negative direction."""
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+
+    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+        """Look at converged curves."""
+        options = self._run.options
+        if not (isinstance(event, Outcome) and event.converged and (options.stability or options.escape_saddles)):
+            return event
+        found = stability(self._run.point)
+        event = replace(event, negative_eigenvalues=found.index)
+        if not found.index:
+            return event.adding(MINIMUM)
+        event = event.adding(SADDLE.format(index=found.index))
+        if not options.escape_saddles:
+            return event
+        step = Escape().step(self._run.point, found.directions[0], float(found.eigenvalues[0]))
+        return Change(step) if isinstance(step, Step) else event.adding(NO_WAY_DOWN)

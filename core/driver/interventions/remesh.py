@@ -1,0 +1,78 @@
+"""The adaptive mesh: when it changes, and the proof that nothing touches meanwhile."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...collision import FreeMotion, survives_rounding
+from ...curve import Curve
+from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
+from ...descent import Leg, NoStep, Step
+from ...types import FloatArray
+from ..change import Change
+from ..outcome import ADVICE, Outcome
+from ..run import Run
+
+INTERVAL = 5  # accepted steps between two looks at the mesh
+
+
+class Remesh:
+    """Change the mesh where neighbours are no longer nearer than strands, and around edges that are stuck."""
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+        self._just_refined = False  # around edges that were stuck: once is enough
+
+    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+        """Look at the mesh now and then, and where no step was found."""
+        if isinstance(event, Outcome):
+            return event
+        if self._run.options.mesh != "adaptive":
+            return event if isinstance(event, Step) else replace(event, reason=f"{event.reason}; {ADVICE}")
+        if isinstance(event, Step):
+            self._just_refined = False
+            due = self._run.iterate.index % INTERVAL == 0
+            return (self._change(None) if due else None) or event
+        if event.limited_by is None or self._just_refined:
+            return event
+        change = self._change(event.limited_by)
+        self._just_refined = change is not None
+        return change or event
+
+    def _change(self, stuck: tuple[int, int] | None) -> Change | None:
+        """Another mesh; None if this one is good or must stay.
+
+        Parameters
+        ----------
+        stuck
+            Two edges that keep each other from moving: the mesh around them is refined whether it needs it or not.
+        """
+        curve, vertices = self._run.iterate.curve, self._run.vertices
+        spacing = graded_spacing(curve, vertices)
+        if stuck is not None:
+            for edge in stuck:
+                near = curve.mesh.index_distance(np.full(len(curve), edge), np.arange(len(curve))) <= 2
+                spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
+        elif not needs_remesh(curve, spacing):
+            return None
+        change, proof = self._proved(curve, vertices, spacing)
+        if not (survives_rounding(change.moved) and survives_rounding(change.curve)):
+            return None
+        problem = self._run.problem
+        constraints = replace(problem.constraints, lengths=change.lengths / problem.units.scale)
+        # the last motion on the old mesh, then the same curve on the new one
+        step = Step((Leg(problem.at_curve(change.moved), proof),), 0.0, None)
+        return Change(step, replace(problem, mesh=change.curve.mesh, constraints=constraints).at_curve(change.curve))
+
+    def _proved(self, curve: Curve, vertices: int | None, spacing: FloatArray) -> tuple[Remeshed, FreeMotion]:
+        """The change of mesh with as many collapses as are free of contact, and the proof."""
+        removable = superfluous(curve, spacing)
+        while True:
+            change = remesh(curve, vertices, removable, spacing)
+            free = self._run.problem.free_motion(curve.vertices, change.moved.vertices)
+            if free.time == 1.0 or not len(removable):
+                return change, free
+            assert free.pair is not None
+            ends = [curve.mesh.tails[e] for e in free.pair] + [curve.mesh.heads[e] for e in free.pair]
+            guilty = np.isin(removable, ends)
+            removable = removable[~guilty] if guilty.any() else removable[:0]

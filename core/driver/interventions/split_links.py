@@ -1,0 +1,82 @@
+"""Parts of a link that are not linked would drift apart without end: once far apart, each is held in place."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from ...constraints import Parts
+from ...curve import Curve
+from ...descent import NoStep, Step
+from ...energies import MoebiusEnergy
+from ...types import BoolArray, FloatArray, IntArray
+from ..change import Change
+from ..outcome import HELD, Outcome
+from ..run import Run
+
+INTERVAL = 5  # accepted steps between two looks
+APART = 1.0  # gap between the balls around two parts, in radii of the larger one
+MAX_PARTS = 50  # each has rows of its own in the linear systems
+
+
+class SplitLinks:
+    """Give every part that is far from the others a barycenter of its own among the constraints."""
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+
+    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+        """Look for parts now and then, and tell of them in the end."""
+        run, constraints = self._run, self._run.problem.constraints
+        if isinstance(event, Outcome) and event.converged and constraints.parts is not None:
+            alone = sum(MoebiusEnergy().value(part) for part in split(run.iterate.curve, constraints.parts))
+            return event.adding(HELD.format(energy=alone))
+        if isinstance(event, Step) and run.problem.geometry.prescribes and run.iterate.index % INTERVAL == 0:
+            parts = separate_parts(run.iterate.curve)
+            if max(parts) > max(constraints.parts or (0,)):
+                constraints = constraints.of_parts(run.point.curve, parts)
+                return Change(point=run.point.within(replace(run.problem, constraints=constraints)))
+        return event
+
+
+def separate_parts(curve: Curve) -> Parts:
+    """For each component the number of its part, from 0; parts lie in balls that are far from each other.
+
+    Disjoint balls prove that parts are not linked.  All is one part if there would be very many.
+    """
+    components = len(curve.mesh.component_sizes)
+    part, count = np.arange(components), components
+    while count > 1:
+        fewer, merged = connected_components(_near(*_balls(curve, part)), directed=False)
+        if fewer == count:
+            break
+        part, count = merged[part], fewer
+    return tuple(part.tolist()) if count <= MAX_PARTS else (0,) * components
+
+
+def split(curve: Curve, parts: Parts | None) -> list[Curve]:
+    """The parts as curves of their own."""
+    if parts is None:
+        return [curve]
+    components = curve.components
+    return [
+        Curve.from_components([c for c, part in zip(components, parts, strict=True) if part == k])
+        for k in range(max(parts) + 1)
+    ]
+
+
+def _balls(curve: Curve, part: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Centres, shape (p, m), and radii, shape (p,), of balls around the parts."""
+    of_vertex = part[curve.mesh.component]
+    centers, radii = [], []
+    for k in range(part.max() + 1):
+        own = curve.vertices[of_vertex == k]
+        centers.append(0.5 * (own.min(axis=0) + own.max(axis=0)))
+        radii.append(np.linalg.norm(own - centers[-1], axis=1).max())
+    return np.array(centers), np.array(radii)
+
+
+def _near(centers: FloatArray, radii: FloatArray) -> BoolArray:
+    """Which balls are not far enough from each other to be parts; shape (p, p)."""
+    distance = np.linalg.norm(centers[:, None] - centers[None, :], axis=2)
+    return np.asarray(distance < radii[:, None] + radii[None, :] + APART * np.maximum(radii[:, None], radii[None, :]))

@@ -1,0 +1,45 @@
+"""What a relaxation yields."""
+
+from dataclasses import dataclass
+
+from ..curve import Curve
+from ..types import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Iterate:
+    """One accepted curve of a relaxation, immutable, in the user's units.
+
+    Attributes
+    ----------
+    index
+        0 for the (refined) start, then 1, 2, ...
+    curve
+        The polygon; the iterates of a run have the same vertices unless the mesh is ``finer`` or ``adaptive``.
+    energy
+        The objective: the energy that is minimised, and the barrier.
+    gradient_norm
+        Metric norm of the projected gradient at this curve (dimensionless).
+    step_size
+        Step size τ that led here, 0 for the start and where the mesh changes.
+    path
+        The motion from the previous iterate to this one: vertices, each (n, m), at the ends of its straight
+        legs; the last is this curve, the start (the previous curve) is left out. Empty for the start, and where the
+        mesh changes: there this is the previous curve with other vertices on its edges.
+    certified
+        True if every leg from the start of the run to here was proved free of contact.
+    edge_length_error
+        max |log ℓ/ℓ⁰| over the edges.
+    method
+        Name of the method that took the step; another one than was asked for where that one was stuck.
+    """
+
+    index: int
+    curve: Curve
+    energy: float
+    gradient_norm: float
+    step_size: float
+    path: tuple[FloatArray, ...]
+    certified: bool
+    edge_length_error: float
+    method: str

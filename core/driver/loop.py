@@ -1,0 +1,61 @@
+"""The loop of a relaxation: an event, what is done about it, the next event."""
+
+from collections.abc import Generator, Iterator, Sequence
+
+import numpy as np
+
+from ..descent import NoStep, Step
+from .change import Change
+from .interventions import INTERVENTIONS, Intervention
+from .iterate import Iterate
+from .outcome import DEGENERATE, ROSE, Outcome, out_of_iterations, stalled
+from .run import Run
+from .termination import termination
+
+Relaxation = Generator[Iterate, None, Outcome]
+
+
+def iterates(run: Run) -> Relaxation:
+    """Yield the start and every accepted step or change of mesh, each once; return how it ended."""
+    try:
+        outcome = yield from _iterates(run, [make(run) for make in INTERVENTIONS])
+    except np.linalg.LinAlgError as error:
+        outcome = stalled(DEGENERATE.format(error=error))
+    rises = run.rises
+    if rises:
+        outcome = outcome.adding(ROSE.format(count=len(rises), steps=run.iterate.index, total=sum(rises)))
+    return outcome
+
+
+def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
+    yield run.iterate
+    while True:
+        event = termination(run) or run.step()
+        if isinstance(event, Step):
+            yield run.accept(event)
+        answer = _answer(event, interventions)
+        if isinstance(answer, Change) and not run.at_limit:
+            yield from _changed(run, answer)
+        elif isinstance(answer, NoStep):
+            return stalled(answer.reason)
+        elif isinstance(event, Outcome):
+            return answer if isinstance(answer, Outcome) else out_of_iterations(run.iterate.index)
+
+
+def _answer(event: Step | NoStep | Outcome, interventions: Sequence[Intervention]) -> Step | NoStep | Outcome | Change:
+    """What the interventions make of an event, one after the other, until one of them changes something."""
+    answer: Step | NoStep | Outcome | Change = event
+    for intervention in interventions:
+        answer = intervention(answer)
+        if isinstance(answer, Change):
+            break
+    return answer
+
+
+def _changed(run: Run, change: Change) -> Iterator[Iterate]:
+    """Make a change; yield the iterates it leads to, if any."""
+    if change.step is not None:
+        yield run.accept(change.step)
+    iterate = run.change(change)
+    if iterate is not None:
+        yield iterate

@@ -1,0 +1,78 @@
+"""How a relaxation ends, and the sentences that say so."""
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+
+class Status(Enum):
+    """Why a relaxation ended."""
+
+    CONVERGED = "converged"
+    ITERATION_LIMIT = "iteration_limit"
+    STALLED = "stalled"
+    INTERRUPTED = "interrupted"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a relaxation ended.
+
+    Attributes
+    ----------
+    status
+        Why it ended.
+    message
+        The same in one sentence.
+    negative_eigenvalues
+        Of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum, more at a saddle.
+    """
+
+    status: Status
+    message: str
+    negative_eigenvalues: int | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether the projected gradient is as small as asked for."""
+        return self.status is Status.CONVERGED
+
+    def adding(self, more: str) -> "Outcome":
+        """The same, with more to say."""
+        return replace(self, message=f"{self.message}; {more}")
+
+
+def converged(norm: float, bound: float) -> Outcome:
+    """The projected gradient is small enough."""
+    return Outcome(Status.CONVERGED, f"converged: projected gradient {norm:.3g} ≤ {bound:.3g}")
+
+
+def out_of_iterations(count: int) -> Outcome:
+    """The limit is reached."""
+    return Outcome(Status.ITERATION_LIMIT, f"stopped after {count} iterations, as asked for")
+
+
+def stalled(reason: str) -> Outcome:
+    """There is no way on, for a reason that is a clause."""
+    return Outcome(Status.STALLED, f"stalled: {reason}")
+
+
+INTERRUPTED = Outcome(Status.INTERRUPTED, "interrupted: the curve reached so far is kept")
+OUT_OF_MEMORY = stalled("memory ran out; the curve reached so far is kept")
+DEGENERATE = "the curve has become too degenerate: {error}"
+HELD = (
+    "parts that are not linked, which would drift apart without end, are held in place; "
+    "the sum of their own energies is {energy:.6g}"
+)
+SADDLE, MINIMUM = "a saddle with index {index}", "a minimum"
+NO_WAY_DOWN = "no way down was found"
+COMPOSITE = (
+    "strands pull tight, and would do so without end: the curve is composite, knotted both inside and outside the "
+    "ball of radius {radius:.3g} around ({center}), and has no shape of least energy"
+)
+TIGHT = "strands pull tight, nearer than {vertices} vertices resolve"
+UNRESOLVED = (
+    "strands are nearer than this mesh resolves, and with more vertices there is less energy to reach: "
+    "--mesh finer (mesh='finer') or more vertices go on"
+)
+ADVICE = "more vertices or an adaptive mesh may help"
+ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"
