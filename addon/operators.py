@@ -8,13 +8,13 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from ..core import MobiusFlowError, OptionError
-from . import bevel
-from .checks import refusal, selected_curves, unsampled
-from .exchange import new_curve_data, write_points
-from .group import Group
+from .curves import bevel
+from .curves.exchange import new_curve_data, write_points
+from .curves.group import Group
+from .curves.session import Session
+from .live.checks import refusal, selected_curves, unsampled
 from .live.operators import LiveRelax
 from .properties import SETTINGS, key_options, relax_options, settings
-from .session import Session
 
 _LARGEST = 1e30  # Blender computes with squares and products of such numbers
 _MOST_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second

@@ -2,14 +2,15 @@
 
 import bpy
 
-from . import labels, neighbours
-from .checks import refusal, selected_curves
+from . import labels
+from .curves import neighbours
+from .curves.session import State
 from .live import registry
+from .live.checks import refusal, selected_curves
 from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_stop
 from .live.run import Run
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
 from .properties import shown
-from .session import State
 
 
 class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming scheme

@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..core import RelaxOptions
 from ..core.option import Option, declared
-from .key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output
+from .engine.key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output
 
 _KEY_DEFAULTS = KeyOptions()
 _TINY = 1e-37  # just above the smallest of 32-bit numbers that are computed with

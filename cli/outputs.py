@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from ..addon import export, film
+from ..addon.pictures import export, film
 from ..core import Curve, Iterate, MobiusFlowError, Result
 from ..core.curve.io import FORMATS, Format
 from ..core.errors import wrong_suffix

@@ -1,4 +1,1 @@
-"""The live relaxation: a worker process that computes, a run that shows, and operators that listen.
-
-Nothing here is numerical, and nothing that the worker needs imports bpy.
-"""
+"""The live relaxation in a window: a run that shows what the worker computes, and operators that listen."""

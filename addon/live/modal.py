@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..session import State
+from ..curves.session import State
 from .run import Run
 
 _INTERVAL = 1 / 60  # seconds; one iterate each time, so that every one is seen

@@ -6,11 +6,11 @@ from typing import Any
 import bpy
 
 from ...core import MobiusFlowError
-from .. import sampling
-from ..checks import refusal, selected_curves, unsampled
+from ..curves import sampling
+from ..curves.session import State
 from ..properties import key_options, relax_options
-from ..session import State
 from . import registry
+from .checks import refusal, selected_curves, unsampled
 from .modal import Loop, redraw_views
 from .run import Run
 

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status
 from ...core.curve import Mesh
 from ...core.types import FloatArray
-from ..group import Group
-from ..key_options import KeyOptions
-from ..placement import Frame
-from ..session import Prepared, Report, Session, State
+from ..curves.group import Group
+from ..curves.session import Prepared, Report, Session, State
+from ..engine.key_options import KeyOptions
+from ..engine.placement import Frame
+from ..engine.worker import Worker, WorkerError
 from . import registry
-from .worker import Worker, WorkerError
 
 if TYPE_CHECKING:
     import bpy

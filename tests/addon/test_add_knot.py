@@ -6,7 +6,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import contents, sentence, stored  # noqa: E402
-from mobius_flow.addon import tube  # noqa: E402
+from mobius_flow.addon.engine import tube  # noqa: E402
 from mobius_flow.core import Curve  # noqa: E402
 from mobius_flow.core.collision import check_embedded  # noqa: E402
 from mobius_flow.core.knots import knot  # noqa: E402

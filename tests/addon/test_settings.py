@@ -11,8 +11,8 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil, relax, sentence, stored  # noqa: E402
 from mobius_flow.addon import panel, properties  # noqa: E402
-from mobius_flow.addon.live import wire  # noqa: E402
-from mobius_flow.addon.placement import Link, Placement  # noqa: E402
+from mobius_flow.addon.engine import wire  # noqa: E402
+from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
 from mobius_flow.core import Curve, OptionError, RelaxOptions, minimize  # noqa: E402
 from mobius_flow.core.option import declared, option  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402

@@ -156,4 +156,4 @@ def test_knots_need_a_place_too(tmp_path: Path, capsys: pytest.CaptureFixture[st
 
 
 def test_the_table_of_outputs_is_covered() -> None:
-    assert set(OUTPUTS) - set(FORMATS) == {".blend", ".mp4", ".png"}  # these: tests/addon/test_export.py
+    assert set(OUTPUTS) - set(FORMATS) == {".blend", ".mp4", ".png"}  # these: tests/addon/pictures/test_export.py

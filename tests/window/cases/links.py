@@ -78,7 +78,7 @@ def case() -> Steps:
         rings()[0].select_set(False)
         window().view_layer.objects.active = rings()[1]
         assert bpy.ops.curve.mobius_flow_relax.poll()
-        named = addon("neighbours").warning(bpy.context, [rings()[1]])
+        named = addon("curves.neighbours").warning(bpy.context, [rings()[1]])
     assert named == "Only selected curves are kept apart; 'A' nearby is not", named
     yield from picture("links-5-one-selected")
     yield from button("curve.mobius_flow_relax")

@@ -1,0 +1,77 @@
+"""Curve objects in, polygons in world space out, and back, whatever the object's transform."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core import Curve, CurveError
+from ...core.types import FloatArray
+from ..engine.placement import Frame, Link, Placement
+from . import sampling
+
+if TYPE_CHECKING:
+    import bpy
+
+_FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
+
+
+def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
+    """Read the splines of curve objects in world space, one component each, and where they are stored.
+
+    Smooth splines are read as the polygons drawn for them.
+
+    Raises
+    ------
+    CurveError
+        If a coordinate is not finite, or as good as infinite, or no polygon is drawn for a smooth spline; the message
+        names the spline and its object.
+    """
+    placements = tuple(Placement.of(obj) for obj in objects)
+    components = [_components(obj) for obj in objects]
+    link = Link(placements, tuple(len(each) for each in components))
+    world = [placement.to_world(c) for placement, each in zip(placements, components, strict=True) for c in each]
+    return Curve.from_components(world), link
+
+
+def _components(obj: "bpy.types.Object") -> list[FloatArray]:
+    smooth = sampling.smooth_splines(obj.data)
+    frames = sampling.sampled(obj) if smooth else [spline_points(spline) for spline in obj.data.splines]
+    for k, frame in enumerate(frames, 1):
+        bad = np.flatnonzero(~(np.abs(frame) < _FAR).all(axis=1))
+        if bad.size:
+            point = f"Point {bad[0] + 1} of spline {k} of '{obj.name}'"
+            raise CurveError(f"{point} is not finite, or further away than anything; repair or delete it")
+    return [frame.astype(np.float64) for frame in frames]
+
+
+def spline_points(spline: "bpy.types.Spline") -> Frame:
+    """Coordinates of a spline's points as stored; shape (n, 3)."""
+    points = np.empty(4 * len(spline.points), dtype=np.float32)
+    spline.points.foreach_get("co", points)
+    return points.reshape(-1, 4)[:, :3]
+
+
+def write_points(data: "bpy.types.Curve", frame: Frame) -> None:
+    """Move the points of all splines; shape (n, 3), the object's coordinates."""
+    first = 0
+    for spline in data.splines:
+        count = len(spline.points)
+        points = np.ones((count, 4), dtype=np.float32)
+        points[:, :3] = frame[first : first + count]
+        spline.points.foreach_set("co", points.ravel())
+        first += count
+    data.update_tag()
+
+
+def new_curve_data(name: str, sizes: tuple[int, ...]) -> "bpy.types.Curve":
+    """Make curve data of closed poly splines with so many points, all still at the origin."""
+    import bpy
+
+    data = bpy.data.curves.new(name, "CURVE")
+    data.dimensions = "3D"
+    for size in sizes:
+        spline = data.splines.new("POLY")
+        spline.points.add(size - 1)
+        spline.use_cyclic_u = True
+    return data

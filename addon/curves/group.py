@@ -1,0 +1,115 @@
+"""The curve objects that are relaxed together as one link; a single object is a group of one."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from typing import TYPE_CHECKING
+
+from ...core import Curve
+from ...core.curve import Mesh
+from ...core.types import FloatArray
+from ..engine.key_options import KeyOptions
+from ..engine.motion import Keys
+from ..engine.placement import Frame
+from ..engine.words import named
+from . import bevel, keyframes
+from .exchange import read_link
+from .member import Member
+from .snapshot import outside_edit_mode
+
+if TYPE_CHECKING:
+    import bpy
+
+
+class Group:
+    """Curve objects, the link that their splines are, and what is written to them.
+
+    Parameters
+    ----------
+    objects
+        Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
+
+    Attributes
+    ----------
+    curve
+        All splines as closed polygons in world space.
+    link
+        Where their vertices are stored.
+
+    Raises
+    ------
+    CurveError
+        If the splines cannot be read; the message says why.
+    """
+
+    def __init__(self, objects: Sequence["bpy.types.Object"]) -> None:
+        self.curve, self.link = read_link(objects)
+        self._members = [Member(obj) for obj in objects]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The objects' names."""
+        return tuple(member.name for member in self._members)
+
+    @property
+    def title(self) -> str:
+        """The names for people."""
+        return named(self.names)
+
+    @property
+    def objects(self) -> list["bpy.types.Object"]:
+        """The objects that are still there."""
+        return [obj for member in self._members if (obj := member.object) is not None]
+
+    @property
+    def modified(self) -> bool:
+        """Whether any of the objects is shown with modifiers."""
+        return any(modifier.show_viewport or modifier.show_render for obj in self.objects for modifier in obj.modifiers)
+
+    @property
+    def fits_bevel(self) -> bool:
+        """Whether any of the objects is drawn as a tube that may be fitted."""
+        return any(member.fits_bevel for member in self._members)
+
+    def lost(self) -> str | None:
+        """Say what somebody did to one of the objects that makes going on impossible."""
+        reason = next((reason for member in self._members if (reason := member.lost())), None)
+        if reason is None and len(self._members) > 1:  # what is proved of a single one holds wherever it goes
+            moved = next((member for member in self._members if member.moved), None)
+            reason = f"'{moved.name}' was moved against the others" if moved else None
+        return reason
+
+    def make_polygons(self, refined: Curve) -> None:
+        """Give all splines the points of the refined link; where they are is left open."""
+        pieces = zip(self._members, self.link.split(self.curve), self.link.split(refined), strict=True)
+        for member, original, part in pieces:
+            member.make_polygons(original, part)
+
+    def show(self, mesh: Mesh, frame: Frame) -> None:
+        """Move all points; shape (n, 3), each object's own coordinates."""
+        for member, vertices in zip(self._members, self.link.slices(mesh), strict=True):
+            member.show(frame[vertices])
+
+    def writing(self, mesh: Mesh, keys: Keys, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
+        """Write keys to all objects in short pieces; ``radii`` are those of the tube in the common space, (keys,)."""
+        for member, vertices, scale in zip(self._members, self.link.slices(mesh), self.link.scales, strict=True):
+            obj = member.object
+            assert obj is not None, "whoever writes looks for it first"
+            member.keyed = True
+            relative = None
+            if radii is not None and member.fits_bevel:
+                bevel.fit(obj.data, float(radii[-1]) / scale)
+                relative = radii / radii[-1]
+            yield from keyframes.writing(obj, keys.part(vertices), options, relative)
+
+    def restore(self) -> bool:
+        """Put back what was there, but for what somebody else deleted or changed; return whether all is as it was."""
+        with outside_edit_mode(self.objects), ExitStack() as everything:
+            restored: list[bool] = []
+            for member in self._members:  # each of them, even if one cannot be put back
+                everything.callback(lambda member=member: restored.append(member.restore()))
+        return all(restored)
+
+    def set_aside(self) -> None:
+        """Put all splines back for a moment, because the file is being saved."""
+        for member in self._members:
+            member.set_aside()

@@ -1,0 +1,50 @@
+"""What lies near the curves that are relaxed and is not kept apart from them."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core.types import FloatArray
+from ..engine.words import named
+
+if TYPE_CHECKING:
+    import bpy
+
+_SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}
+_MARGIN = 0.1  # of the diagonal of the curves' box
+
+
+def warning(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> str | None:
+    """Name what is visible near curve objects and not one of them, or return None; cheap enough for every redraw."""
+    near = _near(context, objects)
+    if not near:
+        return None
+    verb = "are" if len(near) > 1 else "is"
+    return f"Only selected curves are kept apart; {named([obj.name for obj in near])} nearby {verb} not"
+
+
+def _near(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> list["bpy.types.Object"]:
+    """Visible objects with a surface or a line whose boxes in the world overlap those of the curves, enlarged."""
+    everything = context.view_layer.objects
+    together = set(objects)
+    mine = np.array([obj in together for obj in everything], dtype=bool)
+    if not mine.any():
+        return []
+    low, high = _boxes(everything)
+    lowest, highest = low[mine].min(axis=0), high[mine].max(axis=0)
+    margin = _MARGIN * np.linalg.norm(highest - lowest)
+    overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
+    candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
+    return [obj for obj in candidates if obj.type in _SOLID and obj.visible_get()]
+
+
+def _boxes(objects: "bpy.types.bpy_prop_collection") -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest coordinates of objects in the world, each of shape (n, 3)."""
+    matrices = np.empty(16 * len(objects), dtype=np.float32)
+    corners = np.empty(24 * len(objects), dtype=np.float32)
+    objects.foreach_get("matrix_world", matrices)  # column by column
+    objects.foreach_get("bound_box", corners)
+    matrices = matrices.reshape(-1, 4, 4)
+    world = corners.reshape(-1, 8, 3) @ matrices[:, :3, :3] + matrices[:, 3:, :3]
+    return world.min(axis=1), world.max(axis=1)

@@ -1,0 +1,96 @@
+"""Bézier and NURBS splines seen as the polygons that Blender draws for them."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core import CurveError
+from ..engine.placement import Frame
+
+if TYPE_CHECKING:
+    import bpy
+
+_KINDS = {"BEZIER": "Bézier", "NURBS": "NURBS"}
+_MOST_QUESTIONS = 5
+
+
+def kind(spline: "bpy.types.Spline") -> str:
+    """Name of a spline's type for people."""
+    return _KINDS.get(spline.type, spline.type)
+
+
+def smooth_splines(data: "bpy.types.Curve") -> list["bpy.types.Spline"]:
+    """The splines that are no polygons yet."""
+    return [spline for spline in data.splines if spline.type != "POLY"]
+
+
+def questions(objects: Sequence["bpy.types.Object"]) -> list[str]:
+    """Ask whether the smooth splines of objects may become polygons, a line each; raises as `sampled` does."""
+    smooth = [obj for obj in objects if smooth_splines(obj.data)]
+    lines = [_question(obj) for obj in smooth[:_MOST_QUESTIONS]]
+    more = len(smooth) - len(lines)
+    return [*lines, f"{more} more objects have smooth splines too"] if more else lines
+
+
+def _question(obj: "bpy.types.Object") -> str:
+    smooth = smooth_splines(obj.data)
+    kinds = " and ".join(sorted({kind(spline) for spline in smooth}))
+    points = sum(len(points) for points, spline in zip(sampled(obj), obj.data.splines, strict=True) if spline in smooth)
+    if len(smooth) == 1:
+        return f"'{obj.name}' has a {kinds} spline; it becomes a polygon of {points} points"
+    return f"'{obj.name}' has {len(smooth)} {kinds} splines; they become polygons of {points} points in all"
+
+
+def sampled(obj: "bpy.types.Object") -> list[Frame]:
+    """Points of all splines, each of shape (n, 3): smooth ones as drawn, at their own preview resolution.
+
+    Raises
+    ------
+    CurveError
+        If no polygon is drawn for a spline.
+    """
+    loops = _drawn(obj.data)
+    if len(loops) != len(obj.data.splines):
+        raise CurveError(
+            f"'{obj.name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first"
+        )
+    for k, loop in enumerate(loops, 1):
+        if len(loop) < 3:
+            raise CurveError(
+                f"Spline {k} of '{obj.name}' is drawn with only {len(loop)} points; "
+                "raise its Resolution U, or give it more points"
+            )
+    return loops
+
+
+def _drawn(data: "bpy.types.Curve") -> list[Frame]:
+    import bpy
+
+    copy = data.copy()
+    bare = bpy.data.objects.new("Sampled", copy)
+    try:
+        _strip(copy)
+        return _loops(bare.to_mesh())
+    finally:
+        bare.to_mesh_clear()
+        bpy.data.objects.remove(bare)
+        bpy.data.curves.remove(copy)
+
+
+def _strip(data: "bpy.types.Curve") -> None:
+    """Leave nothing but the line itself."""
+    data.bevel_mode, data.bevel_object, data.taper_object = "ROUND", None, None
+    data.bevel_depth = data.extrude = data.offset = 0.0
+    data.bevel_factor_start, data.bevel_factor_end = 0.0, 1.0
+
+
+def _loops(mesh: "bpy.types.Mesh") -> list[Frame]:
+    """The chains of a mesh: vertices one after the other, each joined to the next."""
+    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    edges = np.empty(2 * len(mesh.edges), dtype=np.int32)
+    mesh.vertices.foreach_get("co", points)
+    mesh.edges.foreach_get("vertices", edges)
+    low, high = np.sort(edges.reshape(-1, 2), axis=1).T
+    starts = np.setdiff1d(np.arange(len(mesh.vertices)), high[high - low == 1])
+    return np.split(points.reshape(-1, 3), starts[1:]) if len(starts) else []

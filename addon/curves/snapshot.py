@@ -1,0 +1,156 @@
+"""All splines of a curve as they are, to be put back bit for bit or made into polygons."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core import Curve
+from ..engine.refinement import Places, places
+
+if TYPE_CHECKING:
+    import bpy
+
+Values = dict[str, Any]
+_TYPES: dict[str, Any] = {"BOOLEAN": np.int32, "INT": np.int32, "FLOAT": np.float32, "ENUM": np.int32}
+_BEVEL = ("bevel_depth", "bevel_resolution")
+_POINT_VALUES = ("radius", "tilt", "weight_softbody")
+
+
+@dataclass(frozen=True, eq=False)
+class _Spline:
+    """One spline: its own settings, and an array for every setting of its points."""
+
+    type: str
+    count: int
+    settings: Values
+    points: dict[str, npt.NDArray[Any]]
+
+    @classmethod
+    def of(cls, spline: "bpy.types.Spline") -> "_Spline":
+        points = _points(spline)
+        arrays = {}
+        for prop in _properties(points[0]) if len(points) else ():
+            arrays[prop.identifier] = np.empty(len(points) * _width(prop), dtype=_TYPES[prop.type])
+            points.foreach_get(prop.identifier, arrays[prop.identifier])
+        settings = {prop.identifier: getattr(spline, prop.identifier) for prop in _properties(spline)}
+        if spline.type != "NURBS":
+            del settings["order_u"]  # means nothing, and is made valid when it is set
+        return cls(spline.type, len(points), settings, arrays)
+
+    def put(self, spline: "bpy.types.Spline") -> None:
+        """Fill a spline of this type with this many points."""
+        for name, array in self.points.items():
+            _points(spline).foreach_set(name, array)
+        for name, value in self.settings.items():
+            setattr(spline, name, value)
+
+    def polygon(self, size: int, place: Places) -> "_Spline":
+        """A polygon of ``size`` points drawn for this spline, refined; where its points are is left open."""
+        values = {name: self._along(self.points[name], size) for name in _POINT_VALUES}
+        settings = {name: value for name, value in self.settings.items() if name != "order_u"}
+        points = {name: place.values(array).astype(np.float32) for name, array in values.items()}
+        return _Spline("POLY", len(place.edge), settings, points)
+
+    def _along(self, array: npt.NDArray[Any], size: int) -> npt.NDArray[np.float64]:
+        """Values at the points of the polygon; those of a smooth spline lie evenly between its control points."""
+        where = np.arange(size) * len(array) / size
+        return np.interp(where, np.arange(len(array) + 1), np.append(array, array[:1]).astype(np.float64))
+
+
+class Snapshot:
+    """The splines and the bevel of curve data at one time."""
+
+    def __init__(self, data: "bpy.types.Curve") -> None:
+        self._splines: Sequence[_Spline] = [_Spline.of(spline) for spline in data.splines]
+        self._active = next((k for k, spline in enumerate(data.splines) if spline == data.splines.active), None)
+        self._bevel = {name: getattr(data, name) for name in _BEVEL}
+
+    def restore(self, data: "bpy.types.Curve") -> None:
+        """Put everything back."""
+        self._put(data, self._splines)
+        for name, value in self._bevel.items():
+            setattr(data, name, value)
+
+    def make_polygons(self, data: "bpy.types.Curve", original: Curve, refined: Curve) -> None:
+        """Make splines poly splines with as many points as the refined curve has, if they are not yet.
+
+        New points have values in between. All other properties stay; where the points are is left open.
+
+        Parameters
+        ----------
+        data
+            The curve data that this was taken from.
+        original
+            The polygons drawn for the splines.
+        refined
+            The same with more vertices.
+        """
+        pieces = zip(self._splines, original.mesh.component_sizes, places(original, refined), strict=True)
+        polygons = [spline.polygon(size, place) for spline, size, place in pieces]
+        if shape(data) != _shape_of(polygons):
+            self._put(data, polygons)
+
+    def _put(self, data: "bpy.types.Curve", splines: Sequence[_Spline]) -> None:
+        """Fill curve data; its splines are made anew only if they cannot become these by more points alone."""
+        if not _grows(shape(data), _shape_of(splines)):
+            data.splines.clear()
+            for kept in splines:
+                data.splines.new(kept.type)
+        for spline, kept in zip(data.splines, splines, strict=True):
+            _points(spline).add(kept.count - len(_points(spline)))
+            kept.put(spline)
+        if self._active is not None:
+            data.splines.active = data.splines[self._active]
+        data.update_tag()
+
+
+def shape(data: "bpy.types.Curve") -> list[tuple[str, int]]:
+    """Type and number of points of every spline."""
+    return [(spline.type, len(_points(spline))) for spline in data.splines]
+
+
+def _grows(old: list[tuple[str, int]], new: list[tuple[str, int]]) -> bool:
+    """Whether splines of one shape become those of another by more points alone."""
+    return len(old) == len(new) and all(
+        before == after and have <= want for (before, have), (after, want) in zip(old, new, strict=True)
+    )
+
+
+def _shape_of(splines: Sequence[_Spline]) -> list[tuple[str, int]]:
+    return [(spline.type, spline.count) for spline in splines]
+
+
+@contextmanager
+def outside_edit_mode(objects: Sequence["bpy.types.Object"]) -> Iterator[None]:
+    """Change curves of which some may just have been opened for editing: close them, and open them again afterwards."""
+    import bpy
+
+    mode = next((obj.mode for obj in objects if obj.mode != "OBJECT"), "OBJECT")
+    if mode == "OBJECT":
+        yield
+        return
+    bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        yield
+    finally:
+        bpy.ops.object.mode_set(mode=mode)
+        bpy.ops.ed.undo_push(message="Relaxation Ended")
+
+
+def _points(spline: "bpy.types.Spline") -> Any:
+    return spline.bezier_points if spline.type == "BEZIER" else spline.points
+
+
+def _properties(owner: "bpy.types.bpy_struct") -> list["bpy.types.Property"]:
+    """Everything that can be written but what belongs to surfaces; the type of a spline is set when it is made."""
+    properties = (p for p in owner.bl_rna.properties if p.type in _TYPES and not p.is_readonly)
+    return [p for p in properties if p.identifier != "type" and not p.identifier.endswith("_v")]
+
+
+def _width(prop: "bpy.types.Property") -> int:
+    """Numbers in one value; only vectors have several."""
+    return max(getattr(prop, "array_length", 1), 1)

@@ -1,0 +1,51 @@
+"""The worker's program: relaxes a curve in a process of its own, and ends as soon as Blender does.
+
+Blender runs this file by its path, with its own Python. The package is loaded under a private name, because in
+Blender it is called something like ``bl_ext.user_default.mobius_flow``, which a plain Python cannot import.
+"""
+
+import contextlib
+import importlib
+import importlib.util
+import os
+import sys
+import threading
+from pathlib import Path
+
+_PACKAGE = "_mobius_flow_worker"
+
+
+def main() -> None:
+    """Do the job that comes in through the standard input; send what comes out through the standard output."""
+    _load_package(Path(__file__).resolve().parents[2])
+    wire = importlib.import_module(f"{_PACKAGE}.addon.engine.wire")
+    job = importlib.import_module(f"{_PACKAGE}.addon.engine.job")
+    message = wire.read(sys.stdin.buffer)
+    threading.Thread(target=_end_with_blender, daemon=True).start()
+    with contextlib.suppress(BrokenPipeError), os.fdopen(os.dup(1), "wb") as out:
+        os.dup2(2, 1)  # whatever a library prints must not get in between
+        for reply in job.messages(message):
+            wire.write(out, reply)
+    os._exit(0)  # the thread still reads
+
+
+def _load_package(root: Path) -> None:
+    spec = importlib.util.spec_from_file_location(
+        _PACKAGE, root / "__init__.py", submodule_search_locations=[str(root)]
+    )
+    assert spec is not None
+    assert spec.loader is not None
+    package = importlib.util.module_from_spec(spec)
+    sys.modules[_PACKAGE] = package
+    spec.loader.exec_module(package)
+
+
+def _end_with_blender() -> None:
+    """Blender never writes again: the input ends when Blender closes it, crashes or is killed."""
+    while os.read(0, 1024):
+        pass
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

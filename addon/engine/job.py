@@ -1,0 +1,32 @@
+"""What the worker does: the driver's iterates, with proofs for the motions that Blender's own numbers make of them."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from ...core import Iterate, MobiusFlowError, relax
+from ...core.collision import is_free
+from . import wire
+from .motion import frames_of
+from .placement import Frame, Link
+
+
+def messages(job: wire.Message) -> Iterator[wire.Message]:
+    """Yield the iterates of a job as messages, or one message with the reason why it cannot be done."""
+    curve, options, link = wire.unpack_job(job)
+    last: Frame | None = None
+    try:
+        for iterate in relax(curve, options):
+            frames = frames_of(link, iterate)
+            yield wire.pack_iterate(iterate, _proved(iterate, link, [*([] if last is None else [last]), *frames]))
+            last = frames[-1]
+    except MobiusFlowError as error:
+        yield {"error": str(error)}, []
+
+
+def _proved(iterate: Iterate, link: Link, frames: list[Frame]) -> list[str]:
+    """Names of the motions from frame to frame that are free of contact, in the common space."""
+    mesh = iterate.curve.mesh
+    if any(len(frame) != mesh.size for frame in frames):
+        return []
+    common = [link.to_common(mesh, frame) for frame in frames]
+    return [wire.digest(a, b) for a, b in pairwise(common) if is_free(mesh, a, b)]

@@ -1,0 +1,185 @@
+"""Which frames of a relaxation to key, so that the straight lines between the keys are proved too.
+
+The relaxation certifies its own path in doubles. Blender keeps keys as 32-bit floats and moves points straight
+from one key to the next: another path, which needs its own proof, in the numbers that Blender stores.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ...core import Iterate
+from ...core.curve import Mesh
+from ...core.types import FloatArray
+from .placement import Frame, Link
+
+Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
+
+_HALVINGS = 5  # of one leg; its keys are then still further apart in time than what Blender tells apart
+
+
+@dataclass(frozen=True, eq=False)
+class Key:
+    """One key: the time, counted in iterates (2.5 is halfway from iterate 2 to 3), and the vertices, (n, 3)."""
+
+    time: float
+    points: Frame
+
+
+@dataclass(frozen=True, eq=False)
+class Keys:
+    """The keys of an animation.
+
+    Attributes
+    ----------
+    keys
+        In order of time.
+    unproved
+        Number of gaps between keys whose straight motion could not be proved free of contact; rounding the start
+        to Blender's numbers counts as one more gap.
+    """
+
+    keys: tuple[Key, ...]
+    unproved: int
+
+    @property
+    def certified(self) -> bool:
+        """Whether the whole animation was proved free of contact."""
+        return self.unproved == 0
+
+    def part(self, vertices: slice) -> "Keys":
+        """The same keys for some of the vertices."""
+        return Keys(tuple(Key(key.time, key.points[vertices]) for key in self.keys), self.unproved)
+
+
+def frames_of(link: Link, iterate: Iterate) -> list[Frame]:
+    """The ends of an iterate's legs, or the iterate itself where there are none, as Blender will store them."""
+    ends = iterate.path or (iterate.curve.vertices,)
+    return [link.to_stored(iterate.curve.mesh, end).astype(np.float32) for end in ends]
+
+
+class Motion:
+    """The frames of a relaxation in the numbers that Blender will store, collected as they come.
+
+    Parameters
+    ----------
+    link
+        Where the vertices of the iterates are stored, and in which space their motions are proved.
+    """
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._start: Iterate | None = None
+        self._last: Iterate | None = None
+        self._keys: list[Key] = []
+        self._ends: list[int] = []  # positions of the iterates among the keys; the others are inner ends of legs
+
+    def add(self, iterate: Iterate) -> Frame:
+        """Append an iterate with the legs that lead to it, and return its vertices as Blender will store them."""
+        if self._ends and not iterate.path:  # a run that stalls repeats its last iterate
+            self._last = iterate
+            return self._keys[-1].points
+        frames = frames_of(self._link, iterate)
+        self._start = self._start or iterate
+        self._last = iterate
+        times = self._leg_times(iterate.index, frames)
+        self._keys += map(Key, times, frames)
+        self._ends.append(len(self._keys) - 1)
+        return frames[-1]
+
+    def _leg_times(self, index: int, frames: Sequence[Frame]) -> list[float]:
+        """End times of the legs, so that the fastest vertex keeps its speed from leg to leg."""
+        if len(frames) == 1:
+            return [float(index)]
+        corners = [self._common(frame) for frame in (self._keys[-1].points, *frames)]
+        ways = [float(np.abs(b - a).max()) for a, b in pairwise(corners)]
+        passed = np.cumsum(np.maximum(ways, 1e-3 * max(ways)))
+        return [*(index - 1 + passed[:-1] / passed[-1]).tolist(), float(index)]
+
+    def keys(self, free: Proof, limit: int | None = None) -> Keys:
+        """Choose the keys of an animation from the start to the last iterate.
+
+        Parameters
+        ----------
+        free
+            ``free(mesh, start, end)`` proves a straight motion free of contact.
+        limit
+            Wanted number of keys, at least 2, spread evenly over the iterates; None keys every iterate. Keys are
+            added beyond it where the straight motion from one to the next cannot be proved.
+        """
+        chosen = self._spread(limit)
+        keys, unproved = [self._keys[chosen[0]]], int(not self._rounds_freely(self.start, 0, free))
+        for a, b in pairwise(chosen):
+            for key, proved in self._way(a, b, free):
+                keys.append(key)
+                unproved += not proved
+        return Keys(tuple(keys), unproved)
+
+    def result(self, free: Proof) -> Keys:
+        """Return the last iterate alone; it counts as proved if the way there and its rounding were."""
+        proved = self.last.certified and self._rounds_freely(self.last, -1, free)
+        return Keys((self._keys[-1],), int(not proved))
+
+    @property
+    def start(self) -> Iterate:
+        """The first iterate."""
+        assert self._start is not None, "a relaxation yields at least its start"
+        return self._start
+
+    @property
+    def last(self) -> Iterate:
+        """The last iterate."""
+        assert self._last is not None, "a relaxation yields at least its start"
+        return self._last
+
+    def _spread(self, limit: int | None) -> list[int]:
+        if limit is None or limit >= len(self._ends):
+            return self._ends
+        places = np.linspace(0, len(self._ends) - 1, max(limit, 2)).round().astype(int)
+        return [self._ends[k] for k in places]
+
+    def _way(self, a: int, b: int, free: Proof) -> Iterator[tuple[Key, bool]]:
+        """Yield the keys after position ``a`` up to ``b``, each with whether the motion to it was proved."""
+        if self._proved(self._keys[a], self._keys[b], free):
+            yield self._keys[b], True
+        elif b - a == 1:
+            halves = self._halves(self._keys[a], self._keys[b], free, _HALVINGS)
+            yield from ((key, True) for key in halves) if halves else ((self._keys[b], False),)
+        else:
+            # An iterate makes a better key than the inner end of a leg.
+            inside = [k for k in self._ends if a < k < b] or range(a + 1, b)
+            middle = inside[len(inside) // 2]
+            yield from self._way(a, middle, free)
+            yield from self._way(middle, b, free)
+
+    def _halves(self, start: Key, end: Key, free: Proof, depth: int) -> list[Key]:
+        """Keys that lead along one leg in shorter pieces, each proved; empty if that fails."""
+        if depth == 0:
+            return []
+        middle = Key(0.5 * (start.time + end.time), _midpoint(start.points, end.points))
+        keys: list[Key] = []
+        for a, b in ((start, middle), (middle, end)):
+            part = [b] if self._proved(a, b, free) else self._halves(a, b, free, depth - 1)
+            if not part:
+                return []
+            keys += part
+        return keys
+
+    def _proved(self, start: Key, end: Key, free: Proof) -> bool:
+        return free(self.start.curve.mesh, self._common(start.points), self._common(end.points))
+
+    def _rounds_freely(self, iterate: Iterate, position: int, free: Proof) -> bool:
+        """Whether rounding an iterate to the numbers that Blender stores pushes nothing through anything."""
+        mesh = iterate.curve.mesh
+        exact = self._link.to_stored(mesh, iterate.curve.vertices)
+        return free(mesh, self._common(exact), self._common(self._keys[position].points))
+
+    def _common(self, points: Frame | FloatArray) -> FloatArray:
+        """Stored points where motions are proved; shape (n, 3)."""
+        return self._link.to_common(self.start.curve.mesh, points)
+
+
+def _midpoint(a: Frame, b: Frame) -> Frame:
+    return np.asarray(0.5 * (a.astype(np.float64) + b.astype(np.float64)), dtype=np.float32)

@@ -1,0 +1,106 @@
+"""Where objects are: each keeps points in coordinates of its own, and motions of all are proved in one space.
+
+Nothing here needs bpy, so that the worker can use it too.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate, pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core.curve import Curve, Mesh
+from ...core.types import FloatArray
+
+if TYPE_CHECKING:
+    import bpy
+
+Frame = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """The affine map from an object's coordinates to the world's, x_world = origin + linear · x_local."""
+
+    linear: FloatArray
+    origin: FloatArray
+
+    @classmethod
+    def of(cls, obj: "bpy.types.Object") -> "Placement":
+        """The placement of an object whose transforms have been evaluated."""
+        matrix = np.array(obj.matrix_world, dtype=np.float64)
+        return cls(matrix[:3, :3], matrix[:3, 3])
+
+    def equals(self, other: "Placement") -> bool:
+        """Whether both are the same, bit for bit."""
+        return np.array_equal(self.linear, other.linear) and np.array_equal(self.origin, other.origin)
+
+    def to_world(self, points: FloatArray) -> FloatArray:
+        """Points of the object in the world; shape (n, 3)."""
+        # no BLAS: the same bits in Blender and in its worker, and exactly the points themselves for the identity
+        return np.asarray(np.einsum("nj,ij->ni", points, self.linear) + self.origin)
+
+    def to_local(self, points: FloatArray) -> FloatArray:
+        """Points of the world in the object; shape (n, 3)."""
+        return np.asarray(np.linalg.solve(self.linear, (points - self.origin).T).T)
+
+    def relative_to(self, base: "Placement") -> "Placement":
+        """The affine map from this object's coordinates to another's; the identity if they are the same."""
+        same = np.array_equal(self.linear, base.linear)
+        linear = np.eye(3) if same else np.linalg.solve(base.linear, self.linear)
+        return Placement(linear, np.linalg.solve(base.linear, self.origin - base.origin))
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """One or more objects whose splines are one link.
+
+    Blender rounds points in each object's own coordinates. What is proved about all of them together is proved in
+    one common space, the coordinates of the first object: the rounded points, mapped there in doubles. Invertible
+    affine maps create no contact and undo none, so what is free there is free in the world, and for a single object
+    wherever that object goes.
+
+    Attributes
+    ----------
+    placements
+        One for each object.
+    counts
+        Number of components of the link that each object has; they are numbered object by object.
+    """
+
+    placements: tuple[Placement, ...]
+    counts: tuple[int, ...]
+
+    @cached_property
+    def _to_first(self) -> tuple[Placement, ...]:
+        return tuple(placement.relative_to(self.placements[0]) for placement in self.placements)
+
+    @cached_property
+    def scales(self) -> tuple[float, ...]:
+        """The most that each object's coordinates are stretched on the way to the common space."""
+        return tuple(float(np.linalg.norm(placement.linear, 2)) for placement in self._to_first)
+
+    def slices(self, mesh: Mesh) -> tuple[slice, ...]:
+        """The vertices of each object."""
+        ends = [int(mesh.offsets[k]) for k in accumulate(self.counts, initial=0)]
+        return tuple(slice(a, b) for a, b in pairwise(ends))
+
+    def split(self, curve: Curve) -> Iterator[Curve]:
+        """Yield each object's components as a curve of their own."""
+        for a, b in pairwise(accumulate(self.counts, initial=0)):
+            yield Curve.from_components(curve.components[a:b])
+
+    def to_stored(self, mesh: Mesh, vertices: FloatArray) -> FloatArray:
+        """From the world to each object's own coordinates; (n, 2) or (n, 3) to (n, 3)."""
+        points = np.pad(vertices, ((0, 0), (0, 3 - vertices.shape[1])))
+        pieces = zip(self.placements, self.slices(mesh), strict=True)
+        return np.concatenate([placement.to_local(points[s]) for placement, s in pieces])
+
+    def to_common(self, mesh: Mesh, stored: FloatArray | Frame) -> FloatArray:
+        """From each object's own coordinates to the common space; shape (n, 3)."""
+        points = stored.astype(np.float64)
+        pieces = zip(self._to_first, self.slices(mesh), strict=True)
+        return np.concatenate([placement.to_world(points[s]) for placement, s in pieces])

@@ -1,0 +1,64 @@
+"""How thick a tube may be drawn around a curve without running into itself; for pictures, proves nothing."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...core import Curve
+from ...core.curve import Mesh
+from ...core.curve.distances import arc_distance_of_pairs
+from ...core.types import FloatArray
+from .placement import Frame
+
+_THICKEST = 0.016  # of a component's length: a round circle's tube is then a tenth of its radius
+_DISTINCT = 3.0  # two points lie on different strands if they are this many times further apart along the curve
+_AIR = 0.94  # of half the gap, so that strands do not seem to touch
+_GROWTH = 0.04  # of the thickest radius, per frame
+
+
+def thickest_radius(curve: Curve) -> float:
+    """Radius that looks right where there is room enough."""
+    return _THICKEST * curve.length / len(curve.mesh.component_sizes)
+
+
+def free_radius(curve: Curve, thickest: float) -> float:
+    """Half the gap between strands of a curve, at most ``thickest``."""
+    spacing = float(curve.edge_lengths.max())
+    nearest = _nearest_strands(curve, 2 * thickest / _AIR + spacing)
+    if nearest is None:
+        return thickest
+    # Edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side.
+    gap = np.sqrt(max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2))
+    return min(thickest, 0.5 * _AIR * float(gap))
+
+
+def _nearest_strands(curve: Curve, furthest: float) -> float | None:
+    """Least distance between vertices of different strands, None if it is more than ``furthest``.
+
+    The radius of search doubles until it finds some: all pairs within the furthest would be too many where a long
+    curve is tightly wound, as there the nearest strands are much nearer.
+    """
+    tree = cKDTree(curve.vertices)
+    radius = float(np.median(curve.edge_lengths))
+    while True:
+        radius = min(2 * radius, furthest)
+        i, j = tree.query_pairs(radius, output_type="ndarray").T
+        distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
+        distance = distance[arc_distance_of_pairs(curve, i, j) > _DISTINCT * distance]
+        if distance.size:
+            return float(distance.min())
+        if radius >= furthest:
+            return None
+
+
+def animated_radii(mesh: Mesh, points: Sequence[Frame], frames: FloatArray) -> FloatArray:
+    """Radii of the tube at keyed curves: free at each, and changing gently from frame to frame; shape (keys,)."""
+    curves = [Curve(p.astype(np.float64), mesh) for p in points]
+    thickest = thickest_radius(curves[0])
+    radii = np.array([free_radius(curve, thickest) for curve in curves])
+    for order in (slice(None), slice(None, None, -1)):
+        view, steps = radii[order], np.abs(np.diff(frames[order]))
+        for k, step in enumerate(steps):
+            view[k + 1] = min(view[k + 1], view[k] + _GROWTH * thickest * step)
+    return radii

@@ -1,0 +1,84 @@
+"""Messages between Blender and its worker: a line of JSON and raw arrays of doubles, all with their lengths."""
+
+import hashlib
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from ...core import Curve, Iterate, Mesh, RelaxOptions, Status
+from ...core.types import FloatArray
+from .placement import Link, Placement
+
+Message = tuple[dict[str, Any], list[FloatArray]]
+
+_LENGTH = struct.Struct("!Q")
+_VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "negative_eigenvalues")
+
+
+def write(stream: BinaryIO, message: Message) -> None:
+    """Write a message and flush."""
+    header, arrays = message
+    text = json.dumps({**header, "shapes": [a.shape for a in arrays]}).encode()
+    data = [np.ascontiguousarray(a, dtype=np.float64).tobytes() for a in arrays]
+    stream.write(b"".join([_LENGTH.pack(len(text)), text, *data]))
+    stream.flush()
+
+
+def read(stream: BinaryIO) -> Message:
+    """Read a message; EOFError if there is no whole one any more."""
+    header = json.loads(_exactly(stream, _LENGTH.unpack(_exactly(stream, _LENGTH.size))[0]))
+    arrays = []
+    for shape in header.pop("shapes"):
+        data = bytearray(_exactly(stream, 8 * int(np.prod(shape))))
+        arrays.append(np.frombuffer(data, dtype=np.float64).reshape(shape))
+    return header, arrays
+
+
+def _exactly(stream: BinaryIO, size: int) -> bytes:
+    data = stream.read(size)
+    if len(data) < size:
+        raise EOFError
+    return data
+
+
+def pack_job(curve: Curve, options: RelaxOptions, link: Link) -> Message:
+    """What the worker is asked to do."""
+    header = {"sizes": curve.mesh.component_sizes, "options": asdict(options), "counts": link.counts}
+    linear = np.stack([placement.linear for placement in link.placements])
+    origins = np.stack([placement.origin for placement in link.placements])
+    return header, [curve.vertices, linear, origins]
+
+
+def unpack_job(message: Message) -> tuple[Curve, RelaxOptions, Link]:
+    """The inverse of `pack_job`."""
+    header, (vertices, linear, origins) = message
+    link = Link(tuple(map(Placement, linear, origins)), tuple(header["counts"]))
+    return Curve(vertices, Mesh(tuple(header["sizes"]))), RelaxOptions(**header["options"]), link
+
+
+def pack_iterate(iterate: Iterate, proved: Sequence[str]) -> Message:
+    """One iterate, and the motions known to be free of contact, by their `digest`."""
+    header = {name: getattr(iterate, name) for name in _VALUES}
+    header |= {"sizes": iterate.curve.mesh.component_sizes, "status": iterate.status.value}
+    header |= {"message": iterate.message, "proved": list(proved)}
+    return header, [iterate.curve.vertices, *iterate.path]
+
+
+def unpack_iterate(message: Message) -> tuple[Iterate, list[str]]:
+    """The inverse of `pack_iterate`."""
+    header, (vertices, *path) = message
+    values = {name: header[name] for name in _VALUES}
+    curve = Curve(vertices, Mesh(tuple(header["sizes"])))
+    status = Status(header["status"])
+    return Iterate(curve=curve, path=tuple(path), status=status, message=header["message"], **values), header["proved"]
+
+
+def digest(start: FloatArray, end: FloatArray) -> str:
+    """Name of the straight motion between two arrays of vertices: exactly these bits, nothing else."""
+    hashed = hashlib.blake2b(start.tobytes(), digest_size=16)
+    hashed.update(end.tobytes())
+    return hashed.hexdigest()

@@ -1,0 +1,159 @@
+"""Blender's end of the worker: starts it, takes in its iterates without ever waiting, and ends it at once."""
+
+import contextlib
+import os
+import queue
+import subprocess
+import sys
+import threading
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+import scipy
+
+from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status
+from ...core.collision import is_free
+from ...core.curve import Mesh
+from ...core.types import FloatArray
+from . import wire
+from .job import messages
+from .placement import Link
+
+_AHEAD = 4  # iterates that wait to be shown; then the worker waits too, which is also how it pauses
+_PATIENCE = 0.1  # seconds between looks at whether anybody still wants the next iterate
+
+
+class WorkerError(MobiusFlowError):
+    """The worker ended without saying why."""
+
+
+class Worker:
+    """A relaxation in another process, or in a thread where no process can be started.
+
+    Parameters
+    ----------
+    curve, options
+        What is to be relaxed, as for `core.relax`.
+    link
+        Where Blender stores the vertices: motions of the stored ones are proved too.
+    processes
+        Whether to try a process at all.
+    """
+
+    def __init__(self, curve: Curve, options: RelaxOptions, link: Link, processes: bool = True) -> None:
+        self._job = wire.pack_job(curve, options, link)
+        self._proved: set[str] = set()
+        self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
+        self._closed = threading.Event()
+        self._ended = False
+        self.process = _start() if processes else None
+        self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
+        self._thread.start()
+
+    def poll(self, timeout: float = 0.0) -> Iterate | None:
+        """Take the next iterate if there is one; the last one has its final status.
+
+        Raises
+        ------
+        MobiusFlowError
+            If the curve cannot be relaxed, or the worker is gone.
+        """
+        try:
+            message = self._queue.get(timeout=timeout) if timeout else self._queue.get_nowait()
+        except queue.Empty:
+            return None
+        if message is None:
+            self._ended = True
+            raise WorkerError("The computation ended unexpectedly; perhaps memory ran out")
+        if "error" in message[0]:
+            self._ended = True
+            raise MobiusFlowError(message[0]["error"])
+        iterate, proved = wire.unpack_iterate(message)
+        self._proved.update(proved)
+        return iterate
+
+    def __iter__(self) -> Iterator[Iterate]:
+        """Iterate as `core.relax` does, waiting for each iterate."""
+        while not self._ended:
+            iterate = self.poll(timeout=_PATIENCE)
+            if iterate is not None:
+                self._ended = iterate.status is not Status.RUNNING
+                yield iterate
+
+    def is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
+        """As `core.collision.is_free`, but most motions were proved by the worker already."""
+        return wire.digest(start, end) in self._proved or bool(is_free(mesh, start, end))
+
+    def close(self) -> None:
+        """End the process now and the thread with it; harmless to repeat."""
+        self._closed.set()
+        if self.process is not None:
+            self.process.kill()
+            self.process.wait()
+            # its streams belong to the thread, which may be using them, or waiting for room in the queue
+            with contextlib.suppress(queue.Empty):
+                while True:
+                    self._queue.get_nowait()
+        self._thread.join(timeout=2 * _PATIENCE if self.process is not None else 0.0)
+
+    def _feed(self) -> None:
+        """Pass messages on until there are no more or nobody wants them."""
+        try:
+            for message in self._messages():
+                if not self._put(message):
+                    return
+            self._put(None)
+        except (EOFError, OSError, ValueError):
+            self._put(None)
+        finally:
+            self._close_streams()
+
+    def _messages(self) -> Iterable[wire.Message]:
+        return messages(self._job) if self.process is None else _replies(self.process, self._job)
+
+    def _put(self, message: wire.Message | None) -> bool:
+        while not self._closed.is_set():
+            try:
+                self._queue.put(message, timeout=_PATIENCE)
+            except queue.Full:
+                continue
+            return True
+        return False
+
+    def _close_streams(self) -> None:
+        for stream in (self.process.stdin, self.process.stdout) if self.process is not None else ():
+            with contextlib.suppress(OSError):  # what was still to be written goes nowhere
+                stream.close()
+
+
+def _replies(process: "subprocess.Popen[bytes]", job: wire.Message) -> Iterator[wire.Message]:
+    assert process.stdin is not None
+    assert process.stdout is not None
+    wire.write(process.stdin, job)
+    while True:
+        yield wire.read(process.stdout)
+
+
+def _start() -> "subprocess.Popen[bytes] | None":
+    """Start the worker's process with Blender's own Python; None if there is none or it does not start."""
+    # In Blender this is the Python it comes with. Should a build put Blender itself here, -P would mean something else.
+    if not Path(sys.executable or "").name.lower().startswith("python"):
+        return None
+    program = Path(__file__).with_name("child.py")
+    try:
+        return subprocess.Popen(
+            [sys.executable, "-P", "-s", str(program)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=_environment(),
+            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+        )
+    except OSError:
+        return None
+
+
+def _environment() -> dict[str, str]:
+    """The environment, with SciPy's place in it and one thread for linear algebra: a run is one of many tasks."""
+    places = dict.fromkeys(str(Path(module.__file__).parents[1]) for module in (scipy, np))
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(places), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}

@@ -1,0 +1,1 @@
+"""Scenes, stills and films of a relaxation, rendered without a window."""

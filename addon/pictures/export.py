@@ -1,0 +1,137 @@
+"""Keyframed scenes, movies and pictures of a relaxation: what the command line calls.
+
+Each starts from an empty factory scene, so what is open in Blender is gone afterwards; writes the whole file
+or none; and returns whether everything it shows was proved free of contact.
+"""
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...core import Iterate, MobiusFlowError
+from ...core.collision import is_free
+from ...core.errors import OutputError
+from ...core.system.files import atomic_write
+from ...core.system.signals import termination_raises
+from . import film, rendering
+from .movie import Progress, render_movie
+
+if TYPE_CHECKING:
+    import bpy
+
+Target = str | os.PathLike[str]
+
+_MOST_KEYS = 1000  # in a .blend; more are of no use to the eye
+_MOST_FILM_KEYS = 200
+_PICTURE = (800, 450, 8)  # width, height, samples
+_FILM = (640, 360)
+_FILM_WITHOUT_DRIVER = (384, 216, 3)
+_TERMINATED = 143  # the status that a shell gives to a process ended by SIGTERM
+
+
+def require_blender() -> None:
+    """Raise a MobiusFlowError that says what to install if Blender's Python module, or a library of it, is missing."""
+    try:
+        import bpy  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise MobiusFlowError(
+            "writing .blend, .mp4 and .png needs Blender's Python module, which is not installed; "
+            'install it with pip install bpy, or in a clone pip install ".[blender]" (Python 3.11 or 3.13)'
+        ) from error
+    except ImportError as error:
+        raise MobiusFlowError(f"Blender's Python module, which is installed, cannot be loaded: {error}") from error
+
+
+def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
+    """Write a .blend in which the relaxation plays, ready to render, where the extension is not installed too.
+
+    Parameters
+    ----------
+    path
+        The file; it appears whole or not at all.
+    iterates
+        The iterates of a run, from the start to the last.
+
+    Returns
+    -------
+    bool
+        Whether the animation was proved free of contact, in Blender's own numbers.
+
+    Raises
+    ------
+    MobiusFlowError
+        If Blender's module is missing or the file cannot be written.
+    """
+    motion, origin = film.recorded(iterates)
+    keys = motion.keys(is_free, _MOST_KEYS)
+    scene = _empty_scene()
+    rendering.use_cycles(scene, *_PICTURE)
+    film.compose(scene, keys, film.steady_frames(keys), motion.start.curve.mesh, origin)
+    _make(path, _save)
+    return keys.certified
+
+
+def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | None = None) -> bool:
+    """Render the relaxation to an .mp4 of a few seconds.
+
+    ``progress`` gets the number of frames done and of all frames. Otherwise as `write_blend`.
+    """
+    motion, _ = film.recorded(iterates)
+    keys = motion.keys(is_free, _MOST_FILM_KEYS)
+    scene = _empty_scene()
+    drawn = rendering.workbench_works()
+    if drawn:
+        rendering.use_workbench(scene, *_FILM)
+    else:
+        rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER, draft=True)
+        rendering.skip_frames(scene)
+    film.compose(scene, keys, film.smooth_frames(keys), motion.start.curve.mesh)
+    film.add_pauses(scene)
+    _make(path, lambda temporary: render_movie(scene, temporary, progress, oversampling=2 if drawn else 1))
+    return keys.certified
+
+
+def write_still(path: Target, iterates: Sequence[Iterate]) -> bool:
+    """Render the relaxed curve, the last iterate, to a .png; otherwise as `write_blend`."""
+    motion, _ = film.recorded(iterates)
+    keys = motion.result(is_free)
+    scene = _empty_scene()
+    rendering.use_cycles(scene, *_PICTURE)
+    film.compose(scene, keys, film.steady_frames(keys), motion.start.curve.mesh)
+    _make(path, lambda temporary: rendering.render_still(scene, temporary))
+    return keys.certified
+
+
+def _empty_scene() -> "bpy.types.Scene":
+    require_blender()
+    import bpy
+
+    with rendering.quiet():
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+    return bpy.context.scene
+
+
+def _save(path: Path) -> None:
+    import bpy
+
+    with rendering.quiet():
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
+
+
+def _make(path: Target, write: Callable[[Path], None]) -> None:
+    """Let Blender write a file in a directory of its own, and move it to its place when it is whole."""
+    try:
+        with (
+            termination_raises(SystemExit(_TERMINATED)),
+            atomic_write(path) as temporary,
+            tempfile.TemporaryDirectory(dir=temporary.parent) as room,
+        ):
+            made = Path(room) / temporary.name.lstrip(".")
+            write(made)
+            shutil.copymode(temporary, made)
+            made.replace(temporary)
+    except (OSError, RuntimeError) as error:
+        raise OutputError(os.fspath(path), error) from error

@@ -1,0 +1,158 @@
+"""An empty scene filled with a relaxation: the keyed curve as a tube, and a stage around it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core import Curve, Iterate, MobiusFlowError
+from ...core.curve import Mesh
+from ...core.types import FloatArray
+from ..curves.exchange import new_curve_data, write_points
+from ..curves.keyframes import write_shape_keys
+from ..engine import tube
+from ..engine.motion import Keys, Motion
+from ..engine.placement import Link, Placement
+from . import camera, stage
+
+if TYPE_CHECKING:
+    import bpy
+
+_BEVEL_RESOLUTION = 7
+_SHOWN = 40  # keys looked at when the camera is placed
+_SHORTEST = 120  # frames of a keyframed relaxation, if its iterates can be spread over them
+_FRAMES_PER_KEY = 6
+_FILM = (60, 96)  # frames of a film in motion
+_PAUSE = 6  # frames before the motion begins
+_END = 12  # frames after it
+_EVENNESS = 0.7  # 1 for constant speed, 0 for the same time for every iterate
+_FAR = 8.0  # a curve further from the origin, in its own sizes, gets its own origin: 32 bits are few
+_SIZES = (1e-3, 1e3)  # between these Blender works well
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """Where a curve's object is put and how it is scaled: x_world = location + scale · x_local."""
+
+    location: FloatArray
+    scale: float
+
+    @classmethod
+    def of(cls, vertices: FloatArray) -> "Origin":
+        """None of both for a curve of everyday size near the origin."""
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        size = float((high - low).max())
+        near = np.abs(0.5 * (low + high)).max() <= _FAR * size
+        scale = 1.0 if _SIZES[0] <= size <= _SIZES[1] else float(2.0 ** np.round(np.log2(size)))
+        location = np.zeros(3) if near and scale == 1.0 else (0.5 * (low + high)).astype(np.float32).astype(float)
+        return cls(location, scale)
+
+    def link(self, mesh: Mesh) -> Link:
+        """All components of a curve in one object here."""
+        return Link((Placement(self.scale * np.eye(3), self.location),), (len(mesh.component_sizes),))
+
+
+def spatial(vertices: FloatArray) -> FloatArray:
+    """Put planar vertices into space; shape (n, 3)."""
+    return np.pad(vertices, ((0, 0), (0, 3 - vertices.shape[1])))
+
+
+def check_dimension(curve: Curve) -> None:
+    """Raise a MobiusFlowError if a curve is not in the plane or in space."""
+    if curve.dimension > 3:
+        raise MobiusFlowError(f"the curve has {curve.dimension} coordinates; Blender shows curves in 2 or 3 dimensions")
+
+
+def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
+    """Collect the iterates of a run in the numbers that Blender will store.
+
+    Raises
+    ------
+    MobiusFlowError
+        If the curve is not in the plane or in space, or its number of vertices changes.
+    """
+    start = iterates[0].curve
+    if any(iterate.curve.mesh != start.mesh for iterate in iterates):
+        raise MobiusFlowError(
+            "the number of vertices changes during this run, which keyframes cannot follow; "
+            "leave adaptive and resolve out"
+        )
+    check_dimension(start)
+    origin = Origin.of(spatial(start.vertices))
+    motion = Motion(origin.link(start.mesh))
+    for iterate in iterates:
+        motion.add(iterate)
+    return motion, origin
+
+
+def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh, origin: Origin | None = None) -> None:
+    """Put a keyed curve on a stage, by default near the scene's origin, and fit the scene's frames to it."""
+    points = [key.points for key in keys.keys]
+    radii = tube.animated_radii(mesh, points, frames)
+    data = new_curve_data("Curve", mesh.component_sizes)
+    data.bevel_depth, data.bevel_resolution = float(radii.max()), _BEVEL_RESOLUTION
+    obj = _add_object(scene, data)
+    if len(points) > 1:
+        write_shape_keys(obj, keys, frames, radii / radii.max())
+    else:
+        write_points(data, points[0])
+    stage.colour(data)
+    shown = np.concatenate(points[:: -(-len(points) // _SHOWN)] + points[-1:]).astype(np.float64)
+    ground = stage.Stage.around(shown, points[-1].astype(np.float64))
+    camera.follow(scene, ground, stage.build(scene, ground), points, radii, frames)
+    if origin is not None:
+        _put(scene, origin)
+    scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
+    scene.frame_set(scene.frame_start)
+
+
+def _add_object(scene: "bpy.types.Scene", data: "bpy.types.Curve") -> "bpy.types.Object":
+    import bpy
+
+    obj = bpy.data.objects.new("Curve", data)
+    scene.collection.objects.link(obj)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    return obj
+
+
+def _put(scene: "bpy.types.Scene", origin: Origin) -> None:
+    """Move and scale everything in a scene from the curve's coordinates to the world's."""
+    if origin.scale == 1.0 and not origin.location.any():
+        return
+    objects = list(scene.objects)
+    root = stage.add(scene, "Stage", None)
+    root.location, root.scale = origin.location, 3 * [origin.scale]
+    for obj in objects:
+        obj.parent = root
+        if obj.type == "LIGHT":
+            obj.data.energy *= origin.scale**2
+        elif obj.type == "CAMERA":
+            obj.data.clip_start *= origin.scale
+            obj.data.clip_end *= origin.scale
+
+
+def add_pauses(scene: "bpy.types.Scene") -> None:
+    """Let the curve rest for a moment before and after its motion."""
+    scene.frame_start -= _PAUSE
+    scene.frame_end += _END
+
+
+def steady_frames(keys: Keys) -> FloatArray:
+    """Scene frames of keys that leave every iterate the same time, in whole frames."""
+    times = np.array([key.time for key in keys.keys])
+    return 1.0 + max(1.0, np.round(_SHORTEST / max(times[-1], 1.0))) * times
+
+
+def smooth_frames(keys: Keys) -> FloatArray:
+    """Scene frames of keys for a short film in which the curve moves about evenly; they leave room for `add_pauses`.
+
+    A scene cannot begin before frame 0.
+    """
+    points = np.array([key.points for key in keys.keys], dtype=np.float64)
+    ways = np.sqrt(np.square(np.diff(points, axis=0)).sum(axis=2).mean(axis=1))
+    share = ways / ways.sum() if ways.sum() else np.full(len(ways), 1 / len(ways))
+    even = np.diff([key.time for key in keys.keys]) / (keys.keys[-1].time - keys.keys[0].time)
+    moving = np.clip(_FRAMES_PER_KEY * len(ways), *_FILM)
+    return 1.0 + _PAUSE + moving * np.concatenate([[0.0], np.cumsum(_EVENNESS * share + (1 - _EVENNESS) * even)])

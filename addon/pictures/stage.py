@@ -1,0 +1,164 @@
+"""A scene to show a curve in: camera, lights, floor and materials."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core.types import FloatArray
+
+if TYPE_CHECKING:
+    import bpy
+
+# One colour for each component, linear RGB; after the last they begin again.
+_COLOURS = (
+    (0.005, 0.110, 0.220),
+    (0.620, 0.070, 0.030),
+    (0.780, 0.400, 0.030),
+    (0.060, 0.260, 0.120),
+    (0.260, 0.060, 0.280),
+)
+_FLOOR_COLOUR = (0.88, 0.83, 0.74)
+_SKY_COLOUR = (0.80, 0.88, 1.0)
+_SKY_STRENGTH = 0.4
+_KEY = np.array([-1.3, 0.5, 2.7])
+_WIDTH = 60.0  # of the floor: the camera sees no end of it
+_VIEWPORT = 0.65  # exponent that makes colours as bright in Workbench as they are in Cycles' light
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """Where things stand: an orthonormal frame whose third axis is up, a middle, and a size to measure by.
+
+    Attributes
+    ----------
+    axes
+        Rows are the stage's x (to the right of the picture), y (away from it) and z (up).
+    middle
+        Centre of what is shown.
+    size
+        Largest distance of what is shown from the middle.
+    """
+
+    axes: FloatArray
+    middle: FloatArray
+    size: float
+
+    @classmethod
+    def around(cls, shown: FloatArray, final: FloatArray) -> "Stage":
+        """Lay the final curve flat, and take in everything shown; both of shape (n, 3)."""
+        axes = flat_axes(final)
+        along = shown @ axes.T
+        middle = 0.5 * (along.min(axis=0) + along.max(axis=0))
+        return cls(axes, middle @ axes, float(np.linalg.norm(along - middle, axis=1).max()))
+
+
+def flat_axes(points: FloatArray) -> FloatArray:
+    """Principal axes of points, the thinnest as the third and rather up than down; rows, right-handed."""
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    for k in (0, 2):
+        axes[k] *= np.sign(axes[k][np.abs(axes[k]).argmax()])
+    axes[1] = np.cross(axes[2], axes[0])
+    return np.asarray(axes)
+
+
+def build(scene: "bpy.types.Scene", stage: Stage) -> "bpy.types.Object":
+    """Add lights, a floor and a sky to a scene; return the floor, which is at the height of the middle."""
+    _add_light(scene, stage, "Key", _KEY, 1.5, 60.0, (1.0, 0.93, 0.84))
+    _add_light(scene, stage, "Rim", (1.9, 1.9, 1.5), 0.8, 16.0, (0.80, 0.90, 1.0))
+    x, y, z = _KEY @ stage.axes / np.linalg.norm(_KEY)
+    scene.display.light_direction = (x, z, -y)  # Workbench knows no lights; its second axis is the world's up
+    _add_sky(scene)
+    return _add_floor(scene, stage)
+
+
+def colour(data: "bpy.types.Curve") -> None:
+    """Give every spline its colour."""
+    for k in range(min(len(data.splines), len(_COLOURS))):
+        data.materials.append(_glazed(f"Glaze {k + 1}", _COLOURS[k]))
+    for k, spline in enumerate(data.splines):
+        spline.material_index = k % len(_COLOURS)
+
+
+def add(scene: "bpy.types.Scene", name: str, data: "bpy.types.ID") -> "bpy.types.Object":
+    """Add an object to a scene."""
+    import bpy
+
+    obj = bpy.data.objects.new(name, data)
+    scene.collection.objects.link(obj)
+    return obj
+
+
+def place(obj: "bpy.types.Object", at: FloatArray, towards: FloatArray, up: FloatArray) -> None:
+    """Put an object somewhere with its −z axis pointing at a target and its y axis up."""
+    from mathutils import Matrix
+
+    backward = (at - towards) / np.linalg.norm(at - towards)
+    right = np.cross(up, backward)
+    right /= np.linalg.norm(right)
+    rotation = np.column_stack([right, np.cross(backward, right), backward])
+    obj.matrix_world = Matrix(np.block([[rotation, at[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]).tolist())
+
+
+def _add_light(
+    scene: "bpy.types.Scene",
+    stage: Stage,
+    name: str,
+    at: npt.ArrayLike,
+    width: float,
+    strength: float,
+    tint: tuple[float, float, float],
+) -> None:
+    """Add a square light; place, width and strength are in units of the stage's size."""
+    import bpy
+
+    data = bpy.data.lights.new(name, "AREA")
+    data.size = width * stage.size
+    data.energy = strength * stage.size**2
+    data.color = tint
+    at = stage.middle + stage.size * (np.asarray(at) @ stage.axes)
+    place(add(scene, name, data), at, stage.middle, stage.axes[2])
+
+
+def _add_floor(scene: "bpy.types.Scene", stage: Stage) -> "bpy.types.Object":
+    import bpy
+
+    x, y = _WIDTH * stage.size * stage.axes[:2]
+    data = bpy.data.meshes.new("Floor")
+    data.from_pydata([p.tolist() for p in (-x - y, x - y, x + y, y - x)], [], [(0, 1, 2, 3)])
+    data.materials.append(_material("Paper", _FLOOR_COLOUR, {"Roughness": 0.9, "Specular IOR Level": 0.2}))
+    floor = add(scene, "Floor", data)
+    floor.location = stage.middle
+    return floor
+
+
+def _add_sky(scene: "bpy.types.Scene") -> None:
+    import bpy
+
+    world = scene.world or bpy.data.worlds.new("World")
+    scene.world = world
+    if world.node_tree is None:  # from Blender 5.0 on there is one from the start, and the switch is deprecated
+        world.use_nodes = True
+    background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
+    background.inputs["Color"].default_value = (*_SKY_COLOUR, 1.0)
+    background.inputs["Strength"].default_value = _SKY_STRENGTH
+
+
+def _glazed(name: str, tint: tuple[float, float, float]) -> "bpy.types.Material":
+    return _material(name, tint, {"Roughness": 0.32, "Coat Weight": 0.6, "Coat Roughness": 0.08})
+
+
+def _material(name: str, tint: tuple[float, float, float], values: dict[str, float]) -> "bpy.types.Material":
+    import bpy
+
+    material = bpy.data.materials.new(name)
+    material.diffuse_color = (*np.power(tint, _VIEWPORT), 1.0)
+    material.roughness = values["Roughness"]
+    if material.node_tree is None:
+        material.use_nodes = True
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    shader.inputs["Base Color"].default_value = (*tint, 1.0)
+    for socket, value in values.items():
+        shader.inputs[socket].default_value = value
+    return material

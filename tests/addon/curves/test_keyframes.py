@@ -1,0 +1,153 @@
+"""Blender shows at every key frame exactly what was keyed, whichever way it is keyed."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored  # noqa: E402
+from mobius_flow.addon.curves.keyframes import write  # noqa: E402
+from mobius_flow.addon.engine.key_options import KeyOptions, Output  # noqa: E402
+from mobius_flow.addon.engine.motion import Key, Keys  # noqa: E402
+from mobius_flow.core import Curve, RelaxOptions  # noqa: E402
+from mobius_flow.core import relax as iterates_of  # noqa: E402
+
+
+def library_frames(obj, **options):
+    """The library's iterates for an object at the origin, as 32-bit floats."""
+    components = np.split(
+        stored(obj.data).astype(np.float64), np.cumsum([len(s.points) for s in obj.data.splines])[:-1]
+    )
+    iterates = iterates_of(Curve.from_components(components), RelaxOptions(**options))
+    return [iterate.curve.vertices.astype(np.float32) for iterate in iterates]
+
+
+@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES"])
+@pytest.mark.parametrize("add", [add_trefoil, add_hopf_link])
+def test_iterates_are_exact_at_their_frames(keyframes, add):
+    obj = add()
+    expected = library_frames(obj, max_iterations=8)
+    relax(keyframes=keyframes, max_iterations=8, start_frame=11, frames_per_iterate=2.5)
+    for k, points in enumerate(expected):
+        np.testing.assert_array_equal(evaluated(obj, 11 + 2.5 * k), points)
+    for frame, points in ((-5, expected[0]), (100, expected[-1])):
+        np.testing.assert_array_equal(evaluated(obj, frame), points)
+
+
+@pytest.mark.parametrize("output", [Output.SHAPE_KEYS, Output.FCURVES])
+def test_many_keys_stay_exact(output):
+    obj = add_trefoil(12)
+    rng = np.random.default_rng(1)
+    points = rng.standard_normal((600, 12, 3)).astype(np.float32)
+    keys = Keys(tuple(Key(0.37 * k, p) for k, p in enumerate(points)), 0)
+    options = KeyOptions(output=output, start_frame=-20, frames_per_iterate=1 / 0.37)
+    write(obj, keys, options)
+    for k in (0, 1, 2, 299, 500, 598, 599):
+        np.testing.assert_allclose(evaluated(obj, k - 20), points[k], atol=2e-4 if 0 < k < 599 else 0)
+
+
+def test_shape_keys_are_absolute_with_one_fcurve():
+    obj = relax_trefoil(keyframes="SHAPE_KEYS")
+    keys = obj.data.shape_keys
+    assert not keys.use_relative
+    assert obj.data.animation_data is None
+    (curve,) = fcurves(keys)
+    assert (curve.data_path, len(curve.keyframe_points)) == ("eval_time", len(keys.key_blocks))
+    assert {point.interpolation for point in curve.keyframe_points} == {"LINEAR"}
+    assert [block.frame for block in keys.key_blocks] == [point.co[1] for point in curve.keyframe_points]
+    assert {block.interpolation for block in keys.key_blocks} == {"KEY_LINEAR"}
+    assert len(bpy.data.actions) == 1
+
+
+def test_fcurves_are_one_for_each_coordinate():
+    obj = relax_trefoil(keyframes="FCURVES")
+    assert obj.data.shape_keys is None
+    curves = fcurves(obj.data)
+    assert len(curves) == 3 * len(stored(obj.data))
+    assert {(curve.data_path, curve.array_index) for curve in curves} == {
+        (f"splines[0].points[{p}].co", axis) for p in range(len(stored(obj.data))) for axis in range(3)
+    }
+    assert all(curve.keyframe_points[0].interpolation == "LINEAR" for curve in curves)
+
+
+def relax_trefoil(**options):
+    add_trefoil()
+    return relax(max_iterations=5, **options)
+
+
+def test_the_result_alone_is_not_animated():
+    obj = relax_trefoil(keyframes="RESULT")
+    assert obj.data.shape_keys is None
+    assert obj.data.animation_data is None
+    assert len(bpy.data.actions) == 0
+
+
+def test_points_move_straight_between_keys():
+    obj = relax_trefoil(frames_per_iterate=4.0)
+    for frame in (1, 5):
+        ends = evaluated(obj, frame).astype(np.float64), evaluated(obj, frame + 4).astype(np.float64)
+        for share in (0.25, 0.5, 0.75):
+            straight = (1 - share) * ends[0] + share * ends[1]
+            np.testing.assert_allclose(evaluated(obj, frame + 4 * share), straight, atol=2e-6)
+
+
+def test_removing_the_keys_leaves_the_relaxed_curve():
+    obj = relax_trefoil()
+    last = evaluated(obj, 6)
+    obj.shape_key_clear()
+    np.testing.assert_array_equal(evaluated(obj, 1), last)
+    np.testing.assert_array_equal(stored(obj.data), last)
+
+
+def test_thinning_keeps_first_and_last():
+    obj = add_trefoil()
+    expected = library_frames(obj, max_iterations=20)
+    relax(max_iterations=20, max_keys=4)
+    assert 4 <= len(obj.data.shape_keys.key_blocks) < 20
+    np.testing.assert_array_equal(evaluated(obj, 1), expected[0])
+    np.testing.assert_array_equal(evaluated(obj, 21), expected[-1])
+    for key in fcurves(obj.data.shape_keys)[0].keyframe_points:
+        shown = evaluated(obj, key.co[0])
+        assert any(np.array_equal(shown, frame) for frame in expected)
+
+
+def test_thinned_keys_are_proved(capfd):
+    from mobius_flow.core.collision import is_free
+    from mobius_flow.core.knots import hard_unknot
+
+    curve = hard_unknot(8, seed=3, vertices=80)
+    obj = add_curve([curve.vertices])
+    relax(max_keys=3)
+    assert "proved free of contact" in capfd.readouterr().out
+    blocks = obj.data.shape_keys.key_blocks
+    keys = np.empty((len(blocks), 3 * len(blocks[0].data)), dtype=np.float32)
+    for k, block in enumerate(blocks):
+        block.data.foreach_get("co", keys[k])
+    mesh = Curve(keys[0].reshape(-1, 3).astype(np.float64)).mesh
+    frames = keys.reshape(len(blocks), -1, 3).astype(np.float64)
+    for a, b in pairwise(frames):
+        assert is_free(mesh, a, b)
+
+
+@pytest.mark.parametrize("start", [-1_048_574, 0, 16_777, 1_048_000])
+def test_keys_stay_apart_in_blenders_numbers(start):
+    """Keys of short legs lie nearer together than 32 bits tell frames apart; none may fall on another."""
+    times = np.concatenate([k + np.array([0, 1e-7, 2e-7, 0.5, 0.5 + 1e-9]) for k in range(50)])
+    points = np.zeros((3, 3), dtype=np.float32)
+    keys = Keys(tuple(Key(float(time), points) for time in times), 0)
+    options = KeyOptions(start_frame=start)
+    frames = options.scene_frames(keys)
+    assert (np.diff(frames.astype(np.float32)) > 0).all()
+    np.testing.assert_allclose(frames, start + times, atol=0.3)
+
+
+def test_keys_near_the_last_frame_are_all_there():
+    obj = add_trefoil()
+    expected = library_frames(obj, max_iterations=8)
+    relax(max_iterations=8, start_frame=1_048_500)
+    (curve,) = fcurves(obj.data.shape_keys)
+    assert [point.co[0] for point in curve.keyframe_points] == [1_048_500 + k for k in range(9)]
+    for k, points in enumerate(expected):
+        np.testing.assert_array_equal(evaluated(obj, 1_048_500 + k), points)

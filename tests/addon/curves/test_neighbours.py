@@ -1,0 +1,141 @@
+"""What is not relaxed stays as it is, and is named: other objects, animation that is there already, other files."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, fcurves, relax, show, stored  # noqa: E402
+from mathutils import Euler  # noqa: E402
+from mobius_flow.addon.curves.neighbours import warning  # noqa: E402
+from shapes import hopf_link, regular_polygon  # noqa: E402
+
+
+def keyed(block):
+    """All numbers of a datablock's F-curves."""
+    return [(curve.data_path, [tuple(point.co) for point in curve.keyframe_points]) for curve in fcurves(block)]
+
+
+def test_what_is_not_selected_stays():
+    other = add_hopf_link()
+    other.select_set(False)
+    before = stored(other.data)
+    obj = add_trefoil()
+    moving = stored(obj.data)
+    relax(max_iterations=3)
+    np.testing.assert_array_equal(stored(other.data), before)
+    assert other.data.shape_keys is None
+    assert stored(obj.data).shape != moving.shape or not np.array_equal(stored(obj.data), moving)
+
+
+def test_two_objects_one_after_the_other():
+    first, second = add_trefoil(), add_hopf_link()
+    first.select_set(False)
+    relax(max_iterations=3)
+    result = stored(second.data)
+    first.select_set(True)
+    second.select_set(False)
+    relax(max_iterations=3)
+    np.testing.assert_array_equal(stored(second.data), result)
+    assert {obj.data.shape_keys is not None for obj in (first, second)} == {True}
+
+
+def test_the_objects_own_animation_stays():
+    obj = add_trefoil()
+    for frame, x in ((1, 0.0), (20, 3.0)):
+        obj.location.x = x
+        obj.keyframe_insert("location", frame=frame)
+    bpy.context.scene.frame_set(1)
+    before = keyed(obj)
+    relax(max_iterations=3)
+    assert keyed(obj) == before
+    bpy.context.scene.frame_set(20)
+    assert obj.location.x == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES"])
+def test_keys_that_are_there_are_never_overwritten(keyframes):
+    obj = add_trefoil()
+    relax(max_iterations=3, keyframes=keyframes)
+    block = obj.data.shape_keys if keyframes == "SHAPE_KEYS" else obj.data
+    before, points = keyed(block), stored(obj.data)
+    with pytest.raises(RuntimeError, match="without"):
+        relax(max_iterations=3)
+    assert keyed(block) == before
+    np.testing.assert_array_equal(stored(obj.data), points)
+
+
+def test_a_library_is_never_written_to(tmp_path):
+    add_trefoil()
+    library = tmp_path / "library.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(library))
+    contents = library.read_bytes()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(library), link=True) as (_, linked):
+        linked.objects = ["Knot"]
+    (obj,) = linked.objects
+    show(obj)
+    before = stored(obj.data)
+    with pytest.raises(RuntimeError, match="linked from another file"):
+        relax()
+    np.testing.assert_array_equal(stored(obj.data), before)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "mine.blend"))
+    assert library.read_bytes() == contents
+
+
+def box(name, place, visible=True):
+    """An unselected mesh object with a corner at the origin and another at (1, 1, 1)."""
+    data = bpy.data.meshes.new(name)
+    data.from_pydata([(0, 0, 0), (1, 1, 1)], [(0, 1)], [])
+    obj = show(bpy.data.objects.new(name, data))
+    obj.location = place
+    obj.select_set(False)
+    obj.hide_set(not visible)
+    return obj
+
+
+def said(*objects):
+    bpy.context.view_layer.update()
+    return warning(bpy.context, objects)
+
+
+def test_what_is_near_is_named():
+    obj = add_curve([regular_polygon(20).vertices])
+    assert said(obj) is None
+    box("Far", (3, 0, 0))
+    assert said(obj) is None
+    box("Near", (1.1, 0, 0))
+    assert said(obj) == "Only selected curves are kept apart; 'Near' nearby is not"
+    obj.location.x = 2
+    assert said(obj) == "Only selected curves are kept apart; 'Far' and 'Near' nearby are not"
+
+
+def test_many_are_counted():
+    obj = add_curve([regular_polygon(20).vertices])
+    for k in range(9):
+        box(f"Box {k}", (0, 0, 0))
+    assert said(obj).endswith("; 'Box 0', 'Box 1', 'Box 2' and 6 more nearby are not")
+
+
+def test_a_ring_that_is_not_selected_is_named():
+    vertices = hopf_link(24).vertices
+    first, second = add_curve([vertices[:24]], "A"), add_curve([vertices[24:]], "B")
+    assert said(first) == "Only selected curves are kept apart; 'B' nearby is not"
+    assert said(first, second) is None
+
+
+def test_only_what_is_seen_and_solid_is_named():
+    obj = add_curve([regular_polygon(20).vertices])
+    box("Hidden", (0, 0, 0), visible=False)
+    show(bpy.data.objects.new("Empty", None))
+    show(bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera")))
+    assert said(obj) is None
+
+
+def test_boxes_are_those_in_the_world():
+    obj = add_curve([regular_polygon(20).vertices])
+    other = box("Turned", (5, 0, 0))
+    other.scale = (6, 1, 1)
+    assert said(obj) is None
+    other.rotation_euler = Euler((0, 0, np.pi))
+    assert "'Turned'" in said(obj)

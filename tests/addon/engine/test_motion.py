@@ -1,0 +1,197 @@
+"""Which frames are keyed: straight lines from key to key are proved, in Blender's own numbers."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from mobius_flow.addon.engine.motion import Motion
+from mobius_flow.addon.engine.placement import Link, Placement
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, relax
+from mobius_flow.core.collision import free_motion, is_free
+from shapes import regular_polygon, torus_trefoil
+
+
+def at_rest(*counts):
+    """Objects with so many components each, all at the world's origin."""
+    return Link(tuple(Placement(np.eye(3), np.zeros(3)) for _ in counts), counts)
+
+
+def iterate(index, vertices, mesh_of, path=None, **changes):
+    curve = mesh_of.with_vertices(vertices)
+    path = ((vertices,) if index else ()) if path is None else path
+    values = {"energy": 0.0, "gradient_norm": 1.0, "step_size": 0.1, "certified": True, "edge_length_error": 0.0}
+    return Iterate(index=index, curve=curve, path=path, **(values | changes))
+
+
+def around(angle):
+    """Two squares; the second passes over the first, in a half circle of legs whose chord goes through it."""
+    still = 4 * regular_polygon(4).vertices
+    moving = 0.5 * regular_polygon(4).vertices + np.round([4.0 + 3 * np.cos(angle), 0.0, 3 * np.sin(angle)], 6)
+    return Curve.from_components([still, moving])
+
+
+def collected(curves, paths=()):
+    motion = Motion(at_rest(len(curves[0].components)))
+    for k, curve in enumerate(curves):
+        motion.add(iterate(k, curve.vertices, curve, dict(paths).get(k)))
+    return motion
+
+
+def assert_proved(keys, mesh):
+    assert keys.certified
+    for a, b in pairwise(keys.keys):
+        assert a.time < b.time
+        assert a.points.dtype == b.points.dtype == np.float32
+        assert free_motion(mesh, a.points.astype(np.float64), b.points.astype(np.float64)).time == 1.0
+
+
+def test_a_chord_that_collides_gets_keys_at_the_legs():
+    start, end = around(0.0), around(np.pi)
+    legs = tuple(around(angle).vertices for angle in np.linspace(0, np.pi, 5)[1:])
+    assert not is_free(start.mesh, start.vertices, end.vertices)
+    keys = collected([start, end], {1: legs}).keys(is_free)
+    assert 2 < len(keys.keys) <= 5
+    assert_proved(keys, start.mesh)
+    inner = keys.keys[1].points
+    assert any(np.array_equal(inner, leg.astype(np.float32)) for leg in legs)
+
+
+def test_a_chord_that_is_free_gets_no_keys():
+    start, end = around(0.0), around(0.4)
+    legs = tuple(around(angle).vertices for angle in (0.1, 0.2, 0.3, 0.4))
+    keys = collected([start, end], {1: legs}).keys(is_free)
+    assert len(keys.keys) == 2
+    assert_proved(keys, start.mesh)
+
+
+def test_thinning_inserts_iterates_where_chords_collide():
+    curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
+    keys = collected(curves).keys(is_free, limit=2)
+    assert 2 < len(keys.keys) < 10
+    assert_proved(keys, curves[0].mesh)
+    assert {key.time for key in keys.keys} <= set(range(21))
+
+
+@pytest.mark.parametrize("limit", [2, 5, 9])
+def test_thinning_where_nothing_collides(limit):
+    curves = [around(angle) for angle in np.linspace(0, 0.5, 21)]
+    keys = collected(curves).keys(is_free, limit=limit)
+    assert [key.time for key in keys.keys] == [round(t) for t in np.linspace(0, 20, limit)]
+    assert_proved(keys, curves[0].mesh)
+
+
+@pytest.mark.parametrize("limit", [None, 2, 6])
+def test_a_real_run_is_proved(limit):
+    iterates = list(relax(torus_trefoil(48), RelaxOptions(max_iterations=40)))
+    motion = Motion(at_rest(1))
+    for each in iterates:
+        motion.add(each)
+    keys = motion.keys(is_free, limit)
+    assert_proved(keys, iterates[0].curve.mesh)
+    assert keys.keys[-1].time == iterates[-1].index
+    np.testing.assert_array_equal(keys.keys[-1].points, iterates[-1].curve.vertices.astype(np.float32))
+
+
+def test_what_cannot_be_proved_is_counted_not_hidden():
+    keys = collected([around(0.0), around(np.pi)]).keys(is_free)
+    assert not keys.certified
+    assert keys.unproved == 1
+    assert len(keys.keys) == 2
+
+
+def test_rounding_through_contact_is_counted():
+    """A gap far below 32 bits: the doubles are apart, what Blender stores is not."""
+    square = regular_polygon(4).vertices
+    other = square + np.array([1.0, 0.0, 1e-12])
+    curve = Curve.from_components([square + 1000.0, other + 1000.0])
+    assert not collected([curve, curve]).keys(is_free).certified
+    assert not collected([curve]).result(is_free).certified
+
+
+def test_an_uncertified_run_has_no_certified_result():
+    curve = around(0.0)
+    motion = Motion(at_rest(2))
+    motion.add(iterate(0, curve.vertices, curve))
+    motion.add(iterate(1, curve.vertices, curve, certified=False))
+    assert not motion.result(is_free).certified
+
+
+def test_a_stalled_run_repeats_its_last_iterate():
+    curve = around(0.0)
+    motion = Motion(at_rest(2))
+    motion.add(iterate(0, curve.vertices, curve))
+    motion.add(iterate(0, curve.vertices, curve, status=Status.STALLED, message="stalled"))
+    assert motion.last.status is Status.STALLED
+    assert len(motion.keys(is_free).keys) == 1
+
+
+def test_times_of_legs_follow_their_lengths():
+    start = regular_polygon(4)
+    path = tuple(start.vertices + np.array([0, 0, z]) for z in (1.0, 4.0, 5.0))
+    motion = collected([start, start.with_vertices(path[-1])], {1: path})
+    keys = motion.keys(lambda _mesh, a, b: np.abs(b - a).max() < 3.5)
+    assert [key.time for key in keys.keys] == pytest.approx([0, 0.2, 0.8, 1])
+
+
+def test_one_unproved_leg_is_halved():
+    start = regular_polygon(4)
+    motion = collected([start, start.with_vertices(start.vertices + np.array([0, 0, 1.0]))])
+    keys = motion.keys(lambda _mesh, a, b: np.abs(b - a).max() < 0.3)
+    assert [key.time for key in keys.keys] == [0, 0.25, 0.5, 0.75, 1]
+    assert keys.certified
+
+
+def placed(linear, origin):
+    return Placement(np.array(linear, dtype=float), np.array(origin, dtype=float))
+
+
+TURNED = placed([[0, -2, 0], [0.5, 0, 0.1], [0, 0, -3]], [100, -7, 3])
+
+
+@pytest.mark.parametrize("placements", [(TURNED, placed(np.eye(3), [1, 2, 3])), (placed(np.eye(3), 3 * [0]), TURNED)])
+def test_chords_of_different_objects_are_proved_against_each_other(placements):
+    """Each square by itself may go straight; together the second must go round the first."""
+    link = Link(placements, (1, 1))
+    curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
+    motion = Motion(link)
+    for k, curve in enumerate(curves):
+        motion.add(iterate(k, curve.vertices, curve))
+    keys = motion.keys(is_free, limit=2)
+    mesh = curves[0].mesh
+    assert keys.certified
+    assert 2 < len(keys.keys) < 10
+    for a, b in pairwise(keys.keys):
+        world = [
+            np.concatenate([placements[k].to_world(key.points[mesh.slices[k]].astype(np.float64)) for k in (0, 1)])
+            for key in (a, b)
+        ]
+        assert is_free(mesh, *world)
+    for k, s in enumerate(mesh.slices):
+        alone = Motion(Link((placements[k],), (1,)))
+        for index, curve in enumerate(curves):
+            part = Curve(curve.vertices[s])
+            alone.add(iterate(index, part.vertices, part))
+        assert len(alone.keys(is_free, limit=2).keys) == 2
+
+
+def test_a_single_object_is_proved_in_its_own_numbers():
+    """In the common space of one object points are exactly what Blender stores, wherever the object is."""
+    curve = torus_trefoil(30)
+    stored = TURNED.to_local(curve.vertices).astype(np.float32)
+    link = Link((TURNED,), (1,))
+    assert np.array_equal(link.to_common(curve.mesh, stored), stored)
+    assert link.scales == (1.0,)
+
+
+def test_objects_placed_alike_are_proved_in_their_own_numbers():
+    curve = around(0.3)
+    link = Link((TURNED, TURNED), (1, 1))
+    stored = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
+    assert np.array_equal(link.to_common(curve.mesh, stored), stored)
+
+
+def test_the_common_space_is_the_first_objects():
+    curve = around(0.3)
+    link = Link((TURNED, placed(np.eye(3), [1, 2, 3])), (1, 1))
+    common = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))
+    np.testing.assert_allclose(TURNED.to_world(common), curve.vertices, atol=1e-13)

@@ -1,0 +1,252 @@
+"""The event loop of the Relax operator, driven by a double of the operator that is fed events by hand.
+
+Without a window Blender runs ``execute`` instead of ``invoke``; ``tests/window`` has the real thing.
+"""
+
+import time
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored  # noqa: E402
+from mobius_flow.addon.curves.session import State  # noqa: E402
+from mobius_flow.addon.curves.snapshot import Snapshot  # noqa: E402
+from mobius_flow.addon.engine import worker  # noqa: E402
+from modal_operator import Operator, keys, restored  # noqa: E402
+from processes import PATIENCE  # noqa: E402
+from shapes import torus_trefoil  # noqa: E402
+
+
+def test_the_same_curve_as_the_headless_job(operator):
+    live, headless = add_trefoil(), add_trefoil()
+    live.select_set(False)
+    bpy.ops.curve.mobius_flow_relax(vertices=120)
+    headless.select_set(False)
+    live.select_set(True)
+    assert operator.start() == {"RUNNING_MODAL"}
+    assert operator.until(lambda: False) == {"FINISHED"}
+    np.testing.assert_array_equal(keys(live), keys(headless))
+    np.testing.assert_array_equal(stored(live.data), stored(headless.data))
+    assert live.data.bevel_depth == headless.data.bevel_depth > 0
+    assert operator.reports[-1][0] == {"INFO"}
+
+
+@pytest.mark.parametrize("kind", ["POLY", "BEZIER", "NURBS"])
+def test_esc_restores_bit_for_bit(operator, kind):
+    rng = np.random.default_rng(7)
+    obj = add_curve([torus_trefoil(24).vertices + 3 * k for k in (0, 4)], kind=kind)
+    for spline in obj.data.splines:
+        for point in spline.bezier_points if kind == "BEZIER" else spline.points:
+            point.radius, point.tilt = rng.random(2)
+    obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
+    before = Snapshot(obj.data)
+    operator.values["vertices"] = 0
+    operator.start()
+    operator.reach(2)
+    assert obj.data.splines[0].type == "POLY"
+    assert operator.event("ESC") == {"CANCELLED"}
+    restored(obj, before)
+    assert operator.run.state is State.CANCELLED
+
+
+def test_every_iterate_is_shown(operator):
+    obj = add_trefoil()
+    operator.start()
+    shown = []
+    operator.until(lambda: operator.run.last is not None and shown.append(operator.run.last.index))
+    assert sorted(set(shown)) == list(range(operator.run.last.index + 1))
+    assert obj.data.shape_keys is not None
+
+
+def test_pause_and_enter_keep_what_is_shown(operator):
+    obj = add_hopf_link()
+    operator.start()
+    operator.reach(2)
+    operator.run.pause()
+    shown = stored(obj.data)
+    for _ in range(20):
+        operator.event()
+    np.testing.assert_array_equal(stored(obj.data), shown)
+    operator.event("RET")
+    assert operator.until(lambda: False) == {"FINISHED"}
+    np.testing.assert_array_equal(stored(obj.data), shown)
+    assert "stopped after 2 iterations" in operator.run.message
+    assert bpy.context.scene.frame_current_final == pytest.approx(operator.run.report.last_frame)
+
+
+def test_undo_key_is_esc(operator):
+    obj = add_trefoil()
+    before = Snapshot(obj.data)
+    operator.start()
+    operator.reach(1)
+    assert operator.event("Z", ctrl=True) == {"CANCELLED"}
+    restored(obj, before)
+
+
+def test_other_events_pass_through(operator):
+    add_trefoil()
+    operator.start()
+    assert operator.event("MOUSEMOVE") == operator.event("G") == operator.event() == {"PASS_THROUGH"}
+
+
+def test_one_at_a_time(operator):
+    add_trefoil()
+    operator.start()
+    second = Operator()
+    assert second.start() == {"CANCELLED"}
+    assert "is being relaxed; stop that first" in second.reports[0][1]
+
+
+def test_another_object_has_to_wait(operator):
+    obj = add_trefoil()
+    before = Snapshot(obj.data)
+    operator.start()
+    operator.reach(1)
+    other = add_hopf_link()
+    untouched = Snapshot(other.data)
+    second = Operator()
+    assert second.start() == {"CANCELLED"}
+    assert second.reports == [({"ERROR"}, f"'{obj.name}' is being relaxed; stop that first")]
+    operator.event("ESC")
+    restored(obj, before)
+    restored(other, untouched)
+
+
+def test_a_bad_curve_is_refused_untouched(operator):
+    points = torus_trefoil(30).vertices.copy()
+    points[3] = points[2]
+    obj = add_curve([points])
+    before = Snapshot(obj.data)
+    operator.start()
+    assert operator.until(lambda: False) == {"CANCELLED"}
+    assert operator.reports[-1][0] == {"ERROR"}
+    restored(obj, before)
+
+
+def test_deletion(operator):
+    obj = add_trefoil()
+    data, before = obj.data, stored(obj.data)
+    operator.start()
+    operator.reach(1)
+    bpy.data.objects.remove(obj)
+    assert operator.event() == {"CANCELLED"}
+    assert operator.run.state is State.LOST
+    np.testing.assert_array_equal(stored(data), before)
+
+
+def test_a_new_name_does_not_matter(operator):
+    obj = add_trefoil()
+    operator.start()
+    operator.reach(1)
+    obj.name, obj.data.name = "Other", "Other"
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert operator.run.report.names == ("Other",)
+
+
+def test_topology_change_leaves_what_somebody_made(operator):
+    obj = add_trefoil()
+    operator.start()
+    operator.reach(1)
+    obj.data.splines[0].points.add(1)
+    count = len(obj.data.splines[0].points)
+    assert operator.event() == {"CANCELLED"}
+    assert len(obj.data.splines[0].points) == count
+
+
+def test_shape_keys_of_somebody_else_are_left_alone(operator):
+    obj = add_trefoil()
+    operator.start()
+    operator.reach(1)
+    obj.shape_key_add(name="Mine")
+    shown, key = stored(obj.data), keys(obj)
+    assert operator.event() == {"CANCELLED"}
+    assert operator.run.state is State.LOST
+    np.testing.assert_array_equal(stored(obj.data), shown)
+    np.testing.assert_array_equal(keys(obj), key)
+
+
+def test_edit_mode(operator):
+    obj = add_trefoil()
+    before = Snapshot(obj.data)
+    operator.start()
+    operator.reach(1)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert operator.event() == {"CANCELLED"}
+    assert obj.mode == "EDIT"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    restored(obj, before)
+
+
+def test_a_saved_file_has_the_curve_as_it_was(operator, tmp_path):
+    obj = add_trefoil()
+    before = stored(obj.data)
+    operator.start()
+    operator.reach(1)
+    shown = stored(obj.data)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"), copy=True)
+    np.testing.assert_array_equal(stored(obj.data), shown)
+    operator.run.cancel()
+    with bpy.data.libraries.load(str(tmp_path / "a.blend")) as (_, loaded):
+        loaded.curves = [obj.data.name]
+    np.testing.assert_array_equal(stored(loaded.curves[0]), before)
+
+
+def test_loading_a_file(operator):
+    add_trefoil()
+    operator.start()
+    operator.reach(1)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    assert operator.run.state is State.CANCELLED
+    assert operator.run._worker.process.poll() is not None
+    operator.cancel(operator.context)
+
+
+def test_disabling_ends_the_run(operator, addon):
+    obj = add_trefoil()
+    before = Snapshot(obj.data)
+    operator.start()
+    operator.reach(1)
+    addon.unregister()
+    addon.register()
+    assert operator.run.state is State.CANCELLED
+    restored(obj, before)
+
+
+def test_a_worker_that_dies_loses_nothing(operator):
+    obj = add_trefoil()
+    operator.values["vertices"] = 400
+    operator.start()
+    operator.reach(1)
+    operator.run._worker.process.kill()
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert operator.run.failed
+    assert operator.reports[-1][0] == {"WARNING"}
+    assert obj.data.shape_keys is not None
+
+
+def test_without_a_process_a_thread(operator, monkeypatch):
+    monkeypatch.setattr(worker, "_start", lambda: None)
+    add_trefoil()
+    operator.start()
+    assert operator.run._worker.process is None
+    assert operator.until(lambda: False) == {"FINISHED"}
+
+
+def test_esc_while_keys_are_written(operator):
+    obj = add_trefoil()
+    before = Snapshot(obj.data)
+    actions = len(bpy.data.actions)
+    operator.start()
+    operator.until(lambda: operator.run._writing is not None or operator.run.state is State.FINISHING)
+    end = time.monotonic() + PATIENCE
+    while operator.run._prepared is None:
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    operator.run._writing = operator.run._session.writing(operator.run._prepared)
+    next(operator.run._writing)
+    operator.event("ESC")
+    restored(obj, before)
+    assert obj.data.shape_keys is None
+    assert len(bpy.data.actions) == actions

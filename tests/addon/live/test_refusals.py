@@ -1,0 +1,323 @@
+"""What cannot be relaxed is refused in one sentence, and nothing changes."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, relax, sentence, show  # noqa: E402
+from mobius_flow.addon.curves import sampling  # noqa: E402
+from shapes import torus_trefoil  # noqa: E402
+
+
+def refused(**options):
+    """What the operator says; nothing may have changed."""
+    before = contents()
+    with pytest.raises(RuntimeError) as error:
+        bpy.ops.curve.mobius_flow_relax(**options)
+    assert contents() == before
+    said = sentence(error.value)
+    assert 20 < len(said) < 200
+    return said
+
+
+def few_points():
+    add_curve([torus_trefoil(9).vertices, [[5, 0, 0], [6, 0, 0]]])
+    return "Spline 2 of 'Knot' has fewer than 3 points"
+
+
+def no_splines():
+    add_curve([])
+    return "no splines"
+
+
+def not_finite():
+    add_trefoil().data.splines[0].points[6].co[1] = np.nan
+    return "Point 7 of spline 1 of 'Knot' is not finite"
+
+
+def infinite_in_second():
+    points = add_hopf_link().data.splines[1].points
+    array = np.zeros(4 * len(points))
+    points.foreach_get("co", array)
+    array[8] = np.inf  # setting a single coordinate would clamp it
+    points.foreach_set("co", array)
+    return "Point 3 of spline 2 of 'Knot' is not finite"
+
+
+def nothing_selected():
+    add_trefoil().select_set(False)
+    return "Select a curve object first"
+
+
+def nothing_there():
+    return "Select a curve object first"
+
+
+def mesh():
+    data = bpy.data.meshes.new("Mesh")
+    data.from_pydata(torus_trefoil(9).vertices.tolist(), [], [])
+    show(bpy.data.objects.new("Mesh", data))
+    return "'Mesh' is of type Mesh"
+
+
+def empty():
+    show(bpy.data.objects.new("Axes", None))
+    return "'Axes' is of type Empty"
+
+
+def text():
+    show(bpy.data.objects.new("Words", bpy.data.curves.new("Words", "FONT")))
+    return "'Words' is of type Text"
+
+
+def surface():
+    show(bpy.data.objects.new("Sheet", bpy.data.curves.new("Sheet", "SURFACE")))
+    return "'Sheet' is of type Surface"
+
+
+def hidden():
+    add_trefoil().hide_set(True)
+    return "'Knot' is hidden"
+
+
+def switched_off():
+    add_trefoil().hide_viewport = True
+    return "'Knot' is hidden"
+
+
+def shared_data():
+    obj = add_trefoil()
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Other", obj.data))
+    return "'Knot' shares its curve data 'Knot' with other objects"
+
+
+def zero_scale():
+    add_trefoil().scale = (1, 0, 1)
+    return "scaled to nothing"
+
+
+def zero_parent():
+    obj = add_trefoil()
+    obj.parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(obj.parent)
+    obj.parent.scale = (0, 0, 0)
+    return "scaled to nothing"
+
+
+def open_spline():
+    add_curve([torus_trefoil(9).vertices], cyclic=False)
+    return "Spline 1 of 'Knot' is open"
+
+
+def bezier():
+    add_curve([torus_trefoil(9).vertices], kind="BEZIER")
+    return "is a Bézier spline"
+
+
+def nurbs():
+    add_curve([torus_trefoil(9).vertices], kind="NURBS")
+    return "is a NURBS spline"
+
+
+def shape_keys():
+    add_trefoil().shape_key_add(name="Basis")
+    return "has shape keys"
+
+
+def relaxed_before():
+    add_trefoil()
+    relax(max_iterations=2)
+    return "has shape keys"
+
+
+def relaxed_before_to_fcurves():
+    add_trefoil()
+    relax(max_iterations=2, keyframes="FCURVES")
+    return "is animated"
+
+
+def animated():
+    obj = add_trefoil()
+    obj.data.bevel_depth = 0.1
+    obj.data.keyframe_insert("bevel_depth", frame=1)
+    return "is animated"
+
+
+def driven():
+    data = add_trefoil().data
+    data.driver_add("splines[0].points[3].co", 1)
+    return "are driven"
+
+
+def flat():
+    add_trefoil().data.dimensions = "2D"
+    return "2D"
+
+
+def stray_bezier():
+    add_curve([torus_trefoil(9).vertices, [[9, 9, 9]]], kind="BEZIER")
+    return "Spline 2 of 'Knot' has fewer than 2 points"
+
+
+def stray_nurbs():
+    add_curve([torus_trefoil(9).vertices, [[9, 9, 9], [9, 9, 8]]], kind="NURBS")
+    return "Spline 2 of 'Knot' has fewer than 3 points"
+
+
+def crossing():
+    add_curve([[[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]]])
+    return "touch"
+
+
+def double_point():
+    vertices = torus_trefoil(30).vertices
+    add_curve([np.insert(vertices, 4, vertices[4], axis=0)])
+    return ""
+
+
+def touching_components():
+    vertices = torus_trefoil(30).vertices
+    add_curve([vertices, vertices])
+    return "touch"
+
+
+def absurdly_far():
+    add_hopf_link().data.splines[1].points[2].co[0] = np.inf  # which Blender clamps to the largest number
+    return "Point 3 of spline 2 of 'Knot' is not finite, or further away"
+
+
+CASES = [
+    few_points,
+    no_splines,
+    not_finite,
+    infinite_in_second,
+    absurdly_far,
+    nothing_selected,
+    nothing_there,
+    mesh,
+    empty,
+    text,
+    surface,
+    hidden,
+    switched_off,
+    shared_data,
+    zero_scale,
+    zero_parent,
+    open_spline,
+    bezier,
+    nurbs,
+    shape_keys,
+    relaxed_before,
+    relaxed_before_to_fcurves,
+    animated,
+    driven,
+    flat,
+    stray_bezier,
+    stray_nurbs,
+    crossing,
+    double_point,
+    touching_components,
+]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.__name__)
+def test_refused_in_one_sentence(case):
+    expected = case()
+    bpy.context.view_layer.update()
+    assert expected in refused()
+
+
+def test_edit_mode():
+    add_trefoil()
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert "being edited" in refused()
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_linked_from_a_library(tmp_path):
+    add_trefoil()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "library.blend"))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, linked):
+        linked.objects = ["Knot"]
+    (obj,) = linked.objects
+    show(obj)
+    assert "linked from another file" in refused()
+
+
+def test_object_of_ones_own_with_linked_data(tmp_path):
+    add_trefoil()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "library.blend"))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, linked):
+        linked.curves = ["Knot"]
+    show(bpy.data.objects.new("Mine", linked.curves[0]))
+    assert "linked from another file" in refused()
+
+
+@pytest.mark.parametrize("scale", [1e30, 1e38])
+def test_absurd_sizes_are_relaxed_or_refused(scale):
+    add_trefoil().scale = 3 * [scale]
+    before = contents()
+    try:
+        bpy.ops.curve.mobius_flow_relax(max_iterations=2)
+    except RuntimeError as raised:
+        error = raised
+    else:
+        return
+    assert sentence(error)
+    assert contents() == before
+
+
+def test_options_that_do_not_fit():
+    add_trefoil(30)
+    assert "vertices is 10" in refused(vertices=10)
+    assert "vertices is 2" in refused(vertices=2)
+
+
+def test_an_unknown_method_is_a_type_error():
+    add_trefoil()
+    with pytest.raises(TypeError, match="magic"):
+        bpy.ops.curve.mobius_flow_relax(method="magic")
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_stray_smooth_spline_changes_nothing(kind, count):
+    """Refused before anything is touched, whether or not one has agreed to polygons."""
+    stray = torus_trefoil(9).vertices[:count] + 9
+    obj = add_curve([torus_trefoil(9).vertices, stray, torus_trefoil(9).vertices + 20], kind=kind)
+    obj.data.resolution_u = 1  # two Bézier points are drawn as a segment then
+    assert "Spline 2 of 'Knot'" in refused(sample_splines=True)
+
+
+def test_splines_that_are_not_drawn_are_refused(monkeypatch):
+    add_curve([torus_trefoil(9).vertices, torus_trefoil(9).vertices + 9], kind="NURBS")
+    drawn = sampling._drawn
+    monkeypatch.setattr(sampling, "_drawn", lambda data: drawn(data)[1:])
+    assert "draws nothing for" in refused(sample_splines=True)
+
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"frames_per_iterate": NAN}, "Frames/Iterate is nan; it must be from 0.1 to 10000"),
+        ({"tolerance": NAN}, "tolerance is nan"),
+        ({"start_frame": 2**24}, "Start Frame is 1.67772e+07; it must be from -1048574 to 1048574"),
+        ({"start_frame": -(2**24)}, "it must be from -1048574 to 1048574"),
+        ({"start_frame": 1_048_000}, "The keys would go on to frame 1050000, but Blender's last is 1048574"),
+        ({"frames_per_iterate": 10_000.0}, "The keys would go on to frame 20000001"),
+    ],
+)
+def test_frames_that_a_scene_does_not_have(options, said):
+    add_trefoil()
+    assert said in refused(**options)
+
+
+def test_without_keys_there_is_room_anywhere():
+    add_trefoil()
+    relax(keyframes="RESULT", start_frame=1_048_000, max_iterations=2000, vertices=60)

@@ -1,0 +1,90 @@
+"""The camera sees the whole tube in every frame, and the floor stays below it."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
+from mathutils import Vector  # noqa: E402
+from mobius_flow.addon.engine.motion import Key, Keys  # noqa: E402
+from mobius_flow.addon.pictures import film, rendering  # noqa: E402
+from mobius_flow.core.curve import Mesh  # noqa: E402
+
+SIZES = [(640, 360), (360, 640)]
+
+
+def tumbling(keys):
+    """An ellipse that turns, grows and shrinks, from key to key by leaps."""
+    t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    frames = []
+    for k in range(keys):
+        a = 0.9 * k
+        ellipse = np.stack([2 * np.cos(t), np.sin(t), 0.3 * np.sin(2 * t)], axis=1) * (1 + 0.8 * np.sin(1.7 * k))
+        turn = np.array([[np.cos(a), 0, np.sin(a)], [0, 1, 0], [-np.sin(a), 0, np.cos(a)]])
+        frames.append(Key(float(k), (ellipse @ turn).astype(np.float32)))
+    return Keys(tuple(frames), 0)
+
+
+def tube(obj):
+    """Vertices of the drawn tube in the world."""
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", points)
+    evaluated.to_mesh_clear()
+    matrix = np.array(obj.matrix_world)
+    return points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def composed(keys, size, origin=None):
+    scene = bpy.context.scene
+    rendering.use_cycles(scene, *size, 1)
+    film.compose(scene, keys, film.steady_frames(keys), Mesh((40,)), origin)
+    return scene
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("keys", [1, 2, 12])
+@pytest.mark.parametrize("far", [False, True])
+def test_all_is_seen_in_every_frame(size, keys, far):
+    origin = film.Origin(np.array([900.0, -500.0, 64.0]), 256.0) if far else None
+    scene = composed(tumbling(keys), size, origin)
+    obj = bpy.data.objects["Curve"]
+    widest = 0.0
+    for frame in range(scene.frame_start, scene.frame_end + 1, 3):
+        scene.frame_set(frame)
+        points = tube(obj)
+        seen = np.array([world_to_camera_view(scene, scene.camera, Vector(p)) for p in points])
+        assert seen[:, :2].min() > 0, frame
+        assert seen[:, :2].max() < 1, frame
+        assert seen[:, 2].min() > scene.camera.data.clip_start
+        widest = max(widest, np.ptp(seen[:, :2], axis=0).max())
+        floor = bpy.data.objects["Floor"].matrix_world
+        up = np.array(floor.to_3x3().normalized()) @ np.cross(*_sides(bpy.data.objects["Floor"]))
+        assert ((points - np.array(floor.translation)) @ up).min() > 0, frame
+    assert widest > 0.7
+
+
+def _sides(floor):
+    """Two sides of the floor whose cross product is up."""
+    a, b, _, d = (np.array(vertex.co) for vertex in floor.data.vertices)
+    sides = b - a, d - a
+    return [side / np.linalg.norm(side) for side in sides]
+
+
+def test_a_curve_at_rest_has_a_camera_at_rest():
+    keys = tumbling(1)
+    scene = composed(Keys((keys.keys[0], Key(1.0, keys.keys[0].points)), 0), SIZES[0])
+    assert scene.camera.animation_data is None
+    assert bpy.data.objects["Floor"].animation_data is None
+
+
+def test_the_camera_moves_calmly():
+    scene = composed(tumbling(12), SIZES[0])
+    ways = []
+    for frame in range(scene.frame_start, scene.frame_end + 1):
+        scene.frame_set(frame)
+        ways.append(np.array(scene.camera.matrix_world.translation))
+    steps = np.linalg.norm(np.diff(ways, axis=0), axis=1)
+    assert steps.max() < 0.05 * np.linalg.norm(ways[0])

@@ -1,0 +1,222 @@
+"""Scenes, pictures and films of a relaxation, whole or not at all."""
+
+import builtins
+import os
+import sys
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import evaluated, in_world  # noqa: E402
+from mobius_flow.addon.pictures import export, film, rendering  # noqa: E402
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax  # noqa: E402
+from processes import finished  # noqa: E402
+from shapes import hopf_link, regular_polygon, torus_trefoil  # noqa: E402
+
+TINY = (64, 36, 1)
+WRITERS = [export.write_blend, export.write_still, export.write_movie]
+
+
+@pytest.fixture
+def tiny(monkeypatch):
+    """Small and short pictures and films."""
+    monkeypatch.setattr(export, "_PICTURE", TINY)
+    monkeypatch.setattr(export, "_FILM_WITHOUT_DRIVER", TINY)
+    monkeypatch.setattr(export.rendering, "workbench_works", lambda: False)
+    for name, value in (("_FILM", (4, 4)), ("_PAUSE", 1), ("_END", 1)):
+        monkeypatch.setattr(film, name, value)
+
+
+def iterates_of(curve, **options):
+    return list(relax(curve, RelaxOptions(**({"max_iterations": 6} | options))))
+
+
+@pytest.fixture(scope="module")
+def iterates():
+    return iterates_of(torus_trefoil(40))
+
+
+def test_a_scene_plays_the_relaxation(tmp_path, iterates):
+    assert export.write_blend(tmp_path / "a.blend", iterates)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    obj = bpy.data.objects["Curve"]
+    obj.data.bevel_depth = 0
+    scene = bpy.context.scene
+    for frame, iterate in ((scene.frame_start, iterates[0]), (scene.frame_end, iterates[-1])):
+        np.testing.assert_allclose(evaluated(obj, frame), iterate.curve.vertices, atol=1e-6)
+    assert scene.camera
+    assert obj.data.materials
+
+
+FRESH = """
+import bpy, sys
+sys.modules["mobius_flow"] = None
+assert not hasattr(bpy.types.Scene, "mobius_flow")
+bpy.ops.wm.open_mainfile(filepath=sys.argv[1] + "/a.blend")
+scene = bpy.context.scene
+scene.frame_set(scene.frame_end)
+obj = bpy.data.objects["Curve"]
+obj.data.bevel_depth = 0
+mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+print("points", *[x for vertex in mesh.vertices for x in vertex.co])
+scene.render.resolution_x, scene.render.resolution_y, scene.cycles.samples = 32, 18, 1
+scene.render.filepath = sys.argv[1] + "/a.png"
+bpy.ops.render.render(write_still=True)
+"""
+
+
+def test_a_scene_needs_no_add_on(tmp_path, iterates):
+    export.write_blend(tmp_path / "a.blend", iterates)
+    command = [sys.executable, "-c", FRESH, str(tmp_path)]
+    done = finished(command)
+    assert done.returncode == 0, done.stderr
+    (line,) = [line for line in done.stdout.splitlines() if line.startswith("points")]
+    points = np.array(line.split()[1:], dtype=float).reshape(-1, 3)
+    np.testing.assert_allclose(points, iterates[-1].curve.vertices, atol=1e-6)
+    assert (tmp_path / "a.png").stat().st_size > 100
+
+
+@pytest.mark.parametrize(("scale", "shift"), [(1e-9, 0.0), (1e6, 0.0), (1.0, 5000.0)])
+def test_places_and_sizes_stay(tmp_path, scale, shift):
+    curve = Curve(scale * (torus_trefoil(40).vertices + shift))
+    iterates = iterates_of(curve, max_iterations=2)
+    assert export.write_blend(tmp_path / "a.blend", iterates)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    obj = bpy.data.objects["Curve"]
+    obj.data.bevel_depth = 0
+    points = in_world(obj, evaluated(obj, bpy.context.scene.frame_end))
+    np.testing.assert_allclose(points, iterates[-1].curve.vertices, atol=scale * (1e-5 + 1e-7 * shift))
+
+
+def test_a_link_has_a_colour_for_each_component(tmp_path):
+    export.write_blend(tmp_path / "a.blend", iterates_of(hopf_link(100), max_iterations=1))
+    data = bpy.data.objects["Curve"].data
+    assert [spline.material_index for spline in data.splines] == [0, 1]
+    assert len(data.materials) == 2
+
+
+def test_a_picture(tmp_path, tiny, iterates, capfd):
+    assert export.write_still(tmp_path / "a.png", iterates)
+    image = bpy.data.images.load(str(tmp_path / "a.png"))
+    assert tuple(image.size) == TINY[:2]
+    assert np.ptp(np.array(image.pixels[:])[::4]) > 0.1
+    assert capfd.readouterr().out == ""
+    assert os.listdir(tmp_path) == ["a.png"]
+
+
+def test_a_film(tmp_path, tiny, iterates, capfd):
+    seen = []
+    assert export.write_movie(tmp_path / "a.mp4", iterates, lambda *counts: seen.append(counts))
+    scene = bpy.context.scene
+    count = (scene.frame_end - scene.frame_start) // scene.frame_step + 1
+    assert seen == [(k + 1, count) for k in range(count)]
+    clip = bpy.data.movieclips.load(str(tmp_path / "a.mp4"))
+    assert (tuple(clip.size), clip.frame_duration) == (TINY[:2], count)
+    assert os.listdir(tmp_path) == ["a.mp4"]
+    assert capfd.readouterr().out == ""
+
+
+def test_a_film_rests_before_and_after(iterates):
+    motion, _ = film.recorded(iterates)
+    keys = motion.keys(lambda *_: True)
+    frames = film.smooth_frames(keys)
+    scene = bpy.context.scene
+    film.compose(scene, keys, frames, motion.start.curve.mesh)
+    film.add_pauses(scene)
+    assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (film._PAUSE, film._END)
+
+
+def test_workbench_is_set_up():
+    rendering.use_workbench(bpy.context.scene, 32, 18)
+    assert bpy.context.scene.render.engine == "BLENDER_WORKBENCH"
+
+
+def test_a_plane_curve_and_a_run_of_no_steps(tmp_path):
+    flat = Curve(regular_polygon(50).vertices[:, :2])
+    assert export.write_blend(tmp_path / "a.blend", iterates_of(flat, max_iterations=0))
+
+
+@pytest.mark.parametrize("write", WRITERS)
+def test_a_curve_in_four_dimensions_is_refused(tmp_path, write):
+    with pytest.raises(MobiusFlowError, match="4 coordinates"):
+        write(tmp_path / "a.out", iterates_of(regular_polygon(30, dimension=4), max_iterations=1))
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("write", WRITERS)
+def test_a_changing_number_of_vertices_is_refused(tmp_path, write):
+    iterates = iterates_of(torus_trefoil(40), max_iterations=1) + iterates_of(torus_trefoil(41), max_iterations=1)
+    with pytest.raises(MobiusFlowError, match="number of vertices changes"):
+        write(tmp_path / "a.out", iterates)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("write", WRITERS)
+def test_a_missing_directory(tmp_path, tiny, iterates, write):
+    with pytest.raises(MobiusFlowError, match=r"cannot be written: No such file") as error:
+        write(tmp_path / "nowhere" / "a.blend", iterates)
+    assert "\n" not in str(error.value)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("function", ["_save", "render_still", "render_movie"])
+def test_what_blender_cannot_write_leaves_the_old_file(tmp_path, tiny, iterates, monkeypatch, function):
+    def fail(*_arguments, **_options):
+        raise RuntimeError("Error: no space left\n")
+
+    name = {"_save": "write_blend", "render_still": "write_still", "render_movie": "write_movie"}[function]
+    monkeypatch.setattr(rendering if function == "render_still" else export, function, fail)
+    target = tmp_path / "a.blend"
+    target.write_text("old")
+    with pytest.raises(MobiusFlowError, match="no space left"):
+        getattr(export, name)(target, iterates)
+    assert target.read_text() == "old"
+    assert os.listdir(tmp_path) == ["a.blend"]
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="the superuser may write anywhere")
+def test_a_read_only_directory(tmp_path, iterates):
+    tmp_path.chmod(0o500)
+    try:
+        with pytest.raises(MobiusFlowError, match="cannot be written"):
+            export.write_blend(tmp_path / "a.blend", iterates)
+        assert os.listdir(tmp_path) == []
+    finally:
+        tmp_path.chmod(0o700)
+
+
+def test_the_trial_of_workbench_runs_nothing_of_the_working_directory(tmp_path, monkeypatch):
+    mark = tmp_path / "mark"
+    (tmp_path / "bpy.py").write_text(f"open({str(mark)!r}, 'w').close()\n")
+    monkeypatch.chdir(tmp_path)
+    rendering.workbench_works()
+    assert not mark.exists()
+
+
+def test_lines_of_drivers_are_kept_out(capfd):
+    with rendering.quiet():
+        os.write(1, b"Blender\n")
+        os.write(2, b"EGL Error\n")
+    os.write(2, b"ours\n")
+    assert capfd.readouterr() == ("", "ours\n")
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (ModuleNotFoundError, "pip install bpy,"),
+        (ImportError("libEGL.so.1: cannot open"), "cannot be loaded: libEGL.so.1"),
+    ],
+)
+def test_a_missing_module_and_a_missing_library_of_it(monkeypatch, error, said):
+    def importing(name, *arguments):
+        if name == "bpy":
+            raise error
+        return real(name, *arguments)
+
+    real = builtins.__import__
+    monkeypatch.setattr(builtins, "__import__", importing)
+    with pytest.raises(MobiusFlowError, match=said):
+        export.require_blender()
