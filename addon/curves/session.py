@@ -5,14 +5,15 @@ What it knows lives here and never in the file.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 
-from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status, relax
+from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status, relax
 from ...core.collision import is_free
 from ...core.curve import Mesh
+from ...core.driver import Relaxation
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
@@ -20,8 +21,6 @@ from ..engine.placement import Frame
 from ..engine.words import named
 from . import bevel
 from .group import Group
-
-Relaxation = Callable[[Curve, RelaxOptions], Iterator[Iterate]]
 
 
 class State(Enum):
@@ -48,8 +47,8 @@ class Report:
     ----------
     names
         The objects' names.
-    iterate
-        The last iterate.
+    outcome
+        How the relaxation ended.
     keys
         Number of keys written; 1 without animation.
     last_frame
@@ -63,7 +62,7 @@ class Report:
     """
 
     names: tuple[str, ...]
-    iterate: Iterate
+    outcome: Outcome
     keys: int
     last_frame: float
     certified: bool
@@ -78,12 +77,12 @@ class Report:
         whom += ", before modifiers" if self.modified else ""
         proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
         animation = f"{self.keys} keys up to frame {self.last_frame:g}, " if self.keys > 1 else ""
-        return f"{named(self.names)} {self.iterate.message.rstrip('.')}; {animation}{proof}"
+        return f"{named(self.names)} {self.outcome.message.rstrip('.')}; {animation}{proof}"
 
     @property
     def clean(self) -> bool:
         """Whether nothing needs the user's attention."""
-        return self.certified and self.iterate.status is not Status.STALLED
+        return self.certified and self.outcome.status is not Status.STALLED
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +119,7 @@ class Session:
         group: Group,
         options: RelaxOptions,
         key_options: KeyOptions,
-        relaxation: Relaxation = relax,
+        relaxation: Callable[[Curve, RelaxOptions], Relaxation] = relax,
         proof: Proof = is_free,
     ) -> None:
         key_options.check_room(options.max_iterations)
@@ -130,23 +129,24 @@ class Session:
         self._motion = Motion(group.link)
         self._iterates = relaxation(group.curve, options)
         self.state = State.RUNNING
+        self.outcome: Outcome | None = None
 
     def step(self) -> bool:
-        """Take in the next iterate; return whether more may come."""
+        """Take in what comes next; return whether more may come."""
         if self.state is State.RUNNING:
-            self.take(next(self._iterates))
+            try:
+                self.take(next(self._iterates))
+            except StopIteration as end:
+                self.end(end.value)
         return self.state is State.RUNNING
 
     def take(self, iterate: Iterate) -> Frame:
         """Take in an iterate, and return its vertices as Blender will store them."""
-        if iterate.status is not Status.RUNNING:
-            self.state = State.DONE
         return self._motion.add(iterate)
 
-    def interrupt(self, reason: str) -> None:
-        """Make the iterate reached so far the last one; the reason is a sentence without its end."""
-        last = self._motion.last
-        self.take(replace(last, status=Status.INTERRUPTED, message=reason, path=()))
+    def end(self, outcome: Outcome) -> None:
+        """Take in how it ended."""
+        self.outcome, self.state = outcome, State.DONE
 
     def run(self) -> Report:
         """Step to the end and write."""
@@ -213,5 +213,7 @@ class Session:
         keys, radii = prepared.keys, prepared.radii
         last_frame = float(self._key_options.scene_frames(keys)[-1])
         radius = None if radii is None else float(radii[-1])
-        group, last = self.group, self._motion.last
-        return Report(group.names, last, len(keys.keys), last_frame, keys.certified, radius, group.modified)
+        assert self.outcome is not None, "what is written has ended"
+        return Report(
+            self.group.names, self.outcome, len(keys.keys), last_frame, keys.certified, radius, self.group.modified
+        )

@@ -15,10 +15,14 @@ def messages(job: wire.Message) -> Iterator[wire.Message]:
     curve, options, link = wire.unpack_job(job)
     last: Frame | None = None
     try:
-        for iterate in relax(curve, options):
+        relaxation = relax(curve, options)
+        while True:
+            iterate = next(relaxation)
             frames = frames_of(link, iterate)
             yield wire.pack_iterate(iterate, _proved(iterate, link, [*([] if last is None else [last]), *frames]))
             last = frames[-1]
+    except StopIteration as end:
+        yield wire.pack_outcome(end.value)
     except MobiusFlowError as error:
         yield {"error": str(error)}, []
 

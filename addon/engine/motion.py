@@ -78,9 +78,6 @@ class Motion:
 
     def add(self, iterate: Iterate) -> Frame:
         """Append an iterate with the legs that lead to it, and return its vertices as Blender will store them."""
-        if self._ends and not iterate.path:  # a run that stalls repeats its last iterate
-            self._last = iterate
-            return self._keys[-1].points
         frames = frames_of(self._link, iterate)
         self._start = self._start or iterate
         self._last = iterate

@@ -9,14 +9,14 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from ...core import Curve, Iterate, Mesh, RelaxOptions, Status
+from ...core import Curve, Iterate, Mesh, Outcome, RelaxOptions, Status
 from ...core.types import FloatArray
 from .placement import Link, Placement
 
 Message = tuple[dict[str, Any], list[FloatArray]]
 
 _LENGTH = struct.Struct("!Q")
-_VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "negative_eigenvalues")
+_VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "method")
 
 
 def write(stream: BinaryIO, message: Message) -> None:
@@ -63,8 +63,7 @@ def unpack_job(message: Message) -> tuple[Curve, RelaxOptions, Link]:
 def pack_iterate(iterate: Iterate, proved: Sequence[str]) -> Message:
     """One iterate, and the motions known to be free of contact, by their `digest`."""
     header = {name: getattr(iterate, name) for name in _VALUES}
-    header |= {"sizes": iterate.curve.mesh.component_sizes, "status": iterate.status.value}
-    header |= {"message": iterate.message, "proved": list(proved)}
+    header |= {"sizes": iterate.curve.mesh.component_sizes, "proved": list(proved)}
     return header, [iterate.curve.vertices, *iterate.path]
 
 
@@ -73,8 +72,18 @@ def unpack_iterate(message: Message) -> tuple[Iterate, list[str]]:
     header, (vertices, *path) = message
     values = {name: header[name] for name in _VALUES}
     curve = Curve(vertices, Mesh(tuple(header["sizes"])))
-    status = Status(header["status"])
-    return Iterate(curve=curve, path=tuple(path), status=status, message=header["message"], **values), header["proved"]
+    return Iterate(curve=curve, path=tuple(path), **values), header["proved"]
+
+
+def pack_outcome(outcome: Outcome) -> Message:
+    """How the relaxation ended, after the last iterate."""
+    return {"outcome": asdict(outcome) | {"status": outcome.status.value}}, []
+
+
+def unpack_outcome(message: Message) -> Outcome:
+    """The inverse of `pack_outcome`."""
+    values = message[0]["outcome"]
+    return Outcome(**values | {"status": Status(values["status"])})
 
 
 def digest(start: FloatArray, end: FloatArray) -> str:

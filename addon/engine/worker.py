@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status
+from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions
 from ...core.collision import is_free
 from ...core.curve import Mesh
+from ...core.driver import Relaxation
 from ...core.types import FloatArray
 from . import wire
 from .job import messages
@@ -46,13 +47,12 @@ class Worker:
         self._proved: set[str] = set()
         self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
         self._closed = threading.Event()
-        self._ended = False
         self.process = _start() if processes else None
         self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
         self._thread.start()
 
-    def poll(self, timeout: float = 0.0) -> Iterate | None:
-        """Take the next iterate if there is one; the last one has its final status.
+    def poll(self, timeout: float = 0.0) -> Iterate | Outcome | None:
+        """Take the next iterate if there is one; after the last one comes the outcome.
 
         Raises
         ------
@@ -64,22 +64,23 @@ class Worker:
         except queue.Empty:
             return None
         if message is None:
-            self._ended = True
             raise WorkerError("The computation ended unexpectedly; perhaps memory ran out")
         if "error" in message[0]:
-            self._ended = True
             raise MobiusFlowError(message[0]["error"])
+        if "outcome" in message[0]:
+            return wire.unpack_outcome(message)
         iterate, proved = wire.unpack_iterate(message)
         self._proved.update(proved)
         return iterate
 
-    def __iter__(self) -> Iterator[Iterate]:
+    def __iter__(self) -> Relaxation:
         """Iterate as `core.relax` does, waiting for each iterate."""
-        while not self._ended:
-            iterate = self.poll(timeout=_PATIENCE)
-            if iterate is not None:
-                self._ended = iterate.status is not Status.RUNNING
-                yield iterate
+        while True:
+            arrived = self.poll(timeout=_PATIENCE)
+            if isinstance(arrived, Outcome):
+                return arrived
+            if arrived is not None:
+                yield arrived
 
     def is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
         """As `core.collision.is_free`, but most motions were proved by the worker already."""

@@ -9,8 +9,9 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status
+from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status
 from ...core.curve import Mesh
+from ...core.driver import Relaxation
 from ...core.types import FloatArray
 from ..curves.group import Group
 from ..curves.session import Prepared, Report, Session, State
@@ -65,7 +66,7 @@ class Run:
         """The names of what is relaxed, for people."""
         return self.group.title
 
-    def _start(self, curve: Curve, options: RelaxOptions) -> Iterator[Iterate]:
+    def _start(self, curve: Curve, options: RelaxOptions) -> Relaxation:
         self._worker = Worker(curve, options, self.group.link)
         return iter(self._worker)
 
@@ -93,8 +94,9 @@ class Run:
         if self.last is None:
             self.cancel("Stopped before anything had moved")
             return
-        if self.last.status is Status.RUNNING:
-            self._session.interrupt(reason or f"stopped after {self.last.index} iterations")
+        if self._session.outcome is None:
+            reason = reason or f"stopped after {self.last.index} iterations"
+            self._session.end(Outcome(Status.INTERRUPTED, reason))
         self.state = State.FINISHING
         self._worker.close()
         threading.Thread(target=self._prepare, name="Möbius Flow keys", daemon=True).start()
@@ -128,19 +130,19 @@ class Run:
 
     def _take(self) -> None:
         try:
-            iterate = self._worker.poll()
+            arrived = self._worker.poll()
         except WorkerError as error:
             if self.last is None:
                 raise
             self.failed = True
             self.keep(str(error))
             return
-        if iterate is None:
-            return
-        self.last = iterate
-        self._show(self._session.take(iterate))
-        if iterate.status is not Status.RUNNING:
+        if isinstance(arrived, Outcome):
+            self._session.end(arrived)
             self.keep()
+        elif arrived is not None:
+            self.last = arrived
+            self._show(self._session.take(arrived))
 
     def _show(self, frame: Frame) -> None:
         if self._frame is None:

@@ -76,7 +76,7 @@ def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
     if any(iterate.curve.mesh != start.mesh for iterate in iterates):
         raise MobiusFlowError(
             "the number of vertices changes during this run, which keyframes cannot follow; "
-            "leave adaptive and resolve out"
+            "relax with a fixed one (mesh='fixed')"
         )
     check_dimension(start)
     origin = Origin.of(spatial(start.vertices))

@@ -70,4 +70,5 @@ def _run(start: Curve, options: RelaxOptions, time_limit: float) -> History:
             break
         rows.append((time.perf_counter() - began, iterate.energy, iterate.gradient_norm))
         fallback += [iterate.index] if iterate.method != options.method else []
-    return History(options.method, status, *zip(*rows, strict=True), fallback=tuple(fallback))
+    seconds, energy, norm = zip(*rows, strict=True)
+    return History(options.method, status, seconds, energy, norm, tuple(fallback))

@@ -44,12 +44,12 @@ def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
 
 def _answer(event: Step | NoStep | Outcome, interventions: Sequence[Intervention]) -> Step | NoStep | Outcome | Change:
     """What the interventions make of an event, one after the other, until one of them changes something."""
-    answer: Step | NoStep | Outcome | Change = event
     for intervention in interventions:
-        answer = intervention(answer)
+        answer = intervention(event)
         if isinstance(answer, Change):
-            break
-    return answer
+            return answer
+        event = answer
+    return event
 
 
 def _changed(run: Run, change: Change) -> Iterator[Iterate]:
