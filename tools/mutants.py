@@ -124,7 +124,7 @@ MUTANTS = (
     ),
     Mutant(
         "certified is a constant",
-        "core/run.py",
+        "core/driver/run.py",
         "self._certified &= step.certified",
         "pass",
         f"{CERTIFICATE}::test_one_step_without_proof_and_nothing_after_it_is_certified",

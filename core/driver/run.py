@@ -95,7 +95,7 @@ class Run:
             self.method, self._memory = change.method, State()
         if change.point is None:
             return None
-        remeshed = change.point.problem.mesh != self.problem.mesh
+        remeshed = change.point.placed is not self.point.placed  # perhaps with as many vertices
         self.point = change.point
         self._memory = State(None, self._memory.last_step)
         self.iterate = self._described(self.iterate.index + remeshed)

@@ -59,8 +59,8 @@ class Trajectory:
 
     def _follows(self, iterate: Iterate) -> bool:
         """Whether it may be the run's next iterate."""
-        same_mesh = self._last is not None and iterate.curve.mesh == self._last.mesh
-        return iterate.index == self._last_index + 1 and same_mesh == bool(iterate.path)
+        fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
+        return iterate.index == self._last_index + 1 and fits
 
     def arrays(self) -> dict[str, FloatArray | IntArray | NDArray[np.str_]]:
         """The arrays of the file, by name."""

@@ -70,7 +70,7 @@ def test_every_option_is_a_setting_of_scene_and_operator(each):
 def test_what_changes_the_mesh_is_left_out():
     assert set(GIVEN) == set(SHOWN)
     for owner in owners():
-        assert "adaptive" not in owner
+        assert "mesh" not in owner
         assert "resolve" not in owner
 
 

@@ -36,7 +36,7 @@ def refused(words: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: p
     def working(*_arguments: object) -> None:
         raise AssertionError
 
-    monkeypatch.setattr(relax_command, "minimize", working)
+    monkeypatch.setattr(relax_command, "relax", working)
     monkeypatch.setattr("mobius_flow.core.driver.compare._run", working)
     assert main(words) == 2
     said = capsys.readouterr().err
@@ -222,14 +222,14 @@ def test_results_without_room_are_kept_elsewhere(
 ) -> None:
     """The directory disappears during the run."""
     os.mkdir("place")
-    minimize = relax_command.minimize
+    finish = relax_command.finish
 
     def disappearing(*arguments: object) -> object:
-        result = minimize(*arguments)  # type: ignore[arg-type]
+        result = finish(*arguments)  # type: ignore[arg-type]
         os.rmdir("place")
         return result
 
-    monkeypatch.setattr(relax_command, "minimize", disappearing)
+    monkeypatch.setattr(relax_command, "finish", disappearing)
     extras = ["--report", "place/r.json", "--trajectory", "place/t.npz"]
     assert main(["relax", trefoil, "place/o.obj", *extras, *SHORT]) == 2
     said = capsys.readouterr().err

@@ -6,15 +6,17 @@ import re
 import signal
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from mobius_flow.cli import compare as compare_command
 from mobius_flow.cli import main, outputs, signals
 from mobius_flow.cli.progress import Progress
-from mobius_flow.core import Curve, Iterate, RelaxOptions, Trajectory, read_curve, write_curve
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, Trajectory, read_curve, write_curve
 from mobius_flow.core.bench import SETS, bench
-from mobius_flow.core.driver.compare import Run, compare
+from mobius_flow.core.driver import finish
+from mobius_flow.core.driver.compare import History, compare
 from mobius_flow.core.system.signals import termination_raises
 from mobius_flow.core.verify import verify
 from shapes import torus_trefoil
@@ -133,14 +135,13 @@ def test_signals_while_results_are_written_cost_nothing(
 @pytest.fixture
 def interrupted_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     """A signal comes after the last step, before the results are written."""
-    update = Progress.update
 
-    def interrupted(self: Progress, iterate: Iterate) -> None:
-        update(self, iterate)
-        if iterate.status.value == "iteration_limit":
-            send(signal.SIGTERM)
+    def interrupted(*arguments: Any) -> Result:
+        result = finish(*arguments)
+        send(signal.SIGTERM)
+        return result
 
-    monkeypatch.setattr(Progress, "update", interrupted)
+    monkeypatch.setattr("mobius_flow.cli.relax.finish", interrupted)
 
 
 @pytest.mark.usefixtures("interrupted_at_the_end")
@@ -258,7 +259,7 @@ def test_compare_keeps_the_methods_that_are_done(
     status: int,
     said: str,
 ) -> None:
-    def interrupted(curve: Curve, methods: list[str], options: RelaxOptions, limit: float) -> Iterator[Run]:
+    def interrupted(curve: Curve, methods: list[str], options: RelaxOptions, limit: float) -> Iterator[History]:
         yield from compare(curve, methods[:1], options, limit)
         if memory:
             raise MemoryError

@@ -31,11 +31,12 @@ def test_every_option_says_what_it_does(each):
 def test_names_come_from_the_registries():
     tables = {name: each.choices for name, each in DECLARED.items() if each.kind is str}
     assert tables.pop("edge_lengths") == ("auto", "equal", "keep")
+    assert tables.pop("mesh") == ("fixed", "finer", "adaptive")
     assert tables == {"method": METHODS, "energy": ENERGIES, "metric": METRICS}
 
 
 def test_only_options_that_change_the_mesh_have_no_keyframes():
-    assert [name for name, each in DECLARED.items() if not each.keyframes] == ["adaptive", "resolve"]
+    assert [name for name, each in DECLARED.items() if not each.keyframes] == ["mesh"]
 
 
 @documented

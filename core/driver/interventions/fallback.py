@@ -24,7 +24,7 @@ class Fallback:
     def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
         """Change the method."""
         run = self._run
-        if run.problem.mesh != self._mesh:
+        if run.problem.mesh is not self._mesh:
             self._mesh, self._helped_at = run.problem.mesh, math.inf
         stuck = isinstance(event, NoStep)
         if run.method is not self._asked_for:
