@@ -93,8 +93,8 @@ class Member:
         return owned
 
     def set_aside(self) -> None:
-        """Put the splines back for a moment, unless they are lost."""
-        if not self.lost():
+        """Put the splines back for a moment, unless they are lost or being keyed."""
+        if not (self.keyed or self.lost()):
             self._snapshot.restore(self.data)
             self._shape = shape(self.data)
 

@@ -1,12 +1,11 @@
 """One relaxation of a group of curve objects: consumes iterates, then writes the animation.
 
-A plain class: a blocking operator runs it to its end, a modal one hands it the iterates of a worker (`live.run`).
+A plain class: a blocking operator runs it, a modal one hands it the iterates of a worker (`live.run`).
 What it knows lives here and never in the file.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 
@@ -20,24 +19,6 @@ from ..engine.placement import Frame
 from ..engine.words import named
 from . import bevel
 from .group import Group
-
-Relaxation = Callable[[Curve, RelaxOptions], Iterator[Iterate]]
-
-
-class State(Enum):
-    """Where a session stands."""
-
-    RUNNING = "running"
-    PAUSED = "paused"
-    FINISHING = "finishing"
-    DONE = "done"
-    CANCELLED = "cancelled"
-    LOST = "lost"
-
-    @property
-    def over(self) -> bool:
-        """Whether nothing happens any more."""
-        return self in (State.DONE, State.CANCELLED, State.LOST)
 
 
 @dataclass(frozen=True)
@@ -106,8 +87,6 @@ class Session:
         The objects.
     options, key_options
         What is asked for.
-    relaxation, proof
-        Yield the iterates, and prove motions free of contact.
 
     Raises
     ------
@@ -115,32 +94,35 @@ class Session:
         If the curves cannot be relaxed, or there is no room for their keys; the message says why.
     """
 
-    def __init__(
-        self,
-        group: Group,
-        options: RelaxOptions,
-        key_options: KeyOptions,
-        relaxation: Relaxation = relax,
-        proof: Proof = is_free,
-    ) -> None:
+    def __init__(self, group: Group, options: RelaxOptions, key_options: KeyOptions) -> None:
         key_options.check_room(options.max_iterations)
         self.group = group
-        self._key_options = key_options
-        self._proof = proof
+        self._options, self._key_options = options, key_options
         self._motion = Motion(group.link)
-        self._iterates = relaxation(group.curve, options)
-        self.state = State.RUNNING
 
-    def step(self) -> bool:
-        """Take in the next iterate; return whether more may come."""
-        if self.state is State.RUNNING:
-            self.take(next(self._iterates))
-        return self.state is State.RUNNING
+    def run(self) -> Report:
+        """Do the whole job. Objects are touched at its end only, and put back if that fails.
+
+        Raises
+        ------
+        MobiusFlowError
+            If the curves cannot be relaxed, or an object is gone.
+        """
+        for iterate in relax(self.group.curve, self._options):
+            self.take(iterate)
+        prepared = self.prepare(is_free)
+        if reason := self.group.lost():
+            raise MobiusFlowError(f"{reason} during the relaxation; nothing was written")
+        try:
+            for _ in self.writing(prepared):
+                pass
+        except BaseException:
+            self.group.restore()
+            raise
+        return self.report(prepared)
 
     def take(self, iterate: Iterate) -> Frame:
         """Take in an iterate, and return its vertices as Blender will store them."""
-        if iterate.status is not Status.RUNNING:
-            self.state = State.DONE
         return self._motion.add(iterate)
 
     def interrupt(self, reason: str) -> None:
@@ -148,18 +130,10 @@ class Session:
         last = self._motion.last
         self.take(replace(last, status=Status.INTERRUPTED, message=reason, path=()))
 
-    def run(self) -> Report:
-        """Step to the end and write."""
-        while self.step():
-            pass
-        return self.write()
-
-    def prepare(self) -> Prepared:
+    def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
         animated = self._key_options.output is not Output.RESULT
-        keys = (
-            self._motion.keys(self._proof, self._key_options.max_keys) if animated else self._motion.result(self._proof)
-        )
+        keys = self._motion.keys(proof, self._key_options.max_keys) if animated else self._motion.result(proof)
         fits = self._key_options.fit_bevel and self.group.fits_bevel
         return Prepared(keys, self._radii(keys) if fits else None)
 
@@ -173,40 +147,10 @@ class Session:
     def _mesh(self) -> Mesh:
         return self._motion.start.curve.mesh
 
-    def write(self) -> Report:
-        """Write what was collected so far to the objects, which are touched here for the first time.
-
-        Whatever goes wrong, everything is put back as it was.
-
-        Raises
-        ------
-        MobiusFlowError
-            If an object is gone.
-        """
-        prepared = self.prepare()
-        if reason := self.group.lost():
-            self.state = State.LOST
-            raise MobiusFlowError(f"{reason} during the relaxation; nothing was written")
-        try:
-            for _ in self.writing(prepared):
-                pass
-        except BaseException:
-            self.group.restore()
-            raise
-        return self.report(prepared)
-
     def writing(self, prepared: Prepared) -> Iterator[None]:
         """Write in short pieces, so that a window can be drawn in between; all objects must be there."""
-        self.make_polygons()
-        yield from self.group.writing(self._mesh, prepared.keys, self._key_options, prepared.radii)
-
-    def make_polygons(self) -> None:
-        """Give the splines the points of the refined curves, if they do not have them yet."""
         self.group.make_polygons(self._motion.start.curve)
-
-    def show(self, frame: Frame) -> None:
-        """Move the points of all objects, as `take` returned them."""
-        self.group.show(self._mesh, frame)
+        yield from self.group.writing(self._mesh, prepared.keys, self._key_options, prepared.radii)
 
     def report(self, prepared: Prepared) -> Report:
         """What was done, once it is written."""

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions, Status
+from ...core import Curve, Iterate, MobiusFlowError, RelaxOptions
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.types import FloatArray
@@ -37,21 +37,18 @@ class Worker:
         What is to be relaxed, as for `core.relax`.
     link
         Where Blender stores the vertices: motions of the stored ones are proved too.
-    processes
-        Whether to try a process at all.
     """
 
-    def __init__(self, curve: Curve, options: RelaxOptions, link: Link, processes: bool = True) -> None:
+    def __init__(self, curve: Curve, options: RelaxOptions, link: Link) -> None:
         self._job = wire.pack_job(curve, options, link)
         self._proved: set[str] = set()
         self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
         self._closed = threading.Event()
-        self._ended = False
-        self.process = _start() if processes else None
+        self.process = _start()
         self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
         self._thread.start()
 
-    def poll(self, timeout: float = 0.0) -> Iterate | None:
+    def poll(self) -> Iterate | None:
         """Take the next iterate if there is one; the last one has its final status.
 
         Raises
@@ -60,26 +57,16 @@ class Worker:
             If the curve cannot be relaxed, or the worker is gone.
         """
         try:
-            message = self._queue.get(timeout=timeout) if timeout else self._queue.get_nowait()
+            message = self._queue.get_nowait()
         except queue.Empty:
             return None
         if message is None:
-            self._ended = True
             raise WorkerError("The computation ended unexpectedly; perhaps memory ran out")
         if "error" in message[0]:
-            self._ended = True
             raise MobiusFlowError(message[0]["error"])
         iterate, proved = wire.unpack_iterate(message)
         self._proved.update(proved)
         return iterate
-
-    def __iter__(self) -> Iterator[Iterate]:
-        """Iterate as `core.relax` does, waiting for each iterate."""
-        while not self._ended:
-            iterate = self.poll(timeout=_PATIENCE)
-            if iterate is not None:
-                self._ended = iterate.status is not Status.RUNNING
-                yield iterate
 
     def is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
         """As `core.collision.is_free`, but most motions were proved by the worker already."""
