@@ -1,6 +1,7 @@
 """Blender's end of the worker: starts it, takes in its iterates without ever waiting, and ends it at once."""
 
 import contextlib
+import inspect
 import os
 import queue
 import subprocess
@@ -8,6 +9,7 @@ import sys
 import threading
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 import scipy
@@ -109,17 +111,23 @@ class Worker:
         return False
 
     def _close_streams(self) -> None:
-        for stream in (self.process.stdin, self.process.stdout) if self.process is not None else ():
+        for stream in _pipes(self.process) if self.process is not None else ():
             with contextlib.suppress(OSError):  # what was still to be written goes nowhere
                 stream.close()
 
 
 def _replies(process: "subprocess.Popen[bytes]", job: wire.Message) -> Iterator[wire.Message]:
+    to_worker, from_worker = _pipes(process)
+    wire.write(to_worker, job)
+    while True:
+        yield wire.read(from_worker)
+
+
+def _pipes(process: "subprocess.Popen[bytes]") -> tuple[IO[bytes], IO[bytes]]:
+    """The standard input and output of the worker."""
     assert process.stdin is not None
     assert process.stdout is not None
-    wire.write(process.stdin, job)
-    while True:
-        yield wire.read(process.stdout)
+    return process.stdin, process.stdout
 
 
 def _start() -> "subprocess.Popen[bytes] | None":
@@ -142,5 +150,5 @@ def _start() -> "subprocess.Popen[bytes] | None":
 
 def _environment() -> dict[str, str]:
     """The environment, with SciPy's place in it and one thread for linear algebra: a run is one of many tasks."""
-    places = dict.fromkeys(str(Path(module.__file__).parents[1]) for module in (scipy, np))
+    places = dict.fromkeys(str(Path(inspect.getfile(module)).parents[1]) for module in (scipy, np))
     return {**os.environ, "PYTHONPATH": os.pathsep.join(places), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
