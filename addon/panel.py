@@ -4,11 +4,10 @@ import bpy
 
 from . import labels
 from .curves import neighbours
-from .curves.session import State
 from .live import registry
 from .live.checks import refusal, selected_curves
 from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_stop
-from .live.run import Run
+from .live.run import Run, State
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
 from .properties import shown
 

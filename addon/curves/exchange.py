@@ -27,7 +27,7 @@ def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
         If a coordinate is not finite, or as good as infinite, or no polygon is drawn for a smooth spline; the message
         names the spline and its object.
     """
-    placements = tuple(Placement.of(obj) for obj in objects)
+    placements = tuple(Placement.from_matrix(obj.matrix_world) for obj in objects)
     components = [_components(obj) for obj in objects]
     link = Link(placements, tuple(len(each) for each in components))
     world = [placement.to_world(c) for placement, each in zip(placements, components, strict=True) for c in each]

@@ -105,8 +105,12 @@ class Group:
         """Put back what was there, but for what somebody else deleted or changed; return whether all is as it was."""
         with outside_edit_mode(self.objects), ExitStack() as everything:
             restored: list[bool] = []
+
+            def restore(member: Member) -> None:
+                restored.append(member.restore())
+
             for member in self._members:  # each of them, even if one cannot be put back
-                everything.callback(lambda member=member: restored.append(member.restore()))
+                everything.callback(restore, member)
         return all(restored)
 
     def set_aside(self) -> None:

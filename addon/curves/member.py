@@ -26,7 +26,7 @@ class Member:
         self.fits_bevel = bevel.can_fit(obj.data)
         self.keyed = False  # whether keys are being written, or are written
         self._uid, self._data_uid, self._data_name = obj.session_uid, obj.data.session_uid, obj.data.name
-        self._placement = Placement.of(obj)
+        self._placement = Placement.from_matrix(obj.matrix_world)
         self._snapshot = Snapshot(obj.data)
         self._shape = shape(obj.data)
 
@@ -48,7 +48,7 @@ class Member:
     def moved(self) -> bool:
         """Whether the object is no longer where it was."""
         obj = self.object
-        return obj is not None and not Placement.of(obj).equals(self._placement)
+        return obj is not None and not Placement.from_matrix(obj.matrix_world).equals(self._placement)
 
     def make_polygons(self, original: Curve, refined: Curve) -> None:
         """Give the splines the points of the refined curve, unless they are lost; where points are is left open."""
@@ -93,8 +93,8 @@ class Member:
         return owned
 
     def set_aside(self) -> None:
-        """Put the splines back for a moment, unless they are lost."""
-        if not self.lost():
+        """Put the splines back for a moment, unless they are lost or being keyed."""
+        if not (self.keyed or self.lost()):
             self._snapshot.restore(self.data)
             self._shape = shape(self.data)
 

@@ -17,7 +17,7 @@ _MOST_QUESTIONS = 5
 
 def kind(spline: "bpy.types.Spline") -> str:
     """Name of a spline's type for people."""
-    return _KINDS.get(spline.type, spline.type)
+    return _KINDS.get(spline.type, str(spline.type))
 
 
 def smooth_splines(data: "bpy.types.Curve") -> list["bpy.types.Spline"]:

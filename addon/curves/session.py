@@ -1,19 +1,17 @@
 """One relaxation of a group of curve objects: consumes iterates, then writes the animation.
 
-A plain class: a blocking operator runs it to its end, a modal one hands it the iterates of a worker (`live.run`).
+A plain class: a blocking operator runs it, a modal one hands it the iterates of a worker (`live.run`).
 What it knows lives here and never in the file.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 
 from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status, relax
 from ...core.collision import is_free
 from ...core.curve import Mesh
-from ...core.driver import Relaxation
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
@@ -21,22 +19,6 @@ from ..engine.placement import Frame
 from ..engine.words import named
 from . import bevel
 from .group import Group
-
-
-class State(Enum):
-    """Where a session stands."""
-
-    RUNNING = "running"
-    PAUSED = "paused"
-    FINISHING = "finishing"
-    DONE = "done"
-    CANCELLED = "cancelled"
-    LOST = "lost"
-
-    @property
-    def over(self) -> bool:
-        """Whether nothing happens any more."""
-        return self in (State.DONE, State.CANCELLED, State.LOST)
 
 
 @dataclass(frozen=True)
@@ -105,8 +87,11 @@ class Session:
         The objects.
     options, key_options
         What is asked for.
-    relaxation, proof
-        Yield the iterates, and prove motions free of contact.
+
+    Attributes
+    ----------
+    outcome
+        How the relaxation ended, once it has.
 
     Raises
     ------
@@ -114,52 +99,46 @@ class Session:
         If the curves cannot be relaxed, or there is no room for their keys; the message says why.
     """
 
-    def __init__(
-        self,
-        group: Group,
-        options: RelaxOptions,
-        key_options: KeyOptions,
-        relaxation: Callable[[Curve, RelaxOptions], Relaxation] = relax,
-        proof: Proof = is_free,
-    ) -> None:
+    def __init__(self, group: Group, options: RelaxOptions, key_options: KeyOptions) -> None:
         key_options.check_room(options.max_iterations)
         self.group = group
-        self._key_options = key_options
-        self._proof = proof
+        self._options, self._key_options = options, key_options
         self._motion = Motion(group.link)
-        self._iterates = relaxation(group.curve, options)
-        self.state = State.RUNNING
         self.outcome: Outcome | None = None
 
-    def step(self) -> bool:
-        """Take in what comes next; return whether more may come."""
-        if self.state is State.RUNNING:
+    def run(self) -> Report:
+        """Do the whole job. Objects are touched at its end only, and put back if that fails.
+
+        Raises
+        ------
+        MobiusFlowError
+            If the curves cannot be relaxed, or an object is gone.
+        """
+        relaxation = relax(self.group.curve, self._options)
+        while self.outcome is None:
             try:
-                self.take(next(self._iterates))
+                self.take(next(relaxation))
             except StopIteration as end:
-                self.end(end.value)
-        return self.state is State.RUNNING
+                self.outcome = end.value
+        prepared = self.prepare(is_free)
+        if reason := self.group.lost():
+            raise MobiusFlowError(f"{reason} during the relaxation; nothing was written")
+        try:
+            for _ in self.writing(prepared):
+                pass
+        except BaseException:
+            self.group.restore()
+            raise
+        return self.report(prepared)
 
     def take(self, iterate: Iterate) -> Frame:
         """Take in an iterate, and return its vertices as Blender will store them."""
         return self._motion.add(iterate)
 
-    def end(self, outcome: Outcome) -> None:
-        """Take in how it ended."""
-        self.outcome, self.state = outcome, State.DONE
-
-    def run(self) -> Report:
-        """Step to the end and write."""
-        while self.step():
-            pass
-        return self.write()
-
-    def prepare(self) -> Prepared:
+    def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
         animated = self._key_options.output is not Output.RESULT
-        keys = (
-            self._motion.keys(self._proof, self._key_options.max_keys) if animated else self._motion.result(self._proof)
-        )
+        keys = self._motion.keys(proof, self._key_options.max_keys) if animated else self._motion.result(proof)
         fits = self._key_options.fit_bevel and self.group.fits_bevel
         return Prepared(keys, self._radii(keys) if fits else None)
 
@@ -173,40 +152,10 @@ class Session:
     def _mesh(self) -> Mesh:
         return self._motion.start.curve.mesh
 
-    def write(self) -> Report:
-        """Write what was collected so far to the objects, which are touched here for the first time.
-
-        Whatever goes wrong, everything is put back as it was.
-
-        Raises
-        ------
-        MobiusFlowError
-            If an object is gone.
-        """
-        prepared = self.prepare()
-        if reason := self.group.lost():
-            self.state = State.LOST
-            raise MobiusFlowError(f"{reason} during the relaxation; nothing was written")
-        try:
-            for _ in self.writing(prepared):
-                pass
-        except BaseException:
-            self.group.restore()
-            raise
-        return self.report(prepared)
-
     def writing(self, prepared: Prepared) -> Iterator[None]:
         """Write in short pieces, so that a window can be drawn in between; all objects must be there."""
-        self.make_polygons()
-        yield from self.group.writing(self._mesh, prepared.keys, self._key_options, prepared.radii)
-
-    def make_polygons(self) -> None:
-        """Give the splines the points of the refined curves, if they do not have them yet."""
         self.group.make_polygons(self._motion.start.curve)
-
-    def show(self, frame: Frame) -> None:
-        """Move the points of all objects, as `take` returned them."""
-        self.group.show(self._mesh, frame)
+        yield from self.group.writing(self._mesh, prepared.keys, self._key_options, prepared.radii)
 
     def report(self, prepared: Prepared) -> Report:
         """What was done, once it is written."""
@@ -214,6 +163,5 @@ class Session:
         last_frame = float(self._key_options.scene_frames(keys)[-1])
         radius = None if radii is None else float(radii[-1])
         assert self.outcome is not None, "what is written has ended"
-        return Report(
-            self.group.names, self.outcome, len(keys.keys), last_frame, keys.certified, radius, self.group.modified
-        )
+        group = self.group
+        return Report(group.names, self.outcome, len(keys.keys), last_frame, keys.certified, radius, group.modified)

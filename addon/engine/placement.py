@@ -1,22 +1,15 @@
-"""Where objects are: each keeps points in coordinates of its own, and motions of all are proved in one space.
-
-Nothing here needs bpy, so that the worker can use it too.
-"""
+"""Where objects are: each keeps points in coordinates of its own, and motions of all are proved in one space."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ...core.curve import Curve, Mesh
 from ...core.types import FloatArray
-
-if TYPE_CHECKING:
-    import bpy
 
 Frame = npt.NDArray[np.float32]
 
@@ -29,10 +22,10 @@ class Placement:
     origin: FloatArray
 
     @classmethod
-    def of(cls, obj: "bpy.types.Object") -> "Placement":
-        """The placement of an object whose transforms have been evaluated."""
-        matrix = np.array(obj.matrix_world, dtype=np.float64)
-        return cls(matrix[:3, :3], matrix[:3, 3])
+    def from_matrix(cls, matrix: npt.ArrayLike) -> "Placement":
+        """The affine map that a matrix is in homogeneous coordinates; shape (4, 4)."""
+        linear_and_origin = np.array(matrix, dtype=np.float64)[:3]
+        return cls(linear_and_origin[:, :3], linear_and_origin[:, 3])
 
     def equals(self, other: "Placement") -> bool:
         """Whether both are the same, bit for bit."""

@@ -5,7 +5,7 @@ import json
 import struct
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any, BinaryIO
+from typing import IO, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ _LENGTH = struct.Struct("!Q")
 _VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "method")
 
 
-def write(stream: BinaryIO, message: Message) -> None:
+def write(stream: IO[bytes], message: Message) -> None:
     """Write a message and flush."""
     header, arrays = message
     text = json.dumps({**header, "shapes": [a.shape for a in arrays]}).encode()
@@ -28,7 +28,7 @@ def write(stream: BinaryIO, message: Message) -> None:
     stream.flush()
 
 
-def read(stream: BinaryIO) -> Message:
+def read(stream: IO[bytes]) -> Message:
     """Read a message; EOFError if there is no whole one any more."""
     header = json.loads(_exactly(stream, _LENGTH.unpack(_exactly(stream, _LENGTH.size))[0]))
     arrays = []
@@ -38,7 +38,7 @@ def read(stream: BinaryIO) -> Message:
     return header, arrays
 
 
-def _exactly(stream: BinaryIO, size: int) -> bytes:
+def _exactly(stream: IO[bytes], size: int) -> bytes:
     data = stream.read(size)
     if len(data) < size:
         raise EOFError

@@ -1,6 +1,7 @@
 """Blender's end of the worker: starts it, takes in its iterates without ever waiting, and ends it at once."""
 
 import contextlib
+import inspect
 import os
 import queue
 import subprocess
@@ -8,6 +9,7 @@ import sys
 import threading
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 import scipy
@@ -15,7 +17,6 @@ import scipy
 from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions
 from ...core.collision import is_free
 from ...core.curve import Mesh
-from ...core.driver import Relaxation
 from ...core.types import FloatArray
 from . import wire
 from .job import messages
@@ -38,20 +39,18 @@ class Worker:
         What is to be relaxed, as for `core.relax`.
     link
         Where Blender stores the vertices: motions of the stored ones are proved too.
-    processes
-        Whether to try a process at all.
     """
 
-    def __init__(self, curve: Curve, options: RelaxOptions, link: Link, processes: bool = True) -> None:
+    def __init__(self, curve: Curve, options: RelaxOptions, link: Link) -> None:
         self._job = wire.pack_job(curve, options, link)
         self._proved: set[str] = set()
         self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
         self._closed = threading.Event()
-        self.process = _start() if processes else None
+        self.process = _start()
         self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
         self._thread.start()
 
-    def poll(self, timeout: float = 0.0) -> Iterate | Outcome | None:
+    def poll(self) -> Iterate | Outcome | None:
         """Take the next iterate if there is one; after the last one comes the outcome.
 
         Raises
@@ -60,7 +59,7 @@ class Worker:
             If the curve cannot be relaxed, or the worker is gone.
         """
         try:
-            message = self._queue.get(timeout=timeout) if timeout else self._queue.get_nowait()
+            message = self._queue.get_nowait()
         except queue.Empty:
             return None
         if message is None:
@@ -72,15 +71,6 @@ class Worker:
         iterate, proved = wire.unpack_iterate(message)
         self._proved.update(proved)
         return iterate
-
-    def __iter__(self) -> Relaxation:
-        """Iterate as `core.relax` does, waiting for each iterate."""
-        while True:
-            arrived = self.poll(timeout=_PATIENCE)
-            if isinstance(arrived, Outcome):
-                return arrived
-            if arrived is not None:
-                yield arrived
 
     def is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
         """As `core.collision.is_free`, but most motions were proved by the worker already."""
@@ -123,17 +113,23 @@ class Worker:
         return False
 
     def _close_streams(self) -> None:
-        for stream in (self.process.stdin, self.process.stdout) if self.process is not None else ():
+        for stream in _pipes(self.process) if self.process is not None else ():
             with contextlib.suppress(OSError):  # what was still to be written goes nowhere
                 stream.close()
 
 
 def _replies(process: "subprocess.Popen[bytes]", job: wire.Message) -> Iterator[wire.Message]:
+    to_worker, from_worker = _pipes(process)
+    wire.write(to_worker, job)
+    while True:
+        yield wire.read(from_worker)
+
+
+def _pipes(process: "subprocess.Popen[bytes]") -> tuple[IO[bytes], IO[bytes]]:
+    """The standard input and output of the worker."""
     assert process.stdin is not None
     assert process.stdout is not None
-    wire.write(process.stdin, job)
-    while True:
-        yield wire.read(process.stdout)
+    return process.stdin, process.stdout
 
 
 def _start() -> "subprocess.Popen[bytes] | None":
@@ -156,5 +152,5 @@ def _start() -> "subprocess.Popen[bytes] | None":
 
 def _environment() -> dict[str, str]:
     """The environment, with SciPy's place in it and one thread for linear algebra: a run is one of many tasks."""
-    places = dict.fromkeys(str(Path(module.__file__).parents[1]) for module in (scipy, np))
+    places = dict.fromkeys(str(Path(inspect.getfile(module)).parents[1]) for module in (scipy, np))
     return {**os.environ, "PYTHONPATH": os.pathsep.join(places), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}

@@ -25,13 +25,13 @@ def _undo_pre(*_: Any) -> None:
 @persistent  # type: ignore[untyped-decorator]
 def _save_pre(*_: Any) -> None:
     if run := registry.current():
-        run.set_aside()
+        run.preview.set_aside()
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _save_post(*_: Any) -> None:
     if run := registry.current():
-        run.put_forward()
+        run.preview.put_forward()
 
 
 _HANDLERS = {

@@ -2,8 +2,7 @@
 
 import bpy
 
-from ..curves.session import State
-from .run import Run
+from .run import Run, State
 
 _INTERVAL = 1 / 60  # seconds; one iterate each time, so that every one is seen
 _TYPING = {"CONSOLE", "TEXT_EDITOR"}  # keys pressed over these are theirs

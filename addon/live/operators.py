@@ -7,12 +7,11 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..curves import sampling
-from ..curves.session import State
 from ..properties import key_options, relax_options
 from . import registry
 from .checks import refusal, selected_curves, unsampled
 from .modal import Loop, redraw_views
-from .run import Run
+from .run import Run, State
 
 _NOTHING = "Nothing is being relaxed"
 
@@ -104,10 +103,7 @@ class CURVE_OT_mobius_flow_pause(_RunButton, bpy.types.Operator):  # noqa: N801 
 
     def act(self, run: Run) -> None:
         """Pause or resume."""
-        if run.state is State.PAUSED:
-            run.resume()
-        else:
-            run.pause()
+        run.toggle_pause()
 
 
 class CURVE_OT_mobius_flow_stop(_RunButton, bpy.types.Operator):  # noqa: N801

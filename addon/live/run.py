@@ -4,30 +4,37 @@ That there is one is known here, in Python, and never in the file. The curves th
 shows them as they are; what they were is kept and put back unless the run is to be kept.
 """
 
-import threading
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from enum import Enum
 from typing import TYPE_CHECKING
 
-from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status
-from ...core.curve import Mesh
-from ...core.driver import Relaxation
-from ...core.types import FloatArray
+from ...core import Iterate, MobiusFlowError, Outcome, RelaxOptions, Status
 from ..curves.group import Group
-from ..curves.session import Prepared, Report, Session, State
+from ..curves.session import Report, Session
 from ..engine.key_options import KeyOptions
-from ..engine.placement import Frame
 from ..engine.worker import Worker, WorkerError
 from . import registry
+from .key_writer import KeyWriter
+from .preview import Preview
 
 if TYPE_CHECKING:
     import bpy
 
-_SLICE = 0.02  # seconds of writing keys at a time
 
+class State(Enum):
+    """Where a run stands."""
 
-class _NobodyWaitsError(Exception):
-    """The run is over; nobody waits for proofs any more."""
+    RUNNING = "running"
+    PAUSED = "paused"
+    FINISHING = "finishing"
+    DONE = "done"
+    CANCELLED = "cancelled"
+    LOST = "lost"
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing happens any more."""
+        return self in (State.DONE, State.CANCELLED, State.LOST)
 
 
 class Run:
@@ -54,11 +61,10 @@ class Run:
         self.last: Iterate | None = None
         self.report: Report | None = None
         self.group = Group(objects)
-        self._frame: Frame | None = None
-        self._writing: Iterator[None] | None = None
-        self._prepared: Prepared | None = None
-        self._fault = False
-        self._session = Session(self.group, options, key_options, self._start, self._is_free)
+        self._session = Session(self.group, options, key_options)
+        self._worker = Worker(self.group.curve, options, self.group.link)
+        self.preview = Preview(self.group)
+        self._keys = KeyWriter(self._session, self._worker.is_free)
         registry.begin(self)
 
     @property
@@ -66,26 +72,18 @@ class Run:
         """The names of what is relaxed, for people."""
         return self.group.title
 
-    def _start(self, curve: Curve, options: RelaxOptions) -> Relaxation:
-        self._worker = Worker(curve, options, self.group.link)
-        return iter(self._worker)
+    @property
+    def waits(self) -> bool:
+        """Whether Blender renders the curve, which must not move then."""
+        import bpy
 
-    def _is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
-        if self.state.over:
-            raise _NobodyWaitsError
-        return self._worker.is_free(mesh, start, end)
+        return not self.state.over and bool(bpy.app.is_job_running("RENDER"))
 
     # -- what the buttons do ------------------------------------------------------------------------------------
 
-    def pause(self) -> None:
-        """Show no more iterates; the worker fills its queue and then waits too."""
-        if self.state is State.RUNNING:
-            self.state = State.PAUSED
-
-    def resume(self) -> None:
-        """Go on after a pause."""
-        if self.state is State.PAUSED:
-            self.state = State.RUNNING
+    def toggle_pause(self) -> None:
+        """Show no more iterates, or go on; meanwhile the worker fills its queue and then waits too."""
+        self.state = {State.RUNNING: State.PAUSED, State.PAUSED: State.RUNNING}.get(self.state, self.state)
 
     def keep(self, reason: str = "") -> None:
         """Keep the curve as it is now: stop computing, then prove and write the keys."""
@@ -96,16 +94,16 @@ class Run:
             return
         if self._session.outcome is None:
             reason = reason or f"stopped after {self.last.index} iterations"
-            self._session.end(Outcome(Status.INTERRUPTED, reason))
+            self._session.outcome = Outcome(Status.INTERRUPTED, reason)
         self.state = State.FINISHING
         self._worker.close()
-        threading.Thread(target=self._prepare, name="Möbius Flow keys", daemon=True).start()
+        self._keys.start()
 
     def cancel(self, message: str = "Cancelled; all is as it was") -> None:
         """Put the curve back as it was."""
         if not self.state.over:
             self._close(State.CANCELLED, message)
-            self.group.restore()
+            self.preview.put_back()
 
     # -- what the timer does ------------------------------------------------------------------------------------
 
@@ -115,7 +113,7 @@ class Run:
             return
         try:
             if reason := self.group.lost():
-                self._lose(f"{reason}; the relaxation has ended")
+                self._lose(reason)
             elif self.state is State.RUNNING:
                 self._take()
             elif self.state is State.FINISHING:
@@ -138,44 +136,16 @@ class Run:
             self.keep(str(error))
             return
         if isinstance(arrived, Outcome):
-            self._session.end(arrived)
+            self._session.outcome = arrived
             self.keep()
         elif arrived is not None:
             self.last = arrived
-            self._show(self._session.take(arrived))
-
-    def _show(self, frame: Frame) -> None:
-        if self._frame is None:
-            self._session.make_polygons()
-        self._frame = frame
-        self._session.show(frame)
-
-    def _prepare(self) -> None:
-        try:
-            self._prepared = self._session.prepare()
-        except _NobodyWaitsError:
-            return
-        except BaseException:
-            self._fault = True
-            raise
+            self.preview.show(arrived.curve, self._session.take(arrived))
 
     def _write(self) -> None:
-        if self._fault:
-            raise MobiusFlowError("The keys could not be prepared; all is as it was")
-        if self._prepared is None:
-            return
-        self._writing = self._writing or self._session.writing(self._prepared)
-        until = time.perf_counter() + _SLICE
-        while time.perf_counter() < until:
-            try:
-                next(self._writing)
-            except StopIteration:
-                self._done(self._prepared)
-                return
-
-    def _done(self, prepared: Prepared) -> None:
-        self.report = self._session.report(prepared)
-        self._close(State.DONE, self.report.sentence)
+        self.report = self._keys.advance()
+        if self.report is not None:
+            self._close(State.DONE, self.report.sentence)
 
     # -- ends ---------------------------------------------------------------------------------------------------
 
@@ -183,34 +153,14 @@ class Run:
         self.failed = True
         self.cancel(message)
 
-    def _lose(self, message: str) -> None:
+    def _lose(self, reason: str) -> None:
         """End because of what somebody did to an object; what else there is is put back."""
-        self._close(State.LOST, message)
-        if self.group.restore():
-            self.message += ", and every curve is as it was"
-        elif len(self.group.names) > 1:
-            self.message += ", and the others are as they were"
+        self._close(State.LOST, f"{reason}; the relaxation has ended")
+        self.message += self.preview.put_back()
 
     def _close(self, state: State, message: str) -> None:
         self.state, self.message = state, message
         self._worker.close()
+        self._keys.abandon()
         registry.end(self)
         self.on_end()
-
-    def set_aside(self) -> None:
-        """Put the curves back for a moment, because the file is being saved."""
-        if self._frame is not None and self._writing is None:
-            self.group.set_aside()
-
-    def put_forward(self) -> None:
-        """Show the relaxation again after `set_aside`."""
-        if self._frame is not None and self._writing is None and not self.state.over:
-            self._session.make_polygons()
-            self._session.show(self._frame)
-
-    @property
-    def waits(self) -> bool:
-        """Whether Blender renders the curve, which must not move then."""
-        import bpy
-
-        return not self.state.over and bool(bpy.app.is_job_running("RENDER"))

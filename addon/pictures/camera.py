@@ -74,7 +74,7 @@ def _camera(scene: "bpy.types.Scene", stage: Stage, axes: FloatArray) -> "bpy.ty
 def _slopes(scene: "bpy.types.Scene") -> FloatArray:
     """Tangents of half the horizontal and vertical angle of view."""
     size = np.array([scene.render.resolution_x, scene.render.resolution_y], dtype=np.float64)
-    return 0.5 * _SENSOR / _LENS * size / size.max()
+    return np.asarray(0.5 * _SENSOR / _LENS * size / size.max())
 
 
 def _eyes(

@@ -142,7 +142,7 @@ def add_pauses(scene: "bpy.types.Scene") -> None:
 def steady_frames(keys: Keys) -> FloatArray:
     """Scene frames of keys that leave every iterate the same time, in whole frames."""
     times = np.array([key.time for key in keys.keys])
-    return 1.0 + max(1.0, np.round(_SHORTEST / max(times[-1], 1.0))) * times
+    return np.asarray(1.0 + max(1.0, np.round(_SHORTEST / max(times[-1], 1.0))) * times)
 
 
 def smooth_frames(keys: Keys) -> FloatArray:
@@ -155,4 +155,5 @@ def smooth_frames(keys: Keys) -> FloatArray:
     share = ways / ways.sum() if ways.sum() else np.full(len(ways), 1 / len(ways))
     even = np.diff([key.time for key in keys.keys]) / (keys.keys[-1].time - keys.keys[0].time)
     moving = np.clip(_FRAMES_PER_KEY * len(ways), *_FILM)
-    return 1.0 + _PAUSE + moving * np.concatenate([[0.0], np.cumsum(_EVENNESS * share + (1 - _EVENNESS) * even)])
+    passed = np.cumsum(_EVENNESS * share + (1 - _EVENNESS) * even)
+    return np.asarray(1.0 + _PAUSE + moving * np.concatenate([[0.0], passed]))

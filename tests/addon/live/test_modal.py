@@ -3,19 +3,17 @@
 Without a window Blender runs ``execute`` instead of ``invoke``; ``tests/window`` has the real thing.
 """
 
-import time
-
 import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored  # noqa: E402
-from mobius_flow.addon.curves.session import State  # noqa: E402
 from mobius_flow.addon.curves.snapshot import Snapshot  # noqa: E402
 from mobius_flow.addon.engine import worker  # noqa: E402
+from mobius_flow.addon.live import key_writer  # noqa: E402
+from mobius_flow.addon.live.run import State  # noqa: E402
 from modal_operator import Operator, keys, restored  # noqa: E402
-from processes import PATIENCE  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
 
 
@@ -64,7 +62,7 @@ def test_pause_and_enter_keep_what_is_shown(operator):
     obj = add_hopf_link()
     operator.start()
     operator.reach(2)
-    operator.run.pause()
+    operator.run.toggle_pause()
     shown = stored(obj.data)
     for _ in range(20):
         operator.event()
@@ -234,19 +232,14 @@ def test_without_a_process_a_thread(operator, monkeypatch):
     assert operator.until(lambda: False) == {"FINISHED"}
 
 
-def test_esc_while_keys_are_written(operator):
+def test_esc_while_keys_are_written(operator, monkeypatch):
+    monkeypatch.setattr(key_writer, "_SLICE", 0.0)  # a key at a tick
     obj = add_trefoil()
     before = Snapshot(obj.data)
     actions = len(bpy.data.actions)
     operator.start()
-    operator.until(lambda: operator.run._writing is not None or operator.run.state is State.FINISHING)
-    end = time.monotonic() + PATIENCE
-    while operator.run._prepared is None:
-        assert time.monotonic() < end
-        time.sleep(0.01)
-    operator.run._writing = operator.run._session.writing(operator.run._prepared)
-    next(operator.run._writing)
-    operator.event("ESC")
+    operator.until(lambda: obj.data.shape_keys is not None)
+    assert operator.event("ESC") == {"CANCELLED"}
     restored(obj, before)
     assert obj.data.shape_keys is None
     assert len(bpy.data.actions) == actions

@@ -1,7 +1,5 @@
 """The event loop of the Relax operator on several objects at once: all of them are relaxed, or none is touched."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -9,9 +7,10 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_trefoil, stored  # noqa: E402
 from mobius_flow.addon.curves import keyframes  # noqa: E402
-from mobius_flow.addon.curves.session import State  # noqa: E402
 from mobius_flow.addon.curves.snapshot import Snapshot  # noqa: E402
 from mobius_flow.addon.engine import worker  # noqa: E402
+from mobius_flow.addon.live import key_writer  # noqa: E402
+from mobius_flow.addon.live.run import State  # noqa: E402
 from modal_operator import keys, restored  # noqa: E402
 from shapes import hopf_link  # noqa: E402
 
@@ -141,21 +140,35 @@ def test_a_file_saved_meanwhile_has_all_objects_as_they_were(operator, rings, tm
         np.testing.assert_array_equal(stored(data), points)
 
 
-def test_esc_while_keys_of_the_second_object_are_written(operator, rings):
+def test_esc_while_keys_of_the_second_object_are_written(operator, rings, monkeypatch):
+    monkeypatch.setattr(key_writer, "_SLICE", 0.0)  # a key at a tick
     before = [Snapshot(obj.data) for obj in rings]
     operator.start()
-    operator.until(lambda: operator.run.state is State.FINISHING)
-    while operator.run._prepared is None:
-        time.sleep(0.01)
-    operator.run._writing = operator.run._session.writing(operator.run._prepared)
-    while rings[1].data.shape_keys is None:
-        next(operator.run._writing)
-    operator.event("ESC")
+    operator.until(lambda: rings[1].data.shape_keys is not None)
+    assert operator.event("ESC") == {"CANCELLED"}
     for obj, each in zip(rings, before, strict=True):
         restored(obj, each)
         assert obj.data.shape_keys is None
         assert obj.data.bevel_depth == 0
     assert len(bpy.data.actions) == 0
+
+
+def test_a_file_saved_while_keys_are_written(operator, rings, tmp_path, monkeypatch):
+    monkeypatch.setattr(key_writer, "_SLICE", 0.0)
+    before = stored(rings[1].data)
+    operator.start()
+    operator.until(lambda: rings[0].data.shape_keys is not None)
+    assert rings[1].data.shape_keys is None
+    shown = [stored(obj.data) for obj in rings]
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"), copy=True)
+    for obj, points in zip(rings, shown, strict=True):
+        np.testing.assert_array_equal(stored(obj.data), points)
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert len(keys(rings[0])) == len(keys(rings[1]))
+    with bpy.data.libraries.load(str(tmp_path / "a.blend")) as (_, loaded):
+        loaded.curves = ["A", "B"]
+    np.testing.assert_array_equal(stored(loaded.curves[0]), shown[0])  # what its keys fit
+    np.testing.assert_array_equal(stored(loaded.curves[1]), before)
 
 
 def test_an_error_while_keys_are_written_loses_nothing(operator, rings, monkeypatch):

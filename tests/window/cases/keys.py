@@ -23,7 +23,7 @@ def case() -> Steps:
 
     yield from button("curve.mobius_flow_relax")
     yield from reaches(3)
-    run().pause()
+    run().toggle_pause()
     yield
     shown, index = points(), iterate()
     yield from key("RET")

@@ -30,7 +30,7 @@ def case() -> Steps:
     settings.vertices = MANY
     yield from button("curve.mobius_flow_relax")
     yield from reaches(2)
-    run().pause()
+    run().toggle_pause()
     assert all(len(a) != len(b) or not np.array_equal(a, b) for a, b in zip(stored(), before, strict=True))
     assert linking_number(*in_world()) == linked
     yield from picture("links-2-running", differs_from="links-1-ready")
@@ -129,7 +129,7 @@ def started() -> Steps:
     with here():
         assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
     yield from reaches(1)
-    run().pause()
+    run().toggle_pause()
     assert how() == "paused"
 
 

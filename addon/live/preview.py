@@ -1,0 +1,45 @@
+"""The shape reached so far, shown in the curves themselves."""
+
+from ...core import Curve
+from ..curves.group import Group
+from ..engine.placement import Frame
+
+
+class Preview:
+    """What curve objects show during a run, and how that is taken back.
+
+    Parameters
+    ----------
+    group
+        The objects; it knows how they were.
+    """
+
+    def __init__(self, group: Group) -> None:
+        self._group = group
+        self._start: Curve | None = None
+        self._frame: Frame | None = None
+
+    def show(self, curve: Curve, frame: Frame) -> None:
+        """Move all points to an iterate, whose vertices are stored as ``frame``; the first one is the refined start."""
+        if self._start is None:
+            self._group.make_polygons(curve)
+            self._start = curve
+        self._frame = frame
+        self._group.show(curve.mesh, frame)
+
+    def set_aside(self) -> None:
+        """Put the curves back for a moment, because the file is being saved."""
+        if self._start is not None:
+            self._group.set_aside()
+
+    def put_forward(self) -> None:
+        """Show the iterate again after `set_aside`."""
+        if self._start is not None and self._frame is not None:
+            self._group.make_polygons(self._start)
+            self._group.show(self._start.mesh, self._frame)
+
+    def put_back(self) -> str:
+        """Put back for good what is left of the curves; say how much that is, as the end of a sentence."""
+        if self._group.restore():
+            return ", and every curve is as it was"
+        return ", and the others are as they were" if len(self._group.names) > 1 else ""
