@@ -101,7 +101,7 @@ def test_famous_unknot_adaptively(tmp_path):
 
 @pytest.mark.parametrize("mesh", ["finer", "adaptive"])
 def test_granny_has_no_minimiser_and_is_told_so(mesh, tmp_path):
-    """A composite knot's strands pull tight for ever: that is no convergence."""
+    """A composite knot's strands pull tight without end: that is no convergence."""
     trajectory = Trajectory()
     options = RelaxOptions(vertices=100, mesh=mesh, tolerance=3e-3)
     result = minimize(lattice_knot("3_1#3_1"), options, trajectory.add)
