@@ -37,6 +37,7 @@ class LiveRelax:
             if reason := refusal(context):
                 raise MobiusFlowError(reason)
             run = Run(selected_curves(context), relax_options(values), key_options(values))
+            registry.begin(run)
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

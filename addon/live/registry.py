@@ -1,37 +1,27 @@
 """Which run is going on, and which was the last: known to Python only."""
 
-from typing import TYPE_CHECKING
+from .run import Run
 
-if TYPE_CHECKING:
-    from .run import Run
-
-_running: "list[Run]" = []
-_finished: "list[Run]" = []
+_latest: list[Run] = []
 
 
-def begin(run: "Run") -> None:
+def begin(run: Run) -> None:
     """A run goes on from now; there is only one at a time."""
-    assert not _running, "checks.refusal says so before"
-    _running.append(run)
+    assert current() is None, "checks.refusal says so before"
+    _latest[:] = [run]
 
 
-def end(run: "Run") -> None:
-    """A run is over; it is remembered for the panel."""
-    if run in _running:
-        _running.remove(run)
-    _finished[:] = [run]
-
-
-def current() -> "Run | None":
+def current() -> Run | None:
     """The run that is going on, if there is one."""
-    return _running[0] if _running else None
+    run = latest()
+    return None if run is None or run.state.over else run
 
 
-def latest() -> "Run | None":
+def latest() -> Run | None:
     """The run that is going on, or else the last one."""
-    return next(iter(_running + _finished), None)
+    return _latest[0] if _latest else None
 
 
 def forget() -> None:
     """Forget the last run."""
-    _finished.clear()
+    _latest.clear()

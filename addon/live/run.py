@@ -13,7 +13,6 @@ from ..curves.group import Group
 from ..curves.session import Report, Session
 from ..engine.key_options import KeyOptions
 from ..engine.worker import Worker, WorkerError
-from . import registry
 from .key_writer import KeyWriter
 from .preview import Preview
 
@@ -65,7 +64,6 @@ class Run:
         self._worker = Worker(self.group.curve, options, self.group.link)
         self.preview = Preview(self.group)
         self._keys = KeyWriter(self._session, self._worker.is_free)
-        registry.begin(self)
 
     @property
     def name(self) -> str:
@@ -162,5 +160,4 @@ class Run:
         self.state, self.message = state, message
         self._worker.close()
         self._keys.abandon()
-        registry.end(self)
         self.on_end()
