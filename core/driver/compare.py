@@ -4,12 +4,10 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from ..collision import check_embedded
-from ..curve import Curve, check_is_curve
+from ..curve import Curve
 from ..errors import OptionError
-from ..units import check_units
 from .options import RelaxOptions
-from .prepare import check_size, embedded_refinement, start_problem
+from .prepare import prepared_start, start_problem
 from .relax import relax
 
 
@@ -42,14 +40,9 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
 
     Whether every method can be run is looked at before the first one is. Raises as `relax` does.
     """
-    check_is_curve(curve)
     if isinstance(methods, str):
         raise OptionError(f"methods are {methods!r:.60}; give a list of names")
-    for method in methods:
-        check_size(curve, replace(options, method=method))
-    check_units(curve)
-    check_embedded(curve)
-    start = embedded_refinement(curve, options.vertices)
+    start = prepared_start(curve, options.vertices, [replace(options, method=method) for method in methods])
     each = [replace(options, method=method, vertices=len(start)) for method in methods]
     for wanted in each:
         start_problem(start, wanted)

@@ -1,11 +1,13 @@
 """From a curve and options to the problem that is solved."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..checks import named
-from ..collision import check_gap, minimal_gap, survives_rounding
+from ..collision import check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
-from ..curve import Curve, refine
+from ..curve import Curve, check_is_curve, refine
 from ..curve.remesh import graded_spacing
 from ..descent import METHODS, Method, Problem
 from ..energies import ENERGIES, Energy, Objective
@@ -13,7 +15,7 @@ from ..errors import CurveError, OptionError
 from ..metrics import METRICS, Metric
 from ..quadrature import Rule
 from ..types import FloatArray
-from ..units import Units
+from ..units import Units, check_units
 from .options import RelaxOptions
 
 EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
@@ -40,6 +42,24 @@ def check_size(curve: Curve, options: RelaxOptions) -> None:
 
 def _metric(method: Method, options: RelaxOptions) -> Metric:
     return method.metric if options.metric is None else named(METRICS, "metric", options.metric)
+
+
+def prepared_start(curve: Curve, vertices: int | None, each: Sequence[RelaxOptions]) -> Curve:
+    """The refined curve, from which relaxations can start whose options differ by their methods.
+
+    Raises
+    ------
+    CurveError
+        If the curve touches itself, or is degenerate, or too large.
+    OptionError
+        If an option does not fit it.
+    """
+    check_is_curve(curve)
+    for options in each:
+        check_size(curve, options)
+    check_units(curve)
+    check_embedded(curve)
+    return embedded_refinement(curve, vertices)
 
 
 def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:

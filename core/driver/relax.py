@@ -7,18 +7,15 @@ from functools import cached_property
 
 import numpy as np
 
-from ..checks import named
-from ..collision import check_embedded
-from ..curve import Curve, check_is_curve
-from ..descent import METHODS
+from ..curve import Curve
 from ..energies import MoebiusEnergy
 from ..errors import CurveError, OptionError
-from ..units import centred, check_units
+from ..units import centred
 from .iterate import Iterate
 from .loop import Relaxation, iterates
 from .options import RelaxOptions
 from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
-from .prepare import check_size, embedded_refinement, start_problem
+from .prepare import prepared_start, start_problem
 from .run import Run
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
@@ -115,19 +112,14 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
     OptionError
         If an option does not fit.
     """
-    check_is_curve(curve)
     options = RelaxOptions() if options is None else options
     if not isinstance(options, RelaxOptions):
         raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
-    named(METHODS, "method", options.method)
-    check_size(curve, options)
-    check_units(curve)
-    check_embedded(curve)
-    refined = embedded_refinement(curve, options.vertices)
+    start = prepared_start(curve, options.vertices, [options])
     try:
-        run = Run(start_problem(refined, options), refined, options)
+        run = Run(start_problem(start, options), start, options)
     except np.linalg.LinAlgError as error:
-        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(refined)}") from error
+        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start)}") from error
     return iterates(run)
 
 
