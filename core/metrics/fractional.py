@@ -13,7 +13,7 @@ from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
 @dataclass(frozen=True)
 class FractionalMetric(WithoutRule):
-    """Σ ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/ϱ² + ∫ u v, midpoint rule, ϱ the distance along the curve."""
+    """Σ ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/ϱ² + ∫ u², midpoint rule, ϱ the distance along the curve."""
 
     name = "h3-2"
     description = "W^{3/2,2}, intrinsic"

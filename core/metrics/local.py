@@ -47,7 +47,7 @@ class WithoutRule:
 
 @dataclass(frozen=True)
 class L2Metric(WithoutRule):
-    """∫ u v."""
+    """∫ u²."""
 
     name = "l2"
     description = "L²"
@@ -60,7 +60,7 @@ class L2Metric(WithoutRule):
 
 @dataclass(frozen=True)
 class H1Metric(WithoutRule):
-    """∫ u' v' + ∫ u v."""
+    """∫ u'² + ∫ u²."""
 
     name = "h1"
     description = "W^{1,2}"
@@ -73,7 +73,7 @@ class H1Metric(WithoutRule):
 
 @dataclass(frozen=True)
 class H2Metric(WithoutRule):
-    """∫ u'' v'' + ∫ u v, the second derivative by the lumped mass: K M⁻¹ K."""
+    """∫ u''² + ∫ u², the second derivative by the lumped mass: K M⁻¹ K."""
 
     name = "h2"
     description = "W^{2,2}"

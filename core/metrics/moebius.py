@@ -29,7 +29,9 @@ NEAREST = 0.25
 
 @dataclass(frozen=True)
 class MoebiusMetric:
-    """J_C, the metric in which the Möbius energy's gradient flow is an ordinary differential equation.
+    """Σ ℓ_I ℓ_J (|ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/r² + |u_I − u_J|²/r² (1/r² − 1/ϱ²)) + |∫ u|², by a quadrature rule.
+
+    The metric in which the Möbius energy's gradient flow is an ordinary differential equation.
 
     Parameters
     ----------

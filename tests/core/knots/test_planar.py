@@ -38,8 +38,7 @@ def test_hard_unknots(name: str) -> None:
     check_embedded(curve)
     assert minimal_gap(curve)[0] > 1e-4 * curve.edge_lengths.max()
     assert signature(curve).is_trivial
-    if len(code) < 40:  # the proof takes its time
-        assert knot_invariants(curve.vertices) == UNKNOT
+    assert knot_invariants(curve.vertices) == UNKNOT
 
 
 def test_number_of_vertices() -> None:

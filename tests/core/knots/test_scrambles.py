@@ -5,7 +5,8 @@ import pytest
 from curve_checks import exact, exactly_pierced, strand_distance
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from knot_type import knot_invariants, pairwise_linking
+from knot_diagrams import pairwise_linking
+from knot_type import knot_invariants
 from mobius_flow.core.curve import Curve
 from mobius_flow.core.errors import CurveError
 from mobius_flow.core.knots import knot, scramble

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from knot_type import UNKNOT, knot_invariants, pairwise_linking
+from knot_diagrams import pairwise_linking
+from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core.curve import Curve
 from mobius_flow.core.errors import CurveError
 from mobius_flow.core.knots import braid_closure, torus_knot

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from knot_type import UNKNOT, knot_invariants, linking_number
+from knot_diagrams import linking_number
+from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core.curve.io import read_curve
 from mobius_flow.core.knots import knot
 

@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 from braid_words import burau_alexander
 from curve_checks import strand_distance
-from knot_diagrams import Laurent
-from knot_type import UNKNOT, jones, knot_invariants, pairwise_linking, small_diagram
+from jones import Laurent, jones
+from knot_diagrams import pairwise_linking, simplified
+from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core.knots import ALIASES, KNOTS, knot
 
 _LINES = (Path(__file__).parent / "known_knots.txt").read_text().splitlines()
@@ -61,7 +62,7 @@ def test_polynomials_of_words_and_polygons_tell_all_but_four_pairs_apart() -> No
         alexander = _integers(KNOWN[name][3])
         word = KNOTS[name]
         assert burau_alexander(word, max(map(abs, word), default=0) + 1) == alexander
-        found = jones(small_diagram([knot(name).vertices]))
+        found = jones(simplified([knot(name).vertices]))
         assert found == _known_jones(name)
         mirrored = {-k: c for k, c in found.items()}
         either = min(sorted(found.items()), sorted(mirrored.items()))
@@ -74,7 +75,7 @@ def test_links(name: str) -> None:
     linking, polynomial = LINKS[name]
     link = knot(name)
     assert pairwise_linking(link.components) == linking
-    assert jones(small_diagram(link.components)) == polynomial
+    assert jones(simplified(link.components)) == polynomial
     assert all(knot_invariants(part) == UNKNOT for part in link.components)
 
 

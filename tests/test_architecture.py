@@ -1,0 +1,99 @@
+"""The house stands: no circles among its rooms, no way up, and the drawing in the documents is of these walls."""
+
+import importlib.util
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+_SPEC = importlib.util.spec_from_file_location("import_map", ROOT / "tools/import_map.py")
+tool = importlib.util.module_from_spec(_SPEC)
+_SPEC.loader.exec_module(tool)
+MAP = tool.import_map()
+
+# from the ground up; a room reaches none of a higher floor, nor of its own, by any chain of imports
+FLOORS = (
+    {"core.types", "core.errors"},
+    {"core.verify", "core.system", "core.quadrature"},
+    {"core.curve"},
+    {"core.energies", "core.collision", "core.knots", "core.constraints"},
+    {"core.saddle"},
+    {"core.metrics"},
+    {"core.descent"},
+    {"core.options", "core.driver"},
+    {"core"},
+    {"addon"},
+    {"cli"},
+)
+FLOOR = {name: number for number, floor in enumerate(FLOORS) for name in floor}
+
+
+def test_every_package_has_a_floor():
+    packages = {"cli", "addon", *(f"core.{path.parent.name}" for path in (ROOT / "core").glob("*/__init__.py"))}
+    assert packages <= set(FLOOR), f"give {packages - set(FLOOR)} a floor here"
+    assert packages <= set(MAP)
+
+
+@pytest.mark.parametrize("name", [name for name in FLOOR if name in MAP])
+def test_no_room_reaches_up(name):
+    up = {there for there in tool.reachable(MAP, name) if there in FLOOR and FLOOR[there] >= FLOOR[name]}
+    assert not up
+
+
+def test_there_are_no_circles():
+    TopologicalSorter(MAP).prepare()
+
+
+@pytest.mark.parametrize("top", ["core", "cli"])
+def test_blender_stays_in_the_addon(top):
+    paths = (ROOT / top).rglob("*.py")
+    found = {path.name for path in paths if any(name.split(".")[0] == "bpy" for name in tool.imports(path))}
+    assert not found
+
+
+def test_the_core_needs_nothing_but_numpy_and_scipy():
+    names = {name.split(".")[0] for path in (ROOT / "core").rglob("*.py") for name in tool.imports(path, ROOT)}
+    assert not names & {"addon", "cli", "bpy", "tqdm", "matplotlib", "mobius_flow"}
+    assert {"numpy", "scipy"} <= names
+
+
+def test_the_verifier_shares_no_code_with_what_it_checks():
+    assert tool.reachable(MAP, "core.verify") <= {"core.types", "core.errors"}
+
+
+def house(root, **files):
+    """A house of a few lines."""
+    for place, text in files.items():
+        path = root / f"{place.replace('__', '/')}.py"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return tool.import_map(root)
+
+
+def test_imports_of_every_kind_are_seen(tmp_path):
+    found = house(
+        tmp_path,
+        core__curve__mesh="from ..errors import E\nfrom .. import quadrature\nimport numpy",
+        core__energies__edge="def f():\n    from ..curve.mesh import Mesh\n",
+        core__metrics__one="from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from ..energies import edge\n",
+        core__errors="",
+        core__quadrature="",
+        cli__main="from ..core import Curve\nfrom ..core.metrics import one\nfrom . import parser",
+    )
+    assert found["core.curve"] == {"core.errors", "core.quadrature"}
+    assert found["core.energies"] == {"core.curve"}
+    assert found["core.metrics"] == {"core.energies"}
+    assert found["cli"] == {"core", "core.metrics"}
+
+
+def test_a_circle_is_no_map(tmp_path):
+    found = house(tmp_path, core__a__x="from ..b import y", core__b__y="def f():\n    from ..a import x\n")
+    with pytest.raises(CycleError):
+        tool.drawn(found)
+
+
+def test_arrows_that_follow_are_left_out(tmp_path):
+    text = "from ..b import y\nfrom ..c import z"
+    found = house(tmp_path, core__a__x=text, core__b__y="from ..c import z", core__c__z="")
+    assert tool.drawn(found).splitlines() == ["flowchart TD", "    core.a --> core.b", "    core.b --> core.c"]
