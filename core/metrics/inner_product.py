@@ -44,7 +44,7 @@ class InnerProduct(Protocol):
 
 
 class DenseInnerProduct:
-    """A as an array, in Fortran order for LAPACK."""
+    """A as an array in Fortran order for LAPACK, of which only the lower triangle counts."""
 
     def __init__(self, matrix: FloatArray) -> None:
         self._matrix = np.asfortranarray(matrix)
@@ -63,7 +63,7 @@ class DenseInnerProduct:
 
     def dense(self) -> FloatArray:
         """A."""
-        return self._matrix
+        return _filled(self._matrix.copy(order="F"))
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
         """By two Cholesky factorisations."""

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from mobius_flow.core import RelaxOptions
-from mobius_flow.core.metrics import METRICS, MoebiusMetric
+from mobius_flow.core.curve import Mesh
+from mobius_flow.core.metrics import METRICS, DenseInnerProduct, MoebiusMetric
 from mobius_flow.core.metrics.moebius import NEAREST
+from mobius_flow.core.metrics.pairs import DifferenceForm, Stencil, stripes
 from mobius_flow.core.quadrature import ENDS, TAIL, Rule
 from mobius_flow.core.setup import start_problem
 from scipy.integrate import quad
@@ -116,6 +118,25 @@ def _by_definition(curve, u, rule):
                     weight = ell[i] * ell[j] * omega[a] * omega[b]
                     total += weight * s * (slope**2 + (ui - uj) ** 2 * density)
     return total
+
+
+def test_stripes_meet_every_pair_once():
+    """With weights that tell pairs apart, on a link of which the longest component takes several stripes."""
+    mesh, rng = Mesh((300, 3, 130)), np.random.default_rng(19)
+    weights, u = rng.random((mesh.size, mesh.size)), rng.normal(size=mesh.size)
+    weights += weights.T
+    stencil = Stencil(rng.random(mesh.size), rng.random(mesh.size))
+    edges = np.arange(mesh.size)
+    counts = mesh.disjoint(edges[:, None], edges[None, :])
+    form = DifferenceForm(mesh)
+    for stripe in stripes(mesh):
+        ones = np.ones((len(stripe.rows), mesh.size - stripe.columns.start))
+        stripe.exclude_neighbours(mesh, ones)
+        form.add(stripe, np.where(np.isinf(ones), 0.0, weights[stripe.rows, stripe.columns]), stencil, stencil)
+    assert len(list(stripes(mesh))) > 5
+    values = stencil.tail * u[mesh.tails] + stencil.head * u[mesh.heads]
+    expected = np.sum(np.where(counts, weights, 0.0) * np.subtract.outer(values, values) ** 2)
+    assert u @ DenseInnerProduct(form.matrix()).apply(u[:, None]) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
