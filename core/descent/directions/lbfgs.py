@@ -1,4 +1,4 @@
-"""L-BFGS on the constraint manifold, with the current metric as initial inverse Hessian.
+"""L-BFGS on the constraint manifold, with the point's metric as initial inverse Hessian.
 
 The two-loop recursion of Nocedal and Wright (Numerical Optimization, Section 7.2) in covectors: gradients of the
 Lagrangian in, directions out, and in the middle the saddle-point solve (41) of [RS21] where the textbook has a
