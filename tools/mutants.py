@@ -152,10 +152,10 @@ MUTANTS = (
         f"{RESTORATION}::test_the_last_corrections_converge_quadratically",
     ),
     Mutant(
-        "columns of a pair matrix that are counted twice",
+        "stripes that forget the edge before",
         "core/metrics/pairs.py",
-        "inside[:, width:].sum(axis=0)",
-        "inside.sum(axis=0)",
+        "np.concatenate([[before], np.arange(first, last)])",
+        "np.concatenate([[first], np.arange(first, last)])",
         "tests/core/test_metrics.py::test_stripes_meet_every_pair_once",
     ),
     Mutant(

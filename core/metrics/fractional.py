@@ -30,4 +30,4 @@ class FractionalMetric(WithoutRule):
             weights = np.multiply.outer(ell[stripe.rows], ell[stripe.columns])
             weights /= np.square(rho, out=rho)
             form.add(stripe, weights, slope, slope)
-        return DenseInnerProduct(form.matrix() + mass(curve).toarray())
+        return DenseInnerProduct(form.assembled() + mass(curve).toarray())

@@ -62,7 +62,7 @@ class MoebiusMetric:
                 form.add(stripe, inverse, slope, slope)
                 form.add(stripe, density, Stencil.value(mesh, t_i), Stencil.value(mesh, t_j))
         mass = lumped_mass(curve)
-        return DenseInnerProduct(blas.dsyr(1.0, mass, a=form.matrix(), lower=1, overwrite_a=1))
+        return DenseInnerProduct(blas.dsyr(1.0, mass, a=form.assembled(), lower=1, overwrite_a=1))
 
 
 def _weights(curve: Curve, t_i: float, t_j: float, stripe: Stripe) -> tuple[FloatArray, FloatArray]:

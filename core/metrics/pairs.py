@@ -80,21 +80,21 @@ class DifferenceForm:
         Taking first rows and then columns together at their common vertices is Bᵀ w B' at a few operations an entry.
         """
         vertices, rows, columns = stripe
-        inside = weights[1:, vertices.start - columns.start :]
+        own = vertices.start - columns.start
+        # the pairs of the stripe's own edges come in either order, and so count by their rows alone
+        inside, beyond = weights[1:, own:], weights[1:, own + len(rows) - 1 :]
         self._add_squares(vertices, left, inside.sum(axis=1))
-        width = vertices.stop - vertices.start
-        self._add_squares(slice(vertices.stop, None), right, inside[:, width:].sum(axis=0))
+        self._add_squares(slice(vertices.stop, None), right, beyond.sum(axis=0))
         at_vertices = left.tail[rows[1:], None] * weights[1:]
         weights *= left.head[rows, None]
         at_vertices += weights[:-1]
-        at_tails = at_vertices * right.tail[columns]
+        at_tails = at_vertices[:, own:] * right.tail[vertices.start :]
         at_vertices *= right.head[columns]
-        total = at_vertices.take(self._mesh.previous[vertices.start :] - columns.start, axis=1)
-        total += at_tails[:, vertices.start - columns.start :]
-        self._cross[vertices, vertices.start :] += total
+        at_tails += at_vertices.take(self._mesh.previous[vertices.start :] - columns.start, axis=1)
+        self._cross[vertices, vertices.start :] += at_tails
 
-    def matrix(self) -> FloatArray:
-        """The matrix, shape (n, n), in Fortran order, of which only the lower triangle counts."""
+    def assembled(self) -> FloatArray:
+        """Finish: the matrix, shape (n, n), in Fortran order, of which only the lower triangle counts."""
         mesh = self._mesh
         tail, head, mixed = self._squares
         form = np.multiply(self._cross, -2.0, out=self._cross)

@@ -139,7 +139,7 @@ def test_stripes_meet_every_pair_once():
     assert len(list(stripes(mesh))) > 5
     values = stencil.tail * u[mesh.tails] + stencil.head * u[mesh.heads]
     expected = np.sum(np.where(counts, weights, 0.0) * np.subtract.outer(values, values) ** 2)
-    assert u @ DenseInnerProduct(form.matrix()).apply(u[:, None]) == pytest.approx(expected, rel=1e-12)
+    assert u @ DenseInnerProduct(form.assembled()).apply(u[:, None]) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
