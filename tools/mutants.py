@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
 SEARCHES, CLAIMS = "tests/core/descent/test_searches.py", "tests/core/descent/test_claims.py"
+RESTORATION = "tests/core/descent/test_restoration.py"
 CERTIFICATE, VERIFY = "tests/core/test_certificate.py", "tests/core/verify"
 
 
@@ -107,6 +108,55 @@ MUTANTS = (
         "decrease: float = 0.5",
         "decrease: float = 1e-4",
         f"{SEARCHES}::test_armijo_asks_for_half_of_the_predicted_decrease",
+    ),
+    Mutant(
+        "one metric for all steps",
+        "core/descent/searches/line_search.py",
+        "point.metric_age + 1 < self.metric_steps",
+        "True",
+        f"{SEARCHES}::test_a_metric_serves_several_steps",
+    ),
+    Mutant(
+        "an old metric after contact",
+        "core/descent/searches/line_search.py",
+        "step.limited_by is None and ",
+        "",
+        f"{SEARCHES}::test_a_metric_serves_no_longer_where_contact_limits_a_step",
+    ),
+    Mutant(
+        "an old metric after a failed search",
+        "core/descent/searches/line_search.py",
+        "point.with_own_metric()",
+        "point",
+        f"{SEARCHES}::test_a_search_that_fails_gets_the_metric_of_its_curve",
+    ),
+    Mutant(
+        "lengths move the barycenter",
+        "core/descent/restoration.py",
+        "(missing - moments[own].sum(axis=0))",
+        "missing",
+        f"{RESTORATION}::test_corrections_solve_the_linearised_constraints_by_the_shortest_way",
+    ),
+    Mutant(
+        "the corner that closes a component",
+        "core/descent/restoration.py",
+        "w[first], w[last] = 1.0, sign",
+        "w[first], w[last] = 1.0, 1.0",
+        f"{RESTORATION}::test_corrections_solve_the_linearised_constraints_by_the_shortest_way",
+    ),
+    Mutant(
+        "small residuals in the metric",
+        "core/descent/constrained.py",
+        "if error > self.small:",
+        "if error > 0.0:",
+        f"{RESTORATION}::test_the_last_corrections_converge_quadratically",
+    ),
+    Mutant(
+        "stripes that forget the edge before",
+        "core/metrics/pairs.py",
+        "np.concatenate([[before], np.arange(first, last)])",
+        "np.concatenate([[first], np.arange(first, last)])",
+        "tests/core/test_metrics.py::test_stripes_meet_every_pair_once",
     ),
     Mutant(
         "the chord is not proved",

@@ -11,17 +11,6 @@ def points_at(curve: Curve, t: float) -> FloatArray:
     return (1.0 - t) * curve.vertices[curve.mesh.tails] + t * curve.vertices[curve.mesh.heads]
 
 
-def squared_distances(x: FloatArray, y: FloatArray) -> FloatArray:
-    """|x_i − y_j|² for all i, j; differences first, so that near points far from the origin stay exact."""
-    total = np.zeros((len(x), len(y)))
-    scratch = np.empty_like(total)
-    for k in range(x.shape[1]):
-        np.subtract.outer(x[:, k], y[:, k], out=scratch)
-        scratch *= scratch
-        total += scratch
-    return total
-
-
 def arc_positions(curve: Curve, t: float) -> FloatArray:
     """Arc length from its component's first vertex to the point at parameter t of every edge; shape (n,)."""
     ell = curve.edge_lengths
@@ -39,15 +28,16 @@ def points_along(curve: Curve, component: IntArray, position: FloatArray) -> Flo
     return np.asarray(curve.vertices[edge] + t[:, None] * curve.edge_vectors[edge])
 
 
-def arc_distances(curve: Curve, t_i: float, t_j: float, rows: slice) -> FloatArray:
-    """ϱ between the points at t_i of the edges in ``rows`` and at t_j of all edges; inf across components."""
+def arc_distances(curve: Curve, t_i: float, t_j: float, rows: IntArray, columns: slice) -> FloatArray:
+    """ϱ between the points at t_i of edges ``rows`` and at t_j of edges ``columns``; inf across components."""
     lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
     component = curve.mesh.component
-    gap = np.abs(np.subtract.outer(arc_positions(curve, t_i)[rows], arc_positions(curve, t_j)))
-    distance = np.minimum(gap, lengths[component[rows], None] - gap)
+    distance = np.subtract.outer(arc_positions(curve, t_i)[rows], arc_positions(curve, t_j)[columns])
+    np.abs(distance, out=distance)
+    np.minimum(distance, lengths[component[rows], None] - distance, out=distance)
     if len(lengths) > 1:
-        distance[component[rows, None] != component[None, :]] = np.inf
-    return np.asarray(distance)
+        distance[component[rows, None] != component[columns]] = np.inf
+    return distance
 
 
 def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:

@@ -11,6 +11,7 @@ from ..errors import OptionError
 from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
+from .restoration import euclidean_correction
 
 if TYPE_CHECKING:
     from .problem import Point, Problem
@@ -25,18 +26,24 @@ class Constrained:
     tolerance
         Of the constraints' residual, relative error of edge lengths: far below any gap that can be proved.
     max_iterations
-        Of the modified Newton method (42).
+        Of the modified Newton method (42), and of Newton's for what it leaves over.
+    small
+        Residual below which the shortest way back is as good as the one in the metric, and far cheaper.  Larger
+        corrections should know where other strands are, and not cost the energy that the step has gained.
     contraction
-        Least rate of (42); where it is slower, a shorter step is cheaper than more iterations.
+        Least rate of both; where it is slower, a shorter step is cheaper than more iterations.
     """
 
     tolerance: float = 1e-11
     max_iterations: int = 15
+    small: float = 1e-3
     contraction: float = 0.6
     prescribes = True
 
     def __post_init__(self) -> None:
-        check_fields(self, tolerance=(0.0, 1.0), max_iterations=(0, np.inf), contraction=(0.0, 1.0))
+        check_fields(
+            self, tolerance=(0.0, 1.0), max_iterations=(0, np.inf), small=(0.0, np.inf), contraction=(0.0, 1.0)
+        )
 
     def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
         """The objective alone."""
@@ -53,7 +60,8 @@ class Constrained:
     def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
         """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point: (42).
 
-        None if the residual does not contract: the step was too long.
+        Once the residual is small the derivative is that at Q and the pseudo-inverse the Euclidean one, by which it
+        vanishes quadratically.  None if the residual does not contract: the step was too long.
         """
         last = np.inf
         for _ in range(self.max_iterations):
@@ -67,7 +75,10 @@ class Constrained:
             if not error <= self.contraction * last:
                 return None
             last = error
-            vertices = vertices - space.pseudo_inverse(residual)
+            if error > self.small:
+                vertices = vertices - space.pseudo_inverse(residual)
+            else:
+                vertices = vertices + euclidean_correction(base.problem.constraints, point.curve, residual)
         return None
 
     def transport(self, point: "Point", u: FloatArray) -> FloatArray:

@@ -16,6 +16,7 @@ from .state import State
 from .step import NoStep, Step
 
 _CONSTRAINED = Constrained()
+METRIC_STEPS = 3  # of quasi-Newton methods: with more, more steps take back what is saved; conjugacy bears no change
 
 
 class StepRule(Protocol):
@@ -60,7 +61,8 @@ def _all() -> Iterator[Method]:
     armijo, wolfe, penalised = Armijo(), WeakWolfe(), Penalised()
     quasi_newton, conjugate, steepest = LimitedMemoryBFGS(), ConjugateGradient(), SteepestDescent()
     remembering = LimitedMemoryBFGS(history=30)
-    yield Method("lbfgs", "L-BFGS on the constraint manifold, metric J_C", LineSearch(quasi_newton, armijo))
+    text = "L-BFGS on the constraint manifold, metric J_C"
+    yield Method("lbfgs", text, LineSearch(quasi_newton, armijo, METRIC_STEPS))
     text = "conjugate gradients (PR+) on the constraint manifold, metric J_C"
     yield Method("cg", text, LineSearch(conjugate, armijo))
     yield Method("trust-region", "trust region in a subspace with Newton's direction, metric J_C", TrustRegion())
@@ -71,7 +73,7 @@ def _all() -> Iterator[Method]:
         text = f"projected gradient flow, implicit, {metric.description}"
         yield Method(f"implicit-{name}", text, BackwardEuler(), metric)
     for name, text, rule in (
-        ("lbfgs", "L-BFGS", LineSearch(remembering, wolfe)),
+        ("lbfgs", "L-BFGS", LineSearch(remembering, wolfe, METRIC_STEPS)),
         ("cg", "conjugate gradients (PR+)", LineSearch(conjugate, wolfe)),
         ("nesterov", "Nesterov's accelerated gradient", Accelerated(wolfe)),
     ):

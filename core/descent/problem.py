@@ -1,5 +1,6 @@
 """What is minimised, in which metric, under which constraints: values at a point are computed once, when asked for."""
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -69,16 +70,34 @@ class Point:
         In the program's units; shape (n, m).
     placed
         The same in the user's, rounded: the doubles that proofs are about and that are written; shape (n, m).
+
+    Attributes
+    ----------
+    metric_age
+        How many steps ago the metric was that of the curve.
     """
 
     def __init__(self, problem: Problem, vertices: FloatArray, placed: FloatArray) -> None:
         self.problem = problem
         self.vertices = vertices
         self.placed = placed
+        self.metric_age = 0
 
     def within(self, problem: Problem) -> "Point":
         """The same polygon in another problem on the same mesh."""
         return self if problem is self.problem else Point(problem, self.vertices, self.placed)
+
+    def with_metric_of(self, earlier: "Point") -> "Point":
+        """The same point in the metric of an earlier one, unless its own is built already."""
+        if "inner_product" in vars(self):
+            return self
+        point = copy(self)
+        point.inner_product, point.metric_age = earlier.inner_product, earlier.metric_age + 1
+        return point
+
+    def with_own_metric(self) -> "Point":
+        """The same point in the metric of its own curve."""
+        return self if self.metric_age == 0 else Point(self.problem, self.vertices, self.placed)
 
     @cached_property
     def curve(self) -> Curve:
@@ -126,7 +145,7 @@ class Point:
 
     @cached_property
     def inner_product(self) -> InnerProduct:
-        """The metric here, on functions along the curve."""
+        """The metric, on functions along the curve: that of this curve, or of one some steps ago."""
         return self.problem.metric.at(self.curve)
 
     @cached_property

@@ -113,8 +113,14 @@ class Step:
 
     def within(self, problem: Problem) -> "Step":
         """The same step, ending at the point of another problem on the same mesh."""
-        last = self.legs[-1]
-        return replace(self, legs=(*self.legs[:-1], last._replace(end=last.end.within(problem))))
+        return self._ending(self.point.within(problem))
+
+    def with_metric_of(self, start: Point) -> "Step":
+        """The same step, at whose end the metric is still that of its start."""
+        return self._ending(self.point.with_metric_of(start))
+
+    def _ending(self, end: Point) -> "Step":
+        return replace(self, legs=(*self.legs[:-1], self.legs[-1]._replace(end=end)))
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,13 @@
 """Pairs of straight edges in the three vectors that shape them: Δ between the midpoints, and the edges e and f."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
 from ..curve import Curve, Mesh
-from ..types import FloatArray, IntArray
+from ..types import FloatArray, IntArray, frozen
 from .jets import Jet
 
 Combination = tuple[float, float, float]
@@ -54,16 +55,21 @@ class EdgePairs(NamedTuple):
         """The inner product of two combinations, as a function of the 3m coordinates of (Δ, e, f)."""
         u, v = self.combination(a), self.combination(b)
         k, m = u.shape
-        first = np.stack([p * v + q * u for p, q in zip(a, b, strict=True)], axis=1).reshape(k, 3 * m)
-        blocks = np.outer(a, b) + np.outer(b, a)
-        constant = np.einsum("pq,ij->piqj", blocks, np.eye(m)).reshape(3 * m, 3 * m)
-        return Jet(np.einsum("km,km->k", u, v), first, self.along(first), constant @ self.directions)
+        first = np.asarray(a)[:, None] * v[:, None, :] + np.asarray(b)[:, None] * u[:, None, :]
+        first = first.reshape(k, 3 * m)
+        return Jet(np.einsum("km,km->k", u, v), first, self.along(first), _polar_form(a, b, m) @ self.directions)
 
 
 def _shape(mesh: Mesh, p: FloatArray, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Δ, e and f of pairs of edges; the end points are subtracted first: edges may be close and far from the origin."""
     x0, x1, y0, y1 = p[mesh.tails[i]], p[mesh.heads[i]], p[mesh.tails[j]], p[mesh.heads[j]]
     return 0.5 * ((x0 - y0) + (x1 - y1)), x1 - x0, y1 - y0
+
+
+@cache
+def _polar_form(a: Combination, b: Combination, m: int) -> FloatArray:
+    """The second derivative of an inner product of combinations, shape (3m, 3m)."""
+    return frozen(np.kron(np.outer(a, b) + np.outer(b, a), np.eye(m)))
 
 
 def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from ..curve import Curve
 from ..curve.distances import arc_distances
 from .inner_product import MOST_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import WithoutRule, mass
-from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
+from .pairs import DifferenceForm, Stencil, stripes
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,12 @@ class FractionalMetric(WithoutRule):
 
     def at(self, curve: Curve) -> InnerProduct:
         """Dense: every pair of edges weighs in."""
-        ell = curve.edge_lengths
-        weights = np.empty((len(curve), len(curve)))
-        for rows in row_blocks(curve.mesh):
-            rho = excluding_neighbours(arc_distances(curve, 0.5, 0.5, rows), curve.mesh, rows)
-            weights[rows] = ell[rows, None] * ell[None, :] / rho**2
-        slope = slopes(curve)
-        return DenseInnerProduct(difference_form(weights, slope, slope) + mass(curve).toarray())
+        ell, slope = curve.edge_lengths, Stencil.slope(curve)
+        form = DifferenceForm(curve.mesh)
+        for stripe in stripes(curve.mesh):
+            rho = arc_distances(curve, 0.5, 0.5, stripe.rows, stripe.columns)
+            stripe.exclude_neighbours(curve.mesh, rho)
+            weights = np.multiply.outer(ell[stripe.rows], ell[stripe.columns])
+            weights /= np.square(rho, out=rho)
+            form.add(stripe, weights, slope, slope)
+        return DenseInnerProduct(form.assembled() + mass(curve).toarray())

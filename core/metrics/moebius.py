@@ -13,14 +13,16 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+from scipy.linalg import blas
+from scipy.spatial.distance import cdist
 
 from ..curve import Curve
-from ..curve.distances import arc_distances, points_at, squared_distances
+from ..curve.distances import arc_distances, points_at
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray
 from .inner_product import MOST_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import lumped_mass
-from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
+from .pairs import DifferenceForm, Stencil, Stripe, stripes
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
 # others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves it changes nothing.
@@ -51,38 +53,32 @@ class MoebiusMetric:
 
     def at(self, curve: Curve) -> InnerProduct:
         """Dense: every pair of edges weighs in."""
-        mesh = curve.mesh
+        mesh, slope = curve.mesh, Stencil.slope(curve)
         points = list(zip(self.rule.points, self.rule.weights, strict=True))
-        seminorm = np.zeros((len(curve), len(curve)))  # weights of term 1
-        matrix = np.zeros_like(seminorm)
-        for (t_i, omega_i), (t_j, omega_j) in product(points, repeat=2):
-            inverse, density = _weights(curve, t_i, t_j)
-            inverse *= omega_i * omega_j
-            density *= omega_i * omega_j
-            seminorm += inverse
-            matrix += difference_form(density, mesh.interpolation(t_i), mesh.interpolation(t_j))
-        slope = slopes(curve)
-        matrix += difference_form(seminorm, slope, slope)
-        weight = lumped_mass(curve)
-        matrix += np.multiply.outer(weight, weight)
-        return DenseInnerProduct(0.5 * (matrix + matrix.T))
+        form = DifferenceForm(mesh)
+        for stripe in stripes(mesh):
+            for (t_i, omega_i), (t_j, omega_j) in product(points, repeat=2):
+                inverse, density = _weights(curve, t_i, t_j, stripe)
+                inverse *= omega_i * omega_j
+                density *= omega_i * omega_j
+                form.add(stripe, inverse, slope, slope)
+                form.add(stripe, density, Stencil.value(mesh, t_i), Stencil.value(mesh, t_j))
+        mass = lumped_mass(curve)
+        return DenseInnerProduct(blas.dsyr(1.0, mass, a=form.assembled(), lower=1, overwrite_a=1))
 
 
-def _weights(curve: Curve, t_i: float, t_j: float) -> tuple[FloatArray, FloatArray]:
-    """ℓ_I ℓ_J/r² and ℓ_I ℓ_J/r² (1/r² − 1/ϱ²) for all pairs, 0 where closures meet; shapes (n, n)."""
-    mesh, ell = curve.mesh, curve.edge_lengths
-    n = mesh.size
-    inverse, density = np.empty((n, n)), np.empty((n, n))
-    x, y = points_at(curve, t_i), points_at(curve, t_j)
-    for rows in row_blocks(mesh):
-        nearest = NEAREST * (ell[rows, None] + ell[None, :])
-        rho = arc_distances(curve, t_i, t_j, rows)
-        r2 = squared_distances(x[rows], y)
-        r2 = np.maximum(r2, nearest**2)
-        rho = np.maximum(rho, nearest)
-        s = 1.0 / excluding_neighbours(r2, mesh, rows)
-        rho = excluding_neighbours(rho, mesh, rows)
-        np.multiply(s, ell[rows, None] * ell[None, :], out=inverse[rows])
-        s -= 1.0 / (rho * rho)
-        np.multiply(s, inverse[rows], out=density[rows])
-    return inverse, density
+def _weights(curve: Curve, t_i: float, t_j: float, stripe: Stripe) -> tuple[FloatArray, FloatArray]:
+    """ℓ_I ℓ_J/r² and ℓ_I ℓ_J/r² (1/r² − 1/ϱ²), 0 where closures meet; shapes (rows, columns)."""
+    rows, columns, ell = stripe.rows, stripe.columns, curve.edge_lengths
+    rho = arc_distances(curve, t_i, t_j, rows, columns)
+    r2 = cdist(points_at(curve, t_i)[rows], points_at(curve, t_j)[columns], "sqeuclidean")
+    nearest = NEAREST * np.add.outer(ell[rows], ell[columns])
+    np.maximum(rho, nearest, out=rho)
+    np.maximum(r2, np.square(nearest, out=nearest), out=r2)
+    stripe.exclude_neighbours(curve.mesh, r2)
+    s = np.divide(1.0, r2, out=r2)
+    inverse = np.multiply.outer(ell[rows], ell[columns])
+    inverse *= s
+    s -= np.divide(1.0, np.square(rho, out=rho), out=rho)
+    s *= inverse  # 0 for neighbours
+    return inverse, s

@@ -1,44 +1,109 @@
-"""What the nonlocal metrics share: blocks of rows of pair matrices, and forms in differences of edge values."""
+"""What the nonlocal metrics share: stripes of pair matrices, and forms in differences of edge values."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
 
 from ..curve import Curve, Mesh
-from ..types import FloatArray
-
-ROWS_TIMES_COLUMNS = 48_000  # entries of one block of rows, to stay in the processor's cache
-
-
-def row_blocks(mesh: Mesh) -> Iterator[slice]:
-    """Blocks of rows that cover a pair matrix."""
-    block = max(1, ROWS_TIMES_COLUMNS // mesh.size)
-    for first in range(0, mesh.size, block):
-        yield slice(first, min(mesh.size, first + block))
+from ..curve.tiles import ROWS_TIMES_COLUMNS
+from ..types import FloatArray, IntArray
 
 
-def excluding_neighbours(distance: FloatArray, mesh: Mesh, rows: slice) -> FloatArray:
-    """Set distances of edges that share a vertex to inf, in place, and return the array."""
-    edges = np.arange(rows.start, rows.stop)
-    for partner in (edges, mesh.heads[edges], mesh.previous[edges]):
-        distance[edges - rows.start, partner] = np.inf
-    return distance
+class Stencil(NamedTuple):
+    """A linear map from vertices to edges, (B U)_I = tail_I U(I↓) + head_I U(I↑); both of shape (n,)."""
+
+    tail: FloatArray
+    head: FloatArray
+
+    @classmethod
+    def value(cls, mesh: Mesh, t: float) -> "Stencil":
+        """The values at parameter ``t`` of each edge."""
+        return cls(np.full(mesh.size, 1.0 - t), np.full(mesh.size, t))
+
+    @classmethod
+    def slope(cls, curve: Curve) -> "Stencil":
+        """ΔU_I/ℓ_I."""
+        return cls(-1.0 / curve.edge_lengths, 1.0 / curve.edge_lengths)
 
 
-def slopes(curve: Curve) -> sp.csr_array:
-    """Matrix of ΔU_I/ℓ_I; shape (n, n)."""
-    return sp.csr_array(curve.mesh.difference.multiply(1.0 / curve.edge_lengths[:, None]))
+class Stripe(NamedTuple):
+    """The pairs of edges that make the entries (v, w), v ≤ w, of a form, for consecutive vertices v of one component.
+
+    Attributes
+    ----------
+    vertices
+        The vertices v.
+    rows
+        The edges that they belong to: the one before the first vertex, then those that begin at the vertices.
+    columns
+        The edges that the vertices from the first v on belong to.
+    """
+
+    vertices: slice
+    rows: IntArray
+    columns: slice
+
+    def exclude_neighbours(self, mesh: Mesh, distance: FloatArray) -> None:
+        """Set the distances, shape (rows, columns), of edges that share a vertex to inf."""
+        for partner in (self.rows, mesh.heads[self.rows], mesh.previous[self.rows]):
+            row = np.flatnonzero(partner >= self.columns.start)
+            distance[row, partner[row] - self.columns.start] = np.inf
 
 
-def difference_form(weights: FloatArray, left: sp.csr_array, right: sp.csr_array) -> FloatArray:
-    """Matrix of U ↦ Σ_IJ w_IJ ((left U)_I − (right U)_J)², up to its antisymmetric part; shape (n, n)."""
-    # leftᵀ diag(Σ_J w) left + rightᵀ diag(Σ_I w) right − 2 leftᵀ w right
-    # (compressed rows, because products of dense matrices with compressed columns are three times slower)
-    left_t, right_t = sp.csr_array(left.T), sp.csr_array(right.T)
-    diagonal = left_t @ sp.diags_array(weights.sum(axis=1)) @ left
-    diagonal = sp.coo_array(diagonal + right_t @ sp.diags_array(weights.sum(axis=0)) @ right)
-    form = (right_t @ (left_t @ weights).T).T
-    form *= -2.0
-    np.add.at(form, (diagonal.coords[0], diagonal.coords[1]), diagonal.data)
-    return np.asarray(form)
+def stripes(mesh: Mesh) -> Iterator[Stripe]:
+    """Cover the upper triangle, in pieces that fit the processor's cache."""
+    for component in mesh.slices:
+        first = component.start
+        while first < component.stop:
+            last = min(component.stop, first + max(1, ROWS_TIMES_COLUMNS // (mesh.size - first)))
+            before = int(mesh.previous[first])
+            columns = slice(min(first, before), mesh.size)
+            yield Stripe(slice(first, last), np.concatenate([[before], np.arange(first, last)]), columns)
+            first = last
+
+
+class DifferenceForm:
+    """Collects the matrix of U ↦ Σ w_IJ ((B U)_I − (B' U)_J)² over ordered pairs of edges.
+
+    The sum over all terms must not change if edges change places: weights are known for half of the pairs.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._mesh = mesh
+        self._cross = np.zeros((mesh.size, mesh.size))  # Bᵀ w B', the upper triangle
+        self._squares = np.zeros((3, mesh.size))  # of tail and head of each edge, and half of their product
+
+    def add(self, stripe: Stripe, weights: FloatArray, left: Stencil, right: Stencil) -> None:
+        """Add a stripe of a term; ``weights`` has shape (rows, columns) and is changed.
+
+        Taking first rows and then columns together at their common vertices is Bᵀ w B' at a few operations an entry.
+        """
+        vertices, rows, columns = stripe
+        own = vertices.start - columns.start
+        # the pairs of the stripe's own edges come in either order, and so count by their rows alone
+        inside, beyond = weights[1:, own:], weights[1:, own + len(rows) - 1 :]
+        self._add_squares(vertices, left, inside.sum(axis=1))
+        self._add_squares(slice(vertices.stop, None), right, beyond.sum(axis=0))
+        at_vertices = left.tail[rows[1:], None] * weights[1:]
+        weights *= left.head[rows, None]
+        at_vertices += weights[:-1]
+        at_tails = at_vertices[:, own:] * right.tail[vertices.start :]
+        at_vertices *= right.head[columns]
+        at_tails += at_vertices.take(self._mesh.previous[vertices.start :] - columns.start, axis=1)
+        self._cross[vertices, vertices.start :] += at_tails
+
+    def assembled(self) -> FloatArray:
+        """Finish: the matrix, shape (n, n), in Fortran order, of which only the lower triangle counts."""
+        mesh = self._mesh
+        tail, head, mixed = self._squares
+        form = np.multiply(self._cross, -2.0, out=self._cross)
+        np.add.at(form, (mesh.tails, mesh.tails), 2.0 * tail)
+        np.add.at(form, (mesh.heads, mesh.heads), 2.0 * head)
+        ends = np.minimum(mesh.tails, mesh.heads), np.maximum(mesh.tails, mesh.heads)
+        np.add.at(form, ends, 2.0 * mixed)
+        return form.T
+
+    def _add_squares(self, edges: slice, stencil: Stencil, weights: FloatArray) -> None:
+        tail, head = stencil.tail[edges], stencil.head[edges]
+        self._squares[:, edges] += weights * np.stack([tail * tail, head * head, tail * head])

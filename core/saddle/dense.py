@@ -8,9 +8,10 @@ rows, so two Cholesky factorisations of size n do.
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import lapack
+from scipy.linalg import blas, lapack
 
 from ..constraints import ConstraintDerivative
+from ..curve.tiles import ROWS_TIMES_COLUMNS
 from ..types import FloatArray
 from .tangent_space import TangentSpace, WholeSpace
 
@@ -20,7 +21,7 @@ class WithInverse(Protocol):
 
     @property
     def inverse(self) -> FloatArray:
-        """A⁻¹, shape (n, n)."""
+        """A⁻¹ in full, shape (n, n), in Fortran order."""
 
     def apply(self, u: FloatArray) -> FloatArray:
         """A u, shape (n, k)."""
@@ -50,7 +51,7 @@ class DenseTangentSpace(TangentSpace):
         right = c.apply(free)
         if xi is not None:
             right -= xi
-        multipliers, _ = lapack.dpotrs(self._schur, right, lower=1)
+        multipliers = substituted(self._schur, right)
         return free - self._inner.solve(c.apply_transpose(multipliers)), multipliers
 
     def apply(self, u: FloatArray) -> FloatArray:
@@ -72,7 +73,7 @@ class DenseWholeSpace(WholeSpace):
     def riesz(self, eta: FloatArray) -> FloatArray:
         """By the identity of Sherman, Morrison and Woodbury."""
         free, scale = self._inner.solve(eta), np.sqrt(self.weights)
-        pull = scale * lapack.dpotrs(self._schur, scale * self.constraints.apply(free), lower=1)[0]
+        pull = scale * substituted(self._schur, scale * self.constraints.apply(free))
         return free - self._inner.solve(self.constraints.apply_transpose(pull))
 
     def apply(self, u: FloatArray) -> FloatArray:
@@ -82,16 +83,23 @@ class DenseWholeSpace(WholeSpace):
 
 
 def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray:
-    """C J⁻¹ Cᵀ, in Fortran order."""
+    """C J⁻¹ Cᵀ in Fortran order, the lower triangle.
+
+    D A⁻¹ Dᵀ comes from differences of rows and columns, block by block in the processor's cache.
+    """
     n, rows = len(c.tangents), len(c.barycenter)
-    difference = c.mesh.difference
-    half = difference @ inner.inverse
-    schur = np.empty((n + rows, n + rows), order="F")
-    # symmetric, so D (D A⁻¹)ᵀ is the product in either storage order
-    np.multiply(difference @ half.T, c.tangents @ c.tangents.T, out=schur[:n, :n])
+    schur = np.zeros((n + rows, n + rows), order="F")
+    inverse, upper, heads = inner.inverse.T, schur.T, c.mesh.heads
+    width = max(1, ROWS_TIMES_COLUMNS // n)
+    for first in range(0, n, width):
+        block = slice(first, min(n, first + width))
+        change = inverse[heads[block]]
+        change -= inverse[block]
+        part = upper[block, first:n]
+        np.subtract(change.take(heads[first:], axis=1), change[:, first:], out=part)
+        part *= c.tangents[block] @ c.tangents[first:].T
     for k in range(rows):
         schur[n + k, :] = c.apply(inner.solve(c.barycenter[k]))
-    schur[:n, n:] = schur[n:, :n].T
     return schur
 
 
@@ -101,3 +109,8 @@ def cholesky(matrix: FloatArray) -> FloatArray:
     if info != 0:
         raise np.linalg.LinAlgError(f"matrix is not positive definite: pivot {info} of {len(matrix)}")
     return np.asarray(factor)
+
+
+def substituted(factor: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve L Lᵀ x = right for one right side; LAPACK's dpotrs is made for many and takes twice the time."""
+    return np.asarray(blas.dtrsv(factor, blas.dtrsv(factor, right, lower=1), lower=1, trans=1))

@@ -140,7 +140,7 @@ def test_second_derivative_along_held_parts():
     # the Lagrangian's slope along tangents vanishes only at critical points: the path's own bend is what (42) adds
     expected = float(np.sum(v * lagrangian_hessian(point)(v)))
     errors = []
-    for h in (2e-3, 1e-3):
+    for h in (1e-3, 5e-4):
         ahead, behind = (point.retract(vertices + sign * h * v, 0 * point.residual) for sign in (1.0, -1.0))
         bend = ahead.vertices + behind.vertices - 2 * vertices
         along = np.sum((point.derivative - point.tangent_space.constraints.apply_transpose(point.multipliers)) * bend)

@@ -1,4 +1,4 @@
-"""L-BFGS on the constraint manifold, with the current metric as initial inverse Hessian.
+"""L-BFGS on the constraint manifold, with the point's metric as initial inverse Hessian.
 
 The two-loop recursion of Nocedal and Wright (Numerical Optimization, Section 7.2) in covectors: gradients of the
 Lagrangian in, directions out, and in the middle the saddle-point solve (41) of [RS21] where the textbook has a
@@ -26,7 +26,7 @@ class LimitedMemoryBFGS:
     """Quasi-Newton direction from the last ``history`` steps.
 
     On tangles, where the curvature changes from step to step, few pairs are better than the paper's 30: Freedman's
-    unknot takes 123 steps with 8 and 161 with 30.  At the end of the road it makes little difference.
+    unknot takes 123 steps with 8 and 173 with 30.  At the end of the road it makes little difference.
     """
 
     history: int = 8

@@ -1,8 +1,10 @@
 """A rule for directions and a search along them."""
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
+from ...checks import check_fields
 from ...metrics import Metric
 from ...types import FloatArray
 from ..directions import Direction
@@ -20,17 +22,32 @@ class AlongLine(Protocol):
 
 @dataclass(frozen=True)
 class LineSearch:
-    """Direction × search."""
+    """Direction × search.
+
+    Parameters
+    ----------
+    metric_steps
+        Number of steps that a metric is made for, unless contact limits one of them: building and inverting it is most
+        of the work, and a few steps on it is a metric all the same.
+    """
 
     direction: Direction
     search: AlongLine
+    metric_steps: int = 1
     second_order: ClassVar[bool] = False
     other_metrics: ClassVar[tuple[Metric, ...]] = ()
 
+    def __post_init__(self) -> None:
+        check_fields(self, metric_steps=(0, math.inf))
+
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
-        """Take one step; a remembering direction that fails is tried again without its memory."""
+        """Take one step; what fails is tried again without the direction's memory and in the metric of this curve."""
         direction, memory = self.direction.propose(point, state.memory)
         step = self.search.along(point, direction, self.direction.natural_step, state.last_step)
-        if isinstance(step, NoStep) and state.memory is not None:
-            return self.step(point, State())
-        return step, (State(memory, step.size) if isinstance(step, Step) else state)
+        if isinstance(step, NoStep):
+            if state.memory is None and point.metric_age == 0:
+                return step, state
+            return self.step(point.with_own_metric(), State())
+        if step.limited_by is None and point.metric_age + 1 < self.metric_steps:
+            step = step.with_metric_of(point)
+        return step, State(memory, step.size)

@@ -1,7 +1,7 @@
 """What every search promises on every geometry, and that each of its conditions is needed."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
 
@@ -37,6 +37,7 @@ from mobius_flow.core.descent.searches import (
     WeakWolfe,
 )
 from mobius_flow.core.descent.step import Leg, Rejected, attempt
+from mobius_flow.core.metrics import InnerProduct, MoebiusMetric
 from mobius_flow.core.taylor import taylor_slope
 from mobius_flow.core.types import FloatArray
 from shapes import hopf_link, torus_trefoil
@@ -90,6 +91,61 @@ def test_other_rules_keep_theirs(name: str) -> None:
         assert_certified(point, step)
         assert_feasible(step)
         point = step.point
+
+
+@dataclass(frozen=True)
+class Counted(MoebiusMetric):
+    """J_C, which remembers the curves that it was made for."""
+
+    curves: list[Curve] = field(default_factory=list)
+
+    def at(self, curve: Curve) -> InnerProduct:
+        self.curves.append(curve)
+        return super().at(curve)
+
+
+def counted(point: Point) -> tuple[Point, list[Curve]]:
+    metric = Counted()
+    return point.within(replace(point.problem, metric=metric)), metric.curves
+
+
+def test_a_metric_serves_several_steps() -> None:
+    point, curves = counted(start())
+    state, steps = State(), []
+    for _ in range(7):
+        steps.append(point)
+        step, state = taken(LineSearch(LimitedMemoryBFGS(), Armijo(), metric_steps=3).step(point, state))
+        point = step.point
+    for curve, p in zip(curves, steps[::3], strict=True):
+        np.testing.assert_array_equal(curve.vertices, p.vertices)
+    assert [p.metric_age for p in steps] == [0, 1, 2, 0, 1, 2, 0]
+    assert steps[2].inner_product is steps[0].inner_product
+
+
+def test_a_metric_serves_no_longer_where_contact_limits_a_step() -> None:
+    point, curves = counted(start())
+    point, state = narrow(point, 1e-3), State()
+    for _ in range(3):
+        step, state = taken(LineSearch(LimitedMemoryBFGS(), Armijo(), metric_steps=3).step(point, state))
+        assert step.limited_by is not None
+        point = step.point
+    assert len(curves) == 3
+
+
+@dataclass(frozen=True)
+class Unless:
+    """A search that finds nothing while the metric is an old one."""
+
+    def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
+        return NoStep("old") if point.metric_age else Armijo().along(point, direction, natural, last)
+
+
+def test_a_search_that_fails_gets_the_metric_of_its_curve() -> None:
+    rule = LineSearch(LimitedMemoryBFGS(), Unless(), metric_steps=3)
+    step, state = taken(rule.step(start(), State()))
+    assert step.point.metric_age == 1
+    step, _ = taken(rule.step(step.point, state))
+    assert step.point.metric_age == 1  # that of the point at which the search succeeded
 
 
 class Narrow(Problem):

@@ -1,0 +1,100 @@
+"""The way back to the constraints: exact, shortest, and quadratically fast where little is left to correct."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from descent_contracts import point_on
+from mobius_flow.core import Curve
+from mobius_flow.core.constraints import Constraints, weighted_barycenter
+from mobius_flow.core.descent.constrained import Constrained
+from mobius_flow.core.descent.restoration import euclidean_correction
+from mobius_flow.core.saddle import TangentSpace
+from mobius_flow.core.types import FloatArray
+from shapes import hopf_link, regular_polygon, torus_trefoil
+
+
+def rough(curve: Curve) -> Curve:
+    rng = np.random.default_rng(41)
+    return curve.with_vertices(curve.vertices + 0.02 * rng.normal(size=curve.vertices.shape))
+
+
+SQUARES = Curve.from_components([regular_polygon(4).vertices + shift for shift in (0.0, 9.0, 18.0)])  # cosines of 0
+TRIANGLES = Curve.from_components([regular_polygon(3).vertices, regular_polygon(3).vertices + 9.0])
+CURVES = {
+    "trefoil": (rough(torus_trefoil(60)), None),
+    "two parts": (rough(hopf_link(20)), (1, 0)),
+    "squares": (SQUARES, (0, 1, 0)),
+    "triangles": (rough(TRIANGLES), None),
+    "plane": (rough(regular_polygon(30, dimension=2)), None),
+    "4-space": (rough(regular_polygon(30, dimension=4)), None),
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_corrections_solve_the_linearised_constraints_by_the_shortest_way(name: str) -> None:
+    """u = −Lᵀ (L Lᵀ)⁻¹ Φ and translations, L the rows of the lengths."""
+    curve, parts = CURVES[name]
+    n, m = curve.vertices.shape
+    constraints = Constraints(curve.edge_lengths, weighted_barycenter(curve, parts), parts)
+    derivative = constraints.derivative(curve)
+    residual = np.random.default_rng(43).normal(size=derivative.count)
+    u = euclidean_correction(constraints, curve, residual)
+    np.testing.assert_allclose(derivative.apply(u), -residual, atol=1e-11 * np.abs(u).max() / curve.edge_lengths.min())
+    shortest = -np.linalg.pinv(derivative.length_rows().toarray()) @ residual[:n]
+    part = np.asarray(parts or [0] * len(curve.mesh.component_sizes))[curve.mesh.component]
+    for k in range(max(part) + 1):
+        translation = (u - shortest.reshape(n, m))[part == k]
+        np.testing.assert_allclose(translation, translation[:1].repeat(len(translation), axis=0), atol=1e-9)
+
+
+class Counting(TangentSpace):
+    """A tangent space that counts its solves."""
+
+    def __init__(self, space: TangentSpace) -> None:
+        super().__init__(space.constraints)
+        self._space, self.solves = space, 0
+
+    def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        self.solves += 1
+        return self._space.solve(eta, xi)
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        return self._space.apply(u)
+
+
+@pytest.mark.parametrize(("size", "solves"), [(0.001, 0), (0.01, 1), (0.03, 2)])
+def test_the_metric_is_asked_only_while_the_residual_is_large(size: float, solves: int) -> None:
+    point = point_on(torus_trefoil(60))
+    direction = point.tangent_space.project(np.random.default_rng(47).normal(size=point.vertices.shape))
+    direction *= size / np.abs(direction).max()
+    moved = point.problem.at(point.vertices + direction).residual
+    assert (np.abs(moved).max() > Constrained().small) == (solves > 0)
+    space = Counting(point.tangent_space)
+    end = point.retract(point.vertices + direction, point.residual, space)
+    assert end is not None
+    assert np.abs(end.residual).max() <= Constrained().tolerance
+    assert space.solves == solves
+
+
+def test_the_last_corrections_converge_quadratically() -> None:
+    """From below 10⁻³ two of them do; at the rate of (42) they take more."""
+    point = point_on(torus_trefoil(60))
+    direction = point.tangent_space.project(np.random.default_rng(53).normal(size=point.vertices.shape))
+    direction *= 0.003 / np.abs(direction).max()
+    aimed = point.vertices + direction
+    assert 1e-4 < np.abs(point.problem.at(aimed).residual).max() < Constrained().small
+    few = Constrained(max_iterations=3)
+    assert few.retract(point, aimed, point.residual, point.tangent_space) is not None
+    chord = replace(few, small=1e-300)
+    assert chord.retract(point, aimed, point.residual, point.tangent_space) is None
+
+
+def test_a_polygon_within_a_line_is_given_up() -> None:
+    """There one edge cannot become longer than the others, which take it back to where it began."""
+    point = point_on(torus_trefoil(60))
+    flat = np.zeros_like(point.vertices)
+    flat[:, 0] = 0.1 * np.minimum(np.arange(60), 60 - np.arange(60))
+    level = point.problem.at(flat).residual
+    level[3] += 1e-4
+    assert Constrained().retract(point, flat, level, point.tangent_space) is None
