@@ -20,3 +20,4 @@ settings.load_profile("same")
 
 # curves of other people's, which are tested too where somebody has put them beside the project
 collect_ignore = [] if Path(__file__).parents[2].joinpath("shared").is_dir() else ["core/knots/test_shared_inputs.py"]
+collect_ignore.append("plugins")  # modules for a copy of the package, see test_plugins.py

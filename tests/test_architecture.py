@@ -21,7 +21,7 @@ FLOORS = (
     {"core.saddle"},
     {"core.metrics"},
     {"core.descent"},
-    {"core.options", "core.driver"},
+    {"core.driver"},
     {"core"},
     {"addon"},
     {"cli"},

@@ -1,5 +1,8 @@
 """Energies of polygons: one file each, and the table they are chosen from."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from ..quadrature import Rule
 from .barrier import Barrier
 from .density import Density
@@ -12,17 +15,19 @@ from .objective import Objective
 from .tangent_point import TANGENT_POINT_ENERGY
 from .vertex import VERTEX_ENERGY
 
-ENERGIES: dict[str, Energy] = {
-    energy.name: energy
-    for energy in (
-        MoebiusEnergy(),
-        VERTEX_ENERGY,
-        EDGE_ENERGY,
-        moebius_kpoint(2),
-        moebius_kpoint(3),
-        TANGENT_POINT_ENERGY,
-    )
-}
+ENERGIES: Mapping[str, Energy] = MappingProxyType(
+    {
+        energy.name: energy
+        for energy in (
+            MoebiusEnergy(),
+            VERTEX_ENERGY,
+            EDGE_ENERGY,
+            moebius_kpoint(2),
+            moebius_kpoint(3),
+            TANGENT_POINT_ENERGY,
+        )
+    }
+)
 """Every energy that users can choose, by name; the first is the default."""
 
 __all__ = [

@@ -10,8 +10,18 @@ from .metric import Metric
 from .moebius import MoebiusMetric
 
 METRICS: Mapping[str, Metric] = MappingProxyType(
-    {metric.name: metric for metric in (L2Metric(), H1Metric(), FractionalMetric(), H2Metric(), MoebiusMetric())}
+    {
+        metric.name: metric
+        for metric in (
+            L2Metric(),
+            H1Metric(),
+            FractionalMetric(),
+            H2Metric(),
+            MoebiusMetric(),
+        )
+    }
 )
+"""Every metric that users can choose, by name."""
 
 __all__ = [
     "METRICS",

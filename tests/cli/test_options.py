@@ -8,6 +8,7 @@ from mobius_flow.cli import main
 from mobius_flow.cli import options as relax_options
 from mobius_flow.core import OptionError, RelaxOptions, write_curve
 from mobius_flow.core.option import declared, option
+from option_values import unlike_default
 from shapes import torus_trefoil
 
 
@@ -41,25 +42,9 @@ def test_defaults_are_the_librarys():
     assert parsed() == RelaxOptions() == parsed(method=False)
 
 
-GIVEN = {
-    "method": "penalty-cg",
-    "max_iterations": 7,
-    "tolerance": 0.5,
-    "vertices": 90,
-    "energy": "edge",
-    "metric": "h1",
-    "quadrature_points": 3,
-    "penalty": 2.5,
-    "edge_lengths": "keep",
-    "mesh": "finer",
-    "stability": True,
-    "escape_saddles": True,
-}
-
-
 @pytest.mark.parametrize("each", declared(RelaxOptions), ids=lambda each: each.name)
 def test_every_option_can_be_given(each):
-    value = GIVEN[each.name]
+    value = unlike_default(each)
     words = [relax_options.flag(each), *([] if value is True else [str(value)])]
     assert asdict(parsed(*words)) == asdict(RelaxOptions()) | {each.name: value}
 

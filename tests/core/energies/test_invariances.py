@@ -11,8 +11,6 @@ from smooth_curves import SMOOTH_CURVES, random_polygon
 
 ALL = {**ENERGIES, "objective": Objective(), "barrier": Barrier()}
 ENERGY = pytest.mark.parametrize("energy", ALL.values(), ids=ALL)
-SCALE_EXPONENT = {"tangent-point": -1.0}  # of the energy under scaling; all others are dimensionless
-ONE_SIDED = {"vertex"}  # its points are at the tails, so unequal edges make it depend on the orientation
 
 
 def wound(seed: int, dimension: int = 3) -> Curve:
@@ -23,6 +21,23 @@ def wound(seed: int, dimension: int = 3) -> Curve:
     points = np.zeros((24, dimension))
     points[:, 0], points[:, 1], points[:, -1] = r * np.cos(t), r * np.sin(t), points[:, -1] + 0.15 * np.sin(1.5 * t)
     return Curve(points + 0.02 * rng.normal(size=points.shape))
+
+
+def scale_exponent(energy: Energy) -> float:
+    """Of the energy under scaling; the barrier has none of its own: its energy is dimensionless."""
+    return getattr(energy, "scale_exponent", 0.0)
+
+
+def is_one_sided(energy: Energy) -> bool:
+    """Whether its points on an edge are others from the other end: then unequal edges tell orientations apart."""
+    points = np.array(energy.rule.points) if hasattr(energy, "rule") else np.array([0.5])
+    return not np.allclose(np.sort(points), np.sort(1.0 - points))
+
+
+def test_exponents_and_sides() -> None:
+    assert {name for name, energy in ALL.items() if scale_exponent(energy)} == {"tangent-point"}
+    assert scale_exponent(ENERGIES["tangent-point"]) == -1.0
+    assert {name for name, energy in ALL.items() if is_one_sided(energy)} == {"vertex"}
 
 
 def rotation(seed: int, dimension: int) -> np.ndarray:
@@ -42,7 +57,7 @@ def test_similarities(energy: Energy, seed: int, log_scale: float) -> None:
     moved = curve.with_vertices(scale * (curve.vertices @ rotation(seed, 3) + [1.0, -2.0, 3.0]))
     value, derivative = energy.value_and_derivative(curve)
     moved_value, moved_derivative = energy.value_and_derivative(moved)
-    factor = scale ** SCALE_EXPONENT.get(energy.name, 0.0)
+    factor = scale ** scale_exponent(energy)
     assert moved_value == pytest.approx(factor * value, rel=1e-9, abs=1e-9 * factor)
     expected = derivative @ rotation(seed, 3) * (factor / scale)
     np.testing.assert_allclose(moved_derivative, expected, rtol=0, atol=1e-7 * np.abs(expected).max())
@@ -52,7 +67,7 @@ def test_similarities(energy: Energy, seed: int, log_scale: float) -> None:
 @pytest.mark.parametrize("scale", [1e-30, 1e-9, 1e9, 1e30])
 def test_units(energy: Energy, scale: float) -> None:
     curve = wound(1)
-    factor = scale ** SCALE_EXPONENT.get(energy.name, 0.0)
+    factor = scale ** scale_exponent(energy)
     value = energy.value(curve.with_vertices(scale * curve.vertices))
     assert value == pytest.approx(factor * energy.value(curve), rel=1e-11)
 
@@ -86,7 +101,7 @@ def test_the_first_vertex_does_not_matter(energy: Energy, seed: int, shift: int)
 def test_orientation(energy: Energy, seed: int) -> None:
     curve = wound(seed)
     turned = curve.with_vertices(curve.vertices[::-1])
-    if energy.name in ONE_SIDED:
+    if is_one_sided(energy):
         assert energy.value(turned) != pytest.approx(energy.value(curve), rel=1e-6)
     else:
         assert energy.value(turned) == pytest.approx(energy.value(curve), rel=1e-12)

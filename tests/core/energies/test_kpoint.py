@@ -5,7 +5,7 @@ import pytest
 from energy_references import arc_density, circle_density, pair_sum, tangent_point_density
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.constraints import ConstraintDerivative
-from mobius_flow.core.energies import ENERGIES, KPointEnergy, Rule, moebius_kpoint
+from mobius_flow.core.energies import ENERGIES, Energy, KPointEnergy, Rule, moebius_kpoint
 from mobius_flow.core.energies.arc_density import ArcDensity
 from mobius_flow.core.energies.contributions import Contributions
 from mobius_flow.core.energies.edge import EDGE_ENERGY
@@ -115,11 +115,13 @@ def test_a_regular_polygon_keeps_its_symmetry_at_the_kink(energy: KPointEnergy, 
     assert abs(radial.sum()) < 1e-11
 
 
-@pytest.mark.parametrize("name", [name for name in ENERGIES if name != "tangent-point"])
-def test_scaling_is_in_the_kernel_of_the_derivative(name: str) -> None:
+@pytest.mark.parametrize("energy", ENERGIES.values(), ids=ENERGIES)
+def test_the_derivative_along_the_vertices_is_the_exponent_times_the_energy(energy: Energy) -> None:
+    """Euler's theorem on homogeneous functions: ⟨DE, P⟩ = s E, which is 0 for dimensionless energies."""
     curve = random_polygon(9, (10, 6), 3)
-    derivative = ENERGIES[name].value_and_derivative(curve)[1]
-    assert abs(np.sum(derivative * curve.vertices)) < 1e-11 * np.abs(derivative).max()
+    value, derivative = energy.value_and_derivative(curve)
+    along = np.sum(derivative * curve.vertices)
+    assert abs(along - energy.scale_exponent * value) < 1e-11 * np.abs(derivative).max()
 
 
 def test_an_energy_of_ones_own() -> None:

@@ -1,0 +1,13 @@
+"""Values for options that tests know nothing of but their declaration."""
+
+from mobius_flow.core.option import Option
+
+
+def unlike_default(option: Option) -> object:
+    """An allowed value that is not the default, and is the same in 32 bits."""
+    if option.kind is bool:
+        return not option.default
+    if option.choices is not None:
+        return next(name for name in reversed(list(option.choices)) if name != option.default)
+    value = option.kind(max(option.low, 0) + 2.5)
+    return value if value != option.default else option.kind(value + 1)

@@ -1,0 +1,19 @@
+"""``mobius-flow length``: the length of a curve."""
+
+import argparse
+
+from . import curves
+from .streams import emit
+
+
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description = "Print the length of a curve."
+    parser.add_argument("input", metavar="IN")
+    curves.add_format(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the length."""
+    emit(repr(curves.read(options.input, options.format).curve.length))
+    return 0

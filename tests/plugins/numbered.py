@@ -1,0 +1,25 @@
+"""A file format: the number of the component, x, y and z, separated by commas."""
+
+from itertools import groupby
+from typing import TextIO
+
+from ..curve import Curve
+from .polygons import Polygon
+from .source import Source
+
+
+def read(source: Source) -> list[Polygon]:
+    """Read the polygons; raises CurveFileError naming the line."""
+    rows = [(number, line.split(",")) for number, line in enumerate(source.lines, start=1) if line.strip()]
+    polygons = []
+    for _, group in groupby(rows, key=lambda row: row[1][0]):
+        part = list(group)
+        points = [tuple(source.number(word, number) for word in words[1:]) for number, words in part]
+        polygons.append(Polygon(points, [number for number, _ in part].__getitem__))
+    return polygons
+
+
+def write(curve: Curve, stream: TextIO) -> None:
+    """Write one vertex per line."""
+    for number, part in enumerate(curve.components, start=1):
+        stream.writelines(f"{number},{','.join(map(repr, point))}\n" for point in part.tolist())

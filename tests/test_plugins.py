@@ -1,0 +1,294 @@
+"""What CONTRIBUTING promises: one file, and a line in a table, and the new thing is everywhere.
+
+A copy of the project is given an energy, a metric, a direction, a search, a file format, an option and a subcommand,
+from `plugins/`, and is looked at from outside: command line, Blender, documents, tests.
+"""
+
+import inspect
+import json
+import os
+import re
+import shutil
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from mobius_flow.core import RelaxOptions, read_curve, write_curve
+from processes import finished
+from shapes import torus_trefoil
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCES = Path(__file__).parent / "plugins"
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+METHODS = "core/descent/methods.py"
+OPTIONS = Path(inspect.getfile(RelaxOptions)).resolve().relative_to(ROOT).as_posix()
+
+
+class Line(NamedTuple):
+    """A line for a table, and the one after which it is put."""
+
+    after: str
+    text: str
+
+
+class Plugin(NamedTuple):
+    """A file for a room, and its lines for a table: an import and an entry, or an entry alone."""
+
+    room: str
+    file: str | None
+    table: str
+    lines: tuple[Line, ...]
+
+
+PLUGINS = {
+    "energy": Plugin(
+        "core/energies",
+        "inverse_cube.py",
+        "core/energies/__init__.py",
+        (
+            Line("from .energy import ", "from .inverse_cube import INVERSE_CUBE"),
+            Line("            TANGENT_POINT_ENERGY,", "            INVERSE_CUBE,"),
+        ),
+    ),
+    "metric": Plugin(
+        "core/metrics",
+        "lumped.py",
+        "core/metrics/__init__.py",
+        (
+            Line("from .local import ", "from .lumped import LumpedMetric"),
+            Line("            MoebiusMetric(),", "            LumpedMetric(),"),
+        ),
+    ),
+    "direction": Plugin(
+        "core/descent/directions",
+        "heavy_ball.py",
+        METHODS,
+        (
+            Line("from .directions import ", "from .directions.heavy_ball import HeavyBall"),
+            Line(
+                '    yield Method("lbfgs"',
+                '    yield Method("heavy-ball", "heavy ball, metric J_C", LineSearch(HeavyBall(), armijo))',
+            ),
+        ),
+    ),
+    "search": Plugin(
+        "core/descent/searches",
+        "halving.py",
+        METHODS,
+        (
+            Line("from .searches import ", "from .searches.halving import Halving"),
+            Line(
+                '    yield Method("lbfgs"',
+                '    yield Method("halving", "steepest descent by halves", LineSearch(steepest, Halving()))',
+            ),
+        ),
+    ),
+    "format": Plugin(
+        "core/curve/io",
+        "numbered.py",
+        "core/curve/io/formats.py",
+        (
+            Line("from .source import ", "from . import numbered"),
+            Line(
+                '        ".vect": ',
+                '        ".csv": Format("number of the component, x, y, z", numbered.read, numbered.write),',
+            ),
+        ),
+    ),
+    "option": Plugin(
+        OPTIONS,
+        None,
+        OPTIONS,
+        (
+            Line(
+                '    method: str = option("lbfgs"',
+                '    patience: float | None = option(None, "Patience", "how long to wait", automatic="always", low=0)',
+            ),
+        ),
+    ),
+    "subcommand": Plugin("cli", "length.py", "cli/parser.py", (Line('    "verify": ', '    "length": "print it",'),)),
+}
+
+
+def plant(root: Path, plugin: Plugin) -> None:
+    """Add the file, and the lines to the table."""
+    if plugin.file is not None:
+        shutil.copy(SOURCES / plugin.file, root / plugin.room)
+    table = root / plugin.table
+    lines = table.read_text(encoding="utf-8").splitlines()
+    for after, text in plugin.lines:
+        (place,) = (k for k, line in enumerate(lines) if line.startswith(after))
+        lines.insert(place + 1, text)
+    table.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """The project with the plugins, importable from a directory of its own."""
+    root = tmp_path_factory.mktemp("copy") / "mobius_flow"
+    shutil.copytree(ROOT, root, ignore=shutil.ignore_patterns(".*", "__pycache__", "build", "dist"))
+    for plugin in PLUGINS.values():
+        plant(root, plugin)
+    return root
+
+
+@pytest.fixture
+def python(copy, tmp_path):
+    """Run Python on the copy, and give its output."""
+
+    def run(*words, status=0, cwd=tmp_path):
+        path = os.pathsep.join([str(copy.parent), str(copy / "tests")])
+        done = finished([sys.executable, *map(str, words)], cwd=cwd, env={**os.environ, "PYTHONPATH": path})
+        assert done.returncode == status, done.stdout + done.stderr
+        return done.stdout
+
+    return run
+
+
+@pytest.fixture
+def command(python):
+    """Run the copy's command line."""
+    return lambda *words, **more: python("-m", "mobius_flow", *words, **more)
+
+
+@pytest.fixture
+def trefoil(tmp_path):
+    path = tmp_path / "trefoil.txt"
+    write_curve(path, torus_trefoil(40))
+    return path
+
+
+def test_the_copy_is_what_runs(copy, python):
+    assert Path(python("-c", "import mobius_flow.core as m; print(m.__file__)").strip()) == copy / "core/__init__.py"
+
+
+@pytest.mark.parametrize("kind", PLUGINS)
+def test_contributing_names_the_room_and_the_table(kind):
+    plugin = PLUGINS[kind]
+    assert f"`{plugin.room}" in CONTRIBUTING
+    assert f"`{plugin.table}`" in CONTRIBUTING
+    assert len(plugin.lines) == 1 or "takes its import and its line" in " ".join(CONTRIBUTING.split())
+
+
+def test_the_lists_of_the_command_line(command):
+    methods = [line.split("\t")[0] for line in command("methods").splitlines()]
+    assert {"heavy-ball", "halving", "flow-lumped", "implicit-lumped"} <= set(methods)
+    assert re.search(r"length +print it", command("--help"))
+    assert "inverse-cube" in command("energy", "--help")
+    shown = " ".join(command("relax", "--help").split())
+    for text in ("inverse-cube", "lumped", "heavy-ball", ".csv", "--patience", "how long to wait (default: always)"):
+        assert text in shown
+
+
+def test_the_energy_and_the_subcommand_compute(command, trefoil):
+    curve = read_curve(trefoil)
+    r = curve.with_vertices(2.0 * curve.vertices)
+    write_curve(trefoil.with_name("large.txt"), r)
+    small, large = (float(command("energy", path, "--energy", "inverse-cube")) for path in (trefoil, "large.txt"))
+    assert large == pytest.approx(small / 2)
+    assert float(command("length", trefoil)) == pytest.approx(curve.length)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--energy", "inverse-cube"],
+        ["--metric", "lumped", "--method", "cg"],
+        ["--method", "flow-lumped"],
+        ["--method", "heavy-ball"],
+        ["--method", "halving", "--edge-lengths", "keep"],
+        ["--patience", "2.5"],
+    ],
+    ids=" ".join,
+)
+def test_relaxing_with_it(words, command, trefoil, tmp_path):
+    short = ["--vertices", "40", "--max-iterations", "4", "--quiet"]
+    command("relax", trefoil, "out.txt", *words, *short, "--report", "r.json", "--trajectory", "t.npz")
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert len(report["energy"]) == 5
+    assert all(after < before for before, after in zip(report["energy"], report["energy"][1:], strict=False))
+    assert report["certified"]
+    for flag, value in zip(words[::2], words[1::2], strict=True):
+        assert str(report["options"][flag[2:].replace("-", "_")]) == value
+    command("verify", "t.npz")
+
+
+def test_files_in_the_format(command, trefoil, tmp_path):
+    command("relax", trefoil, "a.csv", "--max-iterations", "0", "--vertices", "40", "--quiet")
+    command("relax", "a.csv", "b.txt", "--max-iterations", "0", "--vertices", "40", "--quiet")
+    assert (tmp_path / "a.csv").read_text().startswith("1,")
+    assert (tmp_path / "b.txt").read_text() == trefoil.read_text()
+    assert float(command("length", trefoil.rename(tmp_path / "c"), "--format", "txt")) == float(
+        command("length", "a.csv")
+    )
+
+
+IN_BLENDER = """
+import json
+import bpy, mobius_flow
+mobius_flow.register()
+from types import SimpleNamespace
+from mobius_flow.addon import panel, properties
+owners = bpy.context.scene.mobius_flow.bl_rna.properties, bpy.ops.curve.mobius_flow_relax.get_rna_type().properties
+for owner in owners:
+    for name in ("energy", "metric", "method"):
+        print(name, *(item.identifier for item in owner[name].enum_items))
+    print(owner["patience"].name, owner["patience"].description)
+print(*(option.name for option in properties.shown("basic")))
+"""
+
+
+def test_blender(python):
+    pytest.importorskip("bpy")
+    lines = [line.split() for line in python("-c", IN_BLENDER).splitlines() if line]
+    for energy, metric, method, patience in (lines[:4], lines[4:8]):
+        assert "inverse-cube" in energy
+        assert "lumped" in metric
+        assert {"heavy-ball", "halving", "flow-lumped", "implicit-lumped"} <= set(method)
+        assert " ".join(patience) == "Patience How long to wait; 0: always"
+    assert "patience" in lines[8]
+
+
+def test_the_documents_are_out_of_date_until_they_are_rendered(copy, python):
+    tool = copy / "tools/docs.py"
+    stale = python(tool, "--check", status=1)
+    wanted = {
+        "README.md": "number of the component",
+        "docs/energies.md": "| `inverse-cube` | 1/r³ at the edges' midpoints | -1 | no |",
+        "docs/methods/README.md": "| `heavy-ball` | heavy ball, metric J_C |  |",
+        "docs/methods/flow.md": "| `lumped` | L², lumped | Σ (ℓ_I + ℓ_J)/2 |U|², over".replace("|U|", r"\|U\|"),
+        "docs/options.md": "| `patience` | how long to wait | always | basic |",
+    }
+    for document in wanted:
+        assert f"{document} is out of date; python tools/docs.py mends it" in stale
+    python(tool)
+    for document, text in wanted.items():
+        assert text in (copy / document).read_text(encoding="utf-8")
+    assert python(tool, "--check") == ""
+
+
+def outcome_of(python, copy, *words, **more):
+    """What pytest says of some of the copy's tests."""
+    return python("-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:randomly", *words, cwd=copy, **more)
+
+
+def test_the_tests_pick_it_up(copy, python):
+    files = ["tests/core/energies", "tests/core/test_relax.py", "tests/core/curve", "tests/cli/test_options.py"]
+    chosen = "inverse-cube or heavy-ball-trefoil or halving-trefoil or csv or patience"
+    found = outcome_of(python, copy, "-vv", "-k", chosen, *files)
+    for test in (
+        "test_derivatives.py::test_taylor_slope_of_the_derivative[",
+        "test_invariances.py::test_similarities[inverse-cube]",
+        "test_relax.py::test_every_method_goes_down_feasibly_and_certified[heavy-ball-trefoil]",
+        "test_relax.py::test_every_method_goes_down_feasibly_and_certified[halving-trefoil]",
+        "test_io_refusals.py::test_any_bytes_give_a_curve_or_one_sentence[.csv]",
+        "test_options.py::test_every_option_can_be_given[patience]",
+    ):
+        assert test in found
+
+
+def test_a_metric_is_asked_for_its_value_on_the_circle(copy, python):
+    said = outcome_of(python, copy, "tests/core/test_metrics.py", "-k", "lumped and (circle or definite)", status=1)
+    assert "KeyError: 'lumped'" in said
+    assert "4 failed, 2 passed" in said
