@@ -42,20 +42,19 @@ class ClusterTree:
         order = component_order(curve.mesh, curve.vertices.T)
         ends = _component_ends(curve.mesh, order)
         start, stop = np.array([0]), np.array([len(order)])
-        starts, stops, children, levels, first = [], [], [], [], 0
+        parts, levels, first = [], [], 0
         while start.size:
             last = first + start.size
-            split = stop - start > leaf
-            middle = _middle(start[split], stop[split], ends)
-            child = np.zeros_like(start)
-            child[split] = last + 2 * np.arange(len(middle))
-            starts.append(start)
-            stops.append(stop)
-            children.append(child)
             levels.append(slice(first, last))
+            split = stop - start > leaf
+            child = np.zeros_like(start)
+            child[split] = last + 2 * np.arange(np.count_nonzero(split))
+            parts.append((start, stop, child))
+            middle = _middle(start[split], stop[split], ends)
             start, stop = _interleaved(start[split], middle), _interleaved(middle, stop[split])
             first = last
-        return cls(order, *(frozen(np.concatenate(parts)) for parts in (starts, stops, children)), tuple(levels))
+        starts, stops, children = (frozen(np.concatenate(arrays)) for arrays in zip(*parts, strict=True))
+        return cls(order, starts, stops, children, tuple(levels))
 
     @property
     def size(self) -> int:
@@ -65,7 +64,7 @@ class ClusterTree:
     @property
     def is_leaf(self) -> BoolArray:
         """Which clusters have no children; shape (clusters,)."""
-        return self.child == 0
+        return np.asarray(self.child == 0)
 
     def leaves(self) -> IntArray:
         """The leaves in the order of their edges, so that their ranges follow each other without gaps."""
@@ -111,9 +110,8 @@ def _middle(start: IntArray, stop: IntArray, ends: IntArray) -> IntArray:
     middle = (start + stop) // 2
     after = np.searchsorted(ends, middle)
     before = ends[np.maximum(after - 1, 0)]
-    cut = np.where(
-        (before > start) & ((ends[after] >= stop) | (2 * middle < before + ends[after])), before, ends[after]
-    )
+    nearer = (ends[after] >= stop) | (2 * middle < before + ends[after])
+    cut = np.where((before > start) & nearer, before, ends[after])
     return np.where((cut > start) & (cut < stop), cut, middle)
 
 

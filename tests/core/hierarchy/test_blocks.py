@@ -63,8 +63,7 @@ def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
         sums += np.bincount(start, partners, n + 1) - np.bincount(stop, partners, n + 1)
     sums = np.cumsum(sums)[:-1]
     near = np.bincount(blocks.i, minlength=n) + np.bincount(blocks.j, minlength=n)
-    neighbours = np.where(np.asarray(curve.mesh.component_sizes)[curve.mesh.component] > 2, 2, 1)
-    np.testing.assert_array_equal(sums + near[blocks.tree.order], n - 1 - neighbours)
+    np.testing.assert_array_equal(sums + near[blocks.tree.order], n - 3)
 
 
 @CURVE
