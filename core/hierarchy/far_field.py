@@ -1,6 +1,6 @@
 """The Möbius energy of blocks by Taylor expansion about the centres of their clusters, and its exact derivative.
 
-With G = log|Δ| the contribution of a pair of edges is W_IJ = (ℓ_I ℓ_J/|Δ|²) + ⟨e_I, ∇⟩⟨e_J, ∇⟩ G: sums over a block are
+With G = log|Δ| the contribution of a pair of edges is W_IJ = ℓ_I ℓ_J/|Δ|² + ⟨e_I, ∇⟩⟨e_J, ∇⟩ G: sums over a block are
 products of two moments applied to two kernels, both up to the same order, so that errors cancel on straight pieces.
 """
 
@@ -15,50 +15,53 @@ from ..energies.moebius_pairs import DerivativeSums, Vectors
 from ..types import FloatArray, IntArray
 from .blocks import BlockList
 from .kernels import kernel_derivatives
-from .moments import Moments, MomentTree
-from .polynomials import Polynomials, polynomials
+from .moments import Expansion, MomentTree, polynomial_rows
 
-CHUNK = 512  # blocks handled at once, for the processor's cache
+CHUNK = 1024  # blocks handled at once, for the processor's cache
 
 
 class _Kernel(NamedTuple):
-    """One of the two kernels φ: its derivatives at some blocks, and the lowest degree of the moments it meets."""
+    """One of the two kernels φ: its derivatives at some blocks, and the moments M, N of both clusters.
 
-    table: Polynomials
-    order: int
+    Its part of the energy is Σ_αβ M_α N_β ∂^{α+β} φ, |α|, |β| ≥ ``lowest`` and |α + β| ≤ 2 ``lowest`` + p.
+    """
+
+    expansion: Expansion
     lowest: int
     derivatives: FloatArray
+    first: FloatArray
+    second: FloatArray
 
-    def local(self, moments: FloatArray) -> FloatArray:
-        """Derivatives of Σ_αβ M_α N_β ∂^{α+β} φ, |α + β| within the order, with respect to M; N are ``moments``."""
-        p, lowest = self.order, self.lowest
-        totals = range(2 * lowest, 2 * lowest + p + 1)
-        return self.table.contract(self.derivatives, moments, range(lowest, lowest + p + 1), totals)
+    def by_first(self) -> FloatArray:
+        """Its derivatives with respect to M; shape (monomials, k)."""
+        return self._local(self.second)
 
-    def pull(self, first: FloatArray, second: FloatArray) -> FloatArray:
-        """The sum's derivative with respect to the first centre, moments following; minus the second's; shape (m, k).
+    def by_second(self) -> FloatArray:
+        """Its derivatives with respect to N; shape (monomials, k)."""
+        return self._local(self.first)
 
-        Of all terms only those of the highest order are left: the others only change places.
+    def _local(self, moments: FloatArray) -> FloatArray:
+        highest = self.lowest + self.expansion.order
+        totals = range(2 * self.lowest, self.lowest + highest + 1)
+        return self.expansion.table.contract(self.derivatives, moments, range(self.lowest, highest + 1), totals)
+
+    def pull(self) -> FloatArray:
+        """Its derivative with respect to the first centre, the edges at rest; minus the second's; shape (m, k).
+
+        Only terms of the highest order are left: any other change of d is undone by that of the moments.
         """
-        p, lowest = self.order, self.lowest
-        highest = 2 * lowest + p + 1
-        degrees = range(lowest + 1, lowest + p + 2)
-        raised = self.table.contract(self.derivatives, second, degrees, range(highest, highest + 1))
-        return self.table.contract(raised, first, range(1, 2), degrees)[1:]
+        degrees = range(self.lowest + 1, self.lowest + self.expansion.order + 2)
+        totals = range(self.lowest + degrees[-1], self.lowest + degrees[-1] + 1)
+        raised = self.expansion.table.contract(self.derivatives, self.second, degrees, totals)
+        return self.expansion.table.contract(raised, self.first, range(1, 2), degrees)[1:]
 
 
 class _Chunk(NamedTuple):
-    """Some blocks: their clusters, the moments of these, and the kernels; the second's are of −u, and so signed."""
+    """Some blocks: their clusters and kernels."""
 
-    clusters: tuple[IntArray, IntArray]
-    first: tuple[FloatArray, FloatArray]
-    second: tuple[FloatArray, FloatArray]
+    first: IntArray
+    second: IntArray
     kernels: tuple[_Kernel, _Kernel]
-
-    def energies(self) -> float:
-        """Their part of the energy."""
-        pairs = zip(self.kernels, self.first, self.second, strict=True)
-        return sum(float(np.vdot(first, kernel.local(second))) for kernel, first, second in pairs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,54 +83,49 @@ class FarField:
     order: int
 
     @cached_property
-    def _table(self) -> Polynomials:
-        return polynomials(self.vectors.m.shape[1], self.order + 3)
+    def _expansion(self) -> Expansion:
+        return Expansion(self.vectors.m.shape[1], self.order)
 
     @cached_property
     def _clusters(self) -> MomentTree:
-        return MomentTree(self.blocks.tree, self._table, self.order, self.vectors)
-
-    @cached_property
-    def _signs(self) -> Moments:
-        """Signs of the moments of −u: Σ ℓ exp⟨−u, ξ⟩ and Σ ⟨e, ξ⟩ exp⟨−u, ξ⟩."""
-        signs = self._table.signs.T
-        return Moments(signs[:, : self._table.size(self.order)], -signs[:, : self._table.size(self.order + 1)])
-
-    def _chunks(self) -> Iterator[_Chunk]:
-        moments, centres = self._clusters.moments(), self._clusters.centres
-        signed = Moments(*(sign * array for sign, array in zip(self._signs, moments, strict=True)))
-        for start in range(0, len(self.blocks.first), CHUNK):
-            first, second = (side[start : start + CHUNK] for side in (self.blocks.first, self.blocks.second))
-            d = np.ascontiguousarray((centres[first] - centres[second]).T)
-            square, log = kernel_derivatives(self._table, d, self.order + 1)
-            kernels = _Kernel(self._table, self.order, 0, square), _Kernel(self._table, self.order, 1, log)
-            yield _Chunk((first, second), moments.of(first), signed.of(second), kernels)
+        return MomentTree(self.blocks.tree, self._expansion, self.vectors)
 
     def value(self) -> float:
         """The sum."""
-        return sum(chunk.energies() for chunk in self._chunks())
+        kernels = (kernel for chunk in self._chunks() for kernel in chunk.kernels)
+        return sum(float(np.vdot(kernel.first, kernel.by_first())) for kernel in kernels)
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
         """The sum and the sums that make its derivative."""
-        value, pull = 0.0, np.zeros_like(self._clusters.centres)
-        by_first, by_second = self._clusters.zeros(), self._clusters.zeros()
-        for chunk in self._chunks():
-            own, other = chunk.clusters
-            for k, (kernel, first, second) in enumerate(zip(chunk.kernels, chunk.first, chunk.second, strict=True)):
-                local, force = kernel.local(second), kernel.pull(first, second)
-                value += float(np.vdot(first, local))
-                _add_rows(by_first[k], own, local)
-                _add_rows(by_second[k], other, kernel.local(first))
-                _add_rows(pull, own, force)
-                _add_rows(pull, other, -force)
-        for array, sign, signed in zip(by_first, self._signs, by_second, strict=True):
-            array += sign * signed
-        return value, self._clusters.hand_down(by_first, pull)
+        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.pull.stop))
+        by_second = np.zeros_like(by_first)
+        for first, second, (square, log) in self._chunks():
+            local, pull = (square.by_first(), log.by_first()), square.pull() + log.pull()
+            value += float(np.vdot(square.first, local[0]) + np.vdot(log.first, local[1]))
+            _add_rows(by_first, first, np.concatenate([*local, pull]))
+            _add_rows(by_second, second, np.concatenate([square.by_second(), log.by_second(), pull]))
+        by_second *= self._expansion.signs
+        by_second += by_first
+        return value, self._clusters.hand_down(by_second)
+
+    def _chunks(self) -> Iterator[_Chunk]:
+        moments, centres, x = self._clusters.moments(), self._clusters.centres, self._expansion
+        signed = moments * x.signs[: x.edges.stop]
+        for start in range(0, len(self.blocks.first), CHUNK):
+            first, second = (side[start : start + CHUNK] for side in (self.blocks.first, self.blocks.second))
+            d = np.ascontiguousarray((centres[first] - centres[second]).T)
+            square, log = kernel_derivatives(x.table, d, self.order + 1)
+            own, other = polynomial_rows(moments, first), polynomial_rows(signed, second)
+            kernels = (
+                _Kernel(x, 0, square, own[x.lengths], other[x.lengths]),
+                _Kernel(x, 1, log, own[x.edges], other[x.edges]),
+            )
+            yield _Chunk(first, second, kernels)
 
 
-def _add_rows(total: FloatArray, rows: IntArray, values: FloatArray) -> None:
-    """Add polynomials, shape (monomials, k), to rows, some of which come several times."""
-    order = np.argsort(rows, kind="stable")
-    ordered = rows[order]
+def _add_rows(total: FloatArray, clusters: IntArray, values: FloatArray) -> None:
+    """Add values, shape (rows, k), to some clusters, a few of which come several times; total (clusters, rows)."""
+    order = np.argsort(clusters, kind="stable")
+    ordered = clusters[order]
     starts = np.flatnonzero(np.diff(ordered, prepend=-1))
     total[ordered[starts]] += np.add.reduceat(np.take(values, order, axis=1).T, starts)

@@ -77,6 +77,12 @@ class Polynomials:
             product[self.sums[alpha, :rest]] += coefficient * q[:rest]
         return product
 
+    def multiply_linear(self, a: FloatArray, q: FloatArray) -> FloatArray:
+        """⟨a, ξ⟩ q, of one degree more than q; shape (monomials, k) from a of shape (m, k)."""
+        size = self.size(int(self.exponents[len(q) - 1].sum()) + 1)
+        padded = np.concatenate([q, np.zeros((size + 1 - len(q), q.shape[1]))])
+        return np.asarray(np.einsum("ik,iak->ak", a, padded[self.lower[:, :size]]))
+
     def contract(self, t: FloatArray, p: FloatArray, degrees: range, totals: range) -> FloatArray:
         """Σ_β t_{α+β} p_β for |α| in ``degrees``, over |α + β| in ``totals``; shape (monomials, k), else 0.
 
