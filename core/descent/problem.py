@@ -1,4 +1,4 @@
-"""What is minimised, in which metric, under which constraints: values at a point are computed once, when asked for."""
+"""What is minimised, in which metric, under which constraints: values at a point are computed once, on demand."""
 
 from dataclasses import dataclass
 from functools import cached_property

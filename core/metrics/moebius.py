@@ -18,13 +18,13 @@ from ..curve import Curve
 from ..curve.distances import arc_distances, points_at, squared_distances
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray
-from .inner_product import MOST_DENSE_ROWS, DenseInnerProduct, InnerProduct
+from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import lumped_mass
 from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
 # others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves it changes nothing.
-NEAREST = 0.25
+MIN_DISTANCE = 0.25
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class MoebiusMetric:
     name = "moebius"
     description = "J_C of Theorem 4.1, extrinsic W^{3/2,2}"
     extends_penalty = True
-    most_vertices = MOST_DENSE_ROWS
+    most_vertices = MAX_DENSE_ROWS
 
     def with_rule(self, rule: Rule) -> "MoebiusMetric":
         """J_C by another rule."""
@@ -75,7 +75,7 @@ def _weights(curve: Curve, t_i: float, t_j: float) -> tuple[FloatArray, FloatArr
     inverse, density = np.empty((n, n)), np.empty((n, n))
     x, y = points_at(curve, t_i), points_at(curve, t_j)
     for rows in row_blocks(mesh):
-        nearest = NEAREST * (ell[rows, None] + ell[None, :])
+        nearest = MIN_DISTANCE * (ell[rows, None] + ell[None, :])
         rho = arc_distances(curve, t_i, t_j, rows)
         r2 = squared_distances(x[rows], y)
         r2 = np.maximum(r2, nearest**2)

@@ -26,7 +26,7 @@ GIVEN = {name: unlike_default(each) for name, each in SHOWN.items()}
 class OneMore(RelaxOptions):
     """With options that nothing but these lines know of."""
 
-    patience: float | None = option(None, "Patience", "how long to wait", automatic="for ever", low=0, high=9)
+    patience: float | None = option(None, "Patience", "how long to wait", automatic="without limit", low=0, high=9)
     colour: str = option("red", "Colour", "what it looks like", choices=("red", "blue"), group="advanced")
 
 
@@ -119,7 +119,7 @@ def test_options_that_nothing_else_knows_of_appear_by_themselves(monkeypatch):
     monkeypatch.setattr(properties, "RelaxOptions", OneMore)
     declaration = properties.settings(set())
     patience, colour = declaration["patience"].keywords, declaration["colour"].keywords
-    assert patience["description"] == "How long to wait; 0: for ever"
+    assert patience["description"] == "How long to wait; 0: without limit"
     assert (patience["min"], patience["max"], patience["default"]) == (0.0, 9.0, 0.0)
     assert ([item[0] for item in colour["items"]], colour["default"]) == (["red", "blue"], "red")
     assert "colour" in drawn(panel.VIEW3D_PT_mobius_flow_advanced)

@@ -16,7 +16,7 @@ from shapes import torus_trefoil
 class OneMore(RelaxOptions):
     """With an option that nothing but this line knows of."""
 
-    patience: float | None = option(None, "Patience", "how long to wait", automatic="for ever", low=0, high=9)
+    patience: float | None = option(None, "Patience", "how long to wait", automatic="without limit", low=0, high=9)
 
 
 def parsed(*words, **keywords):
@@ -57,7 +57,7 @@ def test_one_more_option_appears_by_itself(monkeypatch):
         parsed("--patience", "9.5")
     parser = argparse.ArgumentParser()
     relax_options.add_to(parser)
-    assert "how long to wait (default: for ever)" in " ".join(parser.format_help().split())
+    assert "how long to wait (default: without limit)" in " ".join(parser.format_help().split())
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Another method helps out where the one asked for finds no step."""
+"""Another method helps out where the chosen one finds no step."""
 
 from dataclasses import replace
 
