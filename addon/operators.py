@@ -16,8 +16,8 @@ from .live.checks import refusal, selected_curves, unsampled
 from .live.operators import LiveRelax
 from .properties import SETTINGS, key_options, relax_options, settings
 
-_LARGEST = 1e30  # Blender computes with squares and products of such numbers
-_MOST_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
+_MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
+_MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
 
 
 class CURVE_OT_mobius_flow_relax(LiveRelax, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
@@ -136,12 +136,12 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
     def _check(self, name: str) -> None:
         """Raise an OptionError for what would freeze the window, or is not a number."""
         for label, value in (("Size", self.size), ("Thickness", self.thickness)):
-            if not value <= _LARGEST:
-                raise OptionError(f"{label} is {value:g}; it must be a number up to {_LARGEST:g}")
+            if not value <= _MAX_NUMBER:
+                raise OptionError(f"{label} is {value:g}; it must be a number up to {_MAX_NUMBER:g}")
         for number in re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))):
-            if int(number) > _MOST_TURNS:
+            if int(number) > _MAX_TURNS:
                 raise OptionError(
-                    f"{name[:60]} has a number beyond {_MOST_TURNS}, which is too much for a window; use smaller ones"
+                    f"{name[:60]} has a number beyond {_MAX_TURNS}, which is too much for a window; use smaller ones"
                 )
 
     def _fits(self) -> bool:

@@ -1,4 +1,4 @@
-"""The parser of the command line: subcommands are loaded when they are asked for."""
+"""The parser of the command line: subcommands are loaded on demand."""
 
 import argparse
 import sys
@@ -27,7 +27,7 @@ examples:
   mobius-flow relax --help
 
 exit status:
-  0    it ran, to the end or to the limit asked for
+  0    it ran, to the end or to the given limit
   1    it failed: a run that is stuck, a trajectory that is rejected, too little memory
   2    bad input or bad options, or an output that cannot be written; one line says what and where
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; what was reached is written

@@ -42,8 +42,8 @@ examples:
   mobius-flow knot 8_19 - | mobius-flow relax - - --format txt | mobius-flow energy -
 
 exit status:
-  0    it converged, or stopped at the limit asked for
-  1    it is stuck, or pulls tight without end as composite knots do;
+  0    it converged, or stopped at the given limit
+  1    it is stuck, or pulls tight without limit, as composite knots do;
        the best curve, the report and the trajectory are written all the same
   2    bad input or bad options, or an output that cannot be written; one line says what and where
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; the best curve, the report and the trajectory are written
@@ -80,7 +80,7 @@ def _extra(path: str) -> str:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Relax, write everything asked for, and return the exit status."""
+    """Relax, write every requested output, and return the exit status."""
     output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
     moving = [option for option in declared(RelaxOptions) if not option.keyframes]
@@ -136,7 +136,7 @@ def _interruptible(relaxation: Relaxation) -> Relaxation:
 
 
 class _Job(NamedTuple):
-    """A result to be written; see `kept`. Those that take long, or never end, can be interrupted, and come last."""
+    """A result to be written; see `kept`. Those that may take long, or never end, can be interrupted, and come last."""
 
     path: str
     write: Write

@@ -8,20 +8,22 @@ from .curve import Curve
 from .errors import CurveError
 from .types import FloatArray, frozen
 
-LARGEST = 1e40  # coordinate, and the inverse of the smallest size: even seventh powers of both are still numbers
+MAX_COORDINATE = 1e40  # coordinate, and the inverse of the smallest size: even seventh powers of both are still numbers
 
 
 def check_units(curve: Curve) -> None:
     """Raise a CurveError if coordinates are so large, or the curve so small, that powers of lengths fail."""
     sizes = np.abs(curve.vertices).max(axis=1)
     k = int(sizes.argmax())
-    if sizes[k] > LARGEST:
+    if sizes[k] > MAX_COORDINATE:
         place = ", ".join(f"{x:.6g}" for x in curve.vertices[k])
-        reason = f"vertex {k + 1}, ({place}), has a coordinate beyond {LARGEST:g}; use a larger unit of length"
+        reason = f"vertex {k + 1}, ({place}), has a coordinate beyond {MAX_COORDINATE:g}; use a larger unit of length"
         raise CurveError(reason, vertex=k)
     width = float(np.ptp(curve.vertices, axis=0).max())
-    if 0 < width < 1 / LARGEST:
-        raise CurveError(f"the curve is only {width:.3g} wide, less than {1 / LARGEST:g}; use a smaller unit of length")
+    if 0 < width < 1 / MAX_COORDINATE:
+        raise CurveError(
+            f"the curve is only {width:.3g} wide, less than {1 / MAX_COORDINATE:g}; use a smaller unit of length"
+        )
 
 
 def centred(curve: Curve) -> Curve:

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-PATIENCE = 600.0  # seconds; not a bound for speed, but so that nothing hangs for ever, however busy the machine
+PATIENCE = 600.0  # seconds; not a bound for speed, but so that nothing hangs, however busy the machine
 
 
 @contextmanager

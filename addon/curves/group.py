@@ -52,7 +52,7 @@ class Group:
 
     @property
     def title(self) -> str:
-        """The names for people."""
+        """The names, as messages show them."""
         return named(self.names)
 
     @property

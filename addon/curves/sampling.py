@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     import bpy
 
 _KINDS = {"BEZIER": "Bézier", "NURBS": "NURBS"}
-_MOST_QUESTIONS = 5
+_MAX_QUESTIONS = 5
 
 
 def kind(spline: "bpy.types.Spline") -> str:
-    """Name of a spline's type for people."""
+    """Name of a spline's type, as messages show it."""
     return _KINDS.get(spline.type, str(spline.type))
 
 
@@ -28,7 +28,7 @@ def smooth_splines(data: "bpy.types.Curve") -> list["bpy.types.Spline"]:
 def questions(objects: Sequence["bpy.types.Object"]) -> list[str]:
     """Ask whether the smooth splines of objects may become polygons, a line each; raises as `sampled` does."""
     smooth = [obj for obj in objects if smooth_splines(obj.data)]
-    lines = [_question(obj) for obj in smooth[:_MOST_QUESTIONS]]
+    lines = [_question(obj) for obj in smooth[:_MAX_QUESTIONS]]
     more = len(smooth) - len(lines)
     return [*lines, f"{more} more objects have smooth splines too"] if more else lines
 

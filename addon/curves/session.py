@@ -53,7 +53,7 @@ class Report:
 
     @property
     def sentence(self) -> str:
-        """The same for people."""
+        """The same in words."""
         # nothing but the curves that were relaxed is looked at
         whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
         whom += ", before modifiers" if self.modified else ""
@@ -86,7 +86,7 @@ class Session:
     group
         The objects.
     options, key_options
-        What is asked for.
+        The requested options.
 
     Attributes
     ----------

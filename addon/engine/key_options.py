@@ -14,7 +14,7 @@ FRAMES_PER_ITERATE = (0.1, 10_000.0)
 
 
 class Output(Enum):
-    """What is left on the object in the end; the values name it for people."""
+    """What is left on the object in the end; the values are labels."""
 
     SHAPE_KEYS = "Shape Keys"
     FCURVES = "F-Curves"

@@ -1,4 +1,4 @@
-"""What cannot be relaxed, and why: one sentence for people, naming what to do about it."""
+"""What cannot be relaxed, and why: one sentence for the user, naming what to do about it."""
 
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING

@@ -44,7 +44,7 @@ class Run:
     objects
         Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
     options, key_options
-        What is asked for.
+        The requested options.
 
     Raises
     ------
@@ -67,7 +67,7 @@ class Run:
 
     @property
     def name(self) -> str:
-        """The names of what is relaxed, for people."""
+        """The names of the objects, as messages show them."""
         return self.group.title
 
     @property

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 Target = str | os.PathLike[str]
 
-_MOST_KEYS = 1000  # in a .blend; more are of no use to the eye
-_MOST_FILM_KEYS = 200
+_MAX_KEYS = 1000  # in a .blend; more are of no use to the eye
+_MAX_FILM_KEYS = 200
 _PICTURE = (800, 450, 8)  # width, height, samples
 _FILM = (640, 360)
 _FILM_WITHOUT_DRIVER = (384, 216, 3)
@@ -66,7 +66,7 @@ def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
         If Blender's module is missing or the file cannot be written.
     """
     motion, origin = film.recorded(iterates)
-    keys = motion.keys(is_free, _MOST_KEYS)
+    keys = motion.keys(is_free, _MAX_KEYS)
     scene = _empty_scene()
     rendering.use_cycles(scene, *_PICTURE)
     film.compose(scene, keys, film.steady_frames(keys), motion.start.curve.mesh, origin)
@@ -80,7 +80,7 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
     ``progress`` gets the number of frames done and of all frames. Otherwise as `write_blend`.
     """
     motion, _ = film.recorded(iterates)
-    keys = motion.keys(is_free, _MOST_FILM_KEYS)
+    keys = motion.keys(is_free, _MAX_FILM_KEYS)
     scene = _empty_scene()
     drawn = rendering.workbench_works()
     if drawn:

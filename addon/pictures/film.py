@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _BEVEL_RESOLUTION = 7
 _SHOWN = 40  # keys looked at when the camera is placed
-_SHORTEST = 120  # frames of a keyframed relaxation, if its iterates can be spread over them
+_MIN_FRAMES = 120  # frames of a keyframed relaxation, if its iterates can be spread over them
 _FRAMES_PER_KEY = 6
 _FILM = (60, 96)  # frames of a film in motion
 _PAUSE = 6  # frames before the motion begins
@@ -142,7 +142,7 @@ def add_pauses(scene: "bpy.types.Scene") -> None:
 def steady_frames(keys: Keys) -> FloatArray:
     """Scene frames of keys that leave every iterate the same time, in whole frames."""
     times = np.array([key.time for key in keys.keys])
-    return np.asarray(1.0 + max(1.0, np.round(_SHORTEST / max(times[-1], 1.0))) * times)
+    return np.asarray(1.0 + max(1.0, np.round(_MIN_FRAMES / max(times[-1], 1.0))) * times)
 
 
 def smooth_frames(keys: Keys) -> FloatArray:

@@ -12,7 +12,7 @@ from .exact import first_contact
 from .gap import near_edges, scaled_points
 from .planes import ROUNDING, Separation, closest_chord, relative_motion
 
-NEAREST = 2.0**-48  # distance of neighbours, relative to the curve's size, below which they are the same up to rounding
+MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
 
 
 def check_embedded(curve: Curve) -> None:
@@ -36,7 +36,7 @@ def _check_repeated(curve: Curve) -> None:
     heads = curve.mesh.heads
     unit = int(np.frexp(np.abs(curve.vertices).max())[1]) + 1  # differences of scaled coordinates don't overflow
     points = np.ldexp(curve.vertices, -unit)
-    nearest = NEAREST * np.ptp(points, axis=0).max()
+    nearest = MIN_SPACING * np.ptp(points, axis=0).max()
     same = np.flatnonzero((np.abs(points[heads] - points) <= nearest).all(axis=1))
     if same.size:
         component, k, n = _place(curve.mesh, int(same[0]))
@@ -85,7 +85,7 @@ def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int
 
 def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
     """Pairs of edges no further apart than rounding, sorted batch by batch."""
-    nearest = NEAREST * float(np.ptp(points, axis=1).max())
+    nearest = MIN_SPACING * float(np.ptp(points, axis=1).max())
     for i, j, _ in near_edges(curve, points, lambda: nearest**2):
         yield from sorted(zip(*np.sort(np.stack([i, j]), axis=0).tolist(), strict=True))
 
@@ -109,7 +109,7 @@ def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]
 
 
 def _meeting_point(corners: FloatArray) -> FloatArray:
-    """Return a point of the first edge near the second, for people to look at; ``corners`` has shape (4, m)."""
+    """Return a point of the first edge near the second, to be named in a message; ``corners`` has shape (4, m)."""
     x0, x1, y0, y1 = corners
     x = x0 + np.linspace(0.0, 1.0, 257)[:, None] * (x1 - x0)
     f = y1 - y0

@@ -24,8 +24,8 @@ Polynomial = Sequence[int]
 Vector = tuple[Polynomial, ...]
 Motion = tuple[Vector, Vector, Vector]  # D, e, f, each linear
 
-_SHORTEST = Fraction(1, 2**60)  # length of an interval that is given up,
-_FINEST = Fraction(1, 2**52)  # or its length relative to its end
+_MIN_LENGTH = Fraction(1, 2**60)  # length of an interval that is given up,
+_MIN_RATIO = Fraction(1, 2**52)  # or its length relative to its end
 _SURE = Fraction(1, 2**10)  # relative length below which a plain crossing needs no sharper time
 _INSIDE = 10**6  # one part in this many from the ends of both edges is plainly inside
 _BITS = 40  # a single time of coplanarity is narrowed down by 2^-40 at once
@@ -48,7 +48,7 @@ def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> flo
         a, b, motion = work.pop()
         if b <= after or _free(motion):
             continue
-        if b - a <= max(_SHORTEST, _FINEST * b) or (b - a <= _SURE * b and _crosses(motion)):
+        if b - a <= max(_MIN_LENGTH, _MIN_RATIO * b) or (b - a <= _SURE * b and _crosses(motion)):
             return max(_below(a), after)
         if bracket := _only_root(motion):
             low, high = (a + (b - a) * Fraction(k, 2**_BITS) for k in bracket)

@@ -10,7 +10,7 @@ from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level
 from .planes import closest_chord, relative_motion
 
-NEAREST_STRANDS = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
+MIN_GAP = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
 ENDS_ONLY = 1e-3  # of the longer edge: midpoints further apart than that don't feel that the edges are near
 
 
@@ -46,7 +46,7 @@ def check_gap(curve: Curve) -> None:
         One sentence that says where.
     """
     points, unit = scaled_points(curve)
-    radius = float(np.ldexp(NEAREST_STRANDS * curve.length, -unit))
+    radius = float(np.ldexp(MIN_GAP * curve.length, -unit))
     for i, j, squares in near_edges(curve, points, lambda: radius**2):
         apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)
         near = apart <= ENDS_ONLY * np.maximum(curve.edge_lengths[i], curve.edge_lengths[j])
@@ -54,7 +54,7 @@ def check_gap(curve: Curve) -> None:
             k = int(np.where(near, squares, np.inf).argmin())
             gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in curve.vertices[i[k]])
             raise CurveError(
-                f"strands are only {gap:.2g} apart near ({place}), less than {NEAREST_STRANDS:g} of the curve's "
+                f"strands are only {gap:.2g} apart near ({place}), less than {MIN_GAP:g} of the curve's "
                 "length, which is too near to compute their energy; move them apart"
             )
 

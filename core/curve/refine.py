@@ -18,8 +18,8 @@ from .mesh import Mesh
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
-MOST_VERTICES = 1000  # per component, unless the curve has half as many: more are too slow to be of use
-MOST_ALTOGETHER = 5000  # unless the curve has more: dense matrices of so many rows take a minute a step
+MAX_PER_COMPONENT = 1000  # per component, unless the curve has half as many: more are too slow to be of use
+MAX_ALTOGETHER = 5000  # unless the curve has more: dense matrices of so many rows take a minute a step
 COMPONENTS = 10  # that get so many each; more share what ten would have
 CLOSING_IN = 0.6  # ratio below which strands close in on each other: four times nearer to a corner its sides do
 TINY = float(np.finfo(np.float64).tiny)  # against division by 0: far from the origin sample points may coincide
@@ -34,12 +34,12 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     curve
         An embedded polygon.
     vertices
-        Total number of vertices asked for; None leaves it to the rule.
+        Requested total number of vertices; None leaves it to the rule.
 
     Raises
     ------
     CurveOptionError
-        If fewer vertices are asked for than the curve has: corners are never cut.
+        If fewer vertices are requested than the curve has: corners are never cut.
     """
     check_is_curve(curve)
     if vertices is not None and vertices < len(curve):
@@ -139,10 +139,10 @@ def _affordable_pieces(curve: Curve, spacing: FloatArray) -> IntArray:
 
     Where gaps are too narrow for that, the barrier's exact energies and an adaptive mesh have to do.
     """
-    most = max(len(curve), min(max(2 * len(curve), MOST_VERTICES * _sharers(curve)), MOST_ALTOGETHER))
+    most = max(len(curve), min(max(2 * len(curve), MAX_PER_COMPONENT * _sharers(curve)), MAX_ALTOGETHER))
     floor = 0.0
     while True:
-        # a little slack, so that a curve that already has the spacing asked for stays as it is
+        # a little slack, so that a curve that already has the requested spacing stays as it is
         pieces = np.maximum(1.0, np.ceil(curve.edge_lengths / np.maximum(spacing, floor) - 0.1))
         if pieces.sum() <= most:
             return np.asarray(pieces.astype(np.intp))

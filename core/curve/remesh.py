@@ -16,7 +16,7 @@ from .refine import subdivide, target_spacing
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
 COLLAPSE = 0.5  # two edges are joined if they are shorter than this many times the spacing, each
 GRADING = 1.3  # ratio of the spacings wanted on neighbouring edges, at most
-FEWEST = 16  # vertices that a component keeps, if it had as many
+MIN_VERTICES = 16  # vertices that a component keeps, if it had as many
 
 
 def graded_spacing(curve: Curve, vertices: int | None) -> FloatArray:
@@ -40,7 +40,7 @@ def superfluous(curve: Curve, spacing: FloatArray) -> IntArray:
     chosen: list[int] = []
     for part in mesh.slices:
         size = part.stop - part.start
-        room, last, first = size - min(size, FEWEST), -3, None
+        room, last, first = size - min(size, MIN_VERTICES), -3, None
         for k in np.flatnonzero(short[part]):
             wraps = first is not None and first + size - k < 3
             if room > 0 and k - last >= 3 and not wraps:

@@ -1,4 +1,4 @@
-"""What is minimised, in which metric, under which constraints: values at a point are computed once, when asked for."""
+"""What is minimised, in which metric, under which constraints: values at a point are computed once, on demand."""
 
 from copy import copy
 from dataclasses import dataclass

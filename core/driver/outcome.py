@@ -60,13 +60,13 @@ INTERRUPTED = Outcome(Status.INTERRUPTED, "interrupted: the curve reached so far
 OUT_OF_MEMORY = stalled("memory ran out; the curve reached so far is kept")
 DEGENERATE = "the curve has become too degenerate: {error}"
 HELD = (
-    "parts that are not linked, which would drift apart without end, are held in place; "
+    "parts that are not linked, which would drift apart without limit, are held in place; "
     "the sum of their own energies is {energy:.6g}"
 )
 SADDLE, MINIMUM = "a saddle with index {index}", "a minimum"
 NO_WAY_DOWN = "no way down was found"
 COMPOSITE = (
-    "strands pull tight, and would do so without end: the curve is composite, knotted both inside and outside the "
+    "strands pull tight, and would do so without limit: the curve is composite, knotted both inside and outside the "
     "ball of radius {radius:.3g} around ({center}), and has no shape of least energy"
 )
 TIGHT = "strands pull tight, nearer than {vertices} vertices resolve"

@@ -26,7 +26,7 @@ class PointSet(NamedTuple):
 
 
 class PointPairs:
-    """The pairs (x, y) of a tile, x on the edges of its rows and y on those of its columns; computed when asked for.
+    """The pairs (x, y) of a tile, x on the edges of its rows and y on those of its columns; computed on demand.
 
     All arrays have the shape (rows, columns).  Pairs that do not count have numbers of no meaning but finite ones.
     """

@@ -17,7 +17,7 @@ _SERIES_LIMIT = 0.0625  # of (h/w)²: up to here series, above it closed forms; 
 
 
 class Moments(NamedTuple):
-    """L(1, 0), L(2, k) for k = 0, 1, 2 and, if asked for, L(3, k) for k = 0 … 4; all of one shape."""
+    """L(1, 0), L(2, k) for k = 0, 1, 2 and, on demand, L(3, k) for k = 0 … 4; all of one shape."""
 
     inverse: FloatArray
     square: tuple[FloatArray, ...]

@@ -10,8 +10,8 @@ from ..errors import CurveError
 
 Word = tuple[int, ...]
 
-MOST_STRANDS = 500
-MOST_LETTERS = 20_000
+MAX_STRANDS = 500
+MAX_LETTERS = 20_000
 
 
 def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word, int]:
@@ -31,10 +31,10 @@ def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word,
     strands = needed if strands is None else strands
     if strands < needed:
         raise CurveError(f"the braid has {strands} strands, but its letters need {needed}")
-    if strands > MOST_STRANDS or len(letters) > MOST_LETTERS:
+    if strands > MAX_STRANDS or len(letters) > MAX_LETTERS:
         raise CurveError(
             f"the braid has {strands} strands and {len(letters)} letters; "
-            f"at most {MOST_STRANDS} and {MOST_LETTERS} are allowed"
+            f"at most {MAX_STRANDS} and {MAX_LETTERS} are allowed"
         )
     return letters, strands
 

@@ -17,10 +17,10 @@ from ..types import BoolArray, FloatArray
 from .alexander import TRIVIAL, signature
 
 _ARCS = 24  # arcs of a knot begin and end at multiples of this fraction of it; in links, of fewer per component
-_SHORTEST = 1 / 8  # arc, as a fraction of its component
+_MIN_ARC = 1 / 8  # arc, as a fraction of its component
 _SAMPLES = 120  # vertices that balls are looked for with
 _MARGIN = 1e-6  # of the separating plane, for a curve of size 1
-_MOST_COMPONENTS = 4  # each of the others may lie inside or outside
+_MAX_COMPONENTS = 4  # each of the others may lie inside or outside
 _OUTER_PATH = 16  # edges of the path around a ball
 
 
@@ -55,7 +55,7 @@ def knotted_ball(curve: Curve) -> Ball | None:
     curve
         Closed polygons in space; None is returned for more than four components.
     """
-    if curve.dimension != 3 or len(curve.mesh.component_sizes) > _MOST_COMPONENTS:
+    if curve.dimension != 3 or len(curve.mesh.component_sizes) > _MAX_COMPONENTS:
         return None
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())
@@ -73,9 +73,9 @@ def _arcs(curve: Curve) -> Iterator[BoolArray]:
     for cut, part in enumerate(slices):
         size = part.stop - part.start
         others = [s for k, s in enumerate(slices) if k != cut]
-        arcs = max(int(1 / _SHORTEST), _ARCS // len(slices))
+        arcs = max(int(1 / _MIN_ARC), _ARCS // len(slices))
         starts = np.unique(np.arange(arcs) * size // arcs)
-        lengths = np.unique(np.arange(int(_SHORTEST * arcs), arcs // 2 + 1) * size // arcs)
+        lengths = np.unique(np.arange(int(_MIN_ARC * arcs), arcs // 2 + 1) * size // arcs)
         for length, first, chosen in product(lengths[::-1], starts, product((False, True), repeat=len(others))):
             inside = np.zeros(len(curve), dtype=bool)
             inside[part] = (np.arange(size) - first) % size < length

@@ -7,8 +7,7 @@ import numpy as np
 from ..curve import Curve
 from ..errors import CurveError
 from ..types import FloatArray
-
-_MOST_VERTICES = 100_000  # twice what any command takes
+from .rings import MAX_VERTICES
 
 
 def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> Curve:
@@ -39,8 +38,8 @@ def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> C
     # middle, and strands can't meet while that is below gap/2.
     fewest = math.ceil(along[-1] / (0.75 * gap))
     vertices = max(60, math.ceil(along[-1] / (0.6 * gap))) if vertices is None else vertices
-    if not fewest <= vertices <= _MOST_VERTICES:
-        raise CurveError(f"vertices is {vertices}; a spiral of {turns} turns takes {fewest} to {_MOST_VERTICES}")
+    if not fewest <= vertices <= MAX_VERTICES:
+        raise CurveError(f"vertices is {vertices}; a spiral of {turns} turns takes {fewest} to {MAX_VERTICES}")
     marks = np.linspace(0.0, along[-1], vertices + 1)[:-1]
     flat = np.stack([np.interp(marks, along, coordinate) for coordinate in smooth[:, :2].T], axis=1)
     return Curve(_lifted(flat, rise))
@@ -85,8 +84,8 @@ def rope(twists: float, gap: float, vertices: int = 200) -> Curve:
     """
     if not 0 < gap <= 1:
         raise CurveError(f"gap is {gap}; it must be above 0 and at most 1")
-    if vertices < 8 or vertices % 2 or vertices > _MOST_VERTICES:
-        raise CurveError(f"vertices is {vertices}; it must be even, from 8 to {_MOST_VERTICES}")
+    if vertices < 8 or vertices % 2 or vertices > MAX_VERTICES:
+        raise CurveError(f"vertices is {vertices}; it must be even, from 8 to {MAX_VERTICES}")
     steps = (vertices - 4) // 2
     # Cross-sections of the two strands are opposite each other, so they can't meet while an edge turns
     # by less than half a turn; a quarter leaves them a good part of the gap.

@@ -14,7 +14,7 @@ from .torus import torus_knot
 _CALL = re.compile(r"(t|torus|braid)\(([^()#]*)(\)?)")
 _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _FORMS = "write T(p,q) or braid(1,-2,...)"
-_MOST_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
+_MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
 _MIRRORS = re.compile(r"(?:m\s*)+")
 _TABLE = {name.lower(): name for name in KNOTS}
@@ -126,10 +126,8 @@ def _unknown(name: str) -> UnknownKnotError:
 
 def _torus_word(p: int, q: int) -> Word:
     """(σ₁ … σ_{p−1})^q, for torus knots within sums and mirror images."""
-    if p * q == 0 or abs(p * q) > _MOST_LETTERS:
-        raise CurveError(
-            f"T({p},{q}) in a sum or mirror image needs p and q that are not 0, and |pq| ≤ {_MOST_LETTERS}"
-        )
+    if p * q == 0 or abs(p * q) > _MAX_LETTERS:
+        raise CurveError(f"T({p},{q}) in a sum or mirror image needs p and q that are not 0, and |pq| ≤ {_MAX_LETTERS}")
     p, q = sorted((p, q), key=abs)
     word = tuple(range(1, abs(p))) * abs(q)
     return word if p * q > 0 else mirror(word)

@@ -12,11 +12,11 @@ import numpy as np
 from ..curve import Curve, refine
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
+from .rings import MAX_VERTICES
 
 Crossing = tuple[int, int, int, int]
 _Dart = tuple[int, int]  # a crossing, and the place from 0 to 3 of an edge that leaves it
 
-_MOST_VERTICES = 100_000  # twice what any command takes
 _ROUNDS = 4  # in which weights grow with the square roots of lengths; with many more some lines collapse
 _LIFT = 0.5  # of the shortest line from a crossing: the height of its strands above and below the plane
 
@@ -53,9 +53,9 @@ def diagram_knot(code: Sequence[Crossing], vertices: int | None = None) -> Curve
     curve = Curve(path)
     if vertices is None:
         return curve
-    if not len(curve) <= vertices <= _MOST_VERTICES:
+    if not len(curve) <= vertices <= MAX_VERTICES:
         few = "few" if vertices < len(curve) else "many"
-        raise CurveError(f"{vertices} vertices are too {few} for this diagram; give {len(curve)} to {_MOST_VERTICES}")
+        raise CurveError(f"{vertices} vertices are too {few} for this diagram; give {len(curve)} to {MAX_VERTICES}")
     return refine(curve, vertices)
 
 

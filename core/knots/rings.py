@@ -12,7 +12,7 @@ from ..types import FloatArray, IntArray
 
 _EDGE = 0.7  # default edge length in units of the gap; tilted strands are a little nearer than the gap
 _PAGES_PER_EDGE = 8
-_MOST_VERTICES = 100_000  # twice what any command takes
+MAX_VERTICES = 100_000  # of any knot that is made: twice what any command takes
 
 
 @dataclass(frozen=True)
@@ -73,11 +73,11 @@ class ClosedBraid:
             If they are too few for the polygon to be the same braid, or too many for any use.
         """
         least = max(self.detail, vertices or 0)
-        if least > _MOST_VERTICES:
-            raise CurveError(f"{least} vertices are too many; at most {_MOST_VERTICES} are allowed")
+        if least > MAX_VERTICES:
+            raise CurveError(f"{least} vertices are too many; at most {MAX_VERTICES} are allowed")
         lengths = np.array([_length(ring, self.detail) for ring in self.rings])
         if vertices is None:
-            vertices = min(max(math.ceil(lengths.sum() / (_EDGE * self.gap)), self.detail), _MOST_VERTICES)
+            vertices = min(max(math.ceil(lengths.sum() / (_EDGE * self.gap)), self.detail), MAX_VERTICES)
         counts = _shares(vertices, lengths)
         angles = [_equal_edges(ring, count) for ring, count in zip(self.rings, counts, strict=True)]
         if any(_deviation(ring, theta) >= self.gap / 2 for ring, theta in zip(self.rings, angles, strict=True)):

@@ -11,8 +11,8 @@ from ..errors import CurveError
 from ..types import FloatArray, IntArray
 from .sweeps import angle_to_sector, triangle_distances
 
-_LEAST_ANGLE = 0.2  # radians between neighbouring edges, so that edges never fold onto each other
-_LEAST_GAP = 1e-6  # of the radius; rounding in the distances, at most 1e-8 of it, must stay far below the gap
+_MIN_ANGLE = 0.2  # radians between neighbouring edges, so that edges never fold onto each other
+_MIN_GAP = 1e-6  # of the radius; rounding in the distances, at most 1e-8 of it, must stay far below the gap
 
 
 def scramble(
@@ -66,8 +66,8 @@ def certified_moves(
     gap = float(curve.edge_lengths.mean()) / 20 if gap is None else gap
     if moves < 0 or not 0 < reach < math.inf:
         raise CurveError(f"moves is {moves} and reach {reach}; moves must be 0 or more and reach above 0")
-    if not _LEAST_GAP * radius <= gap < math.inf:
-        raise CurveError(f"gap is {gap}; it must be at least {_LEAST_GAP:g} of the curve's radius, {radius:g}")
+    if not _MIN_GAP * radius <= gap < math.inf:
+        raise CurveError(f"gap is {gap}; it must be at least {_MIN_GAP:g} of the curve's radius, {radius:g}")
     return _moves(_Polygons.of(curve), np.random.default_rng(seed), moves, reach, gap, (center, radius))
 
 
@@ -116,7 +116,7 @@ class _Polygons:
     def _opens(self, pivot: int, old: FloatArray, new: FloatArray, beyond: int) -> bool:
         """Whether the edge that turns about ``pivot`` stays away from the next edge there."""
         here = self.points[pivot]
-        return angle_to_sector(self.points[beyond] - here, old - here, new - here) >= _LEAST_ANGLE
+        return angle_to_sector(self.points[beyond] - here, old - here, new - here) >= _MIN_ANGLE
 
     def _free(self, vertex: int, pivot: int, old: FloatArray, new: FloatArray, gap: float) -> bool:
         """Whether the triangle swept by the edge from ``pivot`` to the vertex is free of edges beyond both."""

@@ -10,8 +10,8 @@ from ..errors import CurveError
 from ..types import FloatArray
 from .rings import ClosedBraid, Ring
 
-_MOST = 2000
-_LARGEST = 1e100  # whose square is still a double
+_MAX_TURNS = 2000
+_MAX_RADIUS = 1e100  # whose square is still a double
 
 
 def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.0, minor: float | None = None) -> Curve:
@@ -43,14 +43,14 @@ def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.
     >>> len(torus_knot(3, 3).mesh.component_sizes)
     3
     """
-    if not (0 < abs(p) <= _MOST and 0 < abs(q) <= _MOST):
+    if not (0 < abs(p) <= _MAX_TURNS and 0 < abs(q) <= _MAX_TURNS):
         raise CurveError(
-            f"T({p},{q}) is no torus knot of use; p and q must be whole numbers from 1 to {_MOST}, or negative"
+            f"T({p},{q}) is no torus knot of use; p and q must be whole numbers from 1 to {_MAX_TURNS}, or negative"
         )
     hand = 1 if p * q > 0 else -1
     p, q = abs(p), abs(q)
     minor = major * min(p / math.hypot(p, 1.25 * q), 0.6) if minor is None else minor
-    if not 1 / _LARGEST < minor < major < _LARGEST:
+    if not 1 / _MAX_RADIUS < minor < major < _MAX_RADIUS:
         raise CurveError(f"major is {major} and minor {minor}; they must satisfy 0 < minor < major, not beyond 1e±100")
     return _smooth(p, q, hand, major, minor).polygon(vertices)
 

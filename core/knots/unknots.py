@@ -4,11 +4,11 @@ import numpy as np
 
 from ..curve import Curve
 from ..errors import CurveError
-from .braids import MOST_LETTERS, Word, is_reduced
+from .braids import MAX_LETTERS, Word, is_reduced
 from .closures import braid_closure
 
 _MOVES_PER_LETTER = 4
-_MOST_TRIALS = 500  # insertions tried per letter
+_MAX_TRIALS = 500  # insertions tried per letter
 _NEARBY = 6  # letters around a new pair that it is braided with
 
 
@@ -66,8 +66,8 @@ def _strand_count(crossings: int) -> int:
 
 
 def _check(crossings: int, strands: int) -> None:
-    if not 0 <= crossings <= MOST_LETTERS // 10:
-        raise CurveError(f"crossings is {crossings}; it must be between 0 and {MOST_LETTERS // 10}")
+    if not 0 <= crossings <= MAX_LETTERS // 10:
+        raise CurveError(f"crossings is {crossings}; it must be between 0 and {MAX_LETTERS // 10}")
     if not 1 <= strands <= crossings + 1 or (crossings - strands) % 2 == 0:
         raise CurveError(
             f"no unknot is the closure of a braid of {strands} strands and {crossings} crossings; "
@@ -83,7 +83,7 @@ def _signed(letter: int, rng: np.random.Generator) -> int:
 
 def _grown(word: list[int], length: int, largest: int, rng: np.random.Generator) -> list[int]:
     """Insert pairs σ σ⁻¹ and braid them in until the word has ``length`` letters, or one less."""
-    for _ in range(_MOST_TRIALS * length):
+    for _ in range(_MAX_TRIALS * length):
         if len(word) + 2 > length or largest < 2:
             return word
         place = int(rng.integers(len(word) + 1))

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..curve import Curve
 from ..curve.distances import arc_distances
-from .inner_product import MOST_DENSE_ROWS, DenseInnerProduct, InnerProduct
+from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import WithoutRule, mass
 from .pairs import DifferenceForm, Stencil, stripes
 
@@ -18,7 +18,7 @@ class FractionalMetric(WithoutRule):
     name = "h3-2"
     description = "W^{3/2,2}, intrinsic"
     extends_penalty = True
-    most_vertices = MOST_DENSE_ROWS
+    most_vertices = MAX_DENSE_ROWS
 
     def at(self, curve: Curve) -> InnerProduct:
         """Dense: every pair of edges weighs in."""

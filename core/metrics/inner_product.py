@@ -17,8 +17,8 @@ from ..saddle.dense import DenseTangentSpace, DenseWholeSpace, cholesky
 from ..saddle.sparse import SparseTangentSpace, SparseWholeSpace, factorised
 from ..types import FloatArray
 
-MOST_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
-MOST_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
+MAX_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
+MAX_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
 
 
 class InnerProduct(Protocol):

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from ..curve import Curve
 from ..quadrature import Rule
 from ..types import FloatArray
-from .inner_product import MOST_SPARSE_ROWS, InnerProduct, SparseInnerProduct
+from .inner_product import MAX_SPARSE_ROWS, InnerProduct, SparseInnerProduct
 
 
 def mass(curve: Curve) -> sp.csr_array:
@@ -38,7 +38,7 @@ class WithoutRule:
     """A metric whose integrals are exact or by one fixed rule."""
 
     rule = None
-    most_vertices = MOST_SPARSE_ROWS
+    most_vertices = MAX_SPARSE_ROWS
 
     def with_rule(self, _rule: Rule) -> Self:
         """Itself."""

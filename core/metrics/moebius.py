@@ -20,13 +20,13 @@ from ..curve import Curve
 from ..curve.distances import arc_distances, points_at
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray
-from .inner_product import MOST_DENSE_ROWS, DenseInnerProduct, InnerProduct
+from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import lumped_mass
 from .pairs import DifferenceForm, Stencil, Stripe, stripes
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
 # others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves it changes nothing.
-NEAREST = 0.25
+MIN_DISTANCE = 0.25
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class MoebiusMetric:
     name = "moebius"
     description = "J_C of Theorem 4.1, extrinsic W^{3/2,2}"
     extends_penalty = True
-    most_vertices = MOST_DENSE_ROWS
+    most_vertices = MAX_DENSE_ROWS
 
     def with_rule(self, rule: Rule) -> "MoebiusMetric":
         """J_C by another rule."""
@@ -72,7 +72,7 @@ def _weights(curve: Curve, t_i: float, t_j: float, stripe: Stripe) -> tuple[Floa
     rows, columns, ell = stripe.rows, stripe.columns, curve.edge_lengths
     rho = arc_distances(curve, t_i, t_j, rows, columns)
     r2 = cdist(points_at(curve, t_i)[rows], points_at(curve, t_j)[columns], "sqeuclidean")
-    nearest = NEAREST * np.add.outer(ell[rows], ell[columns])
+    nearest = MIN_DISTANCE * np.add.outer(ell[rows], ell[columns])
     np.maximum(rho, nearest, out=rho)
     np.maximum(r2, np.square(nearest, out=nearest), out=r2)
     stripe.exclude_neighbours(curve.mesh, r2)

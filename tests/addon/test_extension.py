@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PLATFORM = "linux-x64"
 slow = pytest.mark.skipif(
     os.environ.get("MOBIUS_FLOW_SLOW") != "1" or not sys.platform.startswith("linux"),
-    reason="fetches SciPy's wheels for Linux; asked for by MOBIUS_FLOW_SLOW=1",
+    reason="fetches SciPy's wheels for Linux; enabled by MOBIUS_FLOW_SLOW=1",
 )
 
 

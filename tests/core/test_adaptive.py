@@ -7,8 +7,8 @@ import pytest
 from mobius_flow.core import Curve, Objective, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
 from mobius_flow.core.curve.remesh import (
     COLLAPSE,
-    FEWEST,
     GRADING,
+    MIN_VERTICES,
     SPLIT,
     graded_spacing,
     needs_remesh,
@@ -62,7 +62,7 @@ def test_collapse_keeps_far_vertices_and_few_per_component():
     chord = curve.vertices[(chosen + 1) % 900] - curve.vertices[chosen - 1]
     offset = moved[chosen] - curve.vertices[chosen - 1]
     np.testing.assert_allclose(np.linalg.norm(np.cross(chord, offset), axis=1), 0, atol=1e-15)
-    assert len(superfluous(regular_polygon(FEWEST), np.full(FEWEST, 100.0))) == 0
+    assert len(superfluous(regular_polygon(MIN_VERTICES), np.full(MIN_VERTICES, 100.0))) == 0
     assert COLLAPSE * 2 <= 1
 
 
@@ -101,7 +101,7 @@ def test_famous_unknot_adaptively(tmp_path):
 
 @pytest.mark.parametrize("mesh", ["finer", "adaptive"])
 def test_granny_has_no_minimiser_and_is_told_so(mesh, tmp_path):
-    """A composite knot's strands pull tight without end: that is no convergence."""
+    """A composite knot's strands pull tight without limit: that is no convergence."""
     trajectory = Trajectory()
     options = RelaxOptions(vertices=100, mesh=mesh, tolerance=3e-3)
     result = minimize(lattice_knot("3_1#3_1"), options, trajectory.add)

@@ -6,7 +6,7 @@ from mobius_flow.core import RelaxOptions
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.metrics import METRICS, DenseInnerProduct, MoebiusMetric
-from mobius_flow.core.metrics.moebius import NEAREST
+from mobius_flow.core.metrics.moebius import MIN_DISTANCE
 from mobius_flow.core.metrics.pairs import DifferenceForm, Stencil, stripes
 from mobius_flow.core.quadrature import ENDS, TAIL, Rule
 from scipy.integrate import quad
@@ -111,7 +111,7 @@ def _by_definition(curve, u, rule):
                     y = (1 - t[b]) * curve.vertices[mesh.tails[j]] + t[b] * curve.vertices[mesh.heads[j]]
                     ui = (1 - t[a]) * u[mesh.tails[i]] + t[a] * u[mesh.heads[i]]
                     uj = (1 - t[b]) * u[mesh.tails[j]] + t[b] * u[mesh.heads[j]]
-                    nearest = NEAREST * (ell[i] + ell[j])
+                    nearest = MIN_DISTANCE * (ell[i] + ell[j])
                     s = 1 / max(np.sum((x - y) ** 2), nearest**2)
                     density = s
                     if mesh.component[i] == mesh.component[j]:

@@ -12,7 +12,7 @@ from ...errors import CurveFileError
 MAX_BYTES = 8 << 20  # a hundred thousand vertices with all their digits
 MAX_LINES = 500_000
 _INTEGER = re.compile(r"[+-]?[0-9]+", re.ASCII)
-_LONGEST_INTEGER = 18  # digits; beyond that it is no count or index of anything in memory
+_MAX_DIGITS = 18  # digits; beyond that it is no count or index of anything in memory
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Source:
 
     def integer(self, token: str, line: int) -> int:
         """Parse a count or an index."""
-        if not _INTEGER.fullmatch(token) or len(token) > _LONGEST_INTEGER:
+        if not _INTEGER.fullmatch(token) or len(token) > _MAX_DIGITS:
             raise self.error(f"{shown(token)} is not a whole number", line)
         return int(token)
 

@@ -23,7 +23,7 @@ class Armijo:
     Parameters
     ----------
     decrease
-        Part of the predicted decrease that is asked for: the paper's ½.
+        Required fraction of the predicted decrease: the paper's ½.
     first
         The first trial.
     lengths

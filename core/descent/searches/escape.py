@@ -18,7 +18,7 @@ class Escape:
     Parameters
     ----------
     decrease
-        Part of the predicted decrease that is asked for.
+        Required fraction of the predicted decrease.
     longest
         First step, in the metric's norm.
     first
@@ -36,7 +36,7 @@ class Escape:
         check_fields(self, decrease=(0.0, 1.0), longest=(0.0, math.inf), max_trials=(0, math.inf))
 
     def step(self, point: Point, direction: FloatArray, curvature: float) -> Step | NoStep:
-        """Find a step with E(Q) < E(P) + ½ c τ² curvature, c the decrease asked for.
+        """Find a step with E(Q) < E(P) + ½ c τ² curvature, c the required decrease.
 
         Parameters
         ----------

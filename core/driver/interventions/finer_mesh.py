@@ -16,7 +16,7 @@ from ..prepare import embedded_refinement, start_problem
 from ..run import Run
 
 FINER = 1.5  # factor of the number of vertices
-FINEST = 3.5  # factor of that number at the start from which strands count as pulling tight without end
+FINEST = 3.5  # factor of that number at the start from which strands count as pulling tight without limit
 
 
 class FinerMesh:

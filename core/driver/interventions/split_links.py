@@ -1,4 +1,4 @@
-"""Parts of a link that are not linked would drift apart without end: once far apart, each is held in place."""
+"""Parts of a link that are not linked would drift apart without limit: once far apart, each is held in place."""
 
 from dataclasses import replace
 

@@ -274,7 +274,7 @@ class Underestimating(Objective):
 
 
 def test_trust_region_rejects_what_the_model_did_not_foresee() -> None:
-    """Nothing is taken whose actual reduction is less than the part of the predicted one that is asked for."""
+    """Nothing is taken whose actual reduction is less than the required fraction of the predicted one."""
     point = start()
     point = point.within(replace(point.problem, objective=Underestimating()))
     lenient = TrustRegion(first_radius=30.0, newton_threshold=1e-12, first=FirstTrial(max_displacement=30.0))
@@ -404,7 +404,7 @@ def test_the_penalised_energy_has_slope_two(penalty: float) -> None:
 
 
 def test_escape_leaves_a_maximum_along_a_line() -> None:
-    """From a point of negative curvature both ways lead down by the decrease asked for."""
+    """From a point of negative curvature both ways lead down by the required decrease."""
     point = start()
     direction = point.gradient / point.gradient_norm  # not critical, but one of the two ways leads down all the same
     step = Escape().step(point, direction, -1.0)
