@@ -129,7 +129,4 @@ class Mesh:
 
     def scatter(self, at_tails: FloatArray, at_heads: FloatArray) -> FloatArray:
         """Add values given at the tail and the head of each edge up at the vertices; shapes (n,) or (n, m)."""
-        total = np.zeros_like(at_tails)
-        np.add.at(total, self.tails, at_tails)
-        np.add.at(total, self.heads, at_heads)
-        return total
+        return np.asarray(at_tails + at_heads[self.previous])  # edge I begins at vertex I
