@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Mesh
+from ..curve.ordering import component_order
 from ..types import BoolArray, FloatArray, IntArray
 
 CHUNK = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
@@ -61,7 +62,7 @@ class BoxTree:
     @classmethod
     def build(cls, mesh: Mesh, start: FloatArray, end: FloatArray) -> "BoxTree":
         """Build the tree of one leg; ``start`` and ``end`` have shape (m, n) and entries of at most 1 in size."""
-        order = _component_order(mesh, start)
+        order = component_order(mesh, start)
         points = np.stack([start, end])
         tails, heads = points[..., order], points[..., mesh.heads[order]]
         upper = np.concatenate([np.maximum(tails, heads), -np.minimum(tails, heads)], axis=1)
@@ -133,20 +134,3 @@ def _children(a: IntArray, b: IntArray) -> tuple[IntArray, IntArray]:
     right = (2 * b + np.array([[0], [1], [0], [1]])).ravel()
     once = left <= right
     return left[once], right[once]
-
-
-def _component_order(mesh: Mesh, points: FloatArray) -> IntArray:
-    """Edges in curve order, the components sorted along a Z-curve through their centres."""
-    if len(mesh.component_sizes) < 3:
-        return mesh.tails
-    starts = mesh.offsets[:-1]
-    centres = 0.5 * (np.minimum.reduceat(points, starts, axis=1) + np.maximum.reduceat(points, starts, axis=1))
-    low, high = centres.min(axis=1, keepdims=True), centres.max(axis=1, keepdims=True)
-    cells = ((centres - low) / np.maximum(high - low, np.finfo(np.float64).tiny) * 1023).astype(np.int64)
-    code = np.zeros(len(starts), dtype=np.int64)
-    for bit in range(10):
-        for axis, cell in enumerate(cells):
-            code |= ((cell >> bit) & 1) << (len(cells) * bit + axis)
-    rank = np.empty(len(starts), dtype=np.intp)
-    rank[np.argsort(code, kind="stable")] = np.arange(len(starts))
-    return np.argsort(rank[mesh.component], kind="stable")

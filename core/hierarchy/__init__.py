@@ -1,0 +1,6 @@
+"""Sums over all pairs of edges in O(N log N): clusters of edges, and pairs of clusters that see each other as one."""
+
+from .blocks import BlockList
+from .clusters import ClusterTree
+
+__all__ = ["BlockList", "ClusterTree"]

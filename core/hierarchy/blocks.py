@@ -1,0 +1,118 @@
+"""The block list: all pairs of edges as pairs of distant clusters, and those too near as they are."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..curve import Curve
+from ..curve.tiles import EdgePairIndices
+from ..types import FloatArray, IntArray
+from .clusters import ClusterTree
+
+ClusterPairs = tuple[IntArray, IntArray]
+
+
+@dataclass(frozen=True, eq=False)
+class BlockList:
+    """Every unordered pair of edges with disjoint closures exactly once: in a block, or by itself.
+
+    A pair of clusters c, d is a block (is *admissible*) if r_c + r_d < θ |p_c − p_d|, for balls of centres p and radii
+    r around their edges.  In a block, therefore, midpoints of edges are never nearer than (1/θ − 1)(ℓ_I + ℓ_J)/2: with
+    θ ≤ 1/4 every pair that the barrier counts, |Δ| < 3/2 (ℓ_I + ℓ_J), is a near one.
+
+    Attributes
+    ----------
+    tree
+        The clusters; all ranges are of positions in ``tree.order``.
+    first, second
+        The two clusters of each block; shape (blocks,).
+    i, j
+        The edges of each near pair; shape (pairs,).
+    """
+
+    tree: ClusterTree
+    first: IntArray
+    second: IntArray
+    i: IntArray
+    j: IntArray
+
+    @classmethod
+    def of(cls, curve: Curve, theta: float, leaf: int) -> "BlockList":
+        """The list of a curve: separation parameter 0 < θ < 1, and the largest number of edges in a leaf."""
+        tree = ClusterTree.of(curve, leaf)
+        blocks, near = _traverse(tree, *tree.balls(curve), theta)
+        i, j = _edge_pairs(tree, near)
+        kept = curve.mesh.heads[i] != j
+        kept &= curve.mesh.heads[j] != i
+        return cls(tree, *blocks, i[kept], j[kept])
+
+    @cached_property
+    def a(self) -> IntArray:
+        """Where the first cluster's range [a, b) starts; shape (blocks,)."""
+        return self.tree.start[self.first]
+
+    @cached_property
+    def b(self) -> IntArray:
+        """Where it stops."""
+        return self.tree.stop[self.first]
+
+    @cached_property
+    def c(self) -> IntArray:
+        """Where the second cluster's range [c, d) starts; shape (blocks,)."""
+        return self.tree.start[self.second]
+
+    @cached_property
+    def d(self) -> IntArray:
+        """Where it stops."""
+        return self.tree.stop[self.second]
+
+
+def _traverse(
+    tree: ClusterTree, centre: FloatArray, radius: FloatArray, theta: float
+) -> tuple[ClusterPairs, ClusterPairs]:
+    """Admissible pairs of clusters, and the pairs of leaves that remain (a leaf and itself among them)."""
+    blocks: list[ClusterPairs] = []
+    near: list[ClusterPairs] = []
+    first = second = np.zeros(1, dtype=np.intp)
+    while first.size:
+        d = centre[first] - centre[second]
+        bound = radius[first] + radius[second]
+        admissible = bound * bound < theta**2 * np.einsum("ij,ij->i", d, d)
+        blocks.append((first[admissible], second[admissible]))
+        first, second = first[~admissible], second[~admissible]
+        done = tree.is_leaf[first] & tree.is_leaf[second]
+        near.append((first[done], second[done]))
+        first, second = _split(tree, radius, first[~done], second[~done])
+    return _joined(blocks), _joined(near)
+
+
+def _split(tree: ClusterTree, radius: FloatArray, first: IntArray, second: IntArray) -> ClusterPairs:
+    """Pairs with the children of one of the two clusters, the larger one if it has any, in its place."""
+    same = first == second
+    diagonal = tree.child[first[same]]
+    first, second = first[~same], second[~same]
+    swap = tree.is_leaf[first] | (~tree.is_leaf[second] & (radius[first] < radius[second]))
+    first, second = np.where(swap, second, first), np.where(swap, first, second)
+    child = tree.child[first]
+    return (
+        np.concatenate([child, child + 1, diagonal, diagonal + 1, diagonal]),
+        np.concatenate([second, second, diagonal, diagonal + 1, diagonal + 1]),
+    )
+
+
+def _edge_pairs(tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
+    """All pairs of an edge of one leaf and one of the other; within a leaf every unordered pair once."""
+    first, second = leaves
+    columns = (tree.stop - tree.start)[second]
+    count = (tree.stop - tree.start)[first] * columns
+    pair = np.repeat(np.arange(len(first)), count)
+    within = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    row, column = np.divmod(within, columns[pair])
+    i, j = tree.start[first][pair] + row, tree.start[second][pair] + column
+    once = (first != second)[pair] | (i < j)
+    return tree.order[i[once]], tree.order[j[once]]
+
+
+def _joined(parts: list[ClusterPairs]) -> ClusterPairs:
+    return np.concatenate([first for first, _ in parts]), np.concatenate([second for _, second in parts])
