@@ -53,6 +53,8 @@ class Constrained:
     def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
         """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point: (42).
 
+        Where C(P)^† is dear, `TangentSpace.restoration` takes its place for small residuals.
+
         None if the residual does not contract: the step was too long.
         """
         last = np.inf
@@ -67,7 +69,8 @@ class Constrained:
             if not error <= self.contraction * last:
                 return None
             last = error
-            vertices = vertices - space.pseudo_inverse(residual)
+            here = base.problem.constraints.derivative(point.curve)
+            vertices = vertices - space.restoration(residual, here)
         return None
 
     def transport(self, point: "Point", u: FloatArray) -> FloatArray:

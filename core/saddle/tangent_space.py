@@ -39,6 +39,14 @@ class TangentSpace(ABC):
         """C^† ξ, the shortest u with C u = ξ; shapes (rows of C,) -> (n, m)."""
         return self.solve(None, xi)[0]
 
+    def restoration(self, residual: FloatArray, here: ConstraintDerivative) -> FloatArray:
+        """A u that takes ``residual``, shape (rows of C,), off the constraints at a curve near by; shape (n, m).
+
+        By default that of (42), the shortest u with C u = ``residual``, without regard to the derivative ``here``, at
+        the curve itself: a factorisation at hand costs less than a new one.
+        """
+        return self.pseudo_inverse(residual)
+
     def project(self, u: FloatArray) -> FloatArray:
         """The orthogonal projection of u, shape (n, m)."""
         return self.solve(self.apply(u), None)[0]
