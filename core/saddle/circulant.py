@@ -27,6 +27,11 @@ class Circulants:
         ℓ, positive, shape (n,).
     apply
         The product A u that M is a model of, (n, k) to (n, k).
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If A is not positive definite.
     """
 
     def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
@@ -61,6 +66,8 @@ def _sampled_symbol(apply: LinearMap, mesh: Mesh) -> Symbol:
     energies = np.sum(waves * apply(waves), axis=0)
     squares = np.sum(waves * waves, axis=0)
     quotients = np.sum(energies.reshape(2, -1), axis=0) / np.sum(squares.reshape(2, -1), axis=0)
+    if not quotients.min() > 0.0:
+        raise np.linalg.LinAlgError("matrix is not positive definite: a Rayleigh quotient is not positive")
     logarithms = np.log(theta), np.log(quotients)
     return lambda angle: np.exp(np.interp(np.log(np.maximum(angle, theta[0])), *logarithms))
 

@@ -15,7 +15,8 @@ from .krylov import conjugate_gradients, flexible_conjugate_gradients, relative
 from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
 from .tangent_space import TangentSpace, WholeSpace
 
-WINDOW = 3  # iterations, at least, whose decrease is the estimate of the error that is left
+WINDOW = 2  # iterations, at least, whose decrease is the estimate of the error that is left
+LEAST_FORCING = 1e-4  # of Newton's method for the constraints
 
 
 @dataclass(frozen=True)
@@ -96,9 +97,11 @@ class IterativeTangentSpace(TangentSpace):
 
     def restoration(self, residual: FloatArray, here: ConstraintDerivative) -> FloatArray:
         """C^† of a large residual; the step of Newton's method of a small one, shortest in the model."""
-        if np.max(np.abs(residual)) > self._tolerances.restoration:
+        error = float(np.max(np.abs(residual)))
+        if error > self._tolerances.restoration:
             return self.pseudo_inverse(residual)
-        return ConstraintPreconditioner(self._inner.model, here).shortest(residual, self._tolerances.preconditioner)
+        # a forcing term of the size of the residual keeps the convergence quadratic
+        return ConstraintPreconditioner(self._inner.model, here).shortest(residual, max(error, LEAST_FORCING))
 
     def _projected(self, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
         u, multipliers = self._descend(eta, self._tolerances.gradient, 0.0)
