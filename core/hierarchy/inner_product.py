@@ -21,6 +21,7 @@ from ..saddle import TangentSpace
 from ..saddle.circulant import Circulants
 from ..saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
 from ..saddle.krylov import conjugate_gradients, relative
+from ..saddle.resolvent import Resolvents
 from ..saddle.two_level import TwoLevel
 from ..types import FloatArray
 from .blocks import BlockList
@@ -29,6 +30,7 @@ from .running_sum import RunningSum
 
 SEPARATION = 0.5  # θ of the block list
 LEAF = 4
+EVEN_RATIO = 10.0  # of the longest edge to the shortest, up to which Fourier transforms are faster than resolvents
 SOLVED = 1e-10  # relative error of A⁻¹ f
 MAX_ITERATIONS = 1000
 
@@ -101,10 +103,10 @@ class CompressedInnerProduct:
 
     @cached_property
     def model(self) -> TwoLevel:
-        """A circulant matrix on each component, and the coupling of whole components."""
-        mesh = self.curve.mesh
-        circulants = Circulants(mesh, lumped_mass(self.curve), self.apply)
-        return TwoLevel(mesh, circulants, self.coupling, _indicators(self.curve).T @ self.vectors)
+        """A function of the Laplacian along the components, and the coupling of whole components."""
+        mesh, ell = self.curve.mesh, self.curve.edge_lengths
+        along = Circulants if ell.max() <= EVEN_RATIO * ell.min() else Resolvents
+        return TwoLevel(mesh, along(mesh, ell, self.apply), self.coupling, _indicators(self.curve).T @ self.vectors)
 
 
 def moebius_inner_product(curve: Curve, tolerances: Tolerances | None = None) -> CompressedInnerProduct:

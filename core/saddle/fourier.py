@@ -1,15 +1,11 @@
 """Discrete Fourier transforms along the components of a mesh."""
 
-from collections.abc import Callable
-
 import numpy as np
 from scipy.fft import irfft, rfft
 
 from ..curve import Mesh
 from ..types import FloatArray
-
-Symbol = Callable[[FloatArray], FloatArray]
-"""Factors of a circulant matrix by the angles θ ∈ [0, π] from one vertex to the next."""
+from .symbol import Symbol
 
 
 class ComponentTransform:
@@ -25,7 +21,7 @@ class ComponentTransform:
         self._rows = [mesh.offsets[:-1][sizes == size, None] + np.arange(size) for size in self._sizes]
 
     def sampled(self, symbol: Symbol) -> list[FloatArray]:
-        """The symbol at the frequencies of every size of components."""
+        """A symbol at the angles θ ∈ [0, π] from vertex to vertex that every size of components has."""
         return [symbol(2.0 * np.pi / size * np.arange(size // 2 + 1)) for size in self._sizes]
 
     def filtered(self, u: FloatArray, factors: list[FloatArray]) -> FloatArray:

@@ -3,6 +3,7 @@
 Conjugate gradients on ker C, flexible because their constraint preconditioner is itself solved only loosely.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -26,9 +27,9 @@ class Tolerances:
     Parameters
     ----------
     gradient
-        Of projected gradients.  Their norm, a Galerkin quantity, has about the square of it.
+        Of projected gradients.
     correction
-        Of pseudo-inverses, hence of projections: how much longer a correction may be than the shortest one.
+        Of pseudo-inverses, and of the correction that a projection makes.
     preconditioner
         Part of a preconditioned residual that is not tangential.
     feasibility
@@ -51,6 +52,12 @@ class Tolerances:
         below_one = (0.0, 1.0)
         check_fields(self, gradient=below_one, correction=below_one, preconditioner=below_one)
         check_fields(self, feasibility=below_one, restoration=below_one, max_iterations=(0, np.inf))
+
+    @classmethod
+    def of_norms(cls, accuracy: float = 1e-4) -> "Tolerances":
+        """Those at which norms of projected gradients, exact to half the square of the errors, have an accuracy."""
+        error = math.sqrt(0.5 * accuracy)
+        return cls(gradient=error, preconditioner=error)
 
 
 class WithModel(Protocol):
@@ -104,8 +111,11 @@ class IterativeTangentSpace(TangentSpace):
         return ConstraintPreconditioner(self._inner.model, here).shortest(residual, max(error, LEAST_FORCING))
 
     def _projected(self, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """A multiple of the tangent vector found for which η·u = ⟨u, u⟩: then this has the square of its error."""
         u, multipliers = self._descend(eta, self._tolerances.gradient, 0.0)
-        return self._feasible(u, np.zeros(self.constraints.count)), multipliers
+        u = self._feasible(u, np.zeros(self.constraints.count))
+        square = float(np.sum(u * self.apply(u)))
+        return (u * (float(np.sum(eta * u)) / square) if square > 0.0 else u), multipliers
 
     def _shortest(self, xi: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The shortest u in the model, then the way from there along ker C to the shortest in J."""

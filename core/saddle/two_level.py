@@ -1,7 +1,7 @@
-"""A model of inner products on links: circulants on the components, and the motion of whole components exactly.
+"""Models of inner products on links: one of functions along the components, and one of how whole components move.
 
-Components of a link hold each other like masses on springs.  Their graph may be long, such as that of a chain, and
-circulants know nothing of it; a sparse factorisation of one row a component does.
+Components of a link hold each other like masses on springs.  Their graph may be long, such as that of a chain, of which
+models along the curve know nothing; a sparse factorisation of one row a component does.
 """
 
 import numpy as np
@@ -9,19 +9,19 @@ import scipy.sparse as sp
 
 from ..curve import Mesh
 from ..types import FloatArray
-from .circulant import Circulants
+from .preconditioner import Model
 from .sparse import factorised
 
 
 class TwoLevel:
-    """M⁻¹ = circulants + Z E⁻¹ Zᵀ, Z the indicators of the components.
+    """M⁻¹ = M₀⁻¹ + Z E⁻¹ Zᵀ, Z the indicators of the components.
 
     Parameters
     ----------
     mesh
         Connectivity.
-    circulants
-        The fine level.
+    fine
+        M₀, along the components.
     coupling
         Symmetric positive semidefinite, shape (components, components).
     vectors
@@ -33,8 +33,8 @@ class TwoLevel:
         If E is singular.
     """
 
-    def __init__(self, mesh: Mesh, circulants: Circulants, coupling: sp.sparray, vectors: FloatArray) -> None:
-        self._circulants = circulants
+    def __init__(self, mesh: Mesh, fine: Model, coupling: sp.sparray, vectors: FloatArray) -> None:
+        self._fine = fine
         self._component, self._starts = mesh.component, mesh.offsets[:-1]
         rank = vectors.shape[1]
         border = sp.csr_array(vectors)
@@ -47,8 +47,8 @@ class TwoLevel:
         force = np.add.reduceat(f, self._starts, axis=0)
         padded = np.concatenate([force, np.repeat(self._no_force, f.shape[1], axis=1)])
         shift = self._factor.solve(padded)[: len(force)]
-        return np.asarray(self._circulants.solve(f) + shift[self._component])
+        return np.asarray(self._fine.solve(f) + shift[self._component])
 
     def solve_differences(self, g: FloatArray) -> FloatArray:
         """(D M⁻¹ Dᵀ)⁻¹ g, approximately: whole components have no edge differences; shape (n, k)."""
-        return self._circulants.solve_differences(g)
+        return self._fine.solve_differences(g)
