@@ -48,12 +48,13 @@ class Barrier:
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """B and its derivative with respect to the vertices, shape (n, m)."""
-        total, derivative = 0.0, np.zeros_like(curve.vertices)
-        for i, j in _blocks(curve, 4096):
+        total, first = 0.0, _by_pair(curve)
+        for block, i, j in _blocks(curve, 4096):
             jet = self._contributions(EdgePairs.of(curve, i, j), is_replaced(curve, i, j))
             total += float(jet.value.sum())
-            derivative += scatter_first(curve.mesh, i, j, jet.first)
-        return 2.0 * total, 2.0 * derivative  # unordered pairs are listed, the sum is over ordered ones
+            first[block] = jet.first
+        # unordered pairs are listed, the sum is over ordered ones
+        return 2.0 * total, 2.0 * scatter_first(curve.mesh, *near_pairs(curve), first)
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative D²B, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
@@ -62,7 +63,7 @@ class Barrier:
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²B as a sparse matrix: it couples near edges only."""
         total = sp.csr_array((curve.vertices.size, curve.vertices.size))
-        for i, j in _blocks(curve, 16384):
+        for _, i, j in _blocks(curve, 16384):
             # the jets' matrices, many of 3m × 3m for each pair, should stay in the processor's cache
             parts = [slice(first, first + 128) for first in range(0, len(i), 128)]
             pairs = [(EdgePairs.of(curve, i[s], j[s]), is_replaced(curve, i[s], j[s])) for s in parts]
@@ -72,11 +73,11 @@ class Barrier:
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²B v for ``v`` of shape (n, m); shape (n, m)."""
-        product = np.zeros_like(v)
-        for i, j in _blocks(curve, 4096):
+        first = _by_pair(curve)
+        for block, i, j in _blocks(curve, 4096):
             jet = self._contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v), is_replaced(curve, i, j))
-            product += scatter_first(curve.mesh, i, j, jet.second[:, :, 0])
-        return 2.0 * product
+            first[block] = jet.second[:, :, 0]
+        return 2.0 * scatter_first(curve.mesh, *near_pairs(curve), first)
 
     def _contributions(self, pairs: EdgePairs, replaced: BoolArray) -> Jet:
         """χ (W_exact − W_mid) of pairs of edges, those ``replaced`` that have χ = 1."""
@@ -88,11 +89,17 @@ class Barrier:
         return q.compose(*cutoff(q.value)) * excess
 
 
-def _blocks(curve: Curve, size: int) -> Iterator[tuple[IntArray, IntArray]]:
+def _blocks(curve: Curve, size: int) -> Iterator[tuple[slice, IntArray, IntArray]]:
     """The near pairs in blocks, to bound the memory."""
     i, j = near_pairs(curve)
     for first in range(0, len(i), size):
-        yield i[first : first + size], j[first : first + size]
+        block = slice(first, first + size)
+        yield block, i[block], j[block]
+
+
+def _by_pair(curve: Curve) -> FloatArray:
+    """Room for the derivative of each near pair by (Δ, e, f); shape (pairs, 3m)."""
+    return np.empty((len(near_pairs(curve)[0]), 3 * curve.dimension))
 
 
 def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -42,7 +42,8 @@ class MoebiusEnergy:
     def value(self, curve: Curve) -> float:
         """Energy E of the curve; 4 for a regular polygon."""
         edges = Edges.of(curve)
-        return _total(curve, sum(Pairs.of(edges, tile).energy() for tile in pair_tiles(curve.mesh, self.without)))
+        tiles = pair_tiles(curve.mesh, self.without)
+        return energy_of_pairs(curve, sum(Pairs.of(edges, tile).energy() for tile in tiles))
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
@@ -51,8 +52,8 @@ class MoebiusEnergy:
         for tile in pair_tiles(curve.mesh, self.without):
             pairs = Pairs.of(edges, tile)
             total += pairs.energy()
-            sums.add(tile, pairs.coefficients(), edges.vectors)
-        return _total(curve, total), 2.0 * sums.at_vertices(curve.mesh, edges.tau)
+            sums.add(tile.rows, tile.columns, pairs.coefficients(), edges.vectors)
+        return energy_of_pairs(curve, total), 2.0 * sums.at_vertices(curve.mesh, edges.tau)
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative D²E, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
@@ -63,6 +64,6 @@ class MoebiusEnergy:
         return hessian_product(curve, v, self.without)
 
 
-def _total(curve: Curve, pairs: float) -> float:
+def energy_of_pairs(curve: Curve, pairs: float) -> float:
     """The energy from the sum over unordered pairs."""
     return 4.0 * len(curve.mesh.component_sizes) + 2.0 * pairs

@@ -27,8 +27,8 @@ def hessian_product(curve: Curve, v: FloatArray, without: EdgePairIndices | None
         lengths[tile.rows] += pairs.s @ edges.vectors.ell[tile.columns]
         lengths[tile.columns] += edges.vectors.ell[tile.rows] @ pairs.s
         # the sums are linear in the coefficients and in the vectors
-        sums.add(tile, motion.coefficients(pairs, tile), edges.vectors)
-        sums.add(tile, pairs.coefficients(), motion.vectors)
+        sums.add(tile.rows, tile.columns, motion.coefficients(pairs, tile), edges.vectors)
+        sums.add(tile.rows, tile.columns, pairs.coefficients(), motion.vectors)
     turning = (motion.vectors.e - motion.vectors.ell[:, None] * edges.tau) / edges.vectors.ell[:, None]  # τ̇
     by_edge = sums.by_edge + lengths[:, None] * turning
     return 2.0 * sums._replace(by_edge=by_edge).at_vertices(curve.mesh, edges.tau)

@@ -119,12 +119,12 @@ class DerivativeSums(NamedTuple):
         """Sums to be added to."""
         return cls(np.zeros((n, m)), np.zeros((n, m)), np.zeros(n))
 
-    def add(self, tile: Tile, coefficients: Coefficients, vectors: Vectors) -> None:
-        """Add the pairs of a tile, seen from I and seen from J."""
+    def add(self, rows: slice, columns: slice, coefficients: Coefficients, vectors: Vectors) -> None:
+        """Add the pairs of some rows and columns, seen from I and seen from J."""
         s, a, b, c = coefficients
-        self._add_side(tile.rows, tile.columns, Coefficients(s, a, b, c), 1.0, vectors)
+        self._add_side(rows, columns, Coefficients(s, a, b, c), 1.0, vectors)
         # if the edges change places Δ changes its sign, and b and c change places and signs
-        self._add_side(tile.columns, tile.rows, Coefficients(s.T, a.T, c.T, b.T), -1.0, vectors)
+        self._add_side(columns, rows, Coefficients(s.T, a.T, c.T, b.T), -1.0, vectors)
 
     def _add_side(self, own: slice, other: slice, coefficients: Coefficients, sign: float, vectors: Vectors) -> None:
         s, a, b, c = coefficients

@@ -2,5 +2,6 @@
 
 from .blocks import BlockList
 from .clusters import ClusterTree
+from .energy import HierarchicalMoebiusEnergy
 
-__all__ = ["BlockList", "ClusterTree"]
+__all__ = ["BlockList", "ClusterTree", "HierarchicalMoebiusEnergy"]

@@ -7,7 +7,8 @@ import numpy as np
 
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices
-from ..types import FloatArray, IntArray
+from ..errors import OptionError
+from ..types import BoolArray, FloatArray, IntArray
 from .clusters import ClusterTree
 
 ClusterPairs = tuple[IntArray, IntArray]
@@ -28,7 +29,7 @@ class BlockList:
     first, second
         The two clusters of each block; shape (blocks,).
     i, j
-        The edges of each near pair; shape (pairs,).
+        The edges of each near pair, i < j, sorted by i and then by j; shape (pairs,).
     """
 
     tree: ClusterTree
@@ -45,7 +46,29 @@ class BlockList:
         i, j = _edge_pairs(tree, near)
         kept = curve.mesh.heads[i] != j
         kept &= curve.mesh.heads[j] != i
-        return cls(tree, *blocks, i[kept], j[kept])
+        return cls(tree, *blocks, *_sorted(i[kept], j[kept], len(curve)))
+
+    def is_separated(self, curve: Curve, theta: float) -> bool:
+        """Whether at another curve of the same mesh all blocks are admissible with such a parameter."""
+        centre, radius = self.tree.balls(curve)
+        return bool(_admissible(centre, radius, self.first, self.second, theta).all())
+
+    def near_pairs(self, without: EdgePairIndices | None = None) -> EdgePairIndices:
+        """The near pairs but for some that are left out.
+
+        Raises
+        ------
+        OptionError
+            If one of these is not a near pair.
+        """
+        if without is None:
+            return self.i, self.j
+        n = len(self.tree.order)
+        code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
+        place = np.searchsorted(code, left_out).clip(max=len(code) - 1)
+        if not np.array_equal(code[place], left_out):
+            raise OptionError("a pair of edges to be left out is not a near one")
+        return np.delete(self.i, place), np.delete(self.j, place)
 
     @cached_property
     def a(self) -> IntArray:
@@ -76,15 +99,19 @@ def _traverse(
     near: list[ClusterPairs] = []
     first = second = np.zeros(1, dtype=np.intp)
     while first.size:
-        d = centre[first] - centre[second]
-        bound = radius[first] + radius[second]
-        admissible = bound * bound < theta**2 * np.einsum("ij,ij->i", d, d)
+        admissible = _admissible(centre, radius, first, second, theta)
         blocks.append((first[admissible], second[admissible]))
         first, second = first[~admissible], second[~admissible]
         done = tree.is_leaf[first] & tree.is_leaf[second]
         near.append((first[done], second[done]))
         first, second = _split(tree, radius, first[~done], second[~done])
     return _joined(blocks), _joined(near)
+
+
+def _admissible(centre: FloatArray, radius: FloatArray, first: IntArray, second: IntArray, theta: float) -> BoolArray:
+    d = centre[first] - centre[second]
+    bound = radius[first] + radius[second]
+    return np.asarray(bound * bound < theta**2 * np.einsum("ij,ij->i", d, d))
 
 
 def _split(tree: ClusterTree, radius: FloatArray, first: IntArray, second: IntArray) -> ClusterPairs:
@@ -112,6 +139,16 @@ def _edge_pairs(tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
     i, j = tree.start[first][pair] + row, tree.start[second][pair] + column
     once = (first != second)[pair] | (i < j)
     return tree.order[i[once]], tree.order[j[once]]
+
+
+def _sorted(i: IntArray, j: IntArray, n: int) -> EdgePairIndices:
+    """The pairs with i < j, sorted by i and then by j."""
+    return np.divmod(np.sort(_code(i, j, n)), n)
+
+
+def _code(i: IntArray, j: IntArray, n: int) -> IntArray:
+    """One number for each unordered pair, in the order of the near list."""
+    return np.asarray(np.minimum(i, j) * n + np.maximum(i, j))
 
 
 def _joined(parts: list[ClusterPairs]) -> ClusterPairs:

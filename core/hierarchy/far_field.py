@@ -1,0 +1,131 @@
+"""The Möbius energy of blocks by Taylor expansion about the centres of their clusters, and its exact derivative.
+
+With G = log|Δ| the contribution of a pair of edges is W_IJ = ℓ_I ℓ_J/|Δ|² + ⟨e_I, ∇⟩⟨e_J, ∇⟩ G: sums over a block are
+products of two moments applied to two kernels, both up to the same order, so that errors cancel on straight pieces.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ..energies.moebius_pairs import DerivativeSums, Vectors
+from ..types import FloatArray, IntArray
+from .blocks import BlockList
+from .kernels import kernel_derivatives
+from .moments import Expansion, MomentTree, polynomial_rows
+
+CHUNK = 1024  # blocks handled at once, for the processor's cache
+
+
+class _Kernel(NamedTuple):
+    """One of the two kernels φ: its derivatives at some blocks, and the moments M, N of both clusters.
+
+    Its part of the energy is Σ_αβ M_α N_β ∂^{α+β} φ, |α|, |β| ≥ ``lowest`` and |α + β| ≤ 2 ``lowest`` + p.
+    """
+
+    expansion: Expansion
+    lowest: int
+    derivatives: FloatArray
+    first: FloatArray
+    second: FloatArray
+
+    def by_first(self) -> FloatArray:
+        """Its derivatives with respect to M; shape (monomials, k)."""
+        return self._local(self.second)
+
+    def by_second(self) -> FloatArray:
+        """Its derivatives with respect to N; shape (monomials, k)."""
+        return self._local(self.first)
+
+    def _local(self, moments: FloatArray) -> FloatArray:
+        highest = self.lowest + self.expansion.order
+        totals = range(2 * self.lowest, self.lowest + highest + 1)
+        return self.expansion.table.contract(self.derivatives, moments, range(self.lowest, highest + 1), totals)
+
+    def pull(self) -> FloatArray:
+        """Its derivative with respect to the first centre, the edges at rest; minus the second's; shape (m, k).
+
+        Only terms of the highest order are left: any other change of d is undone by that of the moments.
+        """
+        degrees = range(self.lowest + 1, self.lowest + self.expansion.order + 2)
+        totals = range(self.lowest + degrees[-1], self.lowest + degrees[-1] + 1)
+        raised = self.expansion.table.contract(self.derivatives, self.second, degrees, totals)
+        return self.expansion.table.contract(raised, self.first, range(1, 2), degrees)[1:]
+
+
+class _Chunk(NamedTuple):
+    """Some blocks: their clusters and kernels."""
+
+    first: IntArray
+    second: IntArray
+    kernels: tuple[_Kernel, _Kernel]
+
+
+@dataclass(frozen=True, eq=False)
+class FarField:
+    """Σ W_IJ over all blocks of a list, unordered pairs.
+
+    Parameters
+    ----------
+    blocks
+        The list, made at this curve or at one nearby.
+    vectors
+        The curve's edges; of size 1, for high powers of lengths are in use.
+    order
+        p, the order of the expansions in distances from the centres.
+    """
+
+    blocks: BlockList
+    vectors: Vectors
+    order: int
+
+    @cached_property
+    def _expansion(self) -> Expansion:
+        return Expansion(self.vectors.m.shape[1], self.order)
+
+    @cached_property
+    def _clusters(self) -> MomentTree:
+        return MomentTree(self.blocks.tree, self._expansion, self.vectors)
+
+    def value(self) -> float:
+        """The sum."""
+        kernels = (kernel for chunk in self._chunks() for kernel in chunk.kernels)
+        return sum(float(np.vdot(kernel.first, kernel.by_first())) for kernel in kernels)
+
+    def value_and_derivative(self) -> tuple[float, DerivativeSums]:
+        """The sum and the sums that make its derivative."""
+        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.pull.stop))
+        by_second = np.zeros_like(by_first)
+        for first, second, (square, log) in self._chunks():
+            local, pull = (square.by_first(), log.by_first()), square.pull() + log.pull()
+            value += float(np.vdot(square.first, local[0]) + np.vdot(log.first, local[1]))
+            _add_rows(by_first, first, np.concatenate([*local, pull]))
+            _add_rows(by_second, second, np.concatenate([square.by_second(), log.by_second(), pull]))
+        by_second *= self._expansion.signs
+        by_second += by_first
+        return value, self._clusters.hand_down(by_second)
+
+    def _chunks(self) -> Iterator[_Chunk]:
+        moments, centres, x = self._clusters.moments(), self._clusters.centres, self._expansion
+        signed = moments * x.signs[: x.edges.stop]
+        for start in range(0, len(self.blocks.first), CHUNK):
+            first, second = (side[start : start + CHUNK] for side in (self.blocks.first, self.blocks.second))
+            d = np.ascontiguousarray((centres[first] - centres[second]).T)
+            square, log = kernel_derivatives(x.table, d, self.order + 1)
+            own, other = polynomial_rows(moments, first), polynomial_rows(signed, second)
+            kernels = (
+                _Kernel(x, 0, square, own[x.lengths], other[x.lengths]),
+                _Kernel(x, 1, log, own[x.edges], other[x.edges]),
+            )
+            yield _Chunk(first, second, kernels)
+
+
+def _add_rows(total: FloatArray, clusters: IntArray, values: FloatArray) -> None:
+    """Add values, shape (rows, k), to some clusters, a few of which come several times; total (clusters, rows)."""
+    order = np.argsort(clusters, kind="stable")
+    ordered = clusters[order]
+    starts = np.flatnonzero(np.diff(ordered, prepend=-1))
+    total[ordered[starts]] += np.add.reduceat(np.take(values, order, axis=1).T, starts)

@@ -1,0 +1,175 @@
+"""Moments of clusters, collected up the tree, and their derivatives, handed down it again."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ..energies.moebius_pairs import DerivativeSums, Vectors
+from ..types import FloatArray, IntArray
+from .clusters import ClusterTree
+from .polynomials import Polynomials, polynomials
+
+CHUNK = 1024  # polynomials handled at once, for the processor's cache
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """The two moments of a cluster, as rows one below the other, and what comes with their derivatives.
+
+    ``lengths`` are the rows of Σ_I ℓ_I exp⟨u_I, ξ⟩ up to degree p, u_I = m_I − centre, ``edges`` those of
+    Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1, and ``pull`` those of derivatives with respect to the centre.
+    """
+
+    dimension: int
+    order: int
+
+    @property
+    def table(self) -> Polynomials:
+        """Polynomials of all degrees needed, those of the kernels' derivatives among them."""
+        return polynomials(self.dimension, self.order + 3)
+
+    @property
+    def lengths(self) -> slice:
+        """The first rows."""
+        return slice(0, self.table.size(self.order))
+
+    @property
+    def edges(self) -> slice:
+        """The next."""
+        return slice(self.lengths.stop, self.lengths.stop + self.table.size(self.order + 1))
+
+    @property
+    def pull(self) -> slice:
+        """The last."""
+        return slice(self.edges.stop, self.edges.stop + self.dimension)
+
+    @cached_property
+    def signs(self) -> FloatArray:
+        """What the parts of the second cluster of a block are multiplied by, because it is at −d; shape (rows,)."""
+        signs = self.table.signs[:, 0]
+        lengths, edges = signs[: self.table.size(self.order)], -signs[: self.table.size(self.order + 1)]
+        return np.concatenate([lengths, edges, np.full(self.dimension, -1.0)])
+
+
+class _Leaves(NamedTuple):
+    """Consecutive leaves and their edges."""
+
+    clusters: IntArray
+    start: IntArray  # of each among the edges
+    edges: IntArray
+    leaf_of: IntArray  # the leaf of each edge
+
+
+@dataclass(frozen=True, eq=False)
+class MomentTree:
+    """The clusters of a curve with their centres, the means of their edges' midpoints.
+
+    Parameters
+    ----------
+    tree
+        The clusters.
+    expansion
+        What their moments are.
+    vectors
+        Edge vectors, lengths and midpoints.
+    """
+
+    tree: ClusterTree
+    expansion: Expansion
+    vectors: Vectors
+
+    @cached_property
+    def centres(self) -> FloatArray:
+        """Shape (clusters, m)."""
+        total = np.empty((self.tree.size, self.vectors.m.shape[1]))
+        leaves = self.tree.leaves()
+        total[leaves] = np.add.reduceat(self.vectors.m[self.tree.order], self.tree.start[leaves])
+        for inner, child in self.tree.upward():
+            total[inner] = total[child] + total[child + 1]
+        return np.asarray(total / (self.tree.stop - self.tree.start)[:, None])
+
+    def moments(self) -> FloatArray:
+        """The moments of all clusters; shape (clusters, rows)."""
+        x, table = self.expansion, self.expansion.table
+        moments = np.zeros((self.tree.size, x.edges.stop))
+        for leaves in self._leaves():
+            power = self._powers(leaves)
+            both = self.vectors.ell[leaves.edges] * power, table.multiply_linear(self.vectors.e[leaves.edges].T, power)
+            moments[leaves.clusters] = np.add.reduceat(np.concatenate(both), leaves.start, axis=1).T
+        for parents, children in self._links(self.tree.upward()):
+            shift, own = self._shifts(parents, children), polynomial_rows(moments, children)
+            moved = [table.multiply(own[rows], shift, x.order + k) for k, rows in enumerate((x.lengths, x.edges))]
+            moments[parents] += np.concatenate(moved).T
+        return moments
+
+    def hand_down(self, local: FloatArray) -> DerivativeSums:
+        """Derivatives with respect to edge vectors, midpoints and lengths.
+
+        From those with respect to the moments at fixed centres and to the centres, shape (clusters, rows); overwrites
+        these.
+        """
+        x = self.expansion
+        local[:, x.pull] /= (self.tree.stop - self.tree.start)[:, None]
+        for parents, children in self._links(self.tree.downward()):
+            local[children] += self._moved(polynomial_rows(local, parents), self._shifts(parents, children)).T
+        sums = DerivativeSums.zeros(*self.vectors.e.shape)
+        for leaves in self._leaves():
+            by_edge, by_midpoint, by_length = self._at_edges(leaves, polynomial_rows(local, leaves.leaf_of))
+            sums.by_edge[leaves.edges] = by_edge.T
+            sums.by_midpoint[leaves.edges] = by_midpoint.T
+            sums.by_length[leaves.edges] = by_length
+        return sums
+
+    def _moved(self, local: FloatArray, shift: FloatArray) -> FloatArray:
+        """Derivatives with respect to the children's moments, from the parents'; shape (rows, k)."""
+        x, moved = self.expansion, []
+        for lowest, rows in enumerate((x.lengths, x.edges)):
+            degrees = range(lowest, x.order + lowest + 1)
+            moved.append(x.table.contract(local[rows], shift, degrees, degrees))
+        return np.concatenate([*moved, local[x.pull]])
+
+    def _at_edges(self, leaves: _Leaves, local: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Derivatives at some edges, from those of their leaves; shapes (m, k), (m, k) and (k,)."""
+        x, m, power = self.expansion, self.expansion.dimension, self._powers(leaves)
+        contract = x.table.contract
+        by_length = contract(local[x.lengths], power, range(2), range(x.order + 1))
+        by_edge = contract(local[x.edges], power, range(1, 3), range(1, x.order + 2))
+        e = np.concatenate([np.zeros((1, len(leaves.edges))), self.vectors.e[leaves.edges].T])
+        by_midpoint = self.vectors.ell[leaves.edges] * by_length[1:] + local[x.pull]
+        by_midpoint += contract(by_edge, e, range(1, 2), range(2, 3))[1:]
+        return by_edge[1 : m + 1], by_midpoint, by_length[0]
+
+    def _powers(self, leaves: _Leaves) -> FloatArray:
+        """exp⟨u_I, ξ⟩ about the centres of the leaves, up to degree p; shape (monomials, k)."""
+        u = self.vectors.m[leaves.edges] - self.centres[leaves.leaf_of]
+        return self.expansion.table.exponentials(u.T, self.expansion.order)
+
+    def _shifts(self, parents: IntArray, children: IntArray) -> FloatArray:
+        """exp⟨h, ξ⟩ for h from the parents' centres to the children's; shape (monomials, k)."""
+        h = self.centres[children] - self.centres[parents]
+        return self.expansion.table.exponentials(h.T, self.expansion.order)
+
+    def _leaves(self) -> Iterator[_Leaves]:
+        """All leaves, some at a time."""
+        leaves = self.tree.leaves()
+        step = max(1, CHUNK * len(leaves) // len(self.tree.order))
+        for first in range(0, len(leaves), step):
+            own = leaves[first : first + step]
+            start, stop = self.tree.start[own], self.tree.stop[own]
+            yield _Leaves(own, start - start[0], self.tree.order[start[0] : stop[-1]], np.repeat(own, stop - start))
+
+    def _links(self, levels: Iterable[tuple[IntArray, IntArray]]) -> Iterator[tuple[IntArray, IntArray]]:
+        """Parents with one child of each, level by level, some at a time."""
+        for inner, child in levels:
+            for first in range(0, len(inner), CHUNK):
+                parents, children = inner[first : first + CHUNK], child[first : first + CHUNK]
+                yield parents, children
+                yield parents, children + 1
+
+
+def polynomial_rows(array: FloatArray, clusters: IntArray) -> FloatArray:
+    """What an array of shape (clusters, rows) has for some of them, contiguous by rows; shape (rows, k)."""
+    return np.ascontiguousarray(np.take(array, clusters, axis=0).T)

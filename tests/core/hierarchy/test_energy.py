@@ -1,0 +1,171 @@
+"""The compressed Möbius energy against the sum over all pairs, and its derivative."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective
+from mobius_flow.core.curve.refine import refine, subdivide
+from mobius_flow.core.energies import ENERGIES, Energy
+from mobius_flow.core.energies.near_pairs import near_pairs, replaced_pairs
+from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy
+from mobius_flow.core.hierarchy.energy import THETA
+from mobius_flow.core.knots import knot
+from mobius_flow.core.metrics.moebius import MoebiusMetric
+from mobius_flow.core.taylor import derivative_slope
+from shapes import hopf_link, regular_polygon, torus_trefoil
+from smooth_curves import SMOOTH_CURVES, random_polygon
+
+
+def rings(count: int, size: int, dimension: int = 3) -> Curve:
+    """Small polygons scattered in space."""
+    centres = np.random.default_rng(17).uniform(0, 20, (count, 1, dimension))
+    return Curve.from_components(list(centres + regular_polygon(size, dimension).vertices))
+
+
+def fourfold(n: int) -> Curve:
+    """A curve of four dimensions."""
+    rotation, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(4, 4)))
+    t = 2 * np.pi * np.arange(n) / n
+    return Curve(np.column_stack([torus_trefoil(n).vertices, np.cos(5 * t)]) @ rotation)
+
+
+CURVES = {
+    "torus": torus_trefoil(700),
+    "hopf": hopf_link(300),
+    "wave": SMOOTH_CURVES["wave"].polygon(500),
+    "ellipse": SMOOTH_CURVES["ellipse"].polygon(500),
+    "fourfold": fourfold(500),
+    "rings": rings(120, 5),
+    "planar rings": rings(100, 3, 2),
+    "table": refine(knot("8_19"), 700),
+    "tangle": subdivide(random_polygon(3, (30,), 3), np.full(30, 20)),
+    "uneven": Curve.from_components([torus_trefoil(301).vertices, *rings(20, 3).components]),
+}
+CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
+
+
+def with_small_leaves(curve: Curve, theta: float = THETA) -> HierarchicalMoebiusEnergy:
+    """The energy with many blocks even on small curves."""
+    energy = HierarchicalMoebiusEnergy(BlockList.of(curve, theta, 4))
+    assert energy.blocks is not None
+    assert len(energy.blocks.first) > len(curve) / 4
+    return energy
+
+
+def direction_for(curve: Curve) -> np.ndarray:
+    return np.random.default_rng(11).normal(size=curve.vertices.shape)
+
+
+@CURVE
+def test_energy_to_six_digits_and_derivative_to_four(curve: Curve) -> None:
+    energy, derivative = with_small_leaves(curve).value_and_derivative(curve)
+    exact, exact_derivative = MoebiusEnergy().value_and_derivative(curve)
+    assert energy == pytest.approx(exact, rel=1e-6, abs=3e-5)
+    inner = MoebiusMetric().at(curve)
+
+    def dual_norm(covector: np.ndarray) -> float:
+        return float(np.sqrt(np.sum(covector * inner.solve(covector))))
+
+    assert dual_norm(derivative - exact_derivative) < 1e-4 * dual_norm(exact_derivative)
+
+
+@CURVE
+def test_taylor_slope_of_the_derivative(curve: Curve) -> None:
+    direction = direction_for(curve)
+    assert derivative_slope(with_small_leaves(curve), curve, direction, largest=1e-4) == pytest.approx(2, abs=0.02)
+
+
+def test_taylor_slope_where_expansions_are_poor(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mobius_flow.core.hierarchy.energy.OUTDATED", 1.0)
+    curve = torus_trefoil(200)
+    poor = with_small_leaves(curve, 0.8)
+    assert poor.value(curve) != pytest.approx(MoebiusEnergy().value(curve), rel=1e-4)
+    assert derivative_slope(poor, curve, direction_for(curve), largest=1e-4) == pytest.approx(2, abs=0.02)
+
+
+def test_value_agrees_with_value_and_derivative() -> None:
+    curve = CURVES["hopf"]
+    energy = with_small_leaves(curve)
+    assert energy.value(curve) == pytest.approx(energy.value_and_derivative(curve)[0], rel=1e-14)
+
+
+def test_error_falls_with_the_fifth_power_of_separation() -> None:
+    curve = CURVES["tangle"]
+    exact = MoebiusEnergy().value_and_derivative(curve)[1]
+    errors = [
+        np.linalg.norm(with_small_leaves(curve, theta).value_and_derivative(curve)[1] - exact) for theta in (0.3, 0.15)
+    ]
+    assert errors[0] > 2**5 * errors[1]
+
+
+def test_far_from_the_origin_and_in_any_units() -> None:
+    curve = torus_trefoil(500)
+    energy = HierarchicalMoebiusEnergy()
+    value, derivative = energy.value_and_derivative(curve)
+    for factor, shift in ((1.0, 1e6), (2.0**-200, 0.0), (2.0**100, 0.0)):
+        moved = curve.with_vertices(factor * (curve.vertices + shift))
+        moved_value, moved_derivative = energy.value_and_derivative(moved)
+        assert moved_value == pytest.approx(value, rel=1e-7)
+        np.testing.assert_allclose(factor * moved_derivative, derivative, atol=1e-5 * np.abs(derivative).max())
+
+
+def test_a_hundred_thousand_vertices_lose_no_digits() -> None:
+    def energy_and_slope(n: int, energy: Energy) -> tuple[float, float]:
+        """The energy and its derivative along one smooth field."""
+        curve = Curve(torus_trefoil(n).vertices * [1.0, 1.3, 0.8])
+        value, derivative = energy.value_and_derivative(curve)
+        return value, float(np.sum(derivative * np.sin(curve.vertices[:, [1, 2, 0]])))
+
+    coarse, fine = (np.array(energy_and_slope(n, MoebiusEnergy())) for n in (500, 1000))
+    limit = fine + (fine - coarse) / 3.0  # the midpoint rule's error falls with 1/n²
+    np.testing.assert_allclose(energy_and_slope(100_000, HierarchicalMoebiusEnergy()), limit, rtol=5e-6)
+
+
+def test_leaving_out_is_exact() -> None:
+    curve = knot("8_19")
+    pairs = replaced_pairs(curve)
+    assert len(pairs[0])
+    fast, slow = (energy.leaving_out(pairs).value(curve) for energy in (HierarchicalMoebiusEnergy(), MoebiusEnergy()))
+    assert fast == pytest.approx(slow, rel=1e-6)
+
+
+def test_objective_is_that_of_the_default_energy() -> None:
+    curve = knot("8_19")
+    assert len(near_pairs(curve)[0])
+    value, derivative = Objective.of(HierarchicalMoebiusEnergy()).value_and_derivative(curve)
+    exact, exact_derivative = Objective().value_and_derivative(curve)
+    assert value == pytest.approx(exact, rel=1e-6)
+    np.testing.assert_allclose(derivative, exact_derivative, atol=1e-5 * np.abs(exact_derivative).max())
+
+
+def test_left_out_pairs_must_be_near() -> None:
+    curve = torus_trefoil(300)
+    blocks = BlockList.of(curve, THETA, 4)
+    far = blocks.tree.order[blocks.a[:1]], blocks.tree.order[blocks.c[:1]]
+    for pairs in (far, (np.append(blocks.i[:2], far[0]), np.append(blocks.j[:2], far[1]))):
+        with pytest.raises(MobiusFlowError, match="not a near one"):
+            HierarchicalMoebiusEnergy(blocks, pairs).value(curve)
+
+
+def test_a_frozen_list_stays_until_strands_come_near() -> None:
+    curve = torus_trefoil(2000)
+    frozen, fresh = HierarchicalMoebiusEnergy().frozen_at(curve), HierarchicalMoebiusEnergy()
+    nearby, flat = (curve.with_vertices(curve.vertices * [1.0, 1.0, z]) for z in (0.95, 0.005))
+    assert frozen.value(nearby) != fresh.value(nearby)
+    assert frozen.value(nearby) == pytest.approx(MoebiusEnergy().value(nearby), rel=1e-6)
+    assert frozen.value(flat) == fresh.value(flat)
+    pairs = replaced_pairs(flat)
+    assert len(pairs[0])
+    exact = MoebiusEnergy(pairs).value(flat)
+    assert frozen.leaving_out(pairs).value(flat) == pytest.approx(exact, rel=1e-6)
+
+
+def test_other_energies_have_no_fast_form() -> None:
+    pairs = (np.array([0]), np.array([2]))
+    assert HierarchicalMoebiusEnergy.instead_of(MoebiusEnergy(pairs)).without is pairs
+    for name in ENERGIES.keys() - {"moebius"}:
+        with pytest.raises(MobiusFlowError, match=f"{name!r} has no fast form"):
+            HierarchicalMoebiusEnergy.instead_of(ENERGIES[name])
+
+
+def test_it_is_an_energy() -> None:
+    assert isinstance(HierarchicalMoebiusEnergy(), Energy)
