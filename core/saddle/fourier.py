@@ -9,7 +9,7 @@ from .symbol import Symbol
 
 
 class ComponentTransform:
-    """Circulant matrices, one symbol on all components.
+    """Products with circulant matrices, one of the same symbol on each component.
 
     Components of one size are transformed together.  There are at most √(2n) different sizes, so thousands of small
     components are no slower than a large one.

@@ -53,6 +53,15 @@ class Parameter:
         Below the lowest frequency, one turn, the symbol is constant; above the highest one tried it grows like its
         third power, as that of an inner product of order 3/2 does.
 
+        Parameters
+        ----------
+        apply
+            The product A u, (n, k) to (n, k).
+        weights
+            w, shape (n,).
+        highest
+            The highest frequency to try, in radians per unit of the parameter.
+
         Raises
         ------
         numpy.linalg.LinAlgError

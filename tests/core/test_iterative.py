@@ -9,7 +9,7 @@ from descent_contracts import point_on
 from mobius_flow.core import Curve, Objective, OptionError
 from mobius_flow.core.constraints import ConstraintDerivative
 from mobius_flow.core.curve import refine
-from mobius_flow.core.descent import Point
+from mobius_flow.core.descent import METHODS, Point, State, Step
 from mobius_flow.core.hierarchy.inner_product import CompressedInnerProduct, moebius_inner_product
 from mobius_flow.core.knots import knot, torus_knot
 from mobius_flow.core.metrics import DenseInnerProduct, MoebiusMetric
@@ -181,3 +181,35 @@ def test_no_gradient_where_the_derivative_is_normal() -> None:
     u, _ = space.gradient(normal)
     assert space.norm(u) < 1e-8 * np.sqrt(np.sum(normal * spaces("knot")[1]._inner.solve(normal)))  # type: ignore[attr-defined]
     assert not np.any(space.gradient(np.zeros_like(u))[0])
+
+
+def test_several_barycenters() -> None:
+    """Parts of a link that are each held in place."""
+    curve = centred(CURVES["hopf"])
+    apart = curve.with_vertices(curve.vertices + 5.0 * curve.mesh.component[:, None])
+    inner, constraints = moebius_inner_product(apart), ConstraintDerivative.at(apart, (0, 1))
+    assert constraints.count == len(apart) + 6
+    load = smooth_load(apart)
+    u, _ = inner.tangent_space(constraints).gradient(load)
+    expected, _ = DenseInnerProduct(inner.dense()).tangent_space(constraints).gradient(load)
+    error = u - expected
+    assert np.sqrt(np.sum(error * inner.apply(error)) / np.sum(load * expected)) < 1e-2
+    np.testing.assert_allclose(constraints.apply(u), 0.0, atol=1e-9 * np.abs(u).max())
+
+
+@pytest.mark.parametrize("method", ["lbfgs", "cg", "trust-region", "penalty-lbfgs"])
+def test_methods_descend_as_with_the_exact_metric(method: str) -> None:
+    """Six steps get about as far, and stay on the constraints."""
+    ends = []
+    for start in (point_on(CURVES["knot"]), with_compressed_metric(CURVES["knot"])):
+        rule = METHODS[method]
+        point, state = replace(start.problem, geometry=rule.geometry).at_curve(CURVES["knot"]), State()
+        for _ in range(6):
+            step, state = rule.rule.step(point, state)
+            assert isinstance(step, Step)
+            assert step.point.energy < point.energy
+            point = step.point
+        assert np.abs(point.residual).max() < 1e-10
+        ends.append(point.energy)
+    first = point_on(CURVES["knot"]).energy
+    assert first - ends[1] > 0.9 * (first - ends[0])
