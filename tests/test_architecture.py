@@ -20,6 +20,7 @@ FLOORS = (
     {"core.energies", "core.collision", "core.knots", "core.constraints"},
     {"core.saddle"},
     {"core.metrics"},
+    {"core.hierarchy"},
     {"core.descent"},
     {"core.driver"},
     {"core"},

@@ -40,11 +40,11 @@ def arc_distances(curve: Curve, t_i: float, t_j: float, rows: IntArray, columns:
     return distance
 
 
-def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
-    """ϱ between vertices ``i`` and ``j``, elementwise; inf across components."""
-    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
+def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray, t: float = 0.0) -> FloatArray:
+    """ϱ between the points at t of edges ``i`` and ``j``, by default vertices, elementwise; inf across components."""
+    lengths = np.add.reduceat(curve.edge_lengths, curve.mesh.offsets[:-1])
     component = curve.mesh.component
-    position = arc_positions(curve, 0.0)
+    position = arc_positions(curve, t)
     gap = np.abs(position[i] - position[j])
     distance = np.minimum(gap, lengths[component[i]] - gap)
     return np.where(component[i] == component[j], distance, np.inf)

@@ -83,14 +83,20 @@ class DenseInnerProduct:
 
 
 class SparseInnerProduct:
-    """A as a sparse matrix of few entries a row."""
+    """A as a sparse matrix of few entries a row.
+
+    Attributes
+    ----------
+    matrix
+        A, in compressed rows.
+    """
 
     def __init__(self, matrix: sp.sparray) -> None:
-        self._matrix = sp.csr_array(matrix)
+        self.matrix = sp.csr_array(matrix)
 
     def apply(self, u: FloatArray) -> FloatArray:
         """A u."""
-        return np.asarray(self._matrix @ u)
+        return np.asarray(self.matrix @ u)
 
     def solve(self, f: FloatArray) -> FloatArray:
         """A⁻¹ f."""
@@ -99,24 +105,24 @@ class SparseInnerProduct:
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
         """The sum, sparse if both are."""
         if isinstance(other, SparseInnerProduct):
-            return SparseInnerProduct(self._matrix + weight * other._matrix)
+            return SparseInnerProduct(self.matrix + weight * other.matrix)
         return DenseInnerProduct(self.dense() + weight * other.dense())
 
     def dense(self) -> FloatArray:
         """A."""
-        return np.asarray(self._matrix.toarray())
+        return np.asarray(self.matrix.toarray())
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
         """By a sparse factorisation."""
-        return SparseTangentSpace(self._matrix, constraints)
+        return SparseTangentSpace(self.matrix, constraints)
 
     def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
         """By a sparse factorisation."""
-        return SparseWholeSpace(self._matrix, constraints, weights)
+        return SparseWholeSpace(self.matrix, constraints, weights)
 
     @cached_property
     def _factor(self) -> SuperLU:
-        return factorised(self._matrix)
+        return factorised(self.matrix)
 
 
 def _symmetric_product(lower: FloatArray, u: FloatArray) -> FloatArray:

@@ -11,15 +11,16 @@ and of 3. |∫ u ds|².  The Gram matrix is A ⊗ Id_m (footnote 6): only A, of 
 
 from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import blas
 from scipy.spatial.distance import cdist
 
 from ..curve import Curve
-from ..curve.distances import arc_distances, points_at
+from ..curve.distances import arc_distance_of_pairs, arc_distances, points_at
 from ..quadrature import MIDPOINT, Rule
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import lumped_mass
 from .pairs import DifferenceForm, Stencil, Stripe, stripes
@@ -65,6 +66,30 @@ class MoebiusMetric:
                 form.add(stripe, density, Stencil.value(mesh, t_i), Stencil.value(mesh, t_j))
         mass = lumped_mass(curve)
         return DenseInnerProduct(blas.dsyr(1.0, mass, a=form.assembled(), lower=1, overwrite_a=1))
+
+
+class PairKernels(NamedTuple):
+    """The kernels of terms 1 and 2 of J_C for some pairs of edges, by the midpoint rule; shapes (pairs,).
+
+    Attributes
+    ----------
+    inverse
+        1/r².
+    density
+        1/r² (1/r² − 1/ϱ²).
+    """
+
+    inverse: FloatArray
+    density: FloatArray
+
+
+def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
+    """The kernels of edges ``i`` and ``j``, elementwise."""
+    nearest = (MIN_DISTANCE * (curve.edge_lengths[i] + curve.edge_lengths[j])) ** 2
+    chord = curve.midpoints[i] - curve.midpoints[j]
+    inverse = 1.0 / np.maximum(np.einsum("km,km->k", chord, chord), nearest)
+    rho = arc_distance_of_pairs(curve, i, j, 0.5)
+    return PairKernels(inverse, inverse * (inverse - 1.0 / np.maximum(rho * rho, nearest)))
 
 
 def _weights(curve: Curve, t_i: float, t_j: float, stripe: Stripe) -> tuple[FloatArray, FloatArray]:

@@ -5,7 +5,9 @@ import pytest
 import scipy.sparse as sp
 from mobius_flow.core import Curve, Objective
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.hierarchy.inner_product import fractional_inner_product, moebius_inner_product
 from mobius_flow.core.metrics import METRICS, DenseInnerProduct, SparseInnerProduct
+from mobius_flow.core.saddle.iterative import Tolerances
 from mobius_flow.core.taylor import taylor_slope
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
@@ -22,6 +24,11 @@ CURVES = {
     "4-space": rough(regular_polygon(30, dimension=4)),
     "triangle": rough(regular_polygon(3)),
 }
+TO_ROUNDING = Tolerances(gradient=1e-11, correction=1e-11, preconditioner=1e-11, feasibility=1e-12)
+INNER_PRODUCTS = {name: metric.at for name, metric in METRICS.items()} | {
+    "compressed h3-2": lambda curve: fractional_inner_product(curve, TO_ROUNDING),
+    "compressed moebius": lambda curve: moebius_inner_product(curve, TO_ROUNDING),
+}
 
 
 def dense(curve: Curve, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -33,11 +40,11 @@ def dense(curve: Curve, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("name", CURVES)
-@pytest.mark.parametrize("metric", METRICS.values(), ids=list(METRICS))
-def test_agrees_with_dense_lu(name, metric):
+@pytest.mark.parametrize("at", INNER_PRODUCTS.values(), ids=INNER_PRODUCTS)
+def test_agrees_with_dense_lu(name, at):
     curve = CURVES[name]
     n, m = curve.vertices.shape
-    inner = metric.at(curve)
+    inner = at(curve)
     if name == "triangle":  # no pairs of disjoint edges: J_C needs its local part
         inner = inner.plus(SparseInnerProduct(sp.eye_array(n)))
     matrix = inner.dense()
@@ -73,13 +80,20 @@ def test_indefinite_matrix_is_refused():
         DenseInnerProduct(-np.eye(len(curve))).tangent_space(ConstraintDerivative.at(curve))
 
 
-@pytest.mark.parametrize("sparse", [False, True])
+WHOLE_SPACES = {
+    "sparse": METRICS["l2"].at,
+    "dense": lambda curve: DenseInnerProduct(METRICS["l2"].at(curve).dense()),
+    "compressed": INNER_PRODUCTS["compressed moebius"],
+}
+
+
+@pytest.mark.parametrize("at", WHOLE_SPACES.values(), ids=WHOLE_SPACES)
 @pytest.mark.parametrize("weight", [0.0, 1e-200, 1.0, 1e3])
-def test_weighted_constraints_are_a_part_of_the_metric(weight, sparse):
+def test_weighted_constraints_are_a_part_of_the_metric(weight, at):
     """(J + DΦᵀ w DΦ) u = η, also where a weight is nothing or next to nothing."""
     curve = CURVES["link"]
     n, m = curve.vertices.shape
-    inner = METRICS["l2"].at(curve) if sparse else DenseInnerProduct(METRICS["l2"].at(curve).dense())
+    inner = at(curve)
     matrix = inner.dense()
     lengths = ConstraintDerivative.of_lengths(curve)
     rows = np.stack([lengths.apply(unit.reshape(n, m)) for unit in np.eye(n * m)], axis=1)

@@ -1,0 +1,120 @@
+"""Quadratic forms in differences of edge values, over all pairs of edges, with one weight a block.
+
+On a block of clusters c and d, of lengths L_c and L_d, a form in edge values x is
+
+    Σ_{I∈c, J∈d} w ℓ_I ℓ_J (x_I − x_J)² = w (L_d Σ_c ℓ x² + L_c Σ_d ℓ x²) − 2 w (Σ_c ℓ x) (Σ_d ℓ x),
+
+a diagonal and a product of two integrals.  For slopes x_I = ΔU_I/ℓ_I these telescope to U(head of c) − U(tail of c),
+and for values they are differences of a running sum z: either way a sparse matrix of four entries a block.
+"""
+
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..curve import Curve
+from ..types import BoolArray, FloatArray, IntArray
+from .blocks import BlockList
+
+EdgePairs = tuple[IntArray, IntArray]
+
+
+class PairForms:
+    """Forms on one block list, summed over ordered pairs of edges.
+
+    Throughout, ``near`` are the weights w of the near pairs, shape (pairs,), ``far`` those of the blocks, (blocks,).
+
+    Parameters
+    ----------
+    curve
+        The curve.
+    blocks
+        Its pairs of edges.
+    """
+
+    def __init__(self, curve: Curve, blocks: BlockList) -> None:
+        self._curve, self._blocks = curve, blocks
+        tree = blocks.tree
+        ends = np.concatenate([[0.0], np.cumsum(curve.edge_lengths[tree.order])])
+        lengths = ends[tree.stop] - ends[tree.start]
+        self._length_c, self._length_d = lengths[blocks.first], lengths[blocks.second]
+
+    @property
+    def near(self) -> EdgePairs:
+        """The two edges of each near pair."""
+        return self._blocks.i, self._blocks.j
+
+    @cached_property
+    def middles(self) -> EdgePairs:
+        """The middle edges of the two clusters of each block."""
+        b, order = self._blocks, self._blocks.tree.order
+        return order[(b.a + b.b) // 2], order[(b.c + b.d) // 2]
+
+    def of_slopes(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
+        """The matrix of Σ w ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|², shape (n, n)."""
+        mesh, b, order = self._curve.mesh, self._blocks, self._blocks.tree.order
+        # the slopes of whole components add up to 0
+        weights = np.where(self._in_components, far, 0.0)
+        c = order[b.a], mesh.heads[order[b.b - 1]]
+        d = order[b.c], mesh.heads[order[b.d - 1]]
+        slope = sp.diags_array(1.0 / self._curve.edge_lengths) @ mesh.difference
+        return sp.csr_array(slope.T @ self._on_edges(near, far) @ slope - _products(weights, c, d, mesh.size))
+
+    def of_values(self, near: FloatArray, far: FloatArray) -> tuple[sp.csr_array, sp.csr_array]:
+        """The matrices of Σ w ℓ_I ℓ_J |u_I − u_J|², u at midpoints: on U, shape (n, n), and on z, (n + 1, n + 1)."""
+        b, average = self._blocks, self._curve.mesh.average
+        local = sp.csr_array(average.T @ self._on_edges(near, far) @ average)
+        return local, -_products(far, (b.a, b.b), (b.c, b.d), self._curve.mesh.size + 1)
+
+    def of_components(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
+        """`of_values` for functions constant on each component, but for far components; shape (components,) twice.
+
+        Left out are blocks of clusters that hold several components, which would couple all with all.
+        """
+        ell, component = self._curve.edge_lengths, self._curve.mesh.component
+        (i, j), (c, d), single = self.near, self.middles, self._in_components
+        first = component[np.concatenate([i, c[single]])]
+        second = component[np.concatenate([j, d[single]])]
+        weights = np.concatenate([near * ell[i] * ell[j], (far * self._length_c * self._length_d)[single]])
+        count = len(self._curve.mesh.component_sizes)
+        off = _symmetric(2.0 * weights, first, second, count)
+        return sp.csr_array(sp.diags_array(off.sum(axis=1)) - off)
+
+    @cached_property
+    def _in_components(self) -> BoolArray:
+        """Whether each of the two clusters of a block is within one component; shape (blocks,)."""
+        b, component = self._blocks, self._curve.mesh.component[self._blocks.tree.order]
+        return np.asarray((component[b.a] == component[b.b - 1]) & (component[b.c] == component[b.d - 1]))
+
+    def _on_edges(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
+        """Near pairs, and the diagonal of the blocks, in edge values; shape (n, n)."""
+        ell, (i, j) = self._curve.edge_lengths, self.near
+        off = _symmetric(2.0 * near * ell[i] * ell[j], i, j, len(ell))
+        return sp.csr_array(sp.diags_array(off.sum(axis=1) + 2.0 * ell * self._opposite(far)) - off)
+
+    def _opposite(self, far: FloatArray) -> FloatArray:
+        """Σ w L_d for each edge over the blocks with a cluster c that holds it; shape (n,)."""
+        b, tree = self._blocks, self._blocks.tree
+        total = np.bincount(b.first, far * self._length_d, tree.size)
+        total += np.bincount(b.second, far * self._length_c, tree.size)
+        for inner, child in tree.downward():
+            total[child] += total[inner]
+            total[child + 1] += total[inner]
+        leaves = tree.leaves()
+        at_edges = np.empty(len(tree.order))
+        at_edges[tree.order] = np.repeat(total[leaves], (tree.stop - tree.start)[leaves])
+        return at_edges
+
+
+def _products(weights: FloatArray, c: EdgePairs, d: EdgePairs, size: int) -> sp.csr_array:
+    """The matrix of Σ 4 w (x_b − x_a) (x_d − x_c) for index pairs (a, b) and (c, d)."""
+    (a, b), (c_, d_) = c, d
+    rows, columns = np.concatenate([b, a, b, a]), np.concatenate([d_, c_, c_, d_])
+    return _symmetric(np.concatenate([2.0 * weights] * 2 + [-2.0 * weights] * 2), rows, columns, size)
+
+
+def _symmetric(values: FloatArray, rows: IntArray, columns: IntArray, size: int) -> sp.csr_array:
+    """The sum of entries and their transposes."""
+    half = sp.csr_array((values, (rows, columns)), shape=(size, size))
+    return sp.csr_array(half + half.T)

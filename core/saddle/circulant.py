@@ -1,0 +1,55 @@
+"""Models of inner products of order 3/2 that fast Fourier transforms invert, for edges of similar lengths.
+
+On a polygon of equal edges the seminorm of W^{3/2,2} is a circulant matrix, and J_C is spectrally equivalent to one.
+Where edge lengths ℓ vary, an inner product of order 3/2 grows like ℓ⁻², so the circulant matrix is a model in the
+unknown u/ℓ.
+"""
+
+import numpy as np
+
+from ..curve import Mesh
+from ..types import FloatArray
+from .fourier import ComponentTransform
+from .krylov import LinearMap
+from .symbol import Parameter
+
+SMOOTHING = 16.0  # edges: multiplying by a rough function is not bounded in W^{3/2,2}, so ℓ is a moving average
+
+
+class Circulants:
+    """M = W⁻¹ F W⁻¹, F circulant on each component and W the smoothed edge lengths.
+
+    Parameters
+    ----------
+    mesh
+        Connectivity.
+    lengths
+        Edge lengths ℓ, positive, shape (n,).
+    apply
+        The product A u that M is a model of, (n, k) to (n, k).
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If A is not positive definite.
+    """
+
+    def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
+        self._transform = ComponentTransform(mesh)
+        gaussian = self._transform.sampled(lambda theta: np.exp(-0.5 * (SMOOTHING * theta) ** 2))
+        self._scale = np.exp(self._transform.filtered(np.log(lengths)[:, None], gaussian))
+        one = np.ones(mesh.size)
+        symbol = Parameter.of_steps(mesh, one).symbol(lambda v: self._scale * apply(self._scale * v), one, np.pi)
+        values = self._transform.sampled(symbol)
+        # the circulant matrix D F⁻¹ Dᵀ of edge differences D vanishes on constants; any positive value does there
+        stretches = self._transform.sampled(lambda theta: 4.0 * np.sin(0.5 * np.maximum(theta, theta[1])) ** 2)
+        self._inverse = [1.0 / value for value in values]
+        self._stiffness = [value / stretch for value, stretch in zip(values, stretches, strict=True)]
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """M⁻¹ f; shape (n, k)."""
+        return self._scale * self._transform.filtered(self._scale * f, self._inverse)
+
+    def solve_differences(self, g: FloatArray) -> FloatArray:
+        """(D M⁻¹ Dᵀ)⁻¹ g for edge differences D, where edge lengths are equal, and near it elsewhere; shape (n, k)."""
+        return np.asarray(self._transform.filtered(g / self._scale, self._stiffness) / self._scale)

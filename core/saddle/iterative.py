@@ -1,0 +1,162 @@
+"""Tangent spaces of inner products of which only products are at hand: the system (41) of [RS21] by projected CG.
+
+Conjugate gradients on ker C, flexible because their constraint preconditioner is itself solved only loosely.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..checks import check_fields
+from ..constraints import ConstraintDerivative
+from ..types import FloatArray
+from .krylov import conjugate_gradients, flexible_conjugate_gradients, relative
+from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
+from .tangent_space import TangentSpace, WholeSpace
+
+WINDOW = 2  # iterations, at least, whose decrease is the estimate of the error that is left
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """How exactly systems are solved; relative errors in the norm of the inner product.
+
+    Parameters
+    ----------
+    gradient
+        Of projected gradients.
+    correction
+        Of pseudo-inverses, and of the correction that a projection makes.
+    preconditioner
+        Part of a preconditioned residual that is not tangential.
+    feasibility
+        Of C u = ξ.
+    max_iterations
+        Of one system.
+    """
+
+    gradient: float = 1e-2
+    correction: float = 1e-1
+    preconditioner: float = 1e-2
+    feasibility: float = 1e-10
+    max_iterations: int = 500
+
+    def __post_init__(self) -> None:
+        below_one = (0.0, 1.0)
+        check_fields(self, gradient=below_one, correction=below_one, preconditioner=below_one)
+        check_fields(self, feasibility=below_one, max_iterations=(0, np.inf))
+
+    @classmethod
+    def of_norms(cls, accuracy: float = 1e-4) -> "Tolerances":
+        """Those at which norms of projected gradients, exact to half the square of the errors, have an accuracy."""
+        error = math.sqrt(0.5 * accuracy)
+        return cls(gradient=error, preconditioner=error)
+
+
+class WithModel(Protocol):
+    """A Gram matrix A of which products are known, and a model that is cheaply inverted."""
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """A u, shape (n, k)."""
+
+    @property
+    def model(self) -> Model:
+        """M, spectrally equivalent to A."""
+
+
+class IterativeTangentSpace(TangentSpace):
+    """The tangent space of constraints of full rank, with J = A ⊗ Id_m.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If A is not positive definite, or iterations do not suffice.
+    """
+
+    def __init__(self, inner: WithModel, constraints: ConstraintDerivative, tolerances: Tolerances) -> None:
+        super().__init__(constraints)
+        self._inner = inner
+        self._tolerances = tolerances
+        self._preconditioner = ConstraintPreconditioner(inner.model, constraints)
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """J u."""
+        return self._inner.apply(u)
+
+    def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+        """Solve for each of the two right sides, to its own tolerance."""
+        u, multipliers = np.zeros(self.constraints.tangents.shape), np.zeros(self.constraints.count)
+        for part in (None if eta is None else self._projected(eta), None if xi is None else self._shortest(xi)):
+            if part is not None:
+                u, multipliers = u + part[0], multipliers + part[1]
+        return u, multipliers
+
+    def project(self, u: FloatArray) -> FloatArray:
+        """The orthogonal projection of u: less the shortest correction, a small one where u is nearly tangent."""
+        return u - self.pseudo_inverse(self.constraints.apply(u))
+
+    def _projected(self, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """A multiple of the tangent vector found for which η·u = ⟨u, u⟩: then this has the square of its error."""
+        u, multipliers = self._descend(eta, self._tolerances.gradient, 0.0)
+        u = self._feasible(u, np.zeros(self.constraints.count))
+        square = float(np.sum(u * self.apply(u)))
+        return (u * (float(np.sum(eta * u)) / square) if square > 0.0 else u), multipliers
+
+    def _shortest(self, xi: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The shortest u in the model, then the way from there along ker C to the shortest in J."""
+        start = self._preconditioner.shortest(xi, self._tolerances.preconditioner)
+        force = self.apply(start)
+        u, multipliers = self._descend(-force, self._tolerances.correction, float(np.sum(start * force)))
+        return self._feasible(start + u, xi), multipliers
+
+    def _feasible(self, u: FloatArray, xi: FloatArray) -> FloatArray:
+        """The u nearest in the model with C u = ξ."""
+        defect = self.constraints.apply(u) - xi
+        return u - self._preconditioner.shortest(defect, self._tolerances.feasibility)
+
+    def _descend(self, r: FloatArray, tolerance: float, start: float) -> tuple[FloatArray, FloatArray]:
+        """The u in ker C of least ½ ⟨u, J u⟩ − r·u, tangent up to the preconditioner's tolerance, and its multipliers.
+
+        The error that is left is estimated by the decrease in the last quarter of the iterations (Hestenes and
+        Stiefel), relative to the norm of the solution, of which the square was ``start`` before.
+        """
+        c, preconditioner = self.constraints, self._preconditioner
+        multipliers = np.zeros(c.count)
+        negligible = ROUNDING**2 * preconditioner.square(r)
+
+        def precondition(r: FloatArray) -> tuple[FloatArray, FloatArray]:
+            nonlocal multipliers
+            z, change = preconditioner.project(r, self._tolerances.preconditioner)
+            multipliers = multipliers + change
+            return z, r - c.apply_transpose(change)  # without its normal part r does not pull iterates off ker C
+
+        def enough(decreases: list[float]) -> bool:
+            window = max(WINDOW, len(decreases) // 4)
+            square = abs(start - sum(decreases))
+            return len(decreases) > window and sum(decreases[-window:]) <= max(tolerance**2 * square, negligible)
+
+        u = flexible_conjugate_gradients(self.apply, precondition, r, enough, self._tolerances.max_iterations)
+        return u, multipliers
+
+
+class IterativeWholeSpace(WholeSpace):
+    """The whole space with J + Cᵀ w C, by conjugate gradients preconditioned by the model of J."""
+
+    def __init__(
+        self, inner: WithModel, constraints: ConstraintDerivative, weights: FloatArray, tolerances: Tolerances
+    ) -> None:
+        super().__init__(constraints, weights)
+        self._inner = inner
+        self._tolerances = tolerances
+
+    def riesz(self, eta: FloatArray) -> FloatArray:
+        """To the tolerance of gradients."""
+        enough = relative(self._tolerances.gradient)
+        return conjugate_gradients(self.apply, self._inner.model.solve, eta, enough, self._tolerances.max_iterations)
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """(J + Cᵀ w C) u."""
+        c = self.constraints
+        return self._inner.apply(u) + c.apply_transpose(self.weights * c.apply(u))

@@ -1,0 +1,68 @@
+"""Models of inner products of order 3/2 by resolvents of the Laplacian along the curve, for any edge lengths.
+
+For λ > 0 we have λ^{-3/2} = 2/π ∫ σ^{1/2} (λ + σ)⁻² dσ and λ^{1/2} = 1/π ∫ σ^{-1/2} λ (λ + σ)⁻¹ dσ.  By the
+trapezoidal rule in log σ both are sums over a few σ, and with a symbol f(σ) in place of σ^{3/2}, slowly varying in
+comparison, they are near 1/f(λ) and f(λ)/λ.  Each resolvent is a sparse factorisation with three entries a row, for
+all components at once: together several times slower than a Fourier transform, but insensitive to the mesh.
+"""
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..curve import Mesh
+from ..types import FloatArray
+from .krylov import LinearMap
+from .sparse import factorised
+from .symbol import Parameter
+
+SPACING = 3.5  # of log σ: with 2.3 there is no iteration less, with 5 there are half as many more
+RESOLVED = 0.9  # share of the edges that are shorter than half of any wave tried
+
+
+class Resolvents:
+    """M = f(−Δ) with the symbol f of an inner product, −Δ the Laplacian of linear elements with lumped mass.
+
+    Parameters
+    ----------
+    mesh
+        Connectivity.
+    lengths
+        Edge lengths ℓ, positive, shape (n,).
+    apply
+        The product A u that M is a model of, (n, k) to (n, k).
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If A is not positive definite.
+    """
+
+    def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
+        mass, d = 0.5 * (lengths + lengths[mesh.previous]), mesh.difference
+        parameter = Parameter.of_steps(mesh, lengths)
+        symbol = parameter.symbol(apply, mass, np.pi / float(np.quantile(lengths, RESOLVED)))
+        least, largest = (2.0 * np.pi / float(parameter.periods.max())) ** 2, 4.0 / float(lengths.min()) ** 2
+        sigma = np.exp(np.arange(np.log(least), np.log(largest) + SPACING, SPACING))
+        f = symbol(np.sqrt(sigma))
+        self._mass, self._lengths = mass[:, None], lengths[:, None]
+        at_vertices = d.T @ sp.diags_array(1.0 / lengths) @ d
+        at_edges = d @ sp.diags_array(1.0 / mass) @ d.T
+        self._weights = 2.0 / np.pi * SPACING * sigma**2 / f
+        self._edge_weights = SPACING / np.pi * f / sigma
+        self._sigma = sigma
+        self._at_vertices = [factorised(at_vertices + s * sp.diags_array(mass)) for s in sigma]
+        self._at_edges = [factorised(at_edges + s * sp.diags_array(lengths)) for s in sigma]
+
+    def solve(self, f: FloatArray) -> FloatArray:
+        """M⁻¹ f; shape (n, k)."""
+        total = np.zeros_like(f)
+        for weight, factor in zip(self._weights, self._at_vertices, strict=True):
+            total += weight * factor.solve(self._mass * factor.solve(f))
+        return total
+
+    def solve_differences(self, g: FloatArray) -> FloatArray:
+        """(D M⁻¹ Dᵀ)⁻¹ g for edge differences D, nearly; shape (n, k)."""
+        total = np.asarray(np.sum(self._edge_weights) * g / self._lengths)
+        for weight, factor in zip(self._sigma * self._edge_weights, self._at_edges, strict=True):
+            total -= weight * factor.solve(g)
+        return total

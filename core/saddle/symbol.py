@@ -1,0 +1,78 @@
+"""The symbol of an inner product: what it costs a wave along the curve, by frequency."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..curve import Mesh
+from ..types import FloatArray
+from .krylov import LinearMap
+
+FREQUENCIES = 12  # at which waves are tried, spread evenly on a logarithmic scale; more do not save an iteration
+
+Symbol = Callable[[FloatArray], FloatArray]
+"""A positive function of frequencies."""
+
+
+@dataclass(frozen=True, eq=False)
+class Parameter:
+    """A way to run along the components of a mesh, each at its own constant speed: by index, or by arc length.
+
+    Attributes
+    ----------
+    positions
+        Of each vertex, 0 at the first one of its component; shape (n,).
+    periods
+        Of each component; shape (components,).
+    """
+
+    mesh: Mesh
+    positions: FloatArray
+    periods: FloatArray
+
+    @classmethod
+    def of_steps(cls, mesh: Mesh, steps: FloatArray) -> "Parameter":
+        """The parameter that grows by so much from each vertex to the next one; shape (n,)."""
+        ends = np.cumsum(steps) - steps
+        starts = mesh.offsets[:-1]
+        return cls(mesh, ends - ends[starts][mesh.component], np.add.reduceat(steps, starts))
+
+    def waves(self, frequencies: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Cosines and sines of about these frequencies, 0 on components that are too short; shapes (n, k)."""
+        turns = np.rint(np.multiply.outer(self.periods, frequencies) / (2.0 * np.pi))
+        phase = (2.0 * np.pi * turns / self.periods[:, None])[self.mesh.component] * self.positions[:, None]
+        # of either sign at random, lest components move together
+        signs = np.random.default_rng(1).choice([-1.0, 1.0], len(self.periods))
+        amplitude = ((turns > 0.0) * signs[:, None])[self.mesh.component]
+        return amplitude * np.cos(phase), amplitude * np.sin(phase)
+
+    def symbol(self, apply: LinearMap, weights: FloatArray, highest: float) -> Symbol:
+        """Rayleigh quotients Σ u A u / Σ w u² of waves u, interpolated between logarithms.
+
+        Below the lowest frequency, one turn, the symbol is constant; above the highest one tried it grows like its
+        third power, as that of an inner product of order 3/2 does.
+
+        Parameters
+        ----------
+        apply
+            The product A u, (n, k) to (n, k).
+        weights
+            w, shape (n,).
+        highest
+            The highest frequency to try, in radians per unit of the parameter.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            If a quotient is not positive.
+        """
+        turn = 2.0 * np.pi / float(self.periods.max())
+        frequencies = turn * np.unique(np.rint(np.geomspace(1.0, max(1.0, highest / turn), FREQUENCIES)))
+        waves = np.stack(self.waves(frequencies))
+        images = np.stack([apply(wave) for wave in waves])
+        quotients = np.sum(waves * images, axis=(0, 1)) / np.sum(weights[:, None] * waves**2, axis=(0, 1))
+        if not quotients.min() > 0.0:
+            raise np.linalg.LinAlgError("matrix is not positive definite: a Rayleigh quotient is not positive")
+        logarithms, last = (np.log(frequencies), np.log(quotients)), frequencies[-1]
+        return lambda f: np.exp(np.interp(np.log(np.maximum(f, turn)), *logarithms)) * np.maximum(f / last, 1.0) ** 3

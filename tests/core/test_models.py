@@ -1,0 +1,113 @@
+"""Models of inner products: what Fourier transforms, resolvents and the graph of components invert."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, Mesh
+from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
+from mobius_flow.core.metrics import MoebiusMetric
+from mobius_flow.core.saddle.circulant import Circulants
+from mobius_flow.core.saddle.fourier import ComponentTransform
+from mobius_flow.core.saddle.resolvent import Resolvents
+from mobius_flow.core.saddle.symbol import Parameter
+from scipy.linalg import circulant, eigvalsh
+from shapes import chain_of_rings, graded_trefoil, regular_polygon, torus_trefoil
+
+MODELS = {"circulants": Circulants, "resolvents": Resolvents}
+MODEL = pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+
+
+def spread(curve: Curve, kind: type[Circulants] | type[Resolvents]) -> float:
+    """Condition number of the exact J_C against the model, on functions of mean 0 on every component."""
+    inner = MoebiusMetric().at(curve)
+    n, matrix = len(curve), inner.dense()
+    inverse = kind(curve.mesh, curve.edge_lengths, inner.apply).solve(np.eye(n))
+    np.testing.assert_allclose(inverse, inverse.T, atol=1e-10 * np.abs(inverse).max())
+    indicators = (curve.mesh.component[:, None] == np.arange(len(curve.mesh.component_sizes))).astype(float)
+    basis = np.linalg.qr(indicators, mode="complete")[0][:, indicators.shape[1] :]
+    eigenvalues = eigvalsh(basis.T @ matrix @ basis, np.linalg.inv(basis.T @ inverse @ basis))
+    assert eigenvalues[0] > 0
+    return float(eigenvalues[-1] / eigenvalues[0])
+
+
+@MODEL
+@pytest.mark.parametrize("n", [3, 5, 50, 51, 400])
+def test_equivalent_on_circles(model, n: int) -> None:
+    if n == 3:
+        with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
+            spread(regular_polygon(n), model)
+    else:
+        assert spread(regular_polygon(n), model) < 6
+
+
+@MODEL
+@pytest.mark.parametrize("n", [100, 200, 400])
+def test_equivalent_on_a_knot(model, n: int) -> None:
+    assert spread(torus_trefoil(n), model) < 12
+
+
+@pytest.mark.parametrize("ratio", [1.0, 10.0, 100.0, 1000.0])
+def test_resolvents_do_not_mind_the_mesh(ratio: float) -> None:
+    assert spread(graded_trefoil(400, ratio), Resolvents) < 40
+
+
+@MODEL
+def test_components_of_all_sizes(model) -> None:
+    assert spread(chain_of_rings(12, (5, 40, 11, 4)), model) < 30
+
+
+@MODEL
+@pytest.mark.parametrize("curve", [regular_polygon(60), chain_of_rings(4, (20,))], ids=["circle", "chain"])
+def test_differences(model, curve: Curve) -> None:
+    """(D M⁻¹ Dᵀ)⁻¹ on differences, exactly with circulants and equal edges."""
+    n = len(curve)
+    m = model(curve.mesh, curve.edge_lengths, MoebiusMetric().at(curve).apply)
+    difference = curve.mesh.difference.toarray()
+    product = m.solve_differences(difference @ m.solve(difference.T)) @ difference
+    if model is Circulants:
+        np.testing.assert_allclose(product, difference, atol=1e-10)
+    else:
+        right = np.linalg.lstsq(difference.T, product.T, rcond=None)[0]
+        eigenvalues = np.linalg.eigvals(right)
+        kept = np.abs(eigenvalues) > 1e-8
+        assert np.count_nonzero(kept) == n - len(curve.mesh.component_sizes)
+        assert eigenvalues[kept].real.min() > 0.3
+        assert eigenvalues[kept].real.max() < 3
+
+
+def test_transforms_are_circulant_matrices() -> None:
+    mesh = Mesh((5, 8, 5, 3))
+    transform, u = ComponentTransform(mesh), np.random.default_rng(43).normal(size=(21, 2))
+    result = transform.filtered(u, transform.sampled(lambda theta: 2.0 + np.cos(theta)))
+    for part in mesh.slices:
+        size = part.stop - part.start
+        column = np.zeros(size)
+        column[0] = 2.0
+        column[1] += 0.5
+        column[-1] += 0.5
+        np.testing.assert_allclose(result[part], circulant(column) @ u[part], atol=1e-14)
+
+
+def test_waves_close_up() -> None:
+    curve = chain_of_rings(3, (30, 9, 12))
+    parameter = Parameter.of_steps(curve.mesh, curve.edge_lengths)
+    cosines, sines = parameter.waves(np.array([1.0, 2.0]))
+    np.testing.assert_allclose(cosines**2 + sines**2, 1.0)
+    first = curve.mesh.slices[0]
+    np.testing.assert_allclose(np.abs(np.fft.rfft(cosines[first, 0]))[1], 15.0)
+
+
+def test_many_components_move_as_they_should() -> None:
+    """Translations of the rings of a chain: on these the model is all but exact."""
+    curve = chain_of_rings(40, (9, 14))
+    inner = moebius_inner_product(curve)
+    indicators = (curve.mesh.component[:, None] == np.arange(40)).astype(float)
+    shifts = np.cumsum(np.random.default_rng(47).normal(size=40))
+    u = indicators @ shifts[:, None]
+    restricted = indicators.T @ inner.apply(indicators)
+    np.testing.assert_allclose(
+        np.linalg.solve(restricted, indicators.T @ inner.apply(u))[:, 0], shifts, atol=1e-8 * np.abs(shifts).max()
+    )
+    coupling = inner.coupling.toarray() + np.outer(indicators.T @ inner.vectors, indicators.T @ inner.vectors)
+    eigenvalues = eigvalsh(coupling, restricted)
+    assert eigenvalues[0] > 0.5
+    assert eigenvalues[-1] < 1.01
