@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
 SEARCHES, CLAIMS = "tests/core/descent/test_searches.py", "tests/core/descent/test_claims.py"
-RESTORATION = "tests/core/descent/test_restoration.py"
+RESTORATION = "tests/core/test_restoration.py"
 CERTIFICATE, VERIFY = "tests/core/test_certificate.py", "tests/core/verify"
 
 
@@ -132,14 +132,14 @@ MUTANTS = (
     ),
     Mutant(
         "lengths move the barycenter",
-        "core/descent/restoration.py",
+        "core/saddle/restoration.py",
         "(missing - moments[own].sum(axis=0))",
         "missing",
         f"{RESTORATION}::test_corrections_solve_the_linearised_constraints_by_the_shortest_way",
     ),
     Mutant(
         "the corner that closes a component",
-        "core/descent/restoration.py",
+        "core/saddle/restoration.py",
         "w[first], w[last] = 1.0, sign",
         "w[first], w[last] = 1.0, 1.0",
         f"{RESTORATION}::test_corrections_solve_the_linearised_constraints_by_the_shortest_way",

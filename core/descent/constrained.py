@@ -11,7 +11,6 @@ from ..errors import OptionError
 from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
-from .restoration import euclidean_correction
 
 if TYPE_CHECKING:
     from .problem import Point, Problem
@@ -28,8 +27,8 @@ class Constrained:
     max_iterations
         Of the modified Newton method (42), and of Newton's for what it leaves over.
     small
-        Residual below which the shortest way back is as good as the one in the metric, and far cheaper.  Larger
-        corrections should know where other strands are, and not cost the energy that the step has gained.
+        Residual below which `TangentSpace.restoration` is as good as the shortest way back in the metric, and far
+        cheaper.  Larger corrections should know where other strands are, and not cost the energy the step has gained.
     contraction
         Least rate of both; where it is slower, a shorter step is cheaper than more iterations.
     """
@@ -60,7 +59,7 @@ class Constrained:
     def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
         """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point: (42).
 
-        Once the residual is small the derivative is that at Q and the pseudo-inverse the Euclidean one, by which it
+        Once the residual is small the derivative is that at Q and the pseudo-inverse one that is cheap, by which it
         vanishes quadratically.  None if the residual does not contract: the step was too long.
         """
         last = np.inf
@@ -78,7 +77,7 @@ class Constrained:
             if error > self.small:
                 vertices = vertices - space.pseudo_inverse(residual)
             else:
-                vertices = vertices + euclidean_correction(base.problem.constraints, point.curve, residual)
+                vertices = vertices + space.restoration(base.problem.constraints, point.curve, residual)
         return None
 
     def transport(self, point: "Point", u: FloatArray) -> FloatArray:

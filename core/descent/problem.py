@@ -1,7 +1,7 @@
 """What is minimised, in which metric, under which constraints: values at a point are computed once, on demand."""
 
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -85,14 +85,24 @@ class Point:
 
     def within(self, problem: Problem) -> "Point":
         """The same polygon in another problem on the same mesh."""
-        return self if problem is self.problem else Point(problem, self.vertices, self.placed)
+        if problem is self.problem:
+            return self
+        point = Point(problem, self.vertices, self.placed)
+        return point.with_metric_of(self, 0) if problem.metric is self.problem.metric else point
 
-    def with_metric_of(self, earlier: "Point") -> "Point":
-        """The same point in the metric of an earlier one, unless its own is built already."""
-        if "inner_product" in vars(self):
+    @property
+    def anchored(self) -> "Point":
+        """The same polygon, where approximations of the objective are those for itself: for a search from here."""
+        objective = self.problem.objective.frozen_at(self.curve)
+        same = objective is self.problem.objective
+        return self if same else self.within(replace(self.problem, objective=objective))
+
+    def with_metric_of(self, other: "Point", steps: int = 1) -> "Point":
+        """The same point in the metric of another one, if that is built, so many steps ago, and its own is not."""
+        if "inner_product" in vars(self) or "inner_product" not in vars(other):
             return self
         point = copy(self)
-        point.inner_product, point.metric_age = earlier.inner_product, earlier.metric_age + 1
+        point.inner_product, point.metric_age = other.inner_product, other.metric_age + steps
         return point
 
     def with_own_metric(self) -> "Point":

@@ -14,6 +14,7 @@ from ..option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("fixed", "finer", "adaptive")
+SOLVERS = ("auto", "dense", "hierarchical")
 _advanced = partial(option, group="advanced")
 
 
@@ -77,6 +78,23 @@ class RelaxOptions:
         automatic="the method's own",
         low=0,
         metavar="α",
+    )
+    solver: str = _advanced(
+        "auto",
+        "Solver",
+        "how sums over all pairs of edges are made: dense, one by one; hierarchical, distant clusters as one, for many "
+        "vertices; auto takes the faster one",
+        choices=SOLVERS,
+        metavar="S",
+    )
+    accuracy: float = _advanced(
+        1e-4,
+        "Accuracy",
+        "relative error of the projected gradient's norm by the hierarchical solver; that of the energy is below a "
+        "hundredth of it",
+        low=0,
+        high=1e-2,
+        metavar="A",
     )
     edge_lengths: str | tuple[float, ...] = _advanced(
         "auto",

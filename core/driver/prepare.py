@@ -9,14 +9,13 @@ from ..collision import check_embedded, check_gap, minimal_gap, survives_roundin
 from ..constraints import Constraints, weighted_barycenter
 from ..curve import Curve, check_is_curve, refine
 from ..curve.remesh import graded_spacing
-from ..descent import METHODS, Method, Problem
-from ..energies import ENERGIES, Energy, Objective
+from ..descent import METHODS, Problem
+from ..energies import Objective
 from ..errors import CurveError, OptionError
-from ..metrics import METRICS, Metric
-from ..quadrature import Rule
 from ..types import FloatArray
 from ..units import Units, check_units
 from .options import RelaxOptions
+from .solver import Solver
 
 EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
 
@@ -29,19 +28,14 @@ def check_size(curve: Curve, options: RelaxOptions) -> None:
     CurveError, OptionError
         If the curve has too many vertices, or too many are asked for.
     """
-    method = named(METHODS, "method", options.method)
-    most = min(metric.most_vertices for metric in (_metric(method, options), *method.rule.other_metrics))
+    most, method = Solver(options, max(len(curve), options.vertices or 0)).max_vertices, options.method
     if options.vertices is not None and options.vertices > most:
-        raise OptionError(f"vertices is {options.vertices!s:.40}; {method.name} has room and time for {most}")
+        raise OptionError(f"vertices is {options.vertices!s:.40}; {method} has room and time for {most}")
     if len(curve) > most:
         raise CurveError(
-            f"the curve has {len(curve)} vertices; {method.name} has room and time for {most}; "
+            f"the curve has {len(curve)} vertices; {method} has room and time for {most}; "
             "thin the curve out or relax its components apart"
         )
-
-
-def _metric(method: Method, options: RelaxOptions) -> Metric:
-    return method.metric if options.metric is None else named(METRICS, "metric", options.metric)
 
 
 def prepared_start(curve: Curve, vertices: int | None, each: Sequence[RelaxOptions]) -> Curve:
@@ -96,26 +90,16 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options, units.scale), weighted_barycenter(start))
-    energy = named(ENERGIES, "energy", options.energy) if isinstance(options.energy, str) else options.energy
-    objective = Objective.of(energy)
+    solver = Solver(options, len(curve))
+    objective = Objective.of(solver.energy)
     second_order = method.rule.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:
-        raise OptionError(f"{method.name} with these options needs a second derivative; energy {energy.name} has none")
+        name = objective.energy.name
+        raise OptionError(f"{method.name} with these options needs a second derivative; energy {name} has none")
     if (options.stability or options.escape_saddles) and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
-    metric = _metric(method, options)
-    metric = metric.with_rule(_rule(metric, energy, options.quadrature_points))
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
-    return Problem(curve.mesh, objective, metric, constraints, units, geometry)
-
-
-def _rule(metric: Metric, energy: Energy, points: int | None) -> Rule:
-    """The energy's quadrature rule, as Section 6.1.2 of [RS21] has it, or the one that is asked for."""
-    if points is None:
-        return energy.rule
-    if metric.rule is None:
-        raise OptionError(f"quadrature_points is {points}; metric {metric.name!r} has no such rule")
-    return Rule.gauss(points)
+    return Problem(curve.mesh, objective, solver.metric, constraints, units, geometry)
 
 
 def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatArray:

@@ -11,6 +11,7 @@ from .change import Change
 from .iterate import Iterate
 from .options import RelaxOptions
 from .outcome import DEGENERATE
+from .solver import Solver
 
 RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
 
@@ -48,7 +49,7 @@ class Run:
         self.vertices = options.vertices
         self.method = METHODS[options.method]
         self.rises: list[float] = []
-        self.point = problem.at_curve(start)
+        self.point = problem.at_curve(start).anchored
         self._memory = State()
         self._certified = problem.certifiable  # an embedded start, and so far no motion
         self.iterate = self._described(0)
@@ -67,7 +68,8 @@ class Run:
         """The present method's next step, ending at a point of the present problem."""
         point = self.point
         if self.method.name != self.options.method:
-            point = point.within(replace(self.problem, metric=self.method.metric))
+            metric = Solver(self.options, len(point.vertices)).of_metric(self.method.metric)
+            point = point.within(replace(self.problem, metric=metric))
         try:
             step, self._memory = self.method.rule.step(point, self._memory)
             if isinstance(step, Step):
@@ -80,7 +82,7 @@ class Run:
     def accept(self, step: Step) -> Iterate:
         """Go to the end of a step."""
         before = self.iterate
-        self.point = step.point
+        self.point = step.point.anchored
         self._certified &= step.certified
         self.iterate = now = self._described(before.index + 1, step.size, tuple(leg.end.placed for leg in step.legs))
         evening_out = self.problem.geometry.prescribes and now.edge_length_error < before.edge_length_error
@@ -96,7 +98,7 @@ class Run:
         if change.point is None:
             return None
         remeshed = change.point.placed is not self.point.placed  # perhaps with as many vertices
-        self.point = change.point
+        self.point = change.point.anchored
         self._memory = State(None, self._memory.last_step)
         self.iterate = self._described(self.iterate.index + remeshed)
         return self.iterate if remeshed else None

@@ -46,6 +46,14 @@ class WithMidpointPairs(Energy, Protocol):
         """The same without some pairs of edges."""
 
 
+@runtime_checkable
+class Approximate(Energy, Protocol):
+    """An energy that is approximated in a way that depends on the curve, and is smooth only as long as that is kept."""
+
+    def frozen_at(self, curve: Curve) -> Energy:
+        """The smooth function that the way for one curve makes of it."""
+
+
 class TwiceDifferentiable(Energy, Protocol):
     """An energy with a second derivative, for Newton's method."""
 

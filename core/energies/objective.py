@@ -9,7 +9,7 @@ from ..curve import Curve
 from ..errors import OptionError
 from ..types import FloatArray
 from .barrier import Barrier
-from .energy import Energy, TwiceDifferentiable, WithMidpointPairs
+from .energy import Approximate, Energy, TwiceDifferentiable, WithMidpointPairs
 from .moebius import MoebiusEnergy
 from .near_pairs import replaced_pairs
 
@@ -28,6 +28,13 @@ class Objective:
     def of(cls, energy: Energy) -> "Objective":
         """The objective of any energy: the barrier takes the place of what it has of it, or stands beside it."""
         return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs))
+
+    def frozen_at(self, curve: Curve) -> "Objective":
+        """What a search from a curve should see: an approximation that stays the same for all that is near."""
+        if not isinstance(self.energy, Approximate):
+            return self
+        energy = self.energy.frozen_at(curve)
+        return self if energy is self.energy else replace(self, energy=energy)
 
     def value(self, curve: Curve) -> float:
         """The objective at the curve."""

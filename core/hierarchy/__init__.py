@@ -3,5 +3,6 @@
 from .blocks import BlockList
 from .clusters import ClusterTree
 from .energy import HierarchicalMoebiusEnergy
+from .metric import CompressedMetric, compressed
 
-__all__ = ["BlockList", "ClusterTree", "HierarchicalMoebiusEnergy"]
+__all__ = ["BlockList", "ClusterTree", "CompressedMetric", "HierarchicalMoebiusEnergy", "compressed"]

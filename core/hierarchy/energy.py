@@ -23,6 +23,7 @@ from .near_field import NearField
 ORDER = 4  # even orders are worth more: errors of the next odd one nearly cancel
 THETA = 0.2  # with that order an error below 10⁻⁶ of the energy, 10⁻⁴ of the derivative in the dual norm of J_C
 LEAF = 12  # the near field takes about as long as the far one
+KEPT = 1.1 * THETA  # separation up to which a list is as good as a new one
 OUTDATED = 1.0 / 3.0  # separation that blocks keep, or the list is made anew; replaced pairs are near ones up to 1/3
 
 
@@ -66,7 +67,9 @@ class HierarchicalMoebiusEnergy:
         return cls(without=energy.without)
 
     def frozen_at(self, curve: Curve) -> "HierarchicalMoebiusEnergy":
-        """The smooth function that the block list of ``curve`` makes of it."""
+        """The smooth function that the block list of ``curve`` makes of it, or that its own list does if it fits."""
+        if self.blocks is not None and self.blocks.is_separated(curve, KEPT):
+            return self
         return replace(self, blocks=block_list(curve))
 
     def leaving_out(self, pairs: EdgePairIndices) -> "HierarchicalMoebiusEnergy":

@@ -4,8 +4,10 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from ..constraints import ConstraintDerivative
+from ..constraints import ConstraintDerivative, Constraints
+from ..curve import Curve
 from ..types import FloatArray
+from .restoration import euclidean_correction
 
 
 class TangentSpace(ABC):
@@ -38,6 +40,13 @@ class TangentSpace(ABC):
     def pseudo_inverse(self, xi: FloatArray) -> FloatArray:
         """C^† ξ, the shortest u with C u = ξ; shapes (rows of C,) -> (n, m)."""
         return self.solve(None, xi)[0]
+
+    def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
+        """A short u with DΦ u = −Φ at a curve near by, where a small residual Φ is left: Newton's method; shape (n, m).
+
+        By default the shortest in the Euclidean metric, at O(n).
+        """
+        return euclidean_correction(constraints, curve, residual)
 
     def project(self, u: FloatArray) -> FloatArray:
         """The orthogonal projection of u, shape (n, m)."""

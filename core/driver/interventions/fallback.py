@@ -6,6 +6,7 @@ from ...descent import METHODS, NoStep, Step
 from ..change import Change
 from ..outcome import Outcome
 from ..run import Run
+from ..solver import Solver
 
 HELPER = METHODS["flow-h3-2"]  # its metric does not see how near strands are, and so does not hold them together
 HELPS = 10  # steps that it takes
@@ -37,5 +38,6 @@ class Fallback:
     @property
     def _may_help(self) -> bool:
         run = self._run
-        fits = len(run.point.vertices) <= HELPER.metric.most_vertices
+        count = len(run.point.vertices)
+        fits = count <= Solver(run.options, count).of_metric(HELPER.metric).most_vertices
         return fits and run.problem.geometry.prescribes and self._asked_for is not HELPER

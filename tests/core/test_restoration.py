@@ -8,8 +8,8 @@ from descent_contracts import point_on
 from mobius_flow.core import Curve
 from mobius_flow.core.constraints import Constraints, weighted_barycenter
 from mobius_flow.core.descent.constrained import Constrained
-from mobius_flow.core.descent.restoration import euclidean_correction
 from mobius_flow.core.saddle import TangentSpace
+from mobius_flow.core.saddle.restoration import euclidean_correction
 from mobius_flow.core.types import FloatArray
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
