@@ -58,12 +58,12 @@ class BlockList:
         OptionError
             If one of these is not a near pair.
         """
-        if without is None:
+        if without is None or not without[0].size:
             return self.i, self.j
         n = len(self.tree.order)
         code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
-        place = np.searchsorted(code, left_out).clip(max=len(code) - 1)
-        if not np.array_equal(code[place], left_out):
+        place = np.searchsorted(code, left_out)
+        if not np.array_equal(code[place[place < len(code)]], left_out):
             raise OptionError("a pair of edges to be left out is not a near one")
         return np.delete(self.i, place), np.delete(self.j, place)
 

@@ -82,6 +82,14 @@ def test_taylor_slope_where_expansions_are_poor(monkeypatch: pytest.MonkeyPatch)
     assert derivative_slope(poor, curve, direction_for(curve), largest=1e-4) == pytest.approx(2, abs=0.02)
 
 
+def test_curves_without_blocks_or_pairs() -> None:
+    for curve in (regular_polygon(3), regular_polygon(5, 2), rings(1, 4)):
+        energy, derivative = HierarchicalMoebiusEnergy().value_and_derivative(curve)
+        exact, exact_derivative = MoebiusEnergy().value_and_derivative(curve)
+        assert energy == pytest.approx(exact, rel=1e-14)
+        np.testing.assert_allclose(derivative, exact_derivative, atol=1e-14)
+
+
 def test_value_agrees_with_value_and_derivative() -> None:
     curve = CURVES["hopf"]
     energy = with_small_leaves(curve)
@@ -141,6 +149,7 @@ def test_left_out_pairs_must_be_near() -> None:
     curve = torus_trefoil(300)
     blocks = BlockList.of(curve, THETA, 4)
     far = blocks.tree.order[blocks.a[:1]], blocks.tree.order[blocks.c[:1]]
+    assert HierarchicalMoebiusEnergy(blocks, (far[0][:0], far[1][:0])).value(curve)
     for pairs in (far, (np.append(blocks.i[:2], far[0]), np.append(blocks.j[:2], far[1]))):
         with pytest.raises(MobiusFlowError, match="not a near one"):
             HierarchicalMoebiusEnergy(blocks, pairs).value(curve)
