@@ -6,52 +6,38 @@ error. Run it with one BLAS thread on a quiet machine.
 """
 
 import sys
-from collections.abc import Callable
-from time import process_time
 
-from collision import CURVES
+from collision import CURVES, best
 from mobius_flow.core import Curve, MoebiusEnergy
-from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
-from mobius_flow.core.hierarchy.energy import block_list
+from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy
+from mobius_flow.core.hierarchy.energy import LEAF, THETA
 
 MOST_DENSE = 10_000
 
 
-def milliseconds(work: Callable[[], object], repeats: int = 3) -> float:
-    times = []
-    for _ in range(repeats):
-        start = process_time()
-        work()
-        times.append(process_time() - start)
-    return 1e3 * min(times)
+def main(sizes: list[int]) -> None:
+    titles = ("blocks", "near", "list", "E", "E and DE", "dense", "error")
+    print(f"{'curve':18}{'vertices':>10}" + "".join(f"{title:>10}" for title in titles))
+    for n in sizes:
+        for name, make in CURVES.items():
+            print(f"{name:18}{n:10d}" + line(Curve.from_components(make(n)), 3), flush=True)
 
 
-def fresh_list(curve: Curve) -> None:
-    block_list.cache_clear()
-    block_list(curve)
-
-
-def report(name: str, curve: Curve) -> None:
-    n, made = len(curve), milliseconds(lambda: fresh_list(curve))
-    blocks, energy = block_list(curve), HierarchicalMoebiusEnergy().frozen_at(curve)
-    value = milliseconds(lambda: energy.value(curve))
-    both = milliseconds(lambda: energy.value_and_derivative(curve))
-    print(
-        f"{name:18} {n:7} {len(blocks.first) / n:7.2f} {len(blocks.i) / n:7.1f} {made:8.1f} {value:8.1f} {both:8.1f}",
-        end="",
-    )
-    if n <= MOST_DENSE:
-        dense = MoebiusEnergy()
-        slow = milliseconds(lambda: dense.value_and_derivative(curve), repeats=1)
-        exact = dense.value(curve)
-        print(f" {slow:8.1f} {abs(energy.value(curve) - exact) / exact:9.1e}", end="")
-    print(flush=True)
+def line(curve: Curve, repetitions: int) -> str:
+    blocks = BlockList.of(curve, THETA, LEAF)
+    energy = HierarchicalMoebiusEnergy(blocks)
+    sizes = [len(blocks.first) / len(curve), len(blocks.i) / len(curve)]
+    times = [
+        best(lambda: BlockList.of(curve, THETA, LEAF), repetitions),
+        best(lambda: energy.value(curve), repetitions),
+        best(lambda: energy.value_and_derivative(curve), repetitions),
+    ]
+    text = "".join(f"{number:10.2f}" for number in sizes) + "".join(f"{time:10.1f}" for time in times)
+    if len(curve) > MOST_DENSE:
+        return text
+    exact, slow = MoebiusEnergy().value(curve), best(lambda: MoebiusEnergy().value_and_derivative(curve), 1)
+    return text + f"{slow:10.1f}{abs(energy.value(curve) / exact - 1.0):10.1e}"
 
 
 if __name__ == "__main__":
-    print(
-        f"{'curve':18} {'n':>7} {'blocks':>7} {'near':>7} {'list':>8} {'E':>8} {'E, DE':>8} {'dense':>8} {'error':>9}"
-    )
-    for count in [int(argument) for argument in sys.argv[1:]] or [1_000, 10_000, 100_000]:
-        for name, components in CURVES.items():
-            report(name, Curve.from_components(components(count)))
+    main([int(x) for x in sys.argv[1:]] or [1_000, 10_000, 100_000])
