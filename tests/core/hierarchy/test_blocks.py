@@ -52,6 +52,13 @@ def test_every_pair_of_edges_exactly_once(curve: Curve, theta: float, leaf: int)
     np.testing.assert_array_equal(multiplicity(BlockList.of(curve, theta, leaf)), expected)
 
 
+@CURVE
+def test_near_pairs_are_sorted(curve: Curve) -> None:
+    blocks = BlockList.of(curve, 0.25, 4)
+    assert np.all(blocks.i < blocks.j)
+    assert np.all(np.diff(blocks.i * len(curve) + blocks.j) > 0)
+
+
 @pytest.mark.parametrize("curve", [torus_trefoil(20_000), rings(3_000, 5, spread=40.0)], ids=["long", "many"])
 def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
     blocks, n = BlockList.of(curve, 0.25, 4), len(curve)

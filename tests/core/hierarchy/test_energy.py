@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective
+from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, RelaxOptions, minimize
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.energies import ENERGIES, Energy
 from mobius_flow.core.energies.near_pairs import near_pairs, replaced_pairs
@@ -178,3 +178,12 @@ def test_other_energies_have_no_fast_form() -> None:
 
 def test_it_is_an_energy() -> None:
     assert isinstance(HierarchicalMoebiusEnergy(), Energy)
+
+
+def test_relax_takes_the_same_steps_with_it() -> None:
+    fast, slow = (
+        minimize(torus_trefoil(300), RelaxOptions(energy=energy, max_iterations=4)).energies
+        for energy in (HierarchicalMoebiusEnergy(), "moebius")
+    )
+    assert len(slow) == 5
+    assert fast == pytest.approx(slow, rel=1e-6)
