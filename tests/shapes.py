@@ -29,3 +29,9 @@ def hopf_link(n: int) -> Curve:
 def lattice_knot(name: str) -> Curve:
     """A coarse polygon with right angles and very unequal edges, as people have them."""
     return lattice_closure(braid_word(name))
+
+
+def scattered_rings(count: int, size: int, spread: float = 10.0, dimension: int = 3) -> Curve:
+    """Small polygons anywhere in a cube, in no spatial order."""
+    centres = np.random.default_rng(17).uniform(0, spread, (count, 1, dimension))
+    return Curve.from_components(list(centres + regular_polygon(size, dimension).vertices))

@@ -21,8 +21,8 @@ from .far_field import FarField
 from .near_field import NearField
 
 ORDER = 4  # even orders are worth more: errors of the next odd one nearly cancel
-THETA = 0.2  # with that order an error below 10⁻⁶ of the energy, 10⁻⁴ of the derivative in the dual norm of J_C
-LEAF = 16  # edges; with 8 to 16 the near field takes no longer than the far one
+THETA = 0.2  # with that order errors of 10⁻⁷ to 10⁻⁶ of a knot's energy, of 10⁻⁵ of the derivative in J_C's dual norm
+LEAF = 16  # edges; halving ends at 8 to 16 of them, with which the near field takes no longer than the far one
 OUTDATED = 1.0 / 3.0  # less separated blocks make a new list; up to 1/3 all replaced pairs are near pairs
 
 

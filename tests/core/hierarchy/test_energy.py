@@ -11,14 +11,8 @@ from mobius_flow.core.hierarchy.energy import THETA
 from mobius_flow.core.knots import knot
 from mobius_flow.core.metrics.moebius import MoebiusMetric
 from mobius_flow.core.taylor import derivative_slope
-from shapes import hopf_link, regular_polygon, torus_trefoil
+from shapes import hopf_link, regular_polygon, scattered_rings, torus_trefoil
 from smooth_curves import SMOOTH_CURVES, random_polygon
-
-
-def rings(count: int, size: int, dimension: int = 3) -> Curve:
-    """Small polygons scattered in space."""
-    centres = np.random.default_rng(17).uniform(0, 20, (count, 1, dimension))
-    return Curve.from_components(list(centres + regular_polygon(size, dimension).vertices))
 
 
 def fourfold(n: int) -> Curve:
@@ -34,11 +28,11 @@ CURVES = {
     "wave": SMOOTH_CURVES["wave"].polygon(500),
     "ellipse": SMOOTH_CURVES["ellipse"].polygon(500),
     "fourfold": fourfold(500),
-    "rings": rings(120, 5),
-    "planar rings": rings(100, 3, 2),
+    "rings": scattered_rings(120, 5, 20.0),
+    "planar rings": scattered_rings(100, 3, 20.0, 2),
     "table": refine(knot("8_19"), 700),
     "tangle": subdivide(random_polygon(3, (30,), 3), np.full(30, 20)),
-    "uneven": Curve.from_components([torus_trefoil(301).vertices, *rings(20, 3).components]),
+    "uneven": Curve.from_components([torus_trefoil(301).vertices, *scattered_rings(20, 3, 20.0).components]),
 }
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
@@ -83,7 +77,7 @@ def test_taylor_slope_where_expansions_are_poor(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_curves_without_blocks_or_pairs() -> None:
-    for curve in (regular_polygon(3), regular_polygon(5, 2), rings(1, 4)):
+    for curve in (regular_polygon(3), regular_polygon(5, 2), scattered_rings(1, 4)):
         energy, derivative = HierarchicalMoebiusEnergy().value_and_derivative(curve)
         exact, exact_derivative = MoebiusEnergy().value_and_derivative(curve)
         assert energy == pytest.approx(exact, rel=1e-14)
@@ -166,6 +160,12 @@ def test_a_frozen_list_stays_until_strands_come_near() -> None:
     assert len(pairs[0])
     exact = MoebiusEnergy(pairs).value(flat)
     assert frozen.leaving_out(pairs).value(flat) == pytest.approx(exact, rel=1e-6)
+
+
+def test_a_frozen_list_is_of_no_use_to_another_mesh() -> None:
+    frozen = HierarchicalMoebiusEnergy().frozen_at(hopf_link(60))
+    for other in (torus_trefoil(120), hopf_link(80)):
+        assert frozen.value(other) == HierarchicalMoebiusEnergy().value(other)
 
 
 def test_other_energies_have_no_fast_form() -> None:
