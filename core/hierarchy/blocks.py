@@ -43,10 +43,12 @@ class BlockList:
         """The list of a curve: separation parameter 0 < θ < 1, and the largest number of edges in a leaf."""
         tree = ClusterTree.of(curve, leaf)
         blocks, near = _traverse(tree, *tree.balls(curve), theta)
-        return cls(tree, *blocks, *_edge_pairs(curve.mesh, tree, near))
+        return cls(tree, *blocks, *_edge_pairs(tree, near))
 
     def is_separated(self, curve: Curve, theta: float) -> bool:
-        """Whether at another curve of the same mesh all blocks are admissible with such a parameter."""
+        """Whether another curve has the same mesh, and all blocks are admissible there with such a parameter."""
+        if curve.mesh != self.tree.mesh:
+            return False
         centre, radius = self.tree.balls(curve)
         return bool(_admissible(centre, radius, self.first, self.second, theta).all())
 
@@ -58,12 +60,12 @@ class BlockList:
         OptionError
             If one of these is not a near pair.
         """
-        if without is None:
+        if without is None or not without[0].size:
             return self.i, self.j
-        n = len(self.tree.order)
+        n = self.tree.mesh.size
         code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
-        place = np.searchsorted(code, left_out).clip(max=len(code) - 1)
-        if not np.array_equal(code[place], left_out):
+        place = np.searchsorted(code, left_out)
+        if not np.array_equal(code[place[place < len(code)]], left_out):
             raise OptionError("a pair of edges to be left out is not a near one")
         return np.delete(self.i, place), np.delete(self.j, place)
 
@@ -125,13 +127,13 @@ def _split(tree: ClusterTree, radius: FloatArray, first: IntArray, second: IntAr
     )
 
 
-def _edge_pairs(mesh: Mesh, tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
+def _edge_pairs(tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
     """All pairs of edges of two leaves that have no vertex in common, i < j, sorted by i and then by j."""
-    row, begin, end = _without_neighbours(mesh, tree.order, *_rows(tree, leaves))
+    row, begin, end = _without_neighbours(tree.mesh, tree.order, *_rows(tree, leaves))
     count = np.maximum(end - begin, 0)
     i, j = tree.order[np.repeat(row, count)], tree.order[_ranges(begin, count)]
     if np.any(np.diff(tree.order) < 0):
-        i, j = np.divmod(np.sort(_code(i, j, mesh.size)), mesh.size)
+        i, j = np.divmod(np.sort(_code(i, j, tree.mesh.size)), tree.mesh.size)
     return i, j
 
 
