@@ -44,3 +44,9 @@ def graded_trefoil(n: int, ratio: float) -> Curve:
     t = 2 * np.pi * np.cumsum(density) / density.sum()
     radius = 2 + np.cos(3 * t)
     return Curve(np.stack([radius * np.cos(2 * t), radius * np.sin(2 * t), np.sin(3 * t)], axis=1))
+
+
+def scattered_rings(count: int, size: int, spread: float = 10.0, dimension: int = 3) -> Curve:
+    """Small polygons anywhere in a cube, in no spatial order."""
+    centres = np.random.default_rng(17).uniform(0, spread, (count, 1, dimension))
+    return Curve.from_components(list(centres + regular_polygon(size, dimension).vertices))

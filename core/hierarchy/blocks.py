@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..curve import Curve
+from ..curve import Curve, Mesh
 from ..curve.tiles import EdgePairIndices
 from ..errors import OptionError
 from ..types import BoolArray, FloatArray, IntArray
@@ -43,13 +43,12 @@ class BlockList:
         """The list of a curve: separation parameter 0 < θ < 1, and the largest number of edges in a leaf."""
         tree = ClusterTree.of(curve, leaf)
         blocks, near = _traverse(tree, *tree.balls(curve), theta)
-        i, j = _edge_pairs(tree, near)
-        kept = curve.mesh.heads[i] != j
-        kept &= curve.mesh.heads[j] != i
-        return cls(tree, *blocks, *_sorted(i[kept], j[kept], len(curve)))
+        return cls(tree, *blocks, *_edge_pairs(tree, near))
 
     def is_separated(self, curve: Curve, theta: float) -> bool:
-        """Whether at another curve of the same mesh all blocks are admissible with such a parameter."""
+        """Whether another curve has the same mesh, and all blocks are admissible there with such a parameter."""
+        if curve.mesh != self.tree.mesh:
+            return False
         centre, radius = self.tree.balls(curve)
         return bool(_admissible(centre, radius, self.first, self.second, theta).all())
 
@@ -61,12 +60,12 @@ class BlockList:
         OptionError
             If one of these is not a near pair.
         """
-        if without is None:
+        if without is None or not without[0].size:
             return self.i, self.j
-        n = len(self.tree.order)
+        n = self.tree.mesh.size
         code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
-        place = np.searchsorted(code, left_out).clip(max=len(code) - 1)
-        if not np.array_equal(code[place], left_out):
+        place = np.searchsorted(code, left_out)
+        if not np.array_equal(code[place[place < len(code)]], left_out):
             raise OptionError("a pair of edges to be left out is not a near one")
         return np.delete(self.i, place), np.delete(self.j, place)
 
@@ -129,21 +128,49 @@ def _split(tree: ClusterTree, radius: FloatArray, first: IntArray, second: IntAr
 
 
 def _edge_pairs(tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
-    """All pairs of an edge of one leaf and one of the other; within a leaf every unordered pair once."""
-    first, second = leaves
-    columns = (tree.stop - tree.start)[second]
-    count = (tree.stop - tree.start)[first] * columns
-    pair = np.repeat(np.arange(len(first)), count)
-    within = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
-    row, column = np.divmod(within, columns[pair])
-    i, j = tree.start[first][pair] + row, tree.start[second][pair] + column
-    once = (first != second)[pair] | (i < j)
-    return tree.order[i[once]], tree.order[j[once]]
+    """All pairs of edges of two leaves that have no vertex in common, i < j, sorted by i and then by j."""
+    row, begin, end = _without_neighbours(tree.mesh, tree.order, *_rows(tree, leaves))
+    count = np.maximum(end - begin, 0)
+    i, j = tree.order[np.repeat(row, count)], tree.order[_ranges(begin, count)]
+    if np.any(np.diff(tree.order) < 0):
+        i, j = np.divmod(np.sort(_code(i, j, tree.mesh.size)), tree.mesh.size)
+    return i, j
 
 
-def _sorted(i: IntArray, j: IntArray, n: int) -> EdgePairIndices:
-    """The pairs with i < j, sorted by i and then by j."""
-    return np.divmod(np.sort(_code(i, j, n)), n)
+def _rows(tree: ClusterTree, leaves: ClusterPairs) -> tuple[IntArray, IntArray, IntArray]:
+    """For each position and each partner of its leaf the later positions [begin, end) there, sorted by both."""
+    swap = tree.start[leaves[0]] > tree.start[leaves[1]]
+    first, second = np.where(swap, leaves[::-1], leaves)
+    by_start = np.argsort(tree.start[first] * len(tree.order) + tree.start[second])
+    first, second = first[by_start], second[by_start]
+    own = tree.leaves()  # each of which is a partner of its own
+    partners = np.searchsorted(tree.start[first], [tree.start[own], tree.stop[own]])
+    size = (tree.stop - tree.start)[own]
+    start, count = np.repeat(partners[0], size), np.repeat(partners[1] - partners[0], size)
+    row, partner = np.repeat(np.arange(len(tree.order)), count), second[_ranges(start, count)]
+    return row, np.maximum(tree.start[partner], row + 1), tree.stop[partner]
+
+
+def _without_neighbours(
+    mesh: Mesh, order: IntArray, row: IntArray, begin: IntArray, end: IntArray
+) -> tuple[IntArray, IntArray, IntArray]:
+    """The same ranges without the edges that share a vertex with the row's."""
+    position = np.empty_like(order)
+    position[order] = np.arange(len(order))
+    # of two neighbours the later one comes right after, or is the last of the component whose first the other one is
+    begin = begin + (begin == position[mesh.heads[order]][row])
+    last = position[mesh.previous[order]][row]
+    cut = np.flatnonzero((begin <= last) & (last < end))
+    return (
+        np.insert(row, cut, row[cut]),
+        np.insert(begin, cut + 1, last[cut] + 1),
+        np.insert(end, cut, last[cut]),
+    )
+
+
+def _ranges(start: IntArray, count: IntArray) -> IntArray:
+    """start, start + 1, … of each of some ranges, one after the other."""
+    return np.asarray(np.repeat(start - np.cumsum(count) + count, count) + np.arange(count.sum()))
 
 
 def _code(i: IntArray, j: IntArray, n: int) -> IntArray:

@@ -20,6 +20,8 @@ class ClusterTree:
 
     Attributes
     ----------
+    mesh
+        Connectivity.
     order
         Edge at each position; shape (n,).
     start, stop
@@ -30,6 +32,7 @@ class ClusterTree:
         The clusters of each level, from the root.
     """
 
+    mesh: Mesh
     order: IntArray
     start: IntArray
     stop: IntArray
@@ -54,7 +57,7 @@ class ClusterTree:
             start, stop = _interleaved(start[split], middle), _interleaved(middle, stop[split])
             first = last
         starts, stops, children = (frozen(np.concatenate(arrays)) for arrays in zip(*parts, strict=True))
-        return cls(order, starts, stops, children, tuple(levels))
+        return cls(curve.mesh, order, starts, stops, children, tuple(levels))
 
     @property
     def size(self) -> int:

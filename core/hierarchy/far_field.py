@@ -14,14 +14,15 @@ import numpy as np
 from ..energies.moebius_pairs import DerivativeSums, Vectors
 from ..types import FloatArray, IntArray
 from .blocks import BlockList
+from .expansion import Expansion
 from .kernels import kernel_derivatives
-from .moments import Expansion, MomentTree, polynomial_rows
+from .moments import MomentTree, polynomial_rows
 
 CHUNK = 1024  # blocks handled at once, for the processor's cache
 
 
 class _Kernel(NamedTuple):
-    """One of the two kernels φ: its derivatives at some blocks, and the moments M, N of both clusters.
+    """One of the two kernels φ: its derivatives at some blocks (M2L), and the moments M, N of both clusters.
 
     Its part of the energy is Σ_αβ M_α N_β ∂^{α+β} φ, |α|, |β| ≥ ``lowest`` and |α + β| ≤ 2 ``lowest`` + p.
     """
@@ -45,7 +46,7 @@ class _Kernel(NamedTuple):
         totals = range(2 * self.lowest, self.lowest + highest + 1)
         return self.expansion.table.contract(self.derivatives, moments, range(self.lowest, highest + 1), totals)
 
-    def pull(self) -> FloatArray:
+    def by_centre(self) -> FloatArray:
         """Its derivative with respect to the first centre, the edges at rest; minus the second's; shape (m, k).
 
         Only terms of the highest order are left: any other change of d is undone by that of the moments.
@@ -97,16 +98,16 @@ class FarField:
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
         """The sum and the sums that make its derivative."""
-        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.pull.stop))
+        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_centre.stop))
         by_second = np.zeros_like(by_first)
         for first, second, (square, log) in self._chunks():
-            local, pull = (square.by_first(), log.by_first()), square.pull() + log.pull()
+            local, by_centre = (square.by_first(), log.by_first()), square.by_centre() + log.by_centre()
             value += float(np.vdot(square.first, local[0]) + np.vdot(log.first, local[1]))
-            _add_rows(by_first, first, np.concatenate([*local, pull]))
-            _add_rows(by_second, second, np.concatenate([square.by_second(), log.by_second(), pull]))
+            _add_rows(by_first, first, np.concatenate([*local, by_centre]))
+            _add_rows(by_second, second, np.concatenate([square.by_second(), log.by_second(), by_centre]))
         by_second *= self._expansion.signs
         by_second += by_first
-        return value, self._clusters.hand_down(by_second)
+        return value, self._clusters.derivative_sums(by_second)
 
     def _chunks(self) -> Iterator[_Chunk]:
         moments, centres, x = self._clusters.moments(), self._clusters.centres, self._expansion

@@ -1,4 +1,7 @@
-"""Moments of clusters, collected up the tree, and their derivatives, handed down it again."""
+"""The upward and the downward pass: moments of all clusters, and derivatives at the edges from those at the clusters.
+
+In the words of the fast multipole method they are P2M and M2M, and L2L and L2P; what is between is in `far_field`.
+"""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -10,48 +13,9 @@ import numpy as np
 from ..energies.moebius_pairs import DerivativeSums, Vectors
 from ..types import FloatArray, IntArray
 from .clusters import ClusterTree
-from .polynomials import Polynomials, polynomials
+from .expansion import Expansion
 
 CHUNK = 1024  # polynomials handled at once, for the processor's cache
-
-
-@dataclass(frozen=True)
-class Expansion:
-    """The two moments of a cluster, as rows one below the other, and what comes with their derivatives.
-
-    ``lengths`` are the rows of Σ_I ℓ_I exp⟨u_I, ξ⟩ up to degree p, u_I = m_I − centre, ``edges`` those of
-    Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1, and ``pull`` those of derivatives with respect to the centre.
-    """
-
-    dimension: int
-    order: int
-
-    @property
-    def table(self) -> Polynomials:
-        """Polynomials of all degrees needed, those of the kernels' derivatives among them."""
-        return polynomials(self.dimension, self.order + 3)
-
-    @property
-    def lengths(self) -> slice:
-        """The first rows."""
-        return slice(0, self.table.size(self.order))
-
-    @property
-    def edges(self) -> slice:
-        """The next."""
-        return slice(self.lengths.stop, self.lengths.stop + self.table.size(self.order + 1))
-
-    @property
-    def pull(self) -> slice:
-        """The last."""
-        return slice(self.edges.stop, self.edges.stop + self.dimension)
-
-    @cached_property
-    def signs(self) -> FloatArray:
-        """What the parts of the second cluster of a block are multiplied by, because it is at −d; shape (rows,)."""
-        signs = self.table.signs[:, 0]
-        lengths, edges = signs[: self.table.size(self.order)], -signs[: self.table.size(self.order + 1)]
-        return np.concatenate([lengths, edges, np.full(self.dimension, -1.0)])
 
 
 class _Leaves(NamedTuple):
@@ -92,7 +56,7 @@ class MomentTree:
         return np.asarray(total / (self.tree.stop - self.tree.start)[:, None])
 
     def moments(self) -> FloatArray:
-        """The moments of all clusters; shape (clusters, rows)."""
+        """The upward pass: the moments of all clusters; shape (clusters, rows)."""
         x, table = self.expansion, self.expansion.table
         moments = np.zeros((self.tree.size, x.edges.stop))
         for leaves in self._leaves():
@@ -105,14 +69,14 @@ class MomentTree:
             moments[parents] += np.concatenate(moved).T
         return moments
 
-    def hand_down(self, local: FloatArray) -> DerivativeSums:
-        """Derivatives with respect to edge vectors, midpoints and lengths.
+    def derivative_sums(self, local: FloatArray) -> DerivativeSums:
+        """The downward pass: derivatives with respect to edge vectors, midpoints and lengths.
 
-        From those with respect to the moments at fixed centres and to the centres, shape (clusters, rows); overwrites
-        these.
+        ``local``, shape (clusters, rows), are those with respect to the moments at fixed centres and to the centres;
+        it is overwritten.
         """
         x = self.expansion
-        local[:, x.pull] /= (self.tree.stop - self.tree.start)[:, None]
+        local[:, x.by_centre] /= (self.tree.stop - self.tree.start)[:, None]
         for parents, children in self._links(self.tree.downward()):
             local[children] += self._moved(polynomial_rows(local, parents), self._shifts(parents, children)).T
         sums = DerivativeSums.zeros(*self.vectors.e.shape)
@@ -129,7 +93,7 @@ class MomentTree:
         for lowest, rows in enumerate((x.lengths, x.edges)):
             degrees = range(lowest, x.order + lowest + 1)
             moved.append(x.table.contract(local[rows], shift, degrees, degrees))
-        return np.concatenate([*moved, local[x.pull]])
+        return np.concatenate([*moved, local[x.by_centre]])
 
     def _at_edges(self, leaves: _Leaves, local: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Derivatives at some edges, from those of their leaves; shapes (m, k), (m, k) and (k,)."""
@@ -138,7 +102,7 @@ class MomentTree:
         by_length = contract(local[x.lengths], power, range(2), range(x.order + 1))
         by_edge = contract(local[x.edges], power, range(1, 3), range(1, x.order + 2))
         e = np.concatenate([np.zeros((1, len(leaves.edges))), self.vectors.e[leaves.edges].T])
-        by_midpoint = self.vectors.ell[leaves.edges] * by_length[1:] + local[x.pull]
+        by_midpoint = self.vectors.ell[leaves.edges] * by_length[1:] + local[x.by_centre]
         by_midpoint += contract(by_edge, e, range(1, 2), range(2, 3))[1:]
         return by_edge[1 : m + 1], by_midpoint, by_length[0]
 

@@ -35,11 +35,12 @@ class NearField:
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
         """The sum and the sums that make its derivative."""
-        value, coefficients = 0.0, np.empty((4, len(self.pairs[0])))
+        value, coefficients = 0.0, Coefficients(*(np.empty(len(self.pairs[0])) for _ in Coefficients._fields))
         for part in self._parts():
             scalars = self._scalars(part)
             value += scalars.energy()
-            coefficients[:, part] = scalars.coefficients()
+            for whole, values in zip(coefficients, scalars.coefficients(), strict=True):
+                whole[part] = values
         sums = DerivativeSums.zeros(*self.edges.tau.shape)
         sums.add(slice(None), slice(None), Coefficients(*map(self._matrix, coefficients)), self.edges.vectors)
         return value, sums

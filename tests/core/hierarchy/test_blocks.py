@@ -6,16 +6,8 @@ from mobius_flow.core import Curve
 from mobius_flow.core.energies.near_pairs import near_pairs
 from mobius_flow.core.hierarchy import BlockList, ClusterTree
 from mobius_flow.core.knots import knot
-from shapes import hopf_link, regular_polygon, torus_trefoil
+from shapes import hopf_link, regular_polygon, scattered_rings, torus_trefoil
 from smooth_curves import random_polygon
-
-
-def rings(count: int, size: int, spread: float = 10.0, dimension: int = 3) -> Curve:
-    """Small polygons scattered in space, in no spatial order."""
-    rng = np.random.default_rng(17)
-    centres = rng.uniform(0, spread, (count, 1, dimension))
-    return Curve.from_components(list(centres + regular_polygon(size, dimension).vertices))
-
 
 CURVES = {
     "triangle": regular_polygon(3),
@@ -25,9 +17,9 @@ CURVES = {
     "hopf": hopf_link(37),
     "small": random_polygon(5, (3, 4, 5, 3, 11, 6), 3),
     "fourfold": random_polygon(7, (26, 37), 4),
-    "rings": rings(150, 3),
-    "planar rings": rings(40, 7, dimension=2),
-    "uneven": Curve.from_components([*rings(30, 3).components, torus_trefoil(101).vertices]),
+    "rings": scattered_rings(150, 3),
+    "planar rings": scattered_rings(40, 7, dimension=2),
+    "uneven": Curve.from_components([*scattered_rings(30, 3).components, torus_trefoil(101).vertices]),
 }
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 LIST = pytest.mark.parametrize(("theta", "leaf"), [(0.2, 1), (0.25, 4), (0.5, 8), (0.9, 3)])
@@ -52,7 +44,14 @@ def test_every_pair_of_edges_exactly_once(curve: Curve, theta: float, leaf: int)
     np.testing.assert_array_equal(multiplicity(BlockList.of(curve, theta, leaf)), expected)
 
 
-@pytest.mark.parametrize("curve", [torus_trefoil(20_000), rings(3_000, 5, spread=40.0)], ids=["long", "many"])
+@CURVE
+def test_near_pairs_are_sorted(curve: Curve) -> None:
+    blocks = BlockList.of(curve, 0.25, 4)
+    assert np.all(blocks.i < blocks.j)
+    assert np.all(np.diff(blocks.i * len(curve) + blocks.j) > 0)
+
+
+@pytest.mark.parametrize("curve", [torus_trefoil(20_000), scattered_rings(3_000, 5, spread=40.0)], ids=["long", "many"])
 def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
     blocks, n = BlockList.of(curve, 0.25, 4), len(curve)
     sums = np.zeros(n + 1)
@@ -115,7 +114,7 @@ def test_size_of_the_list_is_linear() -> None:
 
 
 def test_many_components_make_no_more_pairs_than_one_curve() -> None:
-    curve, single = rings(2_000, 5, spread=60.0), torus_trefoil(10_000)
+    curve, single = scattered_rings(2_000, 5, spread=60.0), torus_trefoil(10_000)
     many, one = BlockList.of(curve, 0.5, 4), BlockList.of(single, 0.5, 4)
     assert len(many.first) < 50 * len(one.first)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective
+from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, RelaxOptions, minimize
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.energies import ENERGIES, Energy
 from mobius_flow.core.energies.near_pairs import near_pairs, replaced_pairs
@@ -11,14 +11,8 @@ from mobius_flow.core.hierarchy.energy import THETA
 from mobius_flow.core.knots import knot
 from mobius_flow.core.metrics.moebius import MoebiusMetric
 from mobius_flow.core.taylor import derivative_slope
-from shapes import hopf_link, regular_polygon, torus_trefoil
+from shapes import hopf_link, regular_polygon, scattered_rings, torus_trefoil
 from smooth_curves import SMOOTH_CURVES, random_polygon
-
-
-def rings(count: int, size: int, dimension: int = 3) -> Curve:
-    """Small polygons scattered in space."""
-    centres = np.random.default_rng(17).uniform(0, 20, (count, 1, dimension))
-    return Curve.from_components(list(centres + regular_polygon(size, dimension).vertices))
 
 
 def fourfold(n: int) -> Curve:
@@ -34,11 +28,11 @@ CURVES = {
     "wave": SMOOTH_CURVES["wave"].polygon(500),
     "ellipse": SMOOTH_CURVES["ellipse"].polygon(500),
     "fourfold": fourfold(500),
-    "rings": rings(120, 5),
-    "planar rings": rings(100, 3, 2),
+    "rings": scattered_rings(120, 5, 20.0),
+    "planar rings": scattered_rings(100, 3, 20.0, 2),
     "table": refine(knot("8_19"), 700),
     "tangle": subdivide(random_polygon(3, (30,), 3), np.full(30, 20)),
-    "uneven": Curve.from_components([torus_trefoil(301).vertices, *rings(20, 3).components]),
+    "uneven": Curve.from_components([torus_trefoil(301).vertices, *scattered_rings(20, 3, 20.0).components]),
 }
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
@@ -80,6 +74,14 @@ def test_taylor_slope_where_expansions_are_poor(monkeypatch: pytest.MonkeyPatch)
     poor = with_small_leaves(curve, 0.8)
     assert poor.value(curve) != pytest.approx(MoebiusEnergy().value(curve), rel=1e-4)
     assert derivative_slope(poor, curve, direction_for(curve), largest=1e-4) == pytest.approx(2, abs=0.02)
+
+
+def test_curves_without_blocks_or_pairs() -> None:
+    for curve in (regular_polygon(3), regular_polygon(5, 2), scattered_rings(1, 4)):
+        energy, derivative = HierarchicalMoebiusEnergy().value_and_derivative(curve)
+        exact, exact_derivative = MoebiusEnergy().value_and_derivative(curve)
+        assert energy == pytest.approx(exact, rel=1e-14)
+        np.testing.assert_allclose(derivative, exact_derivative, atol=1e-14)
 
 
 def test_value_agrees_with_value_and_derivative() -> None:
@@ -141,6 +143,7 @@ def test_left_out_pairs_must_be_near() -> None:
     curve = torus_trefoil(300)
     blocks = BlockList.of(curve, THETA, 4)
     far = blocks.tree.order[blocks.a[:1]], blocks.tree.order[blocks.c[:1]]
+    assert HierarchicalMoebiusEnergy(blocks, (far[0][:0], far[1][:0])).value(curve)
     for pairs in (far, (np.append(blocks.i[:2], far[0]), np.append(blocks.j[:2], far[1]))):
         with pytest.raises(MobiusFlowError, match="not a near one"):
             HierarchicalMoebiusEnergy(blocks, pairs).value(curve)
@@ -159,6 +162,12 @@ def test_a_frozen_list_stays_until_strands_come_near() -> None:
     assert frozen.leaving_out(pairs).value(flat) == pytest.approx(exact, rel=1e-6)
 
 
+def test_a_frozen_list_is_of_no_use_to_another_mesh() -> None:
+    frozen = HierarchicalMoebiusEnergy().frozen_at(hopf_link(60))
+    for other in (torus_trefoil(120), hopf_link(80)):
+        assert frozen.value(other) == HierarchicalMoebiusEnergy().value(other)
+
+
 def test_other_energies_have_no_fast_form() -> None:
     pairs = (np.array([0]), np.array([2]))
     assert HierarchicalMoebiusEnergy.instead_of(MoebiusEnergy(pairs)).without is pairs
@@ -169,3 +178,12 @@ def test_other_energies_have_no_fast_form() -> None:
 
 def test_it_is_an_energy() -> None:
     assert isinstance(HierarchicalMoebiusEnergy(), Energy)
+
+
+def test_relax_takes_the_same_steps_with_it() -> None:
+    fast, slow = (
+        minimize(torus_trefoil(300), RelaxOptions(energy=energy, max_iterations=4)).energies
+        for energy in (HierarchicalMoebiusEnergy(), "moebius")
+    )
+    assert len(slow) == 5
+    assert fast == pytest.approx(slow, rel=1e-6)
