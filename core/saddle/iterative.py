@@ -39,6 +39,11 @@ class Tolerances:
         the model: too short a way to meet another strand, of which the model knows nothing.
     max_iterations
         Of one system.
+
+    Raises
+    ------
+    OptionError
+        If a value is outside (0, 1], or an iteration number not positive.
     """
 
     gradient: float = 1e-2
