@@ -30,7 +30,7 @@ from .running_sum import RunningSum
 
 SEPARATION = 0.5  # θ of the block list
 LEAF = 4
-EVEN_RATIO = 10.0  # of the longest edge to the shortest, up to which Fourier transforms are faster than resolvents
+EVEN_RATIO = 10.0  # of the longest edge of a component to its shortest, up to which Fourier transforms are faster
 SOLVED = 1e-10  # relative error of A⁻¹ f
 MAX_ITERATIONS = 1000
 
@@ -105,7 +105,9 @@ class CompressedInnerProduct:
     def model(self) -> TwoLevel:
         """A function of the Laplacian along the components, and the coupling of whole components."""
         mesh, ell = self.curve.mesh, self.curve.edge_lengths
-        along = Circulants if ell.max() <= EVEN_RATIO * ell.min() else Resolvents
+        starts = mesh.offsets[:-1]
+        even = np.all(np.maximum.reduceat(ell, starts) <= EVEN_RATIO * np.minimum.reduceat(ell, starts))
+        along = Circulants if even else Resolvents
         return TwoLevel(mesh, along(mesh, ell, self.apply), self.coupling, _indicators(self.curve).T @ self.vectors)
 
 

@@ -1,8 +1,9 @@
 """Models of inner products of order 3/2 that fast Fourier transforms invert, for edges of similar lengths.
 
 On a polygon of equal edges the seminorm of W^{3/2,2} is a circulant matrix, and J_C is spectrally equivalent to one.
-Where edge lengths ℓ vary, an inner product of order 3/2 grows like ℓ⁻², so the circulant matrix is a model in the
-unknown u/ℓ.
+It grows like ℓ⁻² with the edge length ℓ.  Where this varies from component to component, u/ℓ is the right unknown;
+along one component it is not, because multiplying by a function with jumps is not bounded in W^{3/2,2}: iterations
+would grow with n, whereas with one scale they only grow with the ratio of lengths.
 """
 
 import numpy as np
@@ -13,18 +14,16 @@ from .fourier import ComponentTransform
 from .krylov import LinearMap
 from .symbol import Parameter
 
-SMOOTHING = 16.0  # edges: multiplying by a rough function is not bounded in W^{3/2,2}, so ℓ is a moving average
-
 
 class Circulants:
-    """M = W⁻¹ F W⁻¹, F circulant on each component and W the smoothed edge lengths.
+    """M = W⁻¹ F W⁻¹, F circulant on each component, of one symbol, and W the mean edge length of the component.
 
     Parameters
     ----------
     mesh
         Connectivity.
     lengths
-        Edge lengths ℓ, positive, shape (n,).
+        Edge lengths, positive, shape (n,).
     apply
         The product A u that M is a model of, (n, k) to (n, k).
 
@@ -36,8 +35,8 @@ class Circulants:
 
     def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
         self._transform = ComponentTransform(mesh)
-        gaussian = self._transform.sampled(lambda theta: np.exp(-0.5 * (SMOOTHING * theta) ** 2))
-        self._scale = np.exp(self._transform.filtered(np.log(lengths)[:, None], gaussian))
+        means = np.add.reduceat(lengths, mesh.offsets[:-1]) / np.asarray(mesh.component_sizes)
+        self._scale = means[mesh.component, None]
         one = np.ones(mesh.size)
         symbol = Parameter.of_steps(mesh, one).symbol(lambda v: self._scale * apply(self._scale * v), one, np.pi)
         values = self._transform.sampled(symbol)
@@ -48,8 +47,8 @@ class Circulants:
 
     def solve(self, f: FloatArray) -> FloatArray:
         """M⁻¹ f; shape (n, k)."""
-        return self._scale * self._transform.filtered(self._scale * f, self._inverse)
+        return np.asarray(self._scale * self._transform.filtered(self._scale * f, self._inverse))
 
     def solve_differences(self, g: FloatArray) -> FloatArray:
-        """(D M⁻¹ Dᵀ)⁻¹ g for edge differences D, where edge lengths are equal, and near it elsewhere; shape (n, k)."""
+        """(D M⁻¹ Dᵀ)⁻¹ g for edge differences D, on their range; shape (n, k)."""
         return np.asarray(self._transform.filtered(g / self._scale, self._stiffness) / self._scale)

@@ -37,6 +37,11 @@ class Tolerances:
         Of C u = ξ.
     max_iterations
         Of one system.
+
+    Raises
+    ------
+    OptionError
+        If a value is outside (0, 1], or an iteration number not positive.
     """
 
     gradient: float = 1e-2

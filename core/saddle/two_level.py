@@ -36,16 +36,15 @@ class TwoLevel:
     def __init__(self, mesh: Mesh, fine: Model, coupling: sp.sparray, vectors: FloatArray) -> None:
         self._fine = fine
         self._component, self._starts = mesh.component, mesh.offsets[:-1]
-        rank = vectors.shape[1]
+        self._rank = vectors.shape[1]
         border = sp.csr_array(vectors)
         # V Vᵀ would be dense
-        self._factor = factorised(sp.block_array([[coupling, border], [border.T, -sp.eye_array(rank)]]))
-        self._no_force = np.zeros((rank, 1))
+        self._factor = factorised(sp.block_array([[coupling, border], [border.T, -sp.eye_array(self._rank)]]))
 
     def solve(self, f: FloatArray) -> FloatArray:
         """M⁻¹ f; shape (n, k)."""
         force = np.add.reduceat(f, self._starts, axis=0)
-        padded = np.concatenate([force, np.repeat(self._no_force, f.shape[1], axis=1)])
+        padded = np.concatenate([force, np.zeros((self._rank, f.shape[1]))])
         shift = self._factor.solve(padded)[: len(force)]
         return np.asarray(self._fine.solve(f) + shift[self._component])
 

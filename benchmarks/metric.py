@@ -1,0 +1,83 @@
+"""Times of compressed inner products: python benchmarks/metric.py [vertices ...]
+
+One line per curve: building J_C, its product with three columns, its model, a projected gradient, a pseudo-inverse and
+a step of Newton's method back to the constraints, in milliseconds of processor time, the least of three. Run it with
+one BLAS thread on a quiet machine.
+"""
+
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from time import process_time
+from typing import TypeVar
+
+import numpy as np
+from mobius_flow.core import Curve
+from mobius_flow.core.constraints import ConstraintDerivative
+from mobius_flow.core.curve import refine
+from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
+from mobius_flow.core.knots import knot, torus_knot
+
+_Value = TypeVar("_Value")
+
+
+def chain(n: int) -> Curve:
+    """Rings of 20 vertices, each through the next one."""
+    t = 2 * np.pi * np.arange(20) / 20
+    ring = np.stack([np.cos(t), np.sin(t), np.zeros(20)], axis=1)
+    turned = ring, ring[:, [0, 2, 1]]
+    return Curve.from_components([turned[k % 2] + np.array([1.3 * k, 0.0, 0.0]) for k in range(n // 20)])
+
+
+def graded(n: int) -> Curve:
+    """A trefoil with edges a hundred times shorter at three places than halfway between them."""
+    density = 10.0 ** np.cos(6 * np.pi * np.arange(n) / n)
+    t = 2 * np.pi * np.cumsum(density) / density.sum()
+    radius = 2 + np.cos(3 * t)
+    return Curve(np.stack([radius * np.cos(2 * t), radius * np.sin(2 * t), np.sin(3 * t)], axis=1))
+
+
+CURVES: dict[str, Callable[[int], Curve]] = {
+    "torus knot (2,3)": lambda n: torus_knot(2, 3, n),
+    "Ochiai's unknot": lambda n: refine(knot("ochiai-1"), n),
+    "chain of rings": chain,
+    "graded trefoil": graded,
+}
+
+
+def timed(function: Callable[[], _Value]) -> tuple[float, _Value]:
+    """Milliseconds, and the value."""
+    times = []
+    for _ in range(3):
+        start = process_time()
+        value = function()
+        times.append(process_time() - start)
+    return 1e3 * min(times), value
+
+
+def line(curve: Curve) -> str:
+    """All times of one curve."""
+    constraints, load = ConstraintDerivative.at(curve), np.sin(3 * curve.vertices) * curve.edge_lengths[:, None]
+    build, inner = timed(lambda: moebius_inner_product(curve))
+    product, _ = timed(lambda: inner.apply(load))
+    model, _ = timed(lambda: replace(inner).model)
+    space = inner.tangent_space(constraints)
+    gradient, _ = timed(lambda: space.gradient(load))
+    error = constraints.apply(np.sin(3 * curve.vertices))
+    large, _ = timed(lambda: space.pseudo_inverse(error))
+    small, _ = timed(lambda: space.restoration(1e-3 * error / np.abs(error).max(), constraints))
+    times = "".join(f"{value:10.1f}" for value in (build, product, model, gradient, large, small))
+    return f"{len(curve):8}{times}"
+
+
+def main() -> None:
+    """All curves in all sizes."""
+    sizes = [int(size) for size in sys.argv[1:]] or [1000, 10_000, 100_000]
+    print(f"{'':18}{'n':>8}   build   product     model  gradient   C^† big     small")
+    for name, make in CURVES.items():
+        for n in sizes:
+            print(f"{name:18}{line(make(n))}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
