@@ -147,9 +147,16 @@ MUTANTS = (
     Mutant(
         "small residuals in the metric",
         "core/descent/constrained.py",
-        "if error > self.small:",
-        "if error > 0.0:",
+        "> self.small:",
+        "> 0.0:",
         f"{RESTORATION}::test_the_last_corrections_converge_quadratically",
+    ),
+    Mutant(
+        "short edges turned by the shortest corrections",
+        "core/descent/constrained.py",
+        "axis=1) / curve.edge_lengths))",
+        "axis=1) / curve.edge_lengths.max()))",
+        f"{RESTORATION}::test_edges_much_shorter_than_others_are_left_to_the_metric",
     ),
     Mutant(
         "stripes that forget the edge before",

@@ -27,8 +27,9 @@ class Constrained:
     max_iterations
         Of the modified Newton method (42), and of Newton's for what it leaves over.
     small
-        Residual below which `TangentSpace.restoration` is as good as the shortest way back in the metric, and far
-        cheaper.  Larger corrections should know where other strands are, and not cost the energy the step has gained.
+        Change of an edge vector, relative to its length, up to which `TangentSpace.restoration` is as good as the
+        shortest way back in the metric, and far cheaper.  Larger corrections should know where other strands are, not
+        turn edges that are much shorter than others, and not cost the energy the step has gained.
     contraction
         Least rate of both; where it is slower, a shorter step is cheaper than more iterations.
     """
@@ -59,8 +60,8 @@ class Constrained:
     def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
         """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point: (42).
 
-        Once the residual is small the derivative is that at Q and the pseudo-inverse one that is cheap, by which it
-        vanishes quadratically.  None if the residual does not contract: the step was too long.
+        Once corrections are small the derivative is that at Q and the pseudo-inverse one that is cheap, by which the
+        residual vanishes quadratically.  None if the residual does not contract: the step was too long.
         """
         last = np.inf
         for _ in range(self.max_iterations):
@@ -74,10 +75,10 @@ class Constrained:
             if not error <= self.contraction * last:
                 return None
             last = error
-            if error > self.small:
-                vertices = vertices - space.pseudo_inverse(residual)
-            else:
-                vertices = vertices + space.restoration(base.problem.constraints, point.curve, residual)
+            correction = space.restoration(base.problem.constraints, point.curve, residual)
+            if _relative_change(point.curve, correction) > self.small:
+                correction = -space.pseudo_inverse(residual)
+            vertices = vertices + correction
         return None
 
     def transport(self, point: "Point", u: FloatArray) -> FloatArray:
@@ -87,3 +88,9 @@ class Constrained:
     def weighted(self, penalty: float) -> "Constrained":
         """There is no penalty."""
         raise OptionError(f"penalty is {penalty}; the method keeps lengths and has no penalty")
+
+
+def _relative_change(curve: Curve, u: FloatArray) -> float:
+    """max |ΔU_I|/ℓ_I, by how much displacements u turn or stretch an edge."""
+    change = u[curve.mesh.heads] - u[curve.mesh.tails]
+    return float(np.max(np.linalg.norm(change, axis=1) / curve.edge_lengths))
