@@ -39,22 +39,15 @@ def points_along(curve: Curve, component: IntArray, position: FloatArray) -> Flo
     return np.asarray(curve.vertices[edge] + t[:, None] * curve.edge_vectors[edge])
 
 
-def arc_distances(curve: Curve, t_i: float, t_j: float, rows: slice) -> FloatArray:
-    """ϱ between the points at t_i of the edges in ``rows`` and at t_j of all edges; inf across components."""
+def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray, t_i: float = 0.0, t_j: float = 0.0) -> FloatArray:
+    """ϱ between the points at ``t_i`` of edges ``i`` and at ``t_j`` of edges ``j``, broadcast; inf across components.
+
+    By default the points are the edges' tails, the vertices of the same numbers.
+    """
     lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
     component = curve.mesh.component
-    gap = np.abs(np.subtract.outer(arc_positions(curve, t_i)[rows], arc_positions(curve, t_j)))
-    distance = np.minimum(gap, lengths[component[rows], None] - gap)
-    if len(lengths) > 1:
-        distance[component[rows, None] != component[None, :]] = np.inf
-    return np.asarray(distance)
-
-
-def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
-    """ϱ between vertices ``i`` and ``j``, elementwise; inf across components."""
-    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
-    component = curve.mesh.component
-    position = arc_positions(curve, 0.0)
-    gap = np.abs(position[i] - position[j])
+    gap = np.abs(arc_positions(curve, t_i)[i] - arc_positions(curve, t_j)[j])
     distance = np.minimum(gap, lengths[component[i]] - gap)
-    return np.where(component[i] == component[j], distance, np.inf)
+    if len(lengths) > 1:
+        distance[component[i] != component[j]] = np.inf
+    return np.asarray(distance)

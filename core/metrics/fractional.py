@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Curve
-from ..curve.distances import arc_distances
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import WithoutRule, mass
-from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
+from .pairs import arc_distances, difference_form, excluding_neighbours, row_blocks, slopes
 
 
 @dataclass(frozen=True)

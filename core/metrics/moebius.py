@@ -15,12 +15,12 @@ from itertools import product
 import numpy as np
 
 from ..curve import Curve
-from ..curve.distances import arc_distances, points_at, squared_distances
+from ..curve.distances import points_at, squared_distances
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
 from .local import lumped_mass
-from .pairs import difference_form, excluding_neighbours, row_blocks, slopes
+from .pairs import arc_distances, difference_form, excluding_neighbours, row_blocks, slopes
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
 # others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves it changes nothing.

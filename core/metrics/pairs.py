@@ -6,6 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..curve import Curve, Mesh
+from ..curve.distances import arc_distance_of_pairs
 from ..types import FloatArray
 
 ROWS_TIMES_COLUMNS = 48_000  # entries of one block of rows, to stay in the processor's cache
@@ -16,6 +17,12 @@ def row_blocks(mesh: Mesh) -> Iterator[slice]:
     block = max(1, ROWS_TIMES_COLUMNS // mesh.size)
     for first in range(0, mesh.size, block):
         yield slice(first, min(mesh.size, first + block))
+
+
+def arc_distances(curve: Curve, t_i: float, t_j: float, rows: slice) -> FloatArray:
+    """ϱ between the points at ``t_i`` of the edges in ``rows`` and at ``t_j`` of all edges; inf across components."""
+    edges = np.arange(len(curve))
+    return arc_distance_of_pairs(curve, edges[rows, None], edges[None, :], t_i, t_j)
 
 
 def excluding_neighbours(distance: FloatArray, mesh: Mesh, rows: slice) -> FloatArray:
