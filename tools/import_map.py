@@ -20,7 +20,7 @@ Map = Mapping[str, frozenset[str]]
 class _AtRunTime(ast.NodeTransformer):
     """Takes out what only type checkers read."""
 
-    def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:  # noqa: N802 - as ast calls it
+    def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:
         return node.orelse if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING" else node
 
 
