@@ -26,7 +26,7 @@ FLOORS = (
     {"addon"},
     {"cli"},
 )
-FLOOR = {name: number for number, floor in enumerate(FLOORS) for name in floor}
+FLOOR = {name: number for number, floor in enumerate(FLOORS) for name in sorted(floor)}
 
 
 def test_every_package_has_a_floor():
