@@ -11,6 +11,7 @@ from dataclasses import asdict
 from typing import BinaryIO
 
 from ..core import MobiusFlowError
+from ..core.errors import reason_of
 from ..core.verify import Verdict, verify
 from .curves import INPUT, STREAM
 from .places import is_file
@@ -76,7 +77,7 @@ def _opened(path: str) -> AbstractContextManager[BinaryIO]:
     try:
         return open(path, "rb")
     except (OSError, ValueError) as error:  # a ValueError for a null character
-        raise MobiusFlowError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
+        raise MobiusFlowError(f"{path}: cannot be read: {reason_of(error)}") from error
 
 
 def _spool(name: str, stream: BinaryIO, target: str) -> None:

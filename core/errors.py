@@ -42,7 +42,12 @@ class OutputError(MobiusFlowError):
     """A file that cannot be written; the message names it and the reason."""
 
     def __init__(self, path: Path | str, error: Exception) -> None:
-        super().__init__(f"{path}: cannot be written: {getattr(error, 'strerror', None) or str(error).strip()}")
+        super().__init__(f"{path}: cannot be written: {reason_of(error)}")
+
+
+def reason_of(error: Exception) -> str:
+    """Why a path cannot be opened: the system's words without its number, or those about a null character."""
+    return getattr(error, "strerror", None) or str(error).strip()
 
 
 def choice(name: str, known: Iterable[str]) -> str:

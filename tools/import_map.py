@@ -17,10 +17,21 @@ ROOT = Path(__file__).resolve().parents[1]
 Map = Mapping[str, frozenset[str]]
 
 
-def imports(path: Path, root: Path = ROOT) -> Iterator[str]:
-    """The dotted names that a module imports; those of the package start with its directory, as in ``core.curve``."""
+class _AtRunTime(ast.NodeTransformer):
+    """Takes out what only type checkers read."""
+
+    def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:
+        return node.orelse if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING" else node
+
+
+def imports(path: Path, root: Path = ROOT, *, types: bool = True) -> Iterator[str]:
+    """The dotted names that a module imports; those of the package start with its directory, as in ``core.curve``.
+
+    ``types`` tells whether those for type checkers count.
+    """
     package = path.relative_to(root).parts[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in ast.walk(tree if types else _AtRunTime().visit(tree)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):

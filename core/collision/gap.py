@@ -81,12 +81,12 @@ def near_edges(
     heads = curve.mesh.heads
     for a, b in tree.pairs(near):
         i, j = tree.order[a], tree.order[b]
-        squares = squared_distances(points, np.stack([i, heads[i], j, heads[j]]))
+        squares = squared_segment_distances(points, np.stack([i, heads[i], j, heads[j]]))
         kept = squares <= bound()
         yield i[kept], j[kept], squares[kept]
 
 
-def squared_distances(points: FloatArray, vertices: IntArray) -> FloatArray:
+def squared_segment_distances(points: FloatArray, vertices: IntArray) -> FloatArray:
     """Squared distances of pairs of segments given by their end points; shapes (m, n), (4, pairs) -> (pairs,)."""
     motion = relative_motion(points, points, vertices)[0]
     if len(points) > 3:  # four points span three dimensions at most: the same vectors in coordinates of their span
@@ -109,6 +109,6 @@ def _some_gap(curve: Curve, points: FloatArray) -> tuple[float, tuple[int, int] 
     i, j = i[apart], j[apart]
     if not i.size:
         return np.inf, None
-    squares = squared_distances(points, np.stack([i, heads[i], j, heads[j]]))
+    squares = squared_segment_distances(points, np.stack([i, heads[i], j, heads[j]]))
     k = int(np.argmin(squares))
     return float(squares[k]), (int(i[k]), int(j[k]))

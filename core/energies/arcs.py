@@ -9,6 +9,7 @@ the weights' sums over rows and columns and running sums along the curve.
 import numpy as np
 
 from ..curve import Curve
+from ..curve.distances import arc_positions
 from ..curve.tiles import Tile
 from ..types import BoolArray, FloatArray
 
@@ -22,7 +23,7 @@ class Arcs:
         mesh, ell = curve.mesh, curve.edge_lengths
         self.ell = ell
         self.component = mesh.component
-        self.start = np.concatenate([np.cumsum(ell[s]) - ell[s] for s in mesh.slices])
+        self.start = arc_positions(curve, 0.0)
         self.total = np.array([ell[s].sum() for s in mesh.slices])
 
     def distances(self, tile: Tile, t_row: float, t_column: float) -> FloatArray:

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import BinaryIO, TextIO
 
-from ...errors import CurveError, CurveFileError, wrong_suffix
+from ...errors import CurveError, CurveFileError, reason_of, wrong_suffix
 from ...system.files import atomic_write
 from ..curve import Curve, check_is_curve
 from . import json_lists, obj, vect, xyz
@@ -148,10 +148,8 @@ def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None 
             form.write(curve, stream)
     except CurveError as error:
         raise CurveFileError(path, str(error)) from error
-    except OSError as error:
-        raise CurveFileError(path, f"cannot be written: {error.strerror or error}") from error
-    except ValueError as error:  # a path with a null character
-        raise CurveFileError(path, f"cannot be written: {error}") from error
+    except (OSError, ValueError) as error:  # a ValueError for a path with a null character
+        raise CurveFileError(path, f"cannot be written: {reason_of(error)}") from error
 
 
 def format_of(path: Path) -> Format:

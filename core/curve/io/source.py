@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO
 
-from ...errors import CurveFileError
+from ...errors import CurveFileError, reason_of
 
 MAX_BYTES = 8 << 20  # a hundred thousand vertices with all their digits
 MAX_LINES = 500_000
@@ -39,7 +39,7 @@ class Source:
         try:
             stream = path.open("rb")
         except (OSError, ValueError) as error:  # a ValueError for a path with a null character
-            raise CurveFileError(path, f"cannot be read: {getattr(error, 'strerror', None) or error}") from error
+            raise CurveFileError(path, f"cannot be read: {reason_of(error)}") from error
         with stream:
             return cls.read(path, stream)
 
@@ -49,7 +49,7 @@ class Source:
         try:
             data = stream.read(MAX_BYTES + 1)
         except OSError as error:
-            raise CurveFileError(path, f"cannot be read: {error.strerror or error}") from error
+            raise CurveFileError(path, f"cannot be read: {reason_of(error)}") from error
         if len(data) > MAX_BYTES:
             raise CurveFileError(path, f"longer than {MAX_BYTES >> 20} MB, which no curve that can be used is")
         text = _decode(path, data).replace("\r\n", "\n").replace("\r", "\n")
