@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -88,6 +89,8 @@ def run(options: argparse.Namespace) -> int:
     if output.needs_iterates and changed:
         names = " and ".join(changed)
         raise OptionError(f"{options.output}: keyframes need a fixed mesh; leave {names} out, or write a curve file")
+    if output.needs_iterates:
+        wanted = replace(wanted, mesh="fixed")
     check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
     file = curves.read(options.input, options.format)
     admit(output, options.output, file.curve)

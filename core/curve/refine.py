@@ -48,7 +48,7 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
         )
     spacing = target_spacing(curve)
     if vertices is not None:
-        return subdivide(curve, _apportion(curve.edge_lengths / spacing, vertices))
+        return subdivide(curve, apportion(curve.edge_lengths / spacing, vertices))
     return subdivide(curve, _affordable_pieces(curve, spacing))
 
 
@@ -149,7 +149,7 @@ def _affordable_pieces(curve: Curve, spacing: FloatArray) -> IntArray:
         floor = 1.2 * max(floor, float(spacing.min()), curve.length / (100.0 * most))
 
 
-def _apportion(wanted: FloatArray, total: int) -> IntArray:
+def apportion(wanted: FloatArray, total: int) -> IntArray:
     """Pieces per edge, at least 1 each and ``total`` together, as nearly proportional to ``wanted`` as can be."""
     pieces = np.maximum(1, np.floor(wanted * (total - len(wanted)) / wanted.sum())).astype(np.intp)
     queue = [(-w / p, k) for k, (w, p) in enumerate(zip(wanted, pieces, strict=True))]

@@ -40,6 +40,8 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
 
     Whether every method can be run is looked at before the first one is. Raises as `relax` does.
     """
+    if options.mesh == "auto":
+        options = replace(options, mesh="fixed")  # steps are to be compared on one mesh
     if isinstance(methods, str):
         raise OptionError(f"methods are {methods!r:.60}; give a list of names")
     start = prepared_start(curve, options.vertices, [replace(options, method=method) for method in methods])

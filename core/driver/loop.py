@@ -5,7 +5,7 @@ from collections.abc import Generator, Iterator, Sequence
 import numpy as np
 
 from ..descent import NoStep, Step
-from .change import Change
+from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
 from .iterate import Iterate
 from .outcome import DEGENERATE, ROSE, Outcome, out_of_iterations, stalled
@@ -29,20 +29,25 @@ def iterates(run: Run) -> Relaxation:
 
 def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
     yield run.iterate
+    event: Event = Start()
     while True:
-        event = termination(run) or run.step()
-        if isinstance(event, Step):
-            yield run.accept(event)
         answer = _answer(event, interventions)
-        if isinstance(answer, Change) and not run.at_limit:
+        if isinstance(answer, Change) and not (run.at_limit and answer.step):
+            mesh = run.problem.mesh
             yield from _changed(run, answer)
+            if run.problem.mesh is not mesh:
+                event = Start()
+                continue
         elif isinstance(answer, NoStep):
             return stalled(answer.reason)
         elif isinstance(event, Outcome):
             return answer if isinstance(answer, Outcome) else out_of_iterations(run.iterate.index)
+        event = termination(run) or run.step()
+        if isinstance(event, Step):
+            yield run.accept(event)
 
 
-def _answer(event: Step | NoStep | Outcome, interventions: Sequence[Intervention]) -> Step | NoStep | Outcome | Change:
+def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Change:
     """What the interventions make of an event, one after the other, until one of them changes something."""
     for intervention in interventions:
         answer = intervention(event)

@@ -13,7 +13,7 @@ from ..metrics import METRICS
 from ..option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
-MESHES = ("fixed", "finer", "adaptive")
+MESHES = ("auto", "fixed", "finer", "adaptive")
 SOLVERS = ("auto", "dense", "hierarchical")
 _advanced = partial(option, group="advanced")
 
@@ -106,11 +106,12 @@ class RelaxOptions:
         metavar="L",
     )
     mesh: str = _advanced(
-        "fixed",
+        "auto",
         "Mesh",
-        "what becomes of the vertices: fixed; finer, more of them, up to 3.5 times as many, while strands end nearer "
-        "than the mesh resolves; adaptive, edges split and collapsed on the way so that neighbours stay nearer than "
-        "strands, and then the same",
+        "what becomes of the vertices: fixed; auto, the same, but curves of many vertices begin with fewer, which is "
+        "faster, and end with all; finer, more of them, up to 3.5 times as many, while strands end nearer than they "
+        "resolve; adaptive, edges split and collapsed on the way so that neighbours stay nearer than strands, and then "
+        "the same",
         choices=MESHES,
         metavar="M",
         keyframes=False,

@@ -1,6 +1,7 @@
 """From a curve and options to the problem that is solved."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from ..collision import check_embedded, check_gap, minimal_gap, survives_roundin
 from ..constraints import Constraints, weighted_barycenter
 from ..curve import Curve, check_is_curve, refine
 from ..curve.remesh import graded_spacing
-from ..descent import METHODS, Problem
+from ..descent import METHODS, Point, Problem
 from ..energies import Objective
 from ..errors import CurveError, OptionError
 from ..types import FloatArray
@@ -100,6 +101,20 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     return Problem(curve.mesh, objective, solver.metric, constraints, units, geometry)
+
+
+def on_mesh(problem: Problem, curve: Curve, options: RelaxOptions) -> Point:
+    """The point of a curve in the user's units in the same problem on its own mesh; raises as `start_problem` does."""
+    return with_parts_of(problem, start_problem(curve, options), curve)
+
+
+def with_parts_of(problem: Problem, other: Problem, curve: Curve) -> Point:
+    """The point of a curve in another problem, where the parts that are held in place in ``problem`` are held too."""
+    parts = problem.constraints.parts
+    if parts is not None:
+        own_units = curve.with_vertices(other.units.from_user(curve.vertices))
+        other = replace(other, constraints=other.constraints.of_parts(own_units, parts))
+    return other.at_curve(curve)
 
 
 def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 from ..curve import Curve
 from ..descent import METHODS, NoStep, Problem, State, Step
 from ..types import FloatArray
-from .change import Change
+from .events import Change
 from .iterate import Iterate
 from .options import RelaxOptions
 from .outcome import DEGENERATE

@@ -1,16 +1,15 @@
 """What happens to a run beside its method's steps, one file each.
 
-An intervention is made for one run and called after every event: a step was taken, none was found, or the run is about
-to end.  It answers with the event, which may be told otherwise, or with what it does about it.
+An intervention is made for one run and called after every event: nothing has happened yet, a step was taken, none was
+found, or the run is about to end.  It answers with the event, told otherwise perhaps, or with what it does about it.
 """
 
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from ...descent import NoStep, Step
-from ..change import Change
-from ..outcome import Outcome
+from ..events import Change, Event
 from ..run import Run
+from .coarse_start import CoarseStart
 from .composite import Composite
 from .escape_saddle import EscapeSaddle
 from .fallback import Fallback
@@ -22,12 +21,13 @@ from .split_links import SplitLinks
 class Intervention(Protocol):
     """What is called after every event."""
 
-    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+    def __call__(self, event: Event) -> Event | Change:
         """Answer with the event as the next ones are to see it, or with a change, which ends the round."""
 
 
 INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
     SplitLinks,
+    CoarseStart,
     EscapeSaddle,
     Composite,
     FinerMesh,

@@ -1,9 +1,9 @@
 """A composite curve has no shape of least energy: only the mesh keeps one of its parts from shrinking to a point."""
 
 from ...curve import Curve
-from ...descent import NoStep, Step
 from ...energies import MoebiusEnergy
 from ...knots.composite import Ball, knotted_ball
+from ..events import Event
 from ..outcome import COMPOSITE, Outcome, stalled
 from ..run import Run
 from .split_links import split
@@ -18,7 +18,7 @@ class Composite:
     def __init__(self, run: Run) -> None:
         self._run = run
 
-    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome:
+    def __call__(self, event: Event) -> Event:
         """Look at converged curves."""
         problem = self._run.problem
         scale_invariant = problem.objective.energy.scale_exponent == 0.0

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from ...descent import NoStep, Step
+from ...descent import Step
 from ...descent.searches import Escape
-from ..change import Change
+from ..events import Change, Event
 from ..outcome import MINIMUM, NO_WAY_DOWN, SADDLE, Outcome
 from ..run import Run
 from ..stability import stability
@@ -16,7 +16,7 @@ class EscapeSaddle:
     def __init__(self, run: Run) -> None:
         self._run = run
 
-    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+    def __call__(self, event: Event) -> Event | Change:
         """Look at converged curves."""
         options = self._run.options
         if not (isinstance(event, Outcome) and event.converged and (options.stability or options.escape_saddles)):

@@ -2,9 +2,8 @@
 
 import math
 
-from ...descent import METHODS, NoStep, Step
-from ..change import Change
-from ..outcome import Outcome
+from ...descent import METHODS, NoStep
+from ..events import Change, Event
 from ..run import Run
 from ..solver import Solver
 
@@ -22,7 +21,7 @@ class Fallback:
         self._until = 0  # iterate at which the helper has done enough
         self._helped_at = math.inf  # energy at which it was asked last, on the present mesh
 
-    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+    def __call__(self, event: Event) -> Event | Change:
         """Change the method."""
         run = self._run
         if run.problem.mesh is not self._mesh:

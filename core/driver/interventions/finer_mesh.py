@@ -7,12 +7,11 @@ import numpy as np
 from ...curve import Curve
 from ...curve.distances import arc_distance_of_pairs
 from ...curve.refine import STRAND_RATIO
-from ...descent import NoStep, Step
 from ...energies.near_pairs import near_pairs
 from ...errors import MobiusFlowError
-from ..change import Change
+from ..events import Change, Event
 from ..outcome import TIGHT, UNRESOLVED, Outcome, stalled
-from ..prepare import embedded_refinement, start_problem
+from ..prepare import embedded_refinement, on_mesh
 from ..run import Run
 
 FINER = 1.5  # factor of the number of vertices
@@ -26,12 +25,12 @@ class FinerMesh:
         self._run = run
         self._limit = FINEST * len(run.point.vertices)
 
-    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+    def __call__(self, event: Event) -> Event | Change:
         """Look at converged curves."""
         curve = self._run.iterate.curve
         if not (isinstance(event, Outcome) and event.converged and _unresolved(curve)):
             return event
-        if self._run.options.mesh == "fixed":
+        if self._run.options.mesh in ("auto", "fixed"):
             return event.adding(UNRESOLVED)
         finer = self._finer(curve) if len(curve) < self._limit else None
         return finer or stalled(TIGHT.format(vertices=len(curve)))
@@ -41,14 +40,10 @@ class FinerMesh:
         vertices = int(np.ceil(FINER * len(curve)))
         try:
             curve = embedded_refinement(curve, vertices)
-            problem = start_problem(curve, replace(self._run.options, vertices=vertices))
+            point = on_mesh(self._run.problem, curve, replace(self._run.options, vertices=vertices))
         except MobiusFlowError:
             return None
-        parts = self._run.problem.constraints.parts
-        if parts is not None:
-            own_units = curve.with_vertices(problem.units.from_user(curve.vertices))
-            problem = replace(problem, constraints=problem.constraints.of_parts(own_units, parts))
-        return Change(point=problem.at_curve(curve), vertices=vertices)
+        return Change(point=point, vertices=vertices)
 
 
 def _unresolved(curve: Curve) -> bool:

@@ -7,9 +7,9 @@ import numpy as np
 from ...collision import FreeMotion, survives_rounding
 from ...curve import Curve
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
-from ...descent import Leg, NoStep, Step
-from ...types import FloatArray
-from ..change import Change
+from ...descent import Leg, Problem, Step
+from ...types import FloatArray, IntArray
+from ..events import Change, Event, Start
 from ..outcome import ADVICE, Outcome
 from ..run import Run
 
@@ -23,9 +23,9 @@ class Remesh:
         self._run = run
         self._just_refined = False  # around edges that were stuck: once is enough
 
-    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+    def __call__(self, event: Event) -> Event | Change:
         """Look at the mesh now and then, and where no step was found."""
-        if isinstance(event, Outcome):
+        if isinstance(event, Start | Outcome):
             return event
         if self._run.options.mesh != "adaptive":
             return event if isinstance(event, Step) else replace(event, reason=f"{event.reason}; {ADVICE}")
@@ -55,24 +55,26 @@ class Remesh:
                 spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
         elif not needs_remesh(curve, spacing):
             return None
-        change, proof = self._proved(curve, vertices, spacing)
+        problem = self._run.problem
+        change, proof = proved_remesh(problem, curve, vertices, superfluous(curve, spacing), spacing)
         if not (survives_rounding(change.moved) and survives_rounding(change.curve)):
             return None
-        problem = self._run.problem
         constraints = replace(problem.constraints, lengths=change.lengths / problem.units.scale)
         # the last motion on the old mesh, then the same curve on the new one
         step = Step((Leg(problem.at_curve(change.moved), proof),), 0.0, None)
         return Change(step, replace(problem, mesh=change.curve.mesh, constraints=constraints).at_curve(change.curve))
 
-    def _proved(self, curve: Curve, vertices: int | None, spacing: FloatArray) -> tuple[Remeshed, FreeMotion]:
-        """The change of mesh with as many collapses as are free of contact, and the proof."""
-        removable = superfluous(curve, spacing)
-        while True:
-            change = remesh(curve, vertices, removable, spacing)
-            free = self._run.problem.free_motion(curve.vertices, change.moved.vertices)
-            if free.time == 1.0 or not len(removable):
-                return change, free
-            assert free.pair is not None
-            ends = [curve.mesh.tails[e] for e in free.pair] + [curve.mesh.heads[e] for e in free.pair]
-            guilty = np.isin(removable, ends)
-            removable = removable[~guilty] if guilty.any() else removable[:0]
+
+def proved_remesh(
+    problem: Problem, curve: Curve, vertices: int | None, removable: IntArray, spacing: FloatArray
+) -> tuple[Remeshed, FreeMotion]:
+    """The change of mesh with as many of the collapses as are free of contact, and the proof."""
+    while True:
+        change = remesh(curve, vertices, removable, spacing)
+        free = problem.free_motion(curve.vertices, change.moved.vertices)
+        if free.time == 1.0 or not len(removable):
+            return change, free
+        assert free.pair is not None
+        ends = [curve.mesh.tails[e] for e in free.pair] + [curve.mesh.heads[e] for e in free.pair]
+        guilty = np.isin(removable, ends)
+        removable = removable[~guilty] if guilty.any() else removable[:0]

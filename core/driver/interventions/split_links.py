@@ -7,10 +7,10 @@ from scipy.sparse.csgraph import connected_components
 
 from ...constraints import Parts
 from ...curve import Curve
-from ...descent import NoStep, Step
+from ...descent import Step
 from ...energies import MoebiusEnergy
 from ...types import BoolArray, FloatArray, IntArray
-from ..change import Change
+from ..events import Change, Event
 from ..outcome import HELD, Outcome
 from ..run import Run
 
@@ -25,7 +25,7 @@ class SplitLinks:
     def __init__(self, run: Run) -> None:
         self._run = run
 
-    def __call__(self, event: Step | NoStep | Outcome) -> Step | NoStep | Outcome | Change:
+    def __call__(self, event: Event) -> Event | Change:
         """Look for parts now and then, and tell of them in the end."""
         run, constraints = self._run, self._run.problem.constraints
         if isinstance(event, Outcome) and event.converged and constraints.parts is not None:

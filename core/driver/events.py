@@ -1,8 +1,16 @@
-"""What an intervention does to a run."""
+"""What happens to a run, and what an intervention does about it."""
 
 from dataclasses import dataclass
 
-from ..descent import Method, Point, Step
+from ..descent import Method, NoStep, Point, Step
+from .outcome import Outcome
+
+
+class Start:
+    """Nothing has happened yet on this mesh."""
+
+
+Event = Start | Step | NoStep | Outcome
 
 
 @dataclass(frozen=True, eq=False)

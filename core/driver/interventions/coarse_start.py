@@ -1,0 +1,84 @@
+"""A curve of many vertices is untangled with few of them, which is faster, and ends with all."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...collision import survives_rounding
+from ...curve import Curve
+from ...curve.refine import apportion, subdivide
+from ...curve.remesh import graded_spacing, superfluous
+from ...curve.smooth import smoothed
+from ...descent import Leg, NoStep, Problem, Step
+from ..events import Change, Event, Start
+from ..outcome import Outcome
+from ..prepare import on_mesh, with_parts_of
+from ..run import Run
+from .remesh import proved_remesh
+
+MIN_VERTICES = 1500  # from which it is worth while
+MIN_GAIN = 2.0  # factor by which there must be fewer at first
+
+
+class CoarseStart:
+    """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve."""
+
+    def __init__(self, run: Run) -> None:
+        self._run, self._problem = run, _with_equal_lengths(run.problem)
+        self._options = replace(run.options, vertices=None, edge_lengths="keep")
+        self._sizes = np.array(run.problem.mesh.component_sizes)
+        self._wanted = self._is_wanted()
+        self._coarse: Curve | None = None
+
+    def __call__(self, event: Event) -> Event | Change:
+        """Look at the start of a mesh, and at the end on the coarse one."""
+        if isinstance(event, Start):
+            return (self._coarser() if self._wanted else self._smoother()) or event
+        self._wanted = False
+        if self._coarse is not None and isinstance(event, Outcome | NoStep):
+            return self._finest() or event
+        return event
+
+    def _is_wanted(self) -> bool:
+        options, curve = self._run.options, self._run.iterate.curve
+        if options.mesh != "auto" or options.edge_lengths not in ("auto", "equal") or len(curve) < MIN_VERTICES:
+            return False
+        return bool(MIN_GAIN * np.sum(curve.edge_lengths / graded_spacing(curve, None)) <= len(curve))
+
+    def _coarser(self) -> Change | None:
+        """A pass that leaves out up to a third of the vertices; None if there are none to leave out."""
+        curve, problem = self._run.iterate.curve, self._run.problem
+        spacing = graded_spacing(curve, None)
+        change, proof = proved_remesh(problem, curve, None, superfluous(curve, spacing), spacing)
+        if len(change.curve) >= len(curve) or not (survives_rounding(change.moved) and survives_rounding(change.curve)):
+            return None
+        self._coarse = change.curve
+        step = Step((Leg(problem.at_curve(change.moved), proof),), 0.0, None)
+        return Change(step, on_mesh(problem, change.curve, self._options))
+
+    def _finest(self) -> Change | None:
+        """The same curve with all vertices, in the problem of the start; None if doubles do not tell them apart."""
+        self._coarse = curve = self._run.iterate.curve
+        parts = zip(curve.mesh.slices, self._sizes, strict=True)
+        finest = subdivide(curve, np.concatenate([apportion(curve.edge_lengths[part], n) for part, n in parts]))
+        if not survives_rounding(finest):
+            self._coarse = None
+            return None
+        return Change(point=with_parts_of(self._run.problem, self._problem, finest))
+
+    def _smoother(self) -> Change | None:
+        """The motion to a smooth curve through the vertices of the coarse one; None if strands are in its way."""
+        if self._coarse is None:
+            return None
+        problem, start = self._run.problem, self._run.iterate.curve
+        end = problem.at_curve(smoothed(self._coarse, start.mesh))
+        self._coarse = None
+        proof = problem.free_motion(start.vertices, end.placed)
+        return Change(Step((Leg(end, proof),), 0.0, None)) if proof.time == 1.0 else None
+
+
+def _with_equal_lengths(problem: Problem) -> Problem:
+    """The same total lengths, evenly spread: what kept them from that at the start is gone in the end."""
+    lengths = problem.constraints.lengths
+    equal = np.concatenate([np.full(part.stop - part.start, lengths[part].mean()) for part in problem.mesh.slices])
+    return replace(problem, constraints=replace(problem.constraints, lengths=equal))

@@ -1,0 +1,97 @@
+"""Curves of many vertices begin with fewer, and end with all."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, Trajectory, minimize
+from mobius_flow.core.curve import Mesh
+from mobius_flow.core.curve.smooth import smoothed
+from mobius_flow.core.driver.interventions import coarse_start
+from mobius_flow.core.knots import hard_unknot, knot
+from mobius_flow.core.verify import verify
+from shapes import regular_polygon, torus_trefoil
+
+
+@pytest.fixture
+def everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also for curves that are small enough for tests."""
+    monkeypatch.setattr(coarse_start, "MIN_VERTICES", 100)
+
+
+def bent(curve: Curve) -> Curve:
+    """Something to do."""
+    return curve.with_vertices(curve.vertices + 0.1 * np.sin(3 * curve.vertices[:, ::-1]))
+
+
+def relaxed(curve: Curve, **options: object) -> tuple[list[Iterate], Trajectory]:
+    iterates: list[Iterate] = []
+    trajectory = Trajectory()
+    result = minimize(curve, RelaxOptions(**{"vertices": len(curve)} | options), iterates.append)  # type: ignore[arg-type]
+    for iterate in iterates:
+        trajectory.add(iterate)
+    assert result.certified
+    return iterates, trajectory
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize(
+    "curve",
+    [bent(torus_trefoil(900)), hard_unknot(20, seed=3), bent(knot("L2a1", 1500))],
+    ids=["trefoil", "hard unknot", "Hopf link"],
+)
+def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve, tmp_path: Path) -> None:
+    result = minimize(curve, RelaxOptions(vertices=3 * len(curve), mesh="fixed", max_iterations=0))
+    fine = result.curve
+    iterates, trajectory = relaxed(fine)
+    counts = [len(iterate.curve) for iterate in iterates]
+    assert counts[0] == counts[-1] == len(fine)
+    assert 2 * min(counts) < len(fine)
+    assert iterates[-1].curve.mesh == fine.mesh
+    assert iterates[-1].edge_length_error < 1e-6
+    steps = [a < b for a, b in itertools.pairwise(counts)]
+    assert sum(steps) == 1, "all come back at once"
+    trajectory.save(tmp_path / "T.npz")
+    assert verify(tmp_path / "T.npz").accepted
+
+
+@pytest.mark.usefixtures("everywhere")
+def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
+    curve = bent(torus_trefoil(900))
+    fixed, _ = relaxed(curve, mesh="fixed")
+    iterates, _ = relaxed(curve)
+    assert iterates[-1].energy == pytest.approx(fixed[-1].energy, rel=1e-6)
+    assert sum(bool(iterate.path) for iterate in iterates if len(iterate.curve) == 900) < len(fixed)
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize("limit", [0, 1, 5, 12])
+def test_a_run_that_is_cut_short_has_all_vertices(limit: int) -> None:
+    iterates: list[Iterate] = []
+    curve = bent(torus_trefoil(900))
+    result = minimize(curve, RelaxOptions(vertices=900, max_iterations=limit), iterates.append)
+    assert result.status is Status.ITERATION_LIMIT
+    assert len(result.curve) == 900
+    assert result.certified
+
+
+@pytest.mark.parametrize("options", [{"mesh": "fixed"}, {"edge_lengths": "keep"}, {"mesh": "finer"}])
+@pytest.mark.usefixtures("everywhere")
+def test_where_vertices_are_to_stay_they_do(options: dict[str, str]) -> None:
+    iterates, _ = relaxed(bent(torus_trefoil(900)), max_iterations=3, **options)
+    assert {len(iterate.curve) for iterate in iterates} == {900}
+
+
+def test_small_curves_keep_their_vertices() -> None:
+    iterates, _ = relaxed(bent(torus_trefoil(900)), max_iterations=3)
+    assert {len(iterate.curve) for iterate in iterates} == {900}
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_smooth_curves_through_polygons(dimension: int) -> None:
+    coarse = regular_polygon(24, dimension)
+    fine = smoothed(coarse, Mesh((500,)))
+    np.testing.assert_allclose(np.linalg.norm(fine.vertices, axis=1), 1.0, atol=1e-5)
+    assert np.ptp(fine.edge_lengths) < 1e-3 * fine.edge_lengths.mean()
+    np.testing.assert_array_equal(fine.vertices[0], coarse.vertices[0])
