@@ -67,20 +67,21 @@ class Armijo:
             if not np.max(np.abs(move)) > NOTHING:
                 break
             level = (1.0 - share) * point.residual
-            trial = attempt(point, point.vertices + move, level, partial(self.sufficient, point, slope))
+            slack = normal.slack(share, -shrink * tau * slope_along)
+            trial = attempt(point, point.vertices + move, level, partial(self.sufficient, point, slope, slack))
             if isinstance(trial, Leg):
                 return Step((trial,), shrink * tau, limited_by)
             limited_by = trial.in_the_way or limited_by
             shrink *= self._shorter(point, trial, slope)
         return NoStep.because(limited_by)
 
-    def sufficient(self, point: Point, slope: float, trial: Point) -> bool:
+    def sufficient(self, point: Point, slope: float, slack: float, trial: Point) -> bool:
         """Armijo's rule; where the lengths' cost makes the slope positive, the energy may rise by twice the prediction.
 
-        Differences below the rounding of the energy count as none.
+        Where there is nothing left to gain, the way to the lengths may cost ``slack`` in addition. Differences below the rounding of the energy count as none.
         """
         wanted = self.decrease * slope if slope < 0.0 else 2.0 * slope
-        return trial.energy - point.energy <= wanted + ROUNDING * abs(point.energy)
+        return trial.energy - point.energy <= wanted + slack + ROUNDING * abs(point.energy)
 
     def _shorter(self, point: Point, rejected: Rejected, slope: float) -> float:
         """Factor for the next trial."""

@@ -78,7 +78,7 @@ class BackwardEuler:
                 if slope > 0.0 and share > self.armijo.lengths.least_share:
                     share *= 0.25  # the way to the target lengths costs more than the flow gains
                     continue
-                trial = judged(point, solved, partial(self.armijo.sufficient, point, slope))
+                trial = judged(point, solved, partial(self.armijo.sufficient, point, slope, 0.0))
                 if isinstance(trial, Leg):
                     return Step((trial,), tau, limited_by), State(tau, tau)
                 limited_by = trial.in_the_way or limited_by

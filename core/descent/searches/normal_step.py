@@ -31,12 +31,15 @@ class NormalStep:
         The share of it that changes no length by more than a bounded factor.
     least
         The share taken even where it costs more energy than can be gained.
+    allowance
+        The energy that all of it may cost where there is nothing left to gain: to first order the cost is nothing there.
     """
 
     full: FloatArray
     cost: float
     longest: float
     least: float
+    allowance: float
 
     def share(self, gain: float) -> float:
         """The share to take along with a tangential step that gains so much energy.
@@ -44,9 +47,14 @@ class NormalStep:
         It costs at most half the gain, so that the objective goes down; but where there is nothing left to gain the
         lengths go on, slowly, all the same.
         """
-        if self.longest * self.cost <= 0.5 * gain:
+        affordable = 0.5 * max(gain, self.allowance)
+        if self.longest * self.cost <= affordable:
             return self.longest
-        return max(0.5 * gain / self.cost, self.least)
+        return max(affordable / self.cost, self.least)
+
+    def slack(self, share: float, gain: float) -> float:
+        """By how much a step with such a share may miss its prediction."""
+        return share * max(0.0, self.allowance - gain)
 
 
 @dataclass(frozen=True)
@@ -59,18 +67,22 @@ class TowardsTargets:
         Largest logarithmic change of an edge length in one step.
     least_share
         Of that step, taken even where it costs more energy than can be gained.
+    allowance
+        Part of the energy that reaching the targets may cost where there is nothing left to gain.
     """
 
     length_change: float = 0.25
     least_share: float = 0.01
+    allowance: float = 1e-3
 
     def __post_init__(self) -> None:
-        check_fields(self, length_change=(0.0, np.inf), least_share=(0.0, 1.0))
+        check_fields(self, length_change=(0.0, np.inf), least_share=(0.0, 1.0), allowance=(0.0, 1.0))
 
     def at(self, point: Point, space: TangentSpace) -> NormalStep:
         """The normal step at a point, none if it is on target; ``space`` gives the pseudo-inverse."""
         if on_target(point):
-            return NormalStep(np.zeros_like(point.vertices), 0.0, 1.0, 1.0)
+            return NormalStep(np.zeros_like(point.vertices), 0.0, 1.0, 1.0, 0.0)
         full = space.pseudo_inverse(-point.residual)
         longest = min(1.0, self.length_change / float(np.max(np.abs(point.residual))))
-        return NormalStep(full, float(np.sum(point.derivative * full)), longest, self.least_share * longest)
+        cost, allowance = float(np.sum(point.derivative * full)), self.allowance * abs(point.energy)
+        return NormalStep(full, cost, longest, self.least_share * longest, allowance)
