@@ -67,7 +67,7 @@ class Operator:
 
 
 def restored(obj, before):
-    after = Snapshot(obj.data)
+    after = Snapshot.of(obj.data)
     for old, new in zip(before._splines, after._splines, strict=True):
         assert (old.type, old.count, old.settings) == (new.type, new.count, new.settings)
         assert all(np.array_equal(old.points[name], new.points[name]) for name in old.points)

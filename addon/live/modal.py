@@ -4,7 +4,7 @@ import bpy
 
 from .run import Run, State
 
-_INTERVAL = 1 / 60  # seconds; one iterate each time, so that every one is seen
+_INTERVAL = 1 / 60  # seconds
 _TYPING = {"CONSOLE", "TEXT_EDITOR"}  # keys pressed over these are theirs
 _PASS = {"PASS_THROUGH"}
 
@@ -46,7 +46,7 @@ class Loop:
 
     def _seen(self) -> tuple[object, ...]:
         """What is shown depends on nothing else."""
-        return self.run.state, self.run.last, self.run.waits
+        return self.run.state, self.run.shown, self.run.waits
 
     def _key(self, event: bpy.types.Event) -> set[str]:
         if event.type == "ESC" or (event.type == "Z" and (event.ctrl or event.oskey) and not event.shift):

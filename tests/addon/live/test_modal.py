@@ -39,7 +39,7 @@ def test_esc_restores_bit_for_bit(operator, kind):
         for point in spline.bezier_points if kind == "BEZIER" else spline.points:
             point.radius, point.tilt = rng.random(2)
     obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.values["vertices"] = 0
     operator.start()
     operator.reach(2)
@@ -76,7 +76,7 @@ def test_pause_and_enter_keep_what_is_shown(operator):
 
 def test_undo_key_is_esc(operator):
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(1)
     assert operator.event("Z", ctrl=True) == {"CANCELLED"}
@@ -99,11 +99,11 @@ def test_one_at_a_time(operator):
 
 def test_another_object_has_to_wait(operator):
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(1)
     other = add_hopf_link()
-    untouched = Snapshot(other.data)
+    untouched = Snapshot.of(other.data)
     second = Operator()
     assert second.start() == {"CANCELLED"}
     assert second.reports == [({"ERROR"}, f"'{obj.name}' is being relaxed; stop that first")]
@@ -116,7 +116,7 @@ def test_a_bad_curve_is_refused_untouched(operator):
     points = torus_trefoil(30).vertices.copy()
     points[3] = points[2]
     obj = add_curve([points])
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     assert operator.until(lambda: False) == {"CANCELLED"}
     assert operator.reports[-1][0] == {"ERROR"}
@@ -167,7 +167,7 @@ def test_shape_keys_of_somebody_else_are_left_alone(operator):
 
 def test_edit_mode(operator):
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(1)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -203,7 +203,7 @@ def test_loading_a_file(operator):
 
 def test_disabling_ends_the_run(operator, addon):
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(1)
     addon.unregister()
@@ -235,7 +235,7 @@ def test_without_a_process_a_thread(operator, monkeypatch):
 def test_esc_while_keys_are_written(operator, monkeypatch):
     monkeypatch.setattr(key_writer, "_SLICE", 0.0)  # a key at a tick
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     actions = len(bpy.data.actions)
     operator.start()
     operator.until(lambda: obj.data.shape_keys is not None)
