@@ -17,9 +17,12 @@ class Operator:
     modal = CURVE_OT_mobius_flow_relax.modal
     cancel = CURVE_OT_mobius_flow_relax.cancel
     begin = CURVE_OT_mobius_flow_relax.begin
+    listen = CURVE_OT_mobius_flow_relax.listen
+    key_options = CURVE_OT_mobius_flow_relax.key_options
 
-    def __init__(self, **values):
-        self.loop, self.reports, self.values = None, [], values
+    def __init__(self, continues=False, **values):
+        self.loop, self.reports, self.continues = None, [], continues
+        self.values = {"view_every": 1} | values
 
     def report(self, kind, message):
         self.reports.append((kind, message))

@@ -83,6 +83,11 @@ class Group:
         """Whether any of the objects is drawn as a tube that may be fitted."""
         return any(member.fits_bevel for member in self._members)
 
+    @property
+    def rebakes(self) -> bool:
+        """Whether baked curves are set aside."""
+        return any(member.rebakes for member in self._members)
+
     def equals(self, other: "Group") -> bool:
         """Whether the same polygons are stored in the same places, bit for bit."""
         pairs = zip(self.link.placements, other.link.placements, strict=False)

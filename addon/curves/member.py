@@ -40,6 +40,7 @@ class Member:
 
     def _identify(self, data: "bpy.types.Curve") -> None:
         self._data_uid, self._data_name, self._shape = data.session_uid, data.name, shape(data)
+        self._shapes = [self._shape]  # those that it has had in this run
 
     @property
     def object(self) -> "bpy.types.Object | None":
@@ -56,6 +57,11 @@ class Member:
         return found(bpy.data.curves, self._data_name, self._data_uid)
 
     @property
+    def rebakes(self) -> bool:
+        """Whether a baked curve is set aside."""
+        return self._stand_in is not None
+
+    @property
     def moved(self) -> bool:
         """Whether the object is no longer where it was."""
         obj = self.object
@@ -69,6 +75,7 @@ class Member:
             self._snapshot.make_polygons(self.data, original, refined)
         finally:
             self._shape = shape(self.data)
+            self._shapes.append(self._shape)
 
     def show(self, points: Frame) -> None:
         """Move the points, unless they are lost; shape (n, 3), the object's coordinates."""
@@ -144,10 +151,14 @@ class Member:
             self._shape = shape(self.data)
 
     def put_forward(self) -> None:
-        """Go on after `set_aside`; where points are is left open."""
+        """Go on after `set_aside`, and after undo since then; where the points are is left open."""
         obj, data = self.object, self.data
-        if self._stand_in is not None and obj is not None and data is not None and obj.data == self._stand_in.baked:
+        if obj is None or data is None:
+            return
+        if self._stand_in is not None and obj.data == self._stand_in.baked:
             self._stand_in.step_forward(obj, data)
+        if shape(data) in self._shapes:
+            self._shape = shape(data)
 
     def _foreign_keys(self, data: "bpy.types.Curve") -> bool:
         """Whether somebody gave the curve shape keys: they fit the points it has now."""

@@ -125,7 +125,7 @@ class Session:
         # the keys that are there have as many points as the curves have now
         self.options = replace(options, vertices=len(self.group.curve)) if continues else options
         self._key_options = key_options
-        self._motion = Motion(self.group.link)
+        self._motion = Motion(self.group.link, self.group.stored if continues else None)
         self.outcome: Outcome | None = None
 
     def run(self) -> Report:
@@ -157,20 +157,8 @@ class Session:
         return self.prepare(is_free)
 
     def take(self, iterate: Iterate) -> Frame:
-        """Take in an iterate, and return its vertices as Blender will store them.
-
-        Raises
-        ------
-        MobiusFlowError
-            If more keys cannot begin with the last of those that are there.
-        """
-        frame = self._motion.add(iterate)
-        if self.group.continues and iterate.index == 0 and not np.array_equal(frame, self.group.stored):
-            raise MobiusFlowError(
-                f"{self.group.title} cannot go on exactly where the animation ends, as 32-bit numbers are too few so "
-                "far from the object's origin; bake again"
-            )
-        return frame
+        """Take in an iterate, and return its vertices as Blender will store them."""
+        return self._motion.add(iterate)
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""

@@ -68,10 +68,12 @@ class Motion:
     ----------
     link
         Where the vertices of the iterates are stored, and in which space their motions are proved.
+    first
+        The start as it is stored already, where keys are added to others; None rounds the first iterate.
     """
 
-    def __init__(self, link: Link) -> None:
-        self._link = link
+    def __init__(self, link: Link, first: Frame | None = None) -> None:
+        self._link, self._first = link, first
         self._start: Iterate | None = None
         self._last: Iterate | None = None
         self._keys: list[Key] = []
@@ -81,6 +83,8 @@ class Motion:
     def add(self, iterate: Iterate) -> Frame:
         """Append an iterate with the legs that lead to it, and return its vertices as Blender will store them."""
         frames = frames_of(self._link, iterate)
+        if self._start is None and self._first is not None:
+            frames = [self._first]
         self._start = self._start or iterate
         self._last = iterate
         times = self._leg_times(iterate.index, frames)

@@ -17,9 +17,19 @@ def _load_pre(*_: Any) -> None:
 
 @persistent  # type: ignore[untyped-decorator]
 def _undo_pre(*_: Any) -> None:
-    """The curve must be as undo knows it, and pointers into the file are about to become invalid."""
+    """The curve must be as undo knows it; unless something else is undone, the run is over."""
     if run := registry.current():
-        run.cancel(f"Undone; the relaxation of {run.name} has ended")
+        if run.survives_undo:
+            run.preview.set_aside()
+        else:
+            run.cancel(f"Undone; the relaxation of {run.name} has ended")
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _undo_post(*_: Any) -> None:
+    if run := registry.current():
+        run.preview.put_forward()
+        run.history.catch_up()
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -38,6 +48,8 @@ _HANDLERS = {
     "load_pre": _load_pre,
     "undo_pre": _undo_pre,
     "redo_pre": _undo_pre,
+    "undo_post": _undo_post,
+    "redo_post": _undo_post,
     "save_pre": _save_pre,
     "save_post": _save_post,
     "save_post_fail": _save_post,

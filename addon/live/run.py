@@ -14,6 +14,7 @@ from ..curves.group import Group
 from ..curves.session import Report, Session
 from ..engine.key_options import KeyOptions
 from ..engine.worker import Worker, WorkerError
+from .history import History
 from .key_writer import KeyWriter
 from .preview import Preview
 from .refresh import Refresh
@@ -75,6 +76,7 @@ class Run:
         self.last: Iterate | None = None
         self.report: Report | None = None
         self.shown: Iterate | None = None
+        self.history = History()
         self._refresh = refresh
         self._session = Session(objects, options, key_options, continues)
         self._worker = Worker(self.group.curve, self._session.options, self.group.link)
@@ -100,6 +102,12 @@ class Run:
         import bpy
 
         return not self.state.over and bool(bpy.app.is_job_running("RENDER"))
+
+    @property
+    def survives_undo(self) -> bool:
+        """Whether something else is about to be undone, and the curves can go on from wherever that puts them."""
+        computing = self.state in (State.RUNNING, State.PAUSED)
+        return computing and self.history.others and not self.group.rebakes
 
     # -- what the buttons do ------------------------------------------------------------------------------------
 

@@ -175,7 +175,7 @@ def test_an_error_while_keys_are_written_loses_nothing(operator, rings, monkeypa
     before = [Snapshot.of(obj.data) for obj in rings]
 
     def failing(*arguments):
-        yield next(keyframes._shape_keys(arguments[0], arguments[1], arguments[2].scene_frames(arguments[1])))
+        yield next(keyframes._shape_keys(arguments[0], arguments[1], arguments[2]))
         raise MemoryError
 
     monkeypatch.setattr(keyframes, "writing", failing)
