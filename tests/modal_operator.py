@@ -45,10 +45,10 @@ class Operator:
         scene = bpy.context.scene.mobius_flow
         return self.begin(self.context, {name: getattr(scene, name) for name in SETTINGS} | self.values)
 
-    def event(self, kind="TIMER", **keys):
+    def event(self, kind="TIMER", mouse=(0, 0), **keys):
         modifiers = {"ctrl": False, "shift": False, "oskey": False} | keys
         event = SimpleNamespace(type=kind, value="NOTHING" if kind == "TIMER" else "PRESS", **modifiers)
-        event.mouse_x = event.mouse_y = 0
+        event.mouse_x, event.mouse_y = mouse
         return self.modal(self.context, event)
 
     @property

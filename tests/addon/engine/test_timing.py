@@ -135,7 +135,10 @@ def test_keys_stay_apart_in_blenders_numbers(start, pace):
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"length": 20, "hold_start": 10, "hold_end": 10}, "Length is 20 frames, which leaves none to move in; it must"),
+        (
+            {"length": 20, "hold_start": 10, "hold_end": 10},
+            "Length is 20 frames, which leaves none to move in; it must",
+        ),
         ({"length": 1}, "it must be at least 2"),
         ({"hold_end": -1}, "Hold at Start and Hold at End must be 0 frames or more"),
         ({"start_frame": float("nan")}, "Start Frame is nan"),

@@ -3,6 +3,8 @@
 Without a window Blender runs ``execute`` instead of ``invoke``; ``tests/window`` has the real thing.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -81,6 +83,34 @@ def test_undo_key_is_esc(operator):
     operator.reach(1)
     assert operator.event("Z", ctrl=True) == {"CANCELLED"}
     restored(obj, before)
+
+
+class Screen:
+    """A 3D view beside an outliner."""
+
+    areas = (
+        SimpleNamespace(type="VIEW_3D", x=0, y=0, width=100, height=100),
+        SimpleNamespace(type="OUTLINER", x=100, y=0, width=100, height=100),
+    )
+    is_animation_playing = False
+
+
+@pytest.mark.parametrize("key", [{"kind": "ESC"}, {"kind": "Z", "ctrl": True}, {"kind": "RET"}], ids=str)
+def test_keys_meant_for_something_else_pass_through(operator, key):
+    """With the mouse over another editor, or to stop playback."""
+    add_trefoil()
+    operator.start()
+    operator.reach(1)
+    screen = Screen()
+    operator.context.window = SimpleNamespace(screen=screen)
+    operator.context.workspace = SimpleNamespace(status_text_set=lambda _: None)
+    assert operator.event(**key, mouse=(150, 50)) == {"PASS_THROUGH"}
+    screen.is_animation_playing = True
+    assert operator.event(**key, mouse=(50, 50)) == {"PASS_THROUGH"}
+    assert operator.run.state is State.RUNNING
+    screen.is_animation_playing = False
+    assert operator.event(**key, mouse=(50, 50)) != {"PASS_THROUGH"}
+    assert operator.run.state in (State.CANCELLED, State.FINISHING)
 
 
 def test_other_events_pass_through(operator):

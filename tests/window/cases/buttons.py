@@ -1,4 +1,4 @@
-"""Relax, Pause, Resume and Stop by mouse clicks; the curve moves; undo takes it all back at once."""
+"""Relax, Pause, Resume and Keep by mouse clicks; the curve moves; undo takes it all back at once."""
 
 import numpy as np
 from case import Steps, picture, until
