@@ -127,8 +127,8 @@ def _bake_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     row = column.row(align=True)
     row.operator(CURVE_OT_mobius_flow_bake_again.bl_idname, icon="FILE_REFRESH")
     row.operator(CURVE_OT_mobius_flow_continue.bl_idname, icon="FF")
-    row.operator(CURVE_OT_mobius_flow_clear.bl_idname, icon="TRASH")
     column.operator(CURVE_OT_mobius_flow_scene_range.bl_idname, icon="PREVIEW_RANGE")
+    column.operator(CURVE_OT_mobius_flow_clear.bl_idname, icon="TRASH")
     if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
         labels.sentence(layout, context, f"{hidden[0].upper()}{hidden[1:]}")
 

@@ -8,6 +8,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, evaluated, fcurves, relax, stored  # noqa: E402
+from mathutils import Vector  # noqa: E402
 from mobius_flow.addon.curves import keyframes  # noqa: E402
 from mobius_flow.core.collision import is_free  # noqa: E402
 from mobius_flow.core.curve import Mesh  # noqa: E402
@@ -56,7 +57,7 @@ def link_of_kind(kind):
             point.radius, point.tilt = rng.random(2)
             if kind == "BEZIER":
                 point.handle_left_type = point.handle_right_type = "ALIGNED"
-                point.handle_right = np.array(point.co) + [0.1, 0.2, 0.3]
+                point.handle_right = Vector(point.co) + Vector((0.1, 0.2, 0.3))
     obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
     obj.data.splines.active = obj.data.splines[0]
     return obj

@@ -1,4 +1,4 @@
-"""When keys are shown: even motion is even, frames are distinct numbers of Blender's, and what has no room is refused."""
+"""When keys are shown: even motion is even, frames are distinct in 32 bits, and what has no room is refused."""
 
 import re
 
@@ -137,7 +137,7 @@ def test_keys_stay_apart_in_blenders_numbers(start, pace):
     [
         (
             {"length": 20, "hold_start": 10, "hold_end": 10},
-            "Length is 20 frames, which leaves none to move in; it must",
+            "Length is 20 frames, which leaves none to move in",
         ),
         ({"length": 1}, "it must be at least 2"),
         ({"hold_end": -1}, "Hold at Start and Hold at End must be 0 frames or more"),

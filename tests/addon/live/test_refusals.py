@@ -332,7 +332,7 @@ NAN = float("nan")
         ({"start_frame": -(2**24)}, "it must be from -1048574 to 1048574"),
         (
             {"start_frame": 1_048_000, "timing": "ITERATE"},
-            "The keys would go on to frame 1050000, but Blender's last is 1048574",
+            "would go on to frame 1050000, but Blender's last is 1048574",
         ),
         ({"frames_per_iterate": 10_000.0}, "The keys would go on to frame 20000001"),
     ],

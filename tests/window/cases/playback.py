@@ -4,11 +4,11 @@ import bpy
 from case import Steps, picture, until
 from hands import button, here, key, window
 from interruption import is_whole, over, relax
-from scene import iterate, points, reaches, ready, state
+from scene import iterate, points, reaches, ready, run, state
 
 
 def case() -> Steps:
-    yield from ready()
+    yield from ready(vertices=1000)
     before = points()
     yield from relax()
     with here():
@@ -27,6 +27,7 @@ def case() -> Steps:
         yield from reaches(iterate() + 1)
     assert state() == "running", "the mouse was over another editor"
     yield from picture("playback-1-running")
+    run().toggle_pause()  # finding a button takes a while
     yield from button("curve.mobius_flow_cancel")
     yield from over("Cancel")
     is_whole(before)

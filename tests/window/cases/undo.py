@@ -2,9 +2,9 @@
 
 import bpy
 from case import Steps, picture, until
-from hands import here, key, window
+from hands import addon, here, key, window
 from interruption import is_whole, over, relax, undo
-from scene import iterate, points, reaches, ready, state
+from scene import iterate, points, reaches, ready, run
 
 
 def case() -> Steps:
@@ -42,7 +42,7 @@ def case() -> Steps:
         else:
             undo()
         yield from until(lambda: len(bpy.data.objects) == objects, f"undo of something else by {what}")
-        assert state() == "running", "the run goes on"
+        assert run(), addon("live.registry").latest().message
         yield from reaches(iterate() + 2)
     yield from picture("undo-3-of-something-else", differs_from="undo-2-ctrl-z")
     window().view_layer.objects.active = bpy.data.objects["5_2"]
