@@ -31,6 +31,7 @@ class Loop:
     def handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Do what an event asks for; most are none of a relaxation's business, and Blender stays usable."""
         handled = _PASS
+        self.run.history.look()
         if self.run.state.over:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":

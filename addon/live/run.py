@@ -104,10 +104,9 @@ class Run:
         return not self.state.over and bool(bpy.app.is_job_running("RENDER"))
 
     @property
-    def survives_undo(self) -> bool:
-        """Whether something else is about to be undone, and the curves can go on from wherever that puts them."""
-        computing = self.state in (State.RUNNING, State.PAUSED)
-        return computing and self.history.others and not self.group.rebakes
+    def endures(self) -> bool:
+        """Whether it can go on from wherever undo puts the curves."""
+        return self.state in (State.RUNNING, State.PAUSED) and not self.group.rebakes
 
     # -- what the buttons do ------------------------------------------------------------------------------------
 

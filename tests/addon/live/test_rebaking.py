@@ -152,13 +152,13 @@ def test_what_has_changed_is_not_recovered(operator):
         recover()
 
 
-def test_undo_of_something_else_does_not_end_a_run(operator, monkeypatch):
+def test_undo_of_something_else_does_not_end_a_run(operator):
     """Blender runs no undo without a window; the handlers are called as it would call them."""
     obj = add_trefoil()
     before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(2)
-    monkeypatch.setattr(type(operator.run.history), "others", True)
+    operator.run.history.others = 2
     assert operator.event("Z", ctrl=True) == {"PASS_THROUGH"}
     handlers._undo_pre()
     restored(obj, before)
@@ -166,7 +166,11 @@ def test_undo_of_something_else_does_not_end_a_run(operator, monkeypatch):
     handlers._undo_post()
     np.testing.assert_array_equal(stored(obj.data), shown)
     operator.reach(operator.run.last.index + 1)
-    monkeypatch.setattr(type(operator.run.history), "others", False)
+    for before_it, after_it in ((handlers._redo_pre, handlers._redo_post), (handlers._undo_pre, handlers._undo_post)):
+        before_it()
+        after_it()
+    assert (operator.run.history.others, operator.run.history.undone) == (1, 1)
+    operator.run.history.others = 0
     handlers._undo_pre()
     assert registry.current() is None
     restored(obj, before)
