@@ -123,14 +123,14 @@ def _run_buttons(row: bpy.types.UILayout, run: Run) -> None:
 
 
 def _bake_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
+        labels.sentence(layout, context, f"{hidden[0].upper()}{hidden[1:]}")
     column = layout.column(align=True)
     row = column.row(align=True)
     row.operator(CURVE_OT_mobius_flow_bake_again.bl_idname, icon="FILE_REFRESH")
     row.operator(CURVE_OT_mobius_flow_continue.bl_idname, icon="FF")
     column.operator(CURVE_OT_mobius_flow_scene_range.bl_idname, icon="PREVIEW_RANGE")
     column.operator(CURVE_OT_mobius_flow_clear.bl_idname, icon="TRASH")
-    if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
-        labels.sentence(layout, context, f"{hidden[0].upper()}{hidden[1:]}")
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:

@@ -156,9 +156,9 @@ class Session:
                 self.outcome = end.value
         return self.prepare(is_free)
 
-    def take(self, iterate: Iterate) -> Frame:
-        """Take in an iterate, and return its vertices as Blender will store them."""
-        return self._motion.add(iterate)
+    def take(self, iterate: Iterate) -> None:
+        """Take in an iterate."""
+        self._motion.add(iterate)
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
@@ -198,6 +198,11 @@ class Session:
     def start(self) -> Curve:
         """The refined curve that the relaxation started from."""
         return self._motion.start.curve
+
+    @property
+    def frame(self) -> Frame:
+        """Vertices of the last iterate as Blender will store them."""
+        return self._motion.frame
 
     @property
     def _mesh(self) -> Mesh:

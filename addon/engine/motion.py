@@ -80,8 +80,8 @@ class Motion:
         self._ends: list[int] = []  # positions of the iterates among the keys; the others are inner ends of legs
         self._steps: list[float] = []  # sizes of the steps that led to the iterates
 
-    def add(self, iterate: Iterate) -> Frame:
-        """Append an iterate with the legs that lead to it, and return its vertices as Blender will store them."""
+    def add(self, iterate: Iterate) -> None:
+        """Append an iterate with the legs that lead to it."""
         frames = frames_of(self._link, iterate)
         if self._start is None and self._first is not None:
             frames = [self._first]
@@ -91,7 +91,6 @@ class Motion:
         self._keys += map(Key, times, frames)
         self._ends.append(len(self._keys) - 1)
         self._steps.append(iterate.step_size if iterate.index else 0.0)
-        return frames[-1]
 
     def _leg_times(self, index: int, frames: Sequence[Frame]) -> list[float]:
         """End times of the legs, so that the fastest vertex keeps its speed from leg to leg."""
@@ -151,6 +150,11 @@ class Motion:
         """The first iterate."""
         assert self._start is not None, "a relaxation yields at least its start"
         return self._start
+
+    @property
+    def frame(self) -> Frame:
+        """The last iterate's vertices as Blender will store them."""
+        return self._keys[-1].points
 
     @property
     def last(self) -> Iterate:

@@ -79,7 +79,11 @@ class Run:
         self.history = History()
         self._refresh = refresh
         self._session = Session(objects, options, key_options, continues)
-        self._worker = Worker(self.group.curve, self._session.options, self.group.link)
+        try:
+            self._worker = Worker(self.group.curve, self._session.options, self.group.link)
+        except BaseException:
+            self.group.restore()
+            raise
         self._prepare()
 
     def _prepare(self) -> None:
@@ -187,7 +191,8 @@ class Run:
                 self._session.outcome = arrived
                 self.keep()
                 return
-            self.last, self._frame = arrived, self._session.take(arrived)
+            self._session.take(arrived)
+            self.last = arrived
             if self._refresh.ends_batch(arrived.index):
                 break
         if self.last is not None and self._refresh.due(self.last.index):
@@ -206,7 +211,7 @@ class Run:
     def _show(self) -> None:
         """Show the last iterate, unless it is shown."""
         if self.last is not None and self.last is not self.shown:
-            self.preview.show(self._session.start, self._frame)
+            self.preview.show(self._session.start, self._session.frame)
             self.shown = self.last
             self._refresh.shown()
 
