@@ -357,3 +357,27 @@ def test_frames_per_iterate_alone_means_by_iterate():
     assert [point.co[0] for point in curve_of(obj).keyframe_points] == [1, 3.5, 6, 8.5, 11]
     bpy.ops.curve.mobius_flow_relax(max_iterations=4)
     assert curve_of(obj).keyframe_points[-1].co[0] == 250
+
+
+@pytest.mark.parametrize("keyframes_as", KEYED)
+def test_an_animation_without_motion_goes_on(keyframes_as):
+    obj = add_trefoil()
+    relax(max_iterations=0, keyframes=keyframes_as)
+    assert last_frame(obj) == 1
+    go_on(max_iterations=3, timing="ITERATE")
+    assert last_frame(obj) == 4
+    again(max_iterations=400, keyframes=keyframes_as, timing="ITERATE")
+    end, shown = last_frame(obj), keyframes.end_of(obj.data)
+    go_on(max_iterations=400, tolerance=0.01)  # there is nothing left to do
+    assert last_frame(obj) == end
+    np.testing.assert_array_equal(keyframes.end_of(obj.data), shown)
+
+
+def test_what_was_thinned_goes_on_thinned():
+    obj = add_trefoil()
+    relax(max_iterations=6, max_keys=3)
+    go_on(max_iterations=2, max_keys=2)
+    assert 4 <= len(obj.data.shape_keys.key_blocks) < 9
+    mesh = Mesh((len(stored(obj.data)),))
+    points = [np.array([p.co[:] for p in block.data]) for block in obj.data.shape_keys.key_blocks]
+    assert all(is_free(mesh, a, b) for a, b in pairwise(points))

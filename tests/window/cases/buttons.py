@@ -7,7 +7,7 @@ from scene import is_, iterate, look, obj, points, reaches, ready, run, state
 
 
 def case() -> Steps:
-    yield from ready(vertices=400)
+    yield from ready(vertices=1200)  # it takes longer than finding the buttons
     before = points()
     yield from picture("buttons-1-ready")
     yield from button("curve.mobius_flow_relax")
