@@ -58,16 +58,16 @@ class VIEW3D_PT_mobius_flow_animation(bpy.types.Panel):  # noqa: N801
     bl_region_type = "UI"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Settings, then buttons for curves that were baked."""
+        """Buttons for curves that were baked, then settings."""
         layout = self.layout
         settings = context.scene.mobius_flow
         layout.use_property_split = True
         layout.use_property_decorate = False
+        _bake_buttons(layout, context)
         if settings.keyframes != "RESULT":
             lasting = "frames_per_iterate" if settings.timing == "ITERATE" else "length"
             _column(layout, settings, "timing", lasting, "start_frame", "hold_start", "hold_end")
         _column(layout, settings, "keyframes", *(["max_keys"] if settings.keyframes != "RESULT" else []))
-        _bake_buttons(layout, context)
 
 
 class VIEW3D_PT_mobius_flow_advanced(bpy.types.Panel):  # noqa: N801
@@ -123,14 +123,14 @@ def _run_buttons(row: bpy.types.UILayout, run: Run) -> None:
 
 
 def _bake_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
-        labels.sentence(layout, context, f"{hidden[0].upper()}{hidden[1:]}")
     column = layout.column(align=True)
     row = column.row(align=True)
     row.operator(CURVE_OT_mobius_flow_bake_again.bl_idname, icon="FILE_REFRESH")
     row.operator(CURVE_OT_mobius_flow_continue.bl_idname, icon="FF")
-    column.operator(CURVE_OT_mobius_flow_scene_range.bl_idname, icon="PREVIEW_RANGE")
     column.operator(CURVE_OT_mobius_flow_clear.bl_idname, icon="TRASH")
+    column.operator(CURVE_OT_mobius_flow_scene_range.bl_idname, icon="PREVIEW_RANGE")
+    if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
+        labels.sentence(layout, context, f"{hidden[0].upper()}{hidden[1:]}")
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:

@@ -96,14 +96,13 @@ def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = F
     """Say what was done, and whether the scene shows all of it."""
     hidden = unseen(scene, report.scene_range)
     clean = report.clean and not failed and hidden is None
-    operator.report({"INFO"} if clean else {"WARNING"}, f"{report.sentence}{'; ' if hidden else ''}{hidden or ''}")
+    more = f"; {hidden}: press Set Scene Range to see all of it" if hidden else ""
+    operator.report({"INFO"} if clean else {"WARNING"}, report.sentence + more)
 
 
 def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> str | None:
     """Say that a scene does not play all frames of an animation, or return None if it does."""
     if animation is None or (scene.frame_start <= animation[0] and animation[1] <= scene.frame_end):
         return None
-    return (
-        f"the scene plays frames {scene.frame_start} to {scene.frame_end} only, and the animation has {animation[0]} "
-        f"to {animation[1]}: press Set Scene Range to see all of it"
-    )
+    first, last = animation
+    return f"the scene plays frames {scene.frame_start} to {scene.frame_end} only, the animation has {first} to {last}"

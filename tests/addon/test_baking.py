@@ -346,7 +346,7 @@ def test_the_scene_plays_what_is_asked_for(capfd):
     assert "Set Scene Range" not in capfd.readouterr().out
     relax(max_iterations=3, timing="EVEN", length=40, hold_end=5, start_frame=6)
     said = capfd.readouterr().out
-    assert "the scene plays frames 1 to 40 only, and the animation has 6 to 45: press Set Scene Range" in said
+    assert "the scene plays frames 1 to 40 only, the animation has 6 to 45: press Set Scene Range" in said
     assert bpy.ops.curve.mobius_flow_scene_range() == {"FINISHED"}
     assert (scene.frame_start, scene.frame_end) == (6, 45)
 
