@@ -3,7 +3,7 @@
 import bpy
 
 from .curves import bake
-from .live.checks import refusal, selected_curves, unbaked, unclearable
+from .live.checks import edited, refusal, selected_curves, unbaked, unclearable
 from .operators import Relaxing
 
 
@@ -49,7 +49,7 @@ class CURVE_OT_mobius_flow_clear(bpy.types.Operator):  # noqa: N801
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Clear all of them."""
-        if reason := unclearable(context):
+        if reason := unclearable(context) or edited(context):
             self.report({"ERROR"}, reason)
             return {"CANCELLED"}
         for obj in selected_curves(context):

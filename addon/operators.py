@@ -12,7 +12,7 @@ from .curves import bevel
 from .curves.exchange import new_curve_data, write_points
 from .curves.session import Session
 from .engine.timing import Pace
-from .live.checks import refusal, selected_curves, unsampled
+from .live.checks import edited, refusal, selected_curves, unsampled
 from .live.start import LiveRelax, tell
 from .properties import SETTINGS, relax_options, settings
 
@@ -52,7 +52,7 @@ class Relaxing(LiveRelax):
         context.view_layer.update()  # a script may have moved the object just before
         values = self.values(context)
         try:
-            if reason := self.refusal(context) or self._unasked(context):
+            if reason := self.refusal(context) or edited(context) or self._unasked(context):
                 raise MobiusFlowError(reason)
             options, objects = self.key_options(context, values), selected_curves(context)
             report = Session(objects, relax_options(values), options, self.continues).run()

@@ -1,5 +1,6 @@
 """What a curve that was keyed here remembers: how it was before, kept in a custom property, so in the file too."""
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -29,6 +30,7 @@ def update(data: "bpy.types.Curve", timing: Timing) -> None:
     """Note how the keys are that were written last."""
     record = data[_RECORD]
     record["fingerprint"] = _fingerprint(data)
+    record["shapes"] = _digest(data)
     record["bevel_depth"] = data.bevel_depth
     record["holds"] = [timing.hold_start, timing.hold_end]
 
@@ -37,6 +39,11 @@ def is_baked(data: "bpy.types.Curve") -> bool:
     """Whether a curve has the keys that were written here, and neither others nor other points."""
     record = data.get(_RECORD)
     return record is not None and list(record["fingerprint"]) == _fingerprint(data)
+
+
+def is_edited(data: "bpy.types.Curve") -> bool:
+    """Whether somebody has moved points of a baked curve's shape keys: a look at all of them, not for every redraw."""
+    return bool(data[_RECORD]["shapes"] != _digest(data))
 
 
 def scene_range(objects: Sequence["bpy.types.Object"]) -> tuple[int, int] | None:
@@ -98,6 +105,16 @@ def _fingerprint(data: "bpy.types.Curve") -> list[int]:
     blocks = 0 if keys is None else -1 if keys.use_relative else len(keys.key_blocks)
     own, other = count_own(owner), keys is not None and _moves(data)
     return [blocks, -1 if own is None or other or _driven(owner) else own, sum(count for _, count in shape(data))]
+
+
+def _digest(data: "bpy.types.Curve") -> str:
+    """A name for where the points are at all shape keys."""
+    hashed = hashlib.blake2b(digest_size=16)
+    for block in data.shape_keys.key_blocks if data.shape_keys else ():
+        points = np.empty(3 * len(block.data), dtype=np.float32)
+        block.data.foreach_get("co", points)
+        hashed.update(points.tobytes())
+    return hashed.hexdigest()
 
 
 def _moves(block: "bpy.types.ID") -> bool:

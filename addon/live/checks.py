@@ -45,6 +45,14 @@ def unbaked(context: "bpy.types.Context") -> str | None:
     return f"'{bare.name}' has no keys of Möbius Flow; press Relax first" if bare is not None else None
 
 
+def edited(context: "bpy.types.Context") -> str | None:
+    """Say which of the selected curves has keys that somebody has edited, or return None; not for every redraw."""
+    for obj in selected_curves(context):
+        if bake.is_baked(obj.data) and bake.is_edited(obj.data):
+            return f"Keys of '{obj.name}' were edited; undo that, or remove the keys to relax the curve as it is"
+    return None
+
+
 def unclearable(context: "bpy.types.Context") -> str | None:
     """Say why the selected curves cannot be given back as they were before they were baked, or return None."""
     if reason := _running():

@@ -10,7 +10,7 @@ from ..curves.session import Report
 from ..engine.key_options import KeyOptions
 from ..properties import key_options, relax_options
 from . import registry
-from .checks import refusal, selected_curves, unsampled
+from .checks import edited, refusal, selected_curves, unsampled
 from .modal import Loop
 from .refresh import Refresh
 from .run import Run, State
@@ -65,7 +65,7 @@ class LiveRelax(Listening):
     def begin(self, context: bpy.types.Context, values: dict[str, Any]) -> set[str]:
         """Start the run and its event loop."""
         try:
-            if reason := refusal(context):
+            if reason := refusal(context) or edited(context):
                 raise MobiusFlowError(reason)
             options, refresh = self.key_options(context, values), Refresh(values["view_every"])
             run = Run(selected_curves(context), relax_options(values), options, self.continues, refresh)

@@ -279,6 +279,33 @@ def test_what_was_not_baked_cannot_be_baked_again():
         bpy.ops.curve.mobius_flow_scene_range()
 
 
+@pytest.mark.parametrize(
+    "call",
+    [bpy.ops.curve.mobius_flow_relax, bpy.ops.curve.mobius_flow_continue, bpy.ops.curve.mobius_flow_clear],
+)
+@pytest.mark.parametrize("key", [0, 2, -1])
+def test_keys_that_were_edited_are_not_lost(call, key):
+    obj = add_trefoil()
+    relax(max_iterations=4)
+    obj.data.shape_keys.key_blocks[key].data[7].co.x += 0.125
+    before, data = contents(), obj.data
+    with pytest.raises(RuntimeError, match="Keys of 'Knot' were edited; undo that, or remove the keys to relax the"):
+        call()
+    assert contents() == before
+    assert obj.data == data
+
+
+def test_a_look_into_edit_mode_edits_nothing():
+    obj = add_trefoil()
+    relax(max_iterations=4)
+    for key in (0, 3):
+        obj.active_shape_key_index = key
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.object.mode_set(mode="OBJECT")
+    again()
+    clear()
+
+
 def test_a_linked_baked_curve_is_left_alone(tmp_path):
     add_trefoil()
     relax(max_iterations=2)
