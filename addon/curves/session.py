@@ -36,7 +36,9 @@ class Report:
     outcome
         How the relaxation ended.
     keys
-        Number of keys written; 1 without animation.
+        Number of keys of what was relaxed; 1 without animation.
+    continues
+        Whether the first of them is the last of those that were there.
     last_frame
         Scene frame of the last key.
     scene_range
@@ -52,6 +54,7 @@ class Report:
     names: tuple[str, ...]
     outcome: Outcome
     keys: int
+    continues: bool
     last_frame: float
     scene_range: tuple[int, int] | None
     certified: bool
@@ -65,7 +68,8 @@ class Report:
         whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
         whom += ", before modifiers" if self.modified else ""
         proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
-        animation = f"{self.keys} keys up to frame {self.last_frame:g}, " if self.keys > 1 else ""
+        keys = f"{self.keys - 1} new keys" if self.continues else f"{self.keys} keys"
+        animation = f"{keys} up to frame {self.last_frame:g}, " if self.keys > 1 else ""
         return f"{named(self.names)} {self.outcome.message.rstrip('.')}; {animation}{proof}"
 
     @property
@@ -221,6 +225,7 @@ class Session:
             names=group.names,
             outcome=self.outcome,
             keys=len(keys.keys),
+            continues=group.continues,
             last_frame=float(frames[-1]),
             scene_range=bake.scene_range(group.objects),
             certified=keys.certified,

@@ -9,7 +9,8 @@ from scene import obj, points, reaches, ready, run, state
 
 
 def case() -> Steps:
-    yield from ready(vertices=1200)  # it takes longer than rendering
+    yield from ready(vertices=1200)
+    window().scene.mobius_flow.tolerance = 1e-7  # it takes longer than rendering
     before = points()
     camera()
     window().view_layer.objects.active = obj()
