@@ -3,17 +3,29 @@
 import bpy
 
 from . import labels
-from .curves import neighbours
+from .baking import (
+    CURVE_OT_mobius_flow_bake_again,
+    CURVE_OT_mobius_flow_clear,
+    CURVE_OT_mobius_flow_continue,
+    CURVE_OT_mobius_flow_scene_range,
+)
+from .curves import bake, neighbours
 from .live import registry
 from .live.checks import refusal, selected_curves
-from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_stop
+from .live.operators import (
+    CURVE_OT_mobius_flow_cancel,
+    CURVE_OT_mobius_flow_pause,
+    CURVE_OT_mobius_flow_recover,
+    CURVE_OT_mobius_flow_stop,
+)
 from .live.run import Run, State
+from .live.start import unseen
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
 from .properties import shown
 
 
 class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
-    """Settings, the buttons, and how the relaxation goes; when Relax is disabled, the reason stands below it."""
+    """The buttons, how the relaxation goes, and settings; when Relax is disabled, the reason stands below it."""
 
     bl_label = "Möbius Flow"
     bl_category = "Möbius Flow"
@@ -26,17 +38,36 @@ class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming s
         settings = context.scene.mobius_flow
         layout.use_property_split = True
         layout.use_property_decorate = False
-        _column(layout, settings, *(option.name for option in shown("basic")))
-        _column(layout, settings, "keyframes")
-        if settings.keyframes != "RESULT":
-            _column(layout, settings, "start_frame", "frames_per_iterate", "max_keys")
-        layout.prop(settings, "fit_bevel")
         _buttons(layout, context)
         if run := registry.latest():
             _progress(layout, context, run)
         elif context.active_object and context.active_object.type == "CURVE":
             _value(layout, "Tube radius", f"{context.active_object.data.bevel_depth:.4g}")
+        _column(layout, settings, *(option.name for option in shown("basic")))
+        layout.prop(settings, "fit_bevel")
         layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
+
+
+class VIEW3D_PT_mobius_flow_animation(bpy.types.Panel):  # noqa: N801
+    """How the motion is kept as keyframes, and what can be done with them afterwards."""
+
+    bl_label = "Animation"
+    bl_parent_id = "VIEW3D_PT_mobius_flow"
+    bl_category = "Möbius Flow"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Buttons for curves that were baked, then settings."""
+        layout = self.layout
+        settings = context.scene.mobius_flow
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        _bake_buttons(layout, context)
+        if settings.keyframes != "RESULT":
+            lasting = "frames_per_iterate" if settings.timing == "ITERATE" else "length"
+            _column(layout, settings, "timing", lasting, "start_frame", "hold_start", "hold_end")
+        _column(layout, settings, "keyframes", *(["max_keys"] if settings.keyframes != "RESULT" else []))
 
 
 class VIEW3D_PT_mobius_flow_advanced(bpy.types.Panel):  # noqa: N801
@@ -53,7 +84,9 @@ class VIEW3D_PT_mobius_flow_advanced(bpy.types.Panel):  # noqa: N801
         """Show them all."""
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        _column(self.layout, context.scene.mobius_flow, *(option.name for option in shown("advanced")))
+        settings = context.scene.mobius_flow
+        _column(self.layout, settings, *(option.name for option in shown("advanced")))
+        _column(self.layout, settings, "view_every")
 
 
 def add_menu_entry(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
@@ -64,20 +97,40 @@ def add_menu_entry(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
 def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     run = registry.current()
     column = layout.column(align=True)
-    column.scale_y = 1.3
     objects = run.group.objects if run is not None else selected_curves(context)
     text = f"Relax {len(objects)} Curves Together" if len(objects) > 1 else "Relax"
-    column.operator(CURVE_OT_mobius_flow_relax.bl_idname, text=text, icon="PLAY")
-    row = column.row(align=True)
-    paused = run is not None and run.state is State.PAUSED
-    text, icon = ("Resume", "PLAY") if paused else ("Pause", "PAUSE")
-    row.operator(CURVE_OT_mobius_flow_pause.bl_idname, text=text, icon=icon)
-    row.operator(CURVE_OT_mobius_flow_stop.bl_idname, icon="SNAP_FACE")
+    large = column.row(align=True)
+    large.scale_y = 1.8
+    if run is None:
+        large.operator(CURVE_OT_mobius_flow_relax.bl_idname, text=text, icon="PLAY")
+    else:
+        _run_buttons(large, run)
+    latest = registry.latest()
+    if latest is not None and latest.recoverable:
+        column.operator(CURVE_OT_mobius_flow_recover.bl_idname, icon="RECOVER_LAST")
     reason = refusal(context)
     if reason and (run is None or any(obj not in objects for obj in selected_curves(context))):
         labels.sentence(layout, context, reason)
     if (run or not reason) and (unguarded := neighbours.warning(context, objects)):
         labels.sentence(layout, context, unguarded, icon="ERROR")
+
+
+def _run_buttons(row: bpy.types.UILayout, run: Run) -> None:
+    text, icon = ("Resume", "PLAY") if run.state is State.PAUSED else ("Pause", "PAUSE")
+    row.operator(CURVE_OT_mobius_flow_pause.bl_idname, text=text, icon=icon)
+    row.operator(CURVE_OT_mobius_flow_stop.bl_idname, icon="CHECKMARK")
+    row.operator(CURVE_OT_mobius_flow_cancel.bl_idname, icon="X")
+
+
+def _bake_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    column = layout.column(align=True)
+    row = column.row(align=True)
+    row.operator(CURVE_OT_mobius_flow_bake_again.bl_idname, icon="FILE_REFRESH")
+    row.operator(CURVE_OT_mobius_flow_continue.bl_idname, icon="FF")
+    column.operator(CURVE_OT_mobius_flow_clear.bl_idname, icon="TRASH")
+    column.operator(CURVE_OT_mobius_flow_scene_range.bl_idname, icon="PREVIEW_RANGE")
+    if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
+        labels.sentence(layout, context, f"{hidden[0].upper()}{hidden[1:]}")
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:

@@ -10,9 +10,11 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..core import RelaxOptions
 from ..core.option import Option, declared
-from .engine.key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output
+from .engine.key_options import KeyOptions, Output
+from .engine.timing import FRAMES_PER_ITERATE, LAST_FRAME, Pace, Timing
 
 _KEY_DEFAULTS = KeyOptions()
+_TIMING_DEFAULTS = Timing()
 _TINY = 1e-37  # just above the smallest of 32-bit numbers that are computed with
 _PROPERTIES = {bool: BoolProperty, int: IntProperty, float: FloatProperty}
 _AUTOMATIC = "AUTO"  # stands for None among names, as 0 does among numbers
@@ -20,6 +22,12 @@ _OUTPUT_DESCRIPTIONS = {
     Output.SHAPE_KEYS: "Absolute shape keys and one F-curve on their evaluation time: small, fast, renders anywhere",
     Output.FCURVES: "An F-curve for every coordinate of every point, for exporters that know no shape keys",
     Output.RESULT: "Move the points to the relaxed curves, without animation",
+}
+_PACE_DESCRIPTIONS = {
+    Pace.EVEN: "The curves move about evenly over the whole length, and their last, small motions get some frames too",
+    Pace.DISTANCE: "The curves move by the same distance in every frame of the whole length",
+    Pace.FLOW_TIME: "The sizes of the steps add up evenly over the whole length: the time of a gradient flow",
+    Pace.ITERATE: "Every iterate gets the same number of frames; the length follows",
 }
 
 
@@ -67,23 +75,7 @@ def settings(options: set[str]) -> dict[str, Any]:
             default=_KEY_DEFAULTS.output.name,
             options=options,
         ),
-        "start_frame": IntProperty(
-            name="Start Frame",
-            description="Frame at which the curves begin to move",
-            default=int(_KEY_DEFAULTS.start_frame),
-            soft_min=-LAST_FRAME,
-            soft_max=LAST_FRAME,
-            options=options,
-        ),
-        "frames_per_iterate": FloatProperty(
-            name="Frames/Iterate",
-            description="Number of frames from one iterate to the next",
-            default=_KEY_DEFAULTS.frames_per_iterate,
-            min=FRAMES_PER_ITERATE[0],
-            soft_max=100.0,
-            max=FRAMES_PER_ITERATE[1],
-            options=options,
-        ),
+        **_timing(options),
         "max_keys": IntProperty(
             name="Max Keys",
             description=(
@@ -100,7 +92,56 @@ def settings(options: set[str]) -> dict[str, Any]:
             default=True,
             options=options,
         ),
+        "view_every": IntProperty(
+            name="Update View Every",
+            description=(
+                "Show every so many iterates while relaxing; "
+                "0: as often as leaves two thirds of the time to anything but drawing"
+            ),
+            default=0,
+            min=0,
+            options=options,
+        ),
     }
+
+
+def _timing(options: set[str]) -> dict[str, Any]:
+    """Declare what `Timing` is made of."""
+    return {
+        "timing": EnumProperty(
+            name="Timing",
+            description="What passes evenly from frame to frame",
+            items=[(pace.name, pace.value, _PACE_DESCRIPTIONS[pace]) for pace in Pace],
+            default=_TIMING_DEFAULTS.pace.name,
+            options=options,
+        ),
+        "start_frame": IntProperty(
+            name="Start Frame",
+            description="Frame at which the animation begins",
+            default=int(_TIMING_DEFAULTS.start_frame),
+            soft_min=-LAST_FRAME,
+            soft_max=LAST_FRAME,
+            options=options,
+        ),
+        "length": _frames("Length", "Number of frames of the whole animation", _TIMING_DEFAULTS.length, 2, options),
+        "frames_per_iterate": FloatProperty(
+            name="Frames/Iterate",
+            description="Number of frames from one iterate to the next",
+            default=_TIMING_DEFAULTS.frames_per_iterate,
+            min=FRAMES_PER_ITERATE[0],
+            soft_max=100.0,
+            max=FRAMES_PER_ITERATE[1],
+            options=options,
+        ),
+        "hold_start": _frames("Hold at Start", "Frames at rest before the curves move", 0, 0, options),
+        "hold_end": _frames("Hold at End", "Frames at rest after the curves have moved", 0, 0, options),
+    }
+
+
+def _frames(name: str, description: str, default: int, low: int, options: set[str]) -> Any:
+    return IntProperty(
+        name=name, description=description, default=default, min=low, max=LAST_FRAME, soft_max=1000, options=options
+    )
 
 
 SETTINGS = tuple(settings(set()))
@@ -121,10 +162,13 @@ def relax_options(values: dict[str, Any]) -> RelaxOptions:
 
 def key_options(values: dict[str, Any]) -> KeyOptions:
     """The animation's options from the values of the settings; raises OptionError."""
+    timing = Timing(
+        pace=Pace[values["timing"]],
+        **{name: values[name] for name in ("start_frame", "length", "frames_per_iterate", "hold_start", "hold_end")},
+    )
     return KeyOptions(
         output=Output[values["keyframes"]],
-        start_frame=values["start_frame"],
-        frames_per_iterate=values["frames_per_iterate"],
+        timing=timing,
         max_keys=values["max_keys"] or None,
         fit_bevel=values["fit_bevel"],
     )

@@ -3,10 +3,27 @@
 import bpy
 from bpy.props import PointerProperty
 
+from .baking import (
+    CURVE_OT_mobius_flow_bake_again,
+    CURVE_OT_mobius_flow_clear,
+    CURVE_OT_mobius_flow_continue,
+    CURVE_OT_mobius_flow_scene_range,
+)
 from .live import handlers
-from .live.operators import CURVE_OT_mobius_flow_pause, CURVE_OT_mobius_flow_sample, CURVE_OT_mobius_flow_stop
+from .live.operators import (
+    CURVE_OT_mobius_flow_cancel,
+    CURVE_OT_mobius_flow_pause,
+    CURVE_OT_mobius_flow_recover,
+    CURVE_OT_mobius_flow_sample,
+    CURVE_OT_mobius_flow_stop,
+)
 from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
-from .panel import VIEW3D_PT_mobius_flow, VIEW3D_PT_mobius_flow_advanced, add_menu_entry
+from .panel import (
+    VIEW3D_PT_mobius_flow,
+    VIEW3D_PT_mobius_flow_advanced,
+    VIEW3D_PT_mobius_flow_animation,
+    add_menu_entry,
+)
 from .properties import MobiusFlowSettings
 
 _CLASSES = (
@@ -14,9 +31,16 @@ _CLASSES = (
     CURVE_OT_mobius_flow_relax,
     CURVE_OT_mobius_flow_pause,
     CURVE_OT_mobius_flow_stop,
+    CURVE_OT_mobius_flow_cancel,
+    CURVE_OT_mobius_flow_recover,
     CURVE_OT_mobius_flow_sample,
+    CURVE_OT_mobius_flow_bake_again,
+    CURVE_OT_mobius_flow_continue,
+    CURVE_OT_mobius_flow_clear,
+    CURVE_OT_mobius_flow_scene_range,
     CURVE_OT_mobius_flow_add_knot,
     VIEW3D_PT_mobius_flow,
+    VIEW3D_PT_mobius_flow_animation,
     VIEW3D_PT_mobius_flow_advanced,
 )
 

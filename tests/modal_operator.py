@@ -17,9 +17,12 @@ class Operator:
     modal = CURVE_OT_mobius_flow_relax.modal
     cancel = CURVE_OT_mobius_flow_relax.cancel
     begin = CURVE_OT_mobius_flow_relax.begin
+    listen = CURVE_OT_mobius_flow_relax.listen
+    key_options = CURVE_OT_mobius_flow_relax.key_options
 
-    def __init__(self, **values):
-        self.loop, self.reports, self.values = None, [], values
+    def __init__(self, continues=False, **values):
+        self.loop, self.reports, self.continues = None, [], continues
+        self.values = {"view_every": 1} | values
 
     def report(self, kind, message):
         self.reports.append((kind, message))
@@ -42,10 +45,10 @@ class Operator:
         scene = bpy.context.scene.mobius_flow
         return self.begin(self.context, {name: getattr(scene, name) for name in SETTINGS} | self.values)
 
-    def event(self, kind="TIMER", **keys):
+    def event(self, kind="TIMER", mouse=(0, 0), **keys):
         modifiers = {"ctrl": False, "shift": False, "oskey": False} | keys
         event = SimpleNamespace(type=kind, value="NOTHING" if kind == "TIMER" else "PRESS", **modifiers)
-        event.mouse_x = event.mouse_y = 0
+        event.mouse_x, event.mouse_y = mouse
         return self.modal(self.context, event)
 
     @property
@@ -67,7 +70,7 @@ class Operator:
 
 
 def restored(obj, before):
-    after = Snapshot(obj.data)
+    after = Snapshot.of(obj.data)
     for old, new in zip(before._splines, after._splines, strict=True):
         assert (old.type, old.count, old.settings) == (new.type, new.count, new.settings)
         assert all(np.array_equal(old.points[name], new.points[name]) for name in old.points)

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...core import Curve
 from ...core.curve import Mesh
 from ...core.types import FloatArray
@@ -11,8 +13,7 @@ from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame
 from ..engine.words import named
-from . import bevel, keyframes
-from .exchange import read_link
+from .exchange import read_link, spline_points
 from .member import Member
 from .snapshot import outside_edit_mode
 
@@ -26,7 +27,10 @@ class Group:
     Parameters
     ----------
     objects
-        Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
+        Curve objects that `checks.refusal` has nothing against, their transforms evaluated. Baked ones are set aside,
+        and what is relaxed stands in for them until `settle` or `restore`.
+    continues
+        Whether baked curves are relaxed on from the ends of their animations, and not from how they were before.
 
     Attributes
     ----------
@@ -34,6 +38,8 @@ class Group:
         All splines as closed polygons in world space.
     link
         Where their vertices are stored.
+    continues
+        The same.
 
     Raises
     ------
@@ -41,9 +47,16 @@ class Group:
         If the splines cannot be read; the message says why.
     """
 
-    def __init__(self, objects: Sequence["bpy.types.Object"]) -> None:
-        self.curve, self.link = read_link(objects)
-        self._members = [Member(obj) for obj in objects]
+    def __init__(self, objects: Sequence["bpy.types.Object"], continues: bool = False) -> None:
+        self.continues = continues
+        self._members: list[Member] = []
+        try:
+            for obj in objects:
+                self._members.append(Member(obj, continues))
+            self.curve, self.link = read_link(objects)
+        except BaseException:
+            self.restore()
+            raise
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -70,6 +83,21 @@ class Group:
         """Whether any of the objects is drawn as a tube that may be fitted."""
         return any(member.fits_bevel for member in self._members)
 
+    @property
+    def rebakes(self) -> bool:
+        """Whether baked curves are set aside."""
+        return any(member.rebakes for member in self._members)
+
+    def equals(self, other: "Group") -> bool:
+        """Whether the same polygons are stored in the same places, bit for bit."""
+        pairs = zip(self.link.placements, other.link.placements, strict=False)
+        return (
+            self.link.counts == other.link.counts
+            and self.curve.mesh == other.curve.mesh
+            and np.array_equal(self.curve.vertices, other.curve.vertices)
+            and all(one.equals(another) for one, another in pairs)
+        )
+
     def lost(self) -> str | None:
         """Say what somebody did to one of the objects that makes going on impossible."""
         reason = next((reason for member in self._members if (reason := member.lost())), None)
@@ -77,6 +105,11 @@ class Group:
             moved = next((member for member in self._members if member.moved), None)
             reason = f"'{moved.name}' was moved against the others" if moved else None
         return reason
+
+    @property
+    def stored(self) -> Frame:
+        """The splines' vertices as Blender stores them; shape (n, 3)."""
+        return np.concatenate([spline_points(spline) for obj in self.objects for spline in obj.data.splines])
 
     def make_polygons(self, refined: Curve) -> None:
         """Give all splines the points of the refined link; where they are is left open."""
@@ -89,17 +122,15 @@ class Group:
         for member, vertices in zip(self._members, self.link.slices(mesh), strict=True):
             member.show(frame[vertices])
 
-    def writing(self, mesh: Mesh, keys: Keys, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
+    def writing(
+        self, mesh: Mesh, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None
+    ) -> Iterator[None]:
         """Write keys to all objects in short pieces; ``radii`` are those of the tube in the common space, (keys,)."""
         for member, vertices, scale in zip(self._members, self.link.slices(mesh), self.link.scales, strict=True):
-            obj = member.object
-            assert obj is not None, "whoever writes looks for it first"
-            member.keyed = True
-            relative = None
-            if radii is not None and member.fits_bevel:
-                bevel.fit(obj.data, float(radii[-1]) / scale)
-                relative = radii / radii[-1]
-            yield from keyframes.writing(obj, keys.part(vertices), options, relative)
+            own = None if radii is None else radii / scale
+            yield from member.writing(keys.part(vertices), frames, options, own)
+        for member in self._members:
+            member.settle(options)
 
     def restore(self) -> bool:
         """Put back what was there, but for what somebody else deleted or changed; return whether all is as it was."""
@@ -114,6 +145,11 @@ class Group:
         return all(restored)
 
     def set_aside(self) -> None:
-        """Put all splines back for a moment, because the file is being saved."""
+        """Put all curves back for a moment, because the file is being saved."""
         for member in self._members:
             member.set_aside()
+
+    def put_forward(self) -> None:
+        """Go on after `set_aside`; where points are is left open."""
+        for member in self._members:
+            member.put_forward()

@@ -1,64 +1,95 @@
-"""Motion written into curve data: absolute shape keys with one F-curve, or an F-curve for every coordinate."""
+"""Motion written into curve data: absolute shape keys with one F-curve, or an F-curve for every coordinate.
+
+Data that has such keys already gets more of them after the last.
+"""
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...core.types import FloatArray
-from ..engine.key_options import KeyOptions, Output
+from ..engine.key_options import Output
 from ..engine.motion import Keys
+from ..engine.placement import Frame
 from .exchange import write_points
+from .fcurves import FCurves, drop_actions, fcurves_of
 
 if TYPE_CHECKING:
     import bpy
 
-_LINEAR = 1  # 'LINEAR' among the interpolations of a keyframe, as arrays of them are written in one call
-
-
-def write(obj: "bpy.types.Object", keys: Keys, options: KeyOptions) -> None:
-    """Write keys to a curve object that has as many points as they have vertices, and neither keys nor animation."""
-    for _ in writing(obj, keys, options):
-        pass
-
 
 def writing(
-    obj: "bpy.types.Object", keys: Keys, options: KeyOptions, radii: FloatArray | None = None
+    obj: "bpy.types.Object", keys: Keys, frames: FloatArray, output: Output, radii: FloatArray | None = None
 ) -> Iterator[None]:
-    """Do as `write` does in short pieces; ``radii`` are the relative radii of the tube at the keys."""
-    yield from _WRITERS[options.output](obj, keys, options.scene_frames(keys), radii)
+    """Write keys in short pieces to a curve object that has as many points as they have vertices.
+
+    The curve itself keeps the last key, so that removing the keys leaves the relaxed curve.
+
+    Parameters
+    ----------
+    obj
+        A curve object with neither keys nor animation, or with those of an earlier call; the first of the new keys is
+        the last of those then.
+    keys
+        What to write.
+    frames
+        Scene frame of each key, ascending; (keys,).
+    output
+        As what to write them.
+    radii
+        Relative radius of all points at each key, (keys,); None keeps what the points have.
+    """
+    yield from _WRITERS[output](obj, keys, frames, radii)
 
 
 def erase(obj: "bpy.types.Object") -> None:
-    """Remove what an unfinished `writing` has left: there were neither shape keys nor an action before."""
-    import bpy
-
-    owners = [owner for owner in (obj.data.shape_keys, obj.data) if owner and owner.animation_data]
-    actions = [owner.animation_data.action for owner in owners if owner.animation_data.action]
-    obj.shape_key_clear()
-    for action in actions:
-        bpy.data.actions.remove(action)
+    """Remove all that `writing` has written but where the points are."""
+    drop_actions(obj.data)
+    _remove_shape_keys(obj)
     animation = obj.data.animation_data
     if animation and not (animation.drivers or animation.nla_tracks):
         obj.data.animation_data_clear()
 
 
+def _remove_shape_keys(obj: "bpy.types.Object") -> None:
+    import bpy
+
+    if obj.data.shape_keys:
+        uid = obj.data.shape_keys.session_uid
+        obj.shape_key_clear()
+        # Blender 5.0 counts a user too many where curve data was copied, and leaves the keys behind
+        bpy.data.batch_remove([keys for keys in bpy.data.shape_keys if keys.session_uid == uid])
+
+
+def output_of(data: "bpy.types.Curve") -> Output | None:
+    """As what the keys are written that curve data has already, or None if it has none."""
+    if data.shape_keys:
+        return Output.SHAPE_KEYS
+    return Output.FCURVES if data.animation_data and data.animation_data.action else None
+
+
+def end_of(data: "bpy.types.Curve") -> Frame:
+    """Points of a curve at the last of its keys, (n, 3); what is stored may be another frame's."""
+    if data.shape_keys:
+        points = np.empty(3 * sum(len(spline.points) for spline in data.splines), dtype=np.float32)
+        data.shape_keys.key_blocks[-1].data.foreach_get("co", points)
+        return points.reshape(-1, 3)
+    curves = fcurves_of(data.animation_data.action)
+    last = {(curve.data_path, curve.array_index): curve.keyframe_points[-1].co[1] for curve in curves}
+    return np.array([[last[path, axis] for axis in range(3)] for path in _paths(data)], dtype=np.float32)
+
+
+def scale_radii(data: "bpy.types.Curve", factor: float) -> None:
+    """Multiply the points' radii at all keys, because the radius that they are relative to has been divided."""
+    for block in data.shape_keys.key_blocks if data.shape_keys else ():
+        radii = np.empty(len(block.data), dtype=np.float32)
+        block.data.foreach_get("radius", radii)
+        block.data.foreach_set("radius", radii * np.float32(factor))
+
+
 def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None) -> None:
-    """Write keys as absolute shape keys and an F-curve that runs through them.
-
-    The curve itself keeps the last key, so that removing the shape keys leaves the relaxed curve.
-
-    Parameters
-    ----------
-    obj
-        A curve object without shape keys, with as many points as the keys have vertices.
-    keys
-        What to write.
-    frames
-        Scene frame of each key, ascending.
-    radii
-        Radius of all points at each key; None keeps what the points have.
-    """
+    """Write keys as absolute shape keys and an F-curve that runs through them; as `writing`, at once."""
     for _ in _shape_keys(obj, keys, frames, radii):
         pass
 
@@ -68,13 +99,15 @@ def _shape_keys(
 ) -> Iterator[None]:
     data = obj.data
     write_points(data, keys.keys[-1].points)
-    for k, key in enumerate(keys.keys):
-        if k == 1:
-            data.shape_keys.use_relative = False
-        if k:
+    there = len(data.shape_keys.key_blocks) if data.shape_keys else 0
+    skipped = min(there, 1)  # the first of more keys is there already
+    for k, key in enumerate(keys.keys[skipped:], skipped):
+        place = there - skipped + k
+        if place:
             # An absolute key is put where the evaluation time is. In steps of 1 it is read back exactly; Blender's own
             # steps of 10 add up rounding errors, and the animation would pass beside its keys.
-            data.shape_keys.eval_time = k
+            data.shape_keys.use_relative = False
+            data.shape_keys.eval_time = place
         block = obj.shape_key_add(name=f"Iterate {key.time:g}", from_mix=False)
         block.interpolation = "KEY_LINEAR"
         block.data.foreach_set("co", key.points.ravel())
@@ -84,7 +117,7 @@ def _shape_keys(
     data.shape_keys.use_relative = False
     data.shape_keys.eval_time = 0
     curves = FCurves(data.shape_keys, f"{obj.name} Relaxation")
-    curves.add("eval_time", 0, frames, np.arange(len(frames), dtype=np.float64))
+    curves.add("eval_time", 0, frames, there - skipped + np.arange(len(frames), dtype=np.float64))
 
 
 def _fcurves(
@@ -94,12 +127,16 @@ def _fcurves(
     write_points(obj.data, keys.keys[-1].points)
     curves = FCurves(obj.data, f"{obj.name} Relaxation")
     values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
-    sizes = [len(spline.points) for spline in obj.data.splines]
-    paths = [f"splines[{s}].points[{p}].co" for s, size in enumerate(sizes) for p in range(size)]
-    for path, point in zip(paths, values, strict=True):
+    for path, point in zip(_paths(obj.data), values, strict=True):
         for axis in range(3):
             curves.add(path, axis, frames, point[axis])
         yield
+
+
+def _paths(data: "bpy.types.Curve") -> Iterator[str]:
+    """Where the coordinates of each point are found."""
+    for s, spline in enumerate(data.splines):
+        yield from (f"splines[{s}].points[{p}].co" for p in range(len(spline.points)))
 
 
 def _result(
@@ -116,49 +153,3 @@ _WRITERS: dict[Output, _Writer] = {
     Output.FCURVES: _fcurves,
     Output.RESULT: _result,
 }
-
-
-def all_fcurves() -> Iterator["bpy.types.FCurve"]:
-    """Yield the F-curves of all actions in the file."""
-    import bpy
-
-    for action in bpy.data.actions:
-        yield from fcurves_of(action)
-
-
-def fcurves_of(action: "bpy.types.Action") -> Iterator["bpy.types.FCurve"]:
-    """Yield the F-curves of an action, in all versions of Blender."""
-    if not hasattr(action, "slots"):  # Blender 4.3 and before
-        yield from action.fcurves
-        return
-    for layer in action.layers:
-        for strip in layer.strips:
-            for channels in strip.channelbags:
-                yield from channels.fcurves
-
-
-class FCurves:
-    """The F-curves of a new action on a datablock, in all versions of Blender."""
-
-    def __init__(self, block: "bpy.types.ID", name: str) -> None:
-        import bpy
-
-        animation = block.animation_data_create()
-        action = bpy.data.actions.new(name)
-        animation.action = action
-        if not hasattr(action, "slots"):  # Blender 4.3 and before
-            self._fcurves: Any = action.fcurves
-            return
-        slot = action.slots.new(id_type=block.id_type, name=block.name)
-        animation.action_slot = slot
-        strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
-        self._fcurves = strip.channelbag(slot, ensure=True).fcurves
-
-    def add(self, path: str, axis: int, frames: FloatArray, values: FloatArray) -> None:
-        """Add a piecewise linear F-curve."""
-        curve = self._fcurves.new(path, index=axis)
-        points = curve.keyframe_points
-        points.add(len(frames))
-        points.foreach_set("co", np.column_stack([frames, values]).astype(np.float32).ravel())
-        points.foreach_set("interpolation", np.full(len(frames), _LINEAR, dtype=np.int32))
-        curve.update()

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from .keyframes import fcurves_of
+from .fcurves import fcurves_of
 
 if TYPE_CHECKING:
     import bpy

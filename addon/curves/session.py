@@ -4,8 +4,9 @@ A plain class: a blocking operator runs it, a modal one hands it the iterates of
 What it knows lives here and never in the file.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,8 +18,11 @@ from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
 from ..engine.placement import Frame
 from ..engine.words import named
-from . import bevel
+from . import bake, bevel
 from .group import Group
+
+if TYPE_CHECKING:
+    import bpy
 
 
 @dataclass(frozen=True)
@@ -32,9 +36,13 @@ class Report:
     outcome
         How the relaxation ended.
     keys
-        Number of keys written; 1 without animation.
+        Number of keys of what was relaxed; 1 without animation.
+    continues
+        Whether the first of them is the last of those that were there.
     last_frame
         Scene frame of the last key.
+    scene_range
+        First and last frame of the animation with its rests, if there is one.
     certified
         Whether every motion shown was proved free of contact, of each curve with itself and of all with each other.
     radius
@@ -46,7 +54,9 @@ class Report:
     names: tuple[str, ...]
     outcome: Outcome
     keys: int
+    continues: bool
     last_frame: float
+    scene_range: tuple[int, int] | None
     certified: bool
     radius: float | None
     modified: bool
@@ -58,7 +68,8 @@ class Report:
         whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
         whom += ", before modifiers" if self.modified else ""
         proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
-        animation = f"{self.keys} keys up to frame {self.last_frame:g}, " if self.keys > 1 else ""
+        keys = f"{self.keys - 1} new keys" if self.continues else f"{self.keys} keys"
+        animation = f"{keys} up to frame {self.last_frame:g}, " if self.keys > 1 else ""
         return f"{named(self.names)} {self.outcome.message.rstrip('.')}; {animation}{proof}"
 
     @property
@@ -69,12 +80,13 @@ class Report:
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """What is to be written: the keys, and the radius of the tube at each if it is fitted; shape (keys,).
+    """What is to be written: the keys, their frames, and the radius of the tube at each if it is fitted; (keys,).
 
     Radii are in the common space of `Link`.
     """
 
     keys: Keys
+    frames: FloatArray
     radii: FloatArray | None
 
 
@@ -83,13 +95,19 @@ class Session:
 
     Parameters
     ----------
-    group
-        The objects.
+    objects
+        Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
     options, key_options
         The requested options.
+    continues
+        Whether baked curves are relaxed on from the ends of their animations; the keys are added to theirs then.
 
     Attributes
     ----------
+    group
+        The objects; baked ones are set aside until the session's end or `Group.restore`.
+    options
+        The requested options.
     outcome
         How the relaxation ended, once it has.
 
@@ -99,11 +117,19 @@ class Session:
         If the curves cannot be relaxed, or there is no room for their keys; the message says why.
     """
 
-    def __init__(self, group: Group, options: RelaxOptions, key_options: KeyOptions) -> None:
+    def __init__(
+        self,
+        objects: Sequence["bpy.types.Object"],
+        options: RelaxOptions,
+        key_options: KeyOptions,
+        continues: bool = False,
+    ) -> None:
         key_options.check_room(options.max_iterations)
-        self.group = group
-        self._options, self._key_options = options, key_options
-        self._motion = Motion(group.link)
+        self.group = Group(objects, continues)
+        # the keys that are there have as many points as the curves have now
+        self.options = replace(options, vertices=len(self.group.curve)) if continues else options
+        self._key_options = key_options
+        self._motion = Motion(self.group.link, self.group.stored if continues else None)
         self.outcome: Outcome | None = None
 
     def run(self) -> Report:
@@ -114,16 +140,10 @@ class Session:
         MobiusFlowError
             If the curves cannot be relaxed, or an object is gone.
         """
-        relaxation = relax(self.group.curve, self._options)
-        while self.outcome is None:
-            try:
-                self.take(next(relaxation))
-            except StopIteration as end:
-                self.outcome = end.value
-        prepared = self.prepare(is_free)
-        if reason := self.group.lost():
-            raise MobiusFlowError(f"{reason} during the relaxation; nothing was written")
         try:
+            prepared = self._relaxed()
+            if reason := self.group.lost():
+                raise MobiusFlowError(f"{reason} during the relaxation; nothing was written")
             for _ in self.writing(prepared):
                 pass
         except BaseException:
@@ -131,16 +151,28 @@ class Session:
             raise
         return self.report(prepared)
 
-    def take(self, iterate: Iterate) -> Frame:
-        """Take in an iterate, and return its vertices as Blender will store them."""
-        return self._motion.add(iterate)
+    def _relaxed(self) -> Prepared:
+        relaxation = relax(self.group.curve, self.options)
+        while self.outcome is None:
+            try:
+                self.take(next(relaxation))
+            except StopIteration as end:
+                self.outcome = end.value
+        return self.prepare(is_free)
+
+    def take(self, iterate: Iterate) -> None:
+        """Take in an iterate."""
+        self._motion.add(iterate)
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
-        animated = self._key_options.output is not Output.RESULT
-        keys = self._motion.keys(proof, self._key_options.max_keys) if animated else self._motion.result(proof)
+        timing, motion = self._key_options.timing, self._motion
+        if self._key_options.animated:
+            keys = motion.keys(proof, self._key_options.max_keys, timing.pace)
+        else:
+            keys = motion.result(proof)
         fits = self._key_options.fit_bevel and self.group.fits_bevel
-        return Prepared(keys, self._radii(keys) if fits else None)
+        return Prepared(keys, timing.frames(motion.course(keys)), self._radii(keys) if fits else None)
 
     def _radii(self, keys: Keys) -> FloatArray:
         """Radii of the tube at the keys, in the common space; without shape keys the last one only."""
@@ -148,20 +180,55 @@ class Session:
         mesh, common = self._mesh, self.group.link.to_common
         return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh)) for key in shown])
 
+    def take_up(self) -> None:
+        """Go on after `Group.restore` with curves that are still what they were when the session began.
+
+        Raises
+        ------
+        MobiusFlowError
+            If they are not.
+        """
+        changed = f"{self.group.title} changed since the relaxation ended; relax anew"
+        objects = self.group.objects
+        if len(objects) < len(self.group.names):
+            raise MobiusFlowError(changed)
+        group = Group(objects, self.group.continues)
+        if not group.equals(self.group):
+            group.restore()
+            raise MobiusFlowError(changed)
+        self.group = group
+
+    @property
+    def start(self) -> Curve:
+        """The refined curve that the relaxation started from."""
+        return self._motion.start.curve
+
+    @property
+    def frame(self) -> Frame:
+        """Vertices of the last iterate as Blender will store them."""
+        return self._motion.frame
+
     @property
     def _mesh(self) -> Mesh:
-        return self._motion.start.curve.mesh
+        return self.start.mesh
 
     def writing(self, prepared: Prepared) -> Iterator[None]:
         """Write in short pieces, so that a window can be drawn in between; all objects must be there."""
-        self.group.make_polygons(self._motion.start.curve)
-        yield from self.group.writing(self._mesh, prepared.keys, self._key_options, prepared.radii)
+        self.group.make_polygons(self.start)
+        yield from self.group.writing(self._mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii)
 
     def report(self, prepared: Prepared) -> Report:
         """What was done, once it is written."""
-        keys, radii = prepared.keys, prepared.radii
-        last_frame = float(self._key_options.scene_frames(keys)[-1])
-        radius = None if radii is None else float(radii[-1])
         assert self.outcome is not None, "what is written has ended"
-        group = self.group
-        return Report(group.names, self.outcome, len(keys.keys), last_frame, keys.certified, radius, group.modified)
+        keys, frames, group = prepared.keys, prepared.frames, self.group
+        return Report(
+            names=group.names,
+            outcome=self.outcome,
+            keys=len(keys.keys),
+            continues=group.continues,
+            last_frame=float(frames[-1]),
+            scene_range=bake.scene_range(group.objects),
+            certified=keys.certified,
+            radius=None if prepared.radii is None else float(prepared.radii[-1]),
+            modified=group.modified,
+        )

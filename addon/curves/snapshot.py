@@ -48,6 +48,16 @@ class _Spline:
         for name, value in self.settings.items():
             setattr(spline, name, value)
 
+    @classmethod
+    def from_values(cls, values: Values) -> "_Spline":
+        """What `to_values` was called for."""
+        points = {name: _array(value) for name, value in values["points"].items()}
+        return cls(values["type"], values["count"], values["settings"].to_dict(), points)
+
+    def to_values(self) -> Values:
+        """All of it as custom properties can keep it in a file."""
+        return {"type": self.type, "count": self.count, "settings": self.settings, "points": self.points}
+
     def polygon(self, size: int, place: Places) -> "_Spline":
         """A polygon of ``size`` points drawn for this spline, refined; where its points are is left open."""
         values = {name: self._along(self.points[name], size) for name in _POINT_VALUES}
@@ -64,16 +74,36 @@ class _Spline:
 class Snapshot:
     """The splines and the bevel of curve data at one time."""
 
-    def __init__(self, data: "bpy.types.Curve") -> None:
-        self._splines: Sequence[_Spline] = [_Spline.of(spline) for spline in data.splines]
-        self._active = next((k for k, spline in enumerate(data.splines) if spline == data.splines.active), None)
-        self._bevel = {name: getattr(data, name) for name in _BEVEL}
+    def __init__(self, splines: Sequence[_Spline], active: int | None, bevel: Values) -> None:
+        self._splines, self._active, self._bevel = splines, active, bevel
+
+    @classmethod
+    def of(cls, data: "bpy.types.Curve") -> "Snapshot":
+        """Take down what curve data is now."""
+        active = next((k for k, spline in enumerate(data.splines) if spline == data.splines.active), None)
+        bevel = {name: getattr(data, name) for name in _BEVEL}
+        return cls([_Spline.of(spline) for spline in data.splines], active, bevel)
+
+    @classmethod
+    def from_values(cls, values: Values) -> "Snapshot":
+        """What `to_values` was called for, from the custom property that it was put into."""
+        splines = [_Spline.from_values(each) for each in values["splines"]]
+        return cls(splines, values.get("active"), values["bevel"].to_dict())
+
+    def to_values(self) -> Values:
+        """All of it as custom properties can keep it in a file."""
+        values: Values = {"splines": [spline.to_values() for spline in self._splines], "bevel": self._bevel}
+        return values if self._active is None else values | {"active": self._active}
 
     def restore(self, data: "bpy.types.Curve") -> None:
         """Put everything back."""
-        self._put(data, self._splines)
+        self.restore_splines(data)
         for name, value in self._bevel.items():
             setattr(data, name, value)
+
+    def restore_splines(self, data: "bpy.types.Curve") -> None:
+        """Put the splines back; the bevel stays as it is."""
+        self._put(data, self._splines)
 
     def make_polygons(self, data: "bpy.types.Curve", original: Curve, refined: Curve) -> None:
         """Make splines poly splines with as many points as the refined curve has, if they are not yet.
@@ -139,6 +169,11 @@ def outside_edit_mode(objects: Sequence["bpy.types.Object"]) -> Iterator[None]:
     finally:
         bpy.ops.object.mode_set(mode=mode)
         bpy.ops.ed.undo_push(message="Relaxation Ended")
+
+
+def _array(kept: Any) -> npt.NDArray[Any]:
+    """A custom property's numbers, in the type that they were given in."""
+    return np.array(kept, dtype={"f": np.float32, "i": np.int32}[kept.typecode])
 
 
 def _points(spline: "bpy.types.Spline") -> Any:

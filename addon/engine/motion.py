@@ -14,6 +14,7 @@ from ...core import Iterate
 from ...core.curve import Mesh
 from ...core.types import FloatArray
 from .placement import Frame, Link
+from .timing import Course, Pace
 
 Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
 
@@ -67,24 +68,29 @@ class Motion:
     ----------
     link
         Where the vertices of the iterates are stored, and in which space their motions are proved.
+    first
+        The start as it is stored already, where keys are added to others; None rounds the first iterate.
     """
 
-    def __init__(self, link: Link) -> None:
-        self._link = link
+    def __init__(self, link: Link, first: Frame | None = None) -> None:
+        self._link, self._first = link, first
         self._start: Iterate | None = None
         self._last: Iterate | None = None
         self._keys: list[Key] = []
         self._ends: list[int] = []  # positions of the iterates among the keys; the others are inner ends of legs
+        self._steps: list[float] = []  # sizes of the steps that led to the iterates
 
-    def add(self, iterate: Iterate) -> Frame:
-        """Append an iterate with the legs that lead to it, and return its vertices as Blender will store them."""
+    def add(self, iterate: Iterate) -> None:
+        """Append an iterate with the legs that lead to it."""
         frames = frames_of(self._link, iterate)
+        if self._start is None and self._first is not None:
+            frames = [self._first]
         self._start = self._start or iterate
         self._last = iterate
         times = self._leg_times(iterate.index, frames)
         self._keys += map(Key, times, frames)
         self._ends.append(len(self._keys) - 1)
-        return frames[-1]
+        self._steps.append(iterate.step_size if iterate.index else 0.0)
 
     def _leg_times(self, index: int, frames: Sequence[Frame]) -> list[float]:
         """End times of the legs, so that the fastest vertex keeps its speed from leg to leg."""
@@ -95,7 +101,7 @@ class Motion:
         passed = np.cumsum(np.maximum(ways, 1e-3 * max(ways)))
         return [*(index - 1 + passed[:-1] / passed[-1]).tolist(), float(index)]
 
-    def keys(self, free: Proof, limit: int | None = None) -> Keys:
+    def keys(self, free: Proof, limit: int | None = None, pace: Pace = Pace.ITERATE) -> Keys:
         """Choose the keys of an animation from the start to the last iterate.
 
         Parameters
@@ -103,10 +109,12 @@ class Motion:
         free
             ``free(mesh, start, end)`` proves a straight motion free of contact.
         limit
-            Wanted number of keys, at least 2, spread evenly over the iterates; None keys every iterate. Keys are
+            Wanted number of keys, at least 2, spread evenly over the frames; None keys every iterate. Keys are
             added beyond it where the straight motion from one to the next cannot be proved.
+        pace
+            What passes evenly from frame to frame.
         """
-        chosen = self._spread(limit)
+        chosen = self._spread(limit, pace)
         keys, unproved = [self._keys[chosen[0]]], int(not self._rounds_freely(self.start, 0, free))
         for a, b in pairwise(chosen):
             for key, proved in self._way(a, b, free):
@@ -119,6 +127,24 @@ class Motion:
         proved = self.last.certified and self._rounds_freely(self.last, -1, free)
         return Keys((self._keys[-1],), int(not proved))
 
+    def course(self, keys: Keys) -> Course:
+        """How far the relaxation has come at each of some keys.
+
+        The way is measured along all that was recorded: thinning changes no key's frame.
+        """
+        times = [key.time for key in keys.keys]
+        recorded, whole = [key.time for key in self._keys], self._course
+        columns = (whole.iterates, whole.distance, whole.flow_time)
+        return Course(*(np.interp(times, recorded, column) for column in columns))
+
+    @property
+    def _course(self) -> Course:
+        """How far the relaxation has come at each of the recorded frames."""
+        times = np.array([key.time for key in self._keys])
+        ways = [_way(self._common(a.points), self._common(b.points)) for a, b in pairwise(self._keys)]
+        flow_time = np.interp(times, times[self._ends], np.cumsum(self._steps))
+        return Course(times, np.concatenate([[0.0], np.cumsum(ways)]), flow_time)
+
     @property
     def start(self) -> Iterate:
         """The first iterate."""
@@ -126,16 +152,24 @@ class Motion:
         return self._start
 
     @property
+    def frame(self) -> Frame:
+        """The last iterate's vertices as Blender will store them."""
+        return self._keys[-1].points
+
+    @property
     def last(self) -> Iterate:
         """The last iterate."""
         assert self._last is not None, "a relaxation yields at least its start"
         return self._last
 
-    def _spread(self, limit: int | None) -> list[int]:
+    def _spread(self, limit: int | None, pace: Pace) -> list[int]:
+        """Positions of the iterates nearest to so many evenly spread frames; several may have the same."""
         if limit is None or limit >= len(self._ends):
             return self._ends
-        places = np.linspace(0, len(self._ends) - 1, max(limit, 2)).round().astype(int)
-        return [self._ends[k] for k in places]
+        passed = self._course.share(pace)[self._ends]
+        places = np.interp(np.linspace(0, 1, max(limit, 2)), passed, np.arange(len(passed))).round().astype(int)
+        places[0], places[-1] = 0, len(passed) - 1
+        return [self._ends[k] for k in np.unique(places)]
 
     def _way(self, a: int, b: int, free: Proof) -> Iterator[tuple[Key, bool]]:
         """Yield the keys after position ``a`` up to ``b``, each with whether the motion to it was proved."""
@@ -176,6 +210,11 @@ class Motion:
     def _common(self, points: Frame | FloatArray) -> FloatArray:
         """Stored points where motions are proved; shape (n, 3)."""
         return self._link.to_common(self.start.curve.mesh, points)
+
+
+def _way(a: FloatArray, b: FloatArray) -> float:
+    """Root mean square over the vertices of the way from one frame to another."""
+    return float(np.sqrt(np.square(b - a).sum(axis=1).mean()))
 
 
 def _midpoint(a: Frame, b: Frame) -> Frame:

@@ -22,7 +22,7 @@ from . import wire
 from .job import messages
 from .placement import Link
 
-_AHEAD = 4  # iterates that wait to be shown; then the worker waits too, which is also how it pauses
+_AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the worker waits too: that is how it pauses
 _PATIENCE = 0.1  # seconds between looks at whether anybody still wants the next iterate
 
 

@@ -1,17 +1,18 @@
 """What cannot be relaxed, and why: one sentence for the user, naming what to do about it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..curves import sampling
+from ..curves import bake, sampling
 from ..curves.moving import what_moves
 from . import registry
 
 if TYPE_CHECKING:
     import bpy
 
+_Check = Callable[["bpy.types.Object"], Iterator[str]]
 _FLATTEST = 1e-6  # smallest ratio of an object's scales that 32-bit matrices can be inverted with
 
 
@@ -29,9 +30,40 @@ def refusal(context: "bpy.types.Context") -> str | None:
     if reason := _running():
         return reason
     objects = selected_curves(context)
+    return hindrance(objects) if objects else _no_curve(context.active_object)
+
+
+def hindrance(objects: Sequence["bpy.types.Object"]) -> str | None:
+    """Say why curve objects cannot be relaxed together, or return None if they can."""
+    return _first(objects, _CHECKS if len(objects) == 1 else (*_CHECKS, _place))
+
+
+def unbaked(context: "bpy.types.Context") -> str | None:
+    """Say which of the selected curves was not baked, or return None if all were."""
+    objects = selected_curves(context)
+    bare = next((obj for obj in objects if not bake.is_baked(obj.data)), None)
+    return f"'{bare.name}' has no keys of Möbius Flow; press Relax first" if bare is not None else None
+
+
+def edited(context: "bpy.types.Context") -> str | None:
+    """Say which of the selected curves has keys that somebody has edited, or return None; not for every redraw."""
+    for obj in selected_curves(context):
+        if bake.is_baked(obj.data) and bake.is_edited(obj.data):
+            return f"Keys of '{obj.name}' were edited; undo that, or remove the keys to relax the curve as it is"
+    return None
+
+
+def unclearable(context: "bpy.types.Context") -> str | None:
+    """Say why the selected curves cannot be given back as they were before they were baked, or return None."""
+    if reason := _running():
+        return reason
+    objects = selected_curves(context)
     if not objects:
         return _no_curve(context.active_object)
-    checks = _CHECKS if len(objects) == 1 else (*_CHECKS, _place)
+    return unbaked(context) or _first(objects, (_mode, _ownership))
+
+
+def _first(objects: Sequence["bpy.types.Object"], checks: Sequence[_Check]) -> str | None:
     return next((reason for obj in objects for check in checks for reason in check(obj)), None)
 
 
@@ -100,6 +132,8 @@ def _splines(obj: "bpy.types.Object") -> Iterator[str]:
 
 def _animation(obj: "bpy.types.Object") -> Iterator[str]:
     data = obj.data
+    if bake.is_baked(data):
+        return
     if data.shape_keys:
         yield f"'{obj.name}' has shape keys; remove them or relax a copy without them"
     animation = data.animation_data

@@ -7,6 +7,7 @@ from bpy.app.handlers import persistent
 
 from . import registry
 from .modal import clear_status
+from .run import Run
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -17,8 +18,35 @@ def _load_pre(*_: Any) -> None:
 
 @persistent  # type: ignore[untyped-decorator]
 def _undo_pre(*_: Any) -> None:
-    """The curve must be as undo knows it, and pointers into the file are about to become invalid."""
     if run := registry.current():
+        _before(run, run.history.others)
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _redo_pre(*_: Any) -> None:
+    if run := registry.current():
+        _before(run, run.history.undone)
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _undo_post(*_: Any) -> None:
+    if run := registry.current():
+        run.history.undo()
+        run.preview.put_forward()
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _redo_post(*_: Any) -> None:
+    if run := registry.current():
+        run.history.redo()
+        run.preview.put_forward()
+
+
+def _before(run: Run, others: int) -> None:
+    """The curve must be as undo knows it; unless something else is undone or done again, the run is over."""
+    if others and run.endures:
+        run.preview.set_aside()
+    else:
         run.cancel(f"Undone; the relaxation of {run.name} has ended")
 
 
@@ -37,7 +65,9 @@ def _save_post(*_: Any) -> None:
 _HANDLERS = {
     "load_pre": _load_pre,
     "undo_pre": _undo_pre,
-    "redo_pre": _undo_pre,
+    "redo_pre": _redo_pre,
+    "undo_post": _undo_post,
+    "redo_post": _redo_post,
     "save_pre": _save_pre,
     "save_post": _save_post,
     "save_post_fail": _save_post,

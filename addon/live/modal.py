@@ -4,8 +4,7 @@ import bpy
 
 from .run import Run, State
 
-_INTERVAL = 1 / 60  # seconds; one iterate each time, so that every one is seen
-_TYPING = {"CONSOLE", "TEXT_EDITOR"}  # keys pressed over these are theirs
+_INTERVAL = 1 / 60  # seconds
 _PASS = {"PASS_THROUGH"}
 
 
@@ -32,11 +31,12 @@ class Loop:
     def handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Do what an event asks for; most are none of a relaxation's business, and Blender stays usable."""
         handled = _PASS
+        self.run.history.look()
         if self.run.state.over:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":
             self.run.tick()
-        elif event.value == "PRESS" and not self.run.waits and not _typing(context, event):
+        elif event.value == "PRESS" and not self.run.waits and _is_meant(context, event):
             handled = self._key(event)
         if self._seen() != self._shown:
             self._show(context)
@@ -46,10 +46,11 @@ class Loop:
 
     def _seen(self) -> tuple[object, ...]:
         """What is shown depends on nothing else."""
-        return self.run.state, self.run.last, self.run.waits
+        return self.run.state, self.run.shown, self.run.waits
 
     def _key(self, event: bpy.types.Event) -> set[str]:
-        if event.type == "ESC" or (event.type == "Z" and (event.ctrl or event.oskey) and not event.shift):
+        undo = event.type == "Z" and (event.ctrl or event.oskey) and not event.shift
+        if event.type == "ESC" or (undo and not self.run.history.others):
             self.run.cancel()
         elif event.type in {"RET", "NUMPAD_ENTER"}:
             self.run.keep()
@@ -106,10 +107,13 @@ def redraw_views(manager: bpy.types.WindowManager) -> None:
                 area.tag_redraw()
 
 
-def _typing(context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    """Whether the mouse is over an editor that takes text."""
+def _is_meant(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Whether a key is meant for the run: the mouse is over a 3D view, and no playback is there to be stopped."""
     screen = context.window.screen if context.window else None
+    if screen is None:
+        return True
     x, y = event.mouse_x, event.mouse_y
-    return screen is not None and any(
-        area.type in _TYPING and 0 <= x - area.x < area.width and 0 <= y - area.y < area.height for area in screen.areas
+    return not screen.is_animation_playing and any(
+        area.type == "VIEW_3D" and 0 <= x - area.x < area.width and 0 <= y - area.y < area.height
+        for area in screen.areas
     )

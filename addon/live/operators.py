@@ -1,73 +1,20 @@
-"""The live half of the Relax operator, and the buttons for a run that is going on."""
+"""The buttons for a run that is going on, or has been cancelled, and the question before one starts."""
 
+import time
 from collections.abc import Callable
-from typing import Any
 
 import bpy
 
 from ...core import MobiusFlowError
 from ..curves import sampling
-from ..properties import key_options, relax_options
 from . import registry
-from .checks import refusal, selected_curves, unsampled
-from .modal import Loop, redraw_views
+from .checks import hindrance, selected_curves
+from .modal import redraw_views
 from .run import Run, State
+from .start import Listening, tell_end
 
 _NOTHING = "Nothing is being relaxed"
-
-
-class LiveRelax:
-    """What the Relax operator does in a window: `invoke` starts a worker, `modal` shows what it finds."""
-
-    loop: Loop | None = None
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Relax the selected curves live; ask first if smooth splines have to become polygons."""
-        if bpy.app.background or context.window is None:
-            return set(self.execute(context))
-        context.view_layer.update()
-        values = self.values(context)
-        if unsampled(selected_curves(context)) and not self.sample_splines:
-            return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
-        return self.begin(context, values)
-
-    def begin(self, context: bpy.types.Context, values: dict[str, Any]) -> set[str]:
-        """Start the run and its event loop."""
-        try:
-            if reason := refusal(context):
-                raise MobiusFlowError(reason)
-            run = Run(selected_curves(context), relax_options(values), key_options(values))
-            registry.begin(run)
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        self.loop = Loop(run, context)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Handle an event."""
-        assert self.loop is not None, "invoke makes it"
-        result = self.loop.handle(context, event)
-        run = self.loop.run
-        if run.state is State.DONE and run.report is not None:
-            _go_to_last_frame(context.scene, run.report.last_frame if run.report.keys > 1 else None)
-            self.report({"INFO"} if run.report.clean and not run.failed else {"WARNING"}, run.message)
-        elif run.state.over:
-            self.report({"ERROR"} if run.failed else {"INFO"}, run.message)
-        return result
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        """Blender gives up the operator: its window or its file is closed."""
-        if self.loop is not None:
-            self.loop.abandon()
-
-
-def _go_to_last_frame(scene: bpy.types.Scene, frame: float | None) -> None:
-    """Keep showing the shape that was kept."""
-    if frame is not None:
-        whole = int(frame // 1)
-        scene.frame_set(whole, subframe=frame - whole)
+_PATIENCE = 0.005  # seconds between looks at whether the keys are ready
 
 
 class _RunButton:
@@ -108,14 +55,80 @@ class CURVE_OT_mobius_flow_pause(_RunButton, bpy.types.Operator):  # noqa: N801 
 
 
 class CURVE_OT_mobius_flow_stop(_RunButton, bpy.types.Operator):  # noqa: N801
-    """Stop the relaxation and keep the shape it has now"""
+    """Stop here: keep the shape that the curves have now, and the motion up to it"""
 
     bl_idname = "curve.mobius_flow_stop"
-    bl_label = "Stop"
+    bl_label = "Keep"
 
     def act(self, run: Run) -> None:
         """Stop; the event loop writes the result."""
         run.keep()
+
+
+class CURVE_OT_mobius_flow_cancel(bpy.types.Operator):  # noqa: N801
+    """Stop, and put everything back as it was; Recover brings it back again"""
+
+    bl_idname = "curve.mobius_flow_cancel"
+    bl_label = "Cancel"
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        """Whether there is a run, even one whose keys are being written."""
+        cls.poll_message_set(_NOTHING)
+        return registry.current() is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Put everything back."""
+        run = registry.current()
+        assert run is not None, "poll looks for it"
+        run.cancel()
+        redraw_views(context.window_manager)
+        return {"FINISHED"}
+
+
+class CURVE_OT_mobius_flow_recover(Listening, bpy.types.Operator):  # noqa: N801
+    """Keep what the last relaxation had reached when it was cancelled"""
+
+    bl_idname = "curve.mobius_flow_recover"
+    bl_label = "Recover"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        """Whether there is something to recover."""
+        run = registry.latest()
+        cls.poll_message_set("No relaxation was cancelled")
+        return run is not None and run.recoverable
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Write the keys while Blender stays usable."""
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        run = self._recovered()
+        return {"CANCELLED"} if run is None else self.listen(context, run)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Write the keys."""
+        run = self._recovered()
+        if run is None:
+            return {"CANCELLED"}
+        while not run.state.over:
+            run.tick()
+            time.sleep(_PATIENCE)
+        tell_end(self, context.scene, run)
+        return {"FINISHED"} if run.state is State.DONE else {"CANCELLED"}
+
+    def _recovered(self) -> Run | None:
+        run = registry.latest()
+        assert run is not None, "poll looks for it"
+        try:
+            if reason := hindrance(run.group.objects):
+                raise MobiusFlowError(reason)
+            run.recover()
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, str(error))
+            return None
+        return run
 
 
 class CURVE_OT_mobius_flow_sample(bpy.types.Operator):  # noqa: N801

@@ -19,21 +19,21 @@ class Preview:
         self._start: Curve | None = None
         self._frame: Frame | None = None
 
-    def show(self, curve: Curve, frame: Frame) -> None:
-        """Move all points to an iterate, whose vertices are stored as ``frame``; the first one is the refined start."""
+    def show(self, start: Curve, frame: Frame) -> None:
+        """Move all points to an iterate, whose vertices are stored as ``frame``; ``start`` is the refined start."""
         if self._start is None:
-            self._group.make_polygons(curve)
-            self._start = curve
+            self._group.make_polygons(start)
+            self._start = start
         self._frame = frame
-        self._group.show(curve.mesh, frame)
+        self._group.show(start.mesh, frame)
 
     def set_aside(self) -> None:
         """Put the curves back for a moment, because the file is being saved."""
-        if self._start is not None:
-            self._group.set_aside()
+        self._group.set_aside()
 
     def put_forward(self) -> None:
         """Show the iterate again after `set_aside`."""
+        self._group.put_forward()
         if self._start is not None and self._frame is not None:
             self._group.make_polygons(self._start)
             self._group.show(self._start.mesh, self._frame)

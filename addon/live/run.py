@@ -4,6 +4,7 @@ That there is one is known here, in Python, and never in the file. The curves th
 shows them as they are; what they were is kept and put back unless the run is to be kept.
 """
 
+import time
 from collections.abc import Callable, Sequence
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -13,11 +14,15 @@ from ..curves.group import Group
 from ..curves.session import Report, Session
 from ..engine.key_options import KeyOptions
 from ..engine.worker import Worker, WorkerError
+from .history import History
 from .key_writer import KeyWriter
 from .preview import Preview
+from .refresh import Refresh
 
 if TYPE_CHECKING:
     import bpy
+
+_SLICE = 0.02  # seconds of taking in iterates at a time
 
 
 class State(Enum):
@@ -45,6 +50,10 @@ class Run:
         Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
     options, key_options
         The requested options.
+    continues
+        Whether baked curves are relaxed on from the ends of their animations.
+    refresh
+        When the curves are shown.
 
     Raises
     ------
@@ -52,18 +61,39 @@ class Run:
         If the curves cannot be relaxed; the message says why.
     """
 
-    def __init__(self, objects: Sequence["bpy.types.Object"], options: RelaxOptions, key_options: KeyOptions) -> None:
+    def __init__(
+        self,
+        objects: Sequence["bpy.types.Object"],
+        options: RelaxOptions,
+        key_options: KeyOptions,
+        continues: bool,
+        refresh: Refresh,
+    ) -> None:
         self.state = State.RUNNING
         self.message = ""
         self.failed = False
         self.on_end: Callable[[], None] = lambda: None
         self.last: Iterate | None = None
         self.report: Report | None = None
-        self.group = Group(objects)
-        self._session = Session(self.group, options, key_options)
-        self._worker = Worker(self.group.curve, options, self.group.link)
+        self.shown: Iterate | None = None
+        self.history = History()
+        self._refresh = refresh
+        self._session = Session(objects, options, key_options, continues)
+        try:
+            self._worker = Worker(self.group.curve, self._session.options, self.group.link)
+        except BaseException:
+            self.group.restore()
+            raise
+        self._prepare()
+
+    def _prepare(self) -> None:
         self.preview = Preview(self.group)
         self._keys = KeyWriter(self._session, self._worker.is_free)
+
+    @property
+    def group(self) -> Group:
+        """What is relaxed."""
+        return self._session.group
 
     @property
     def name(self) -> str:
@@ -77,10 +107,16 @@ class Run:
 
         return not self.state.over and bool(bpy.app.is_job_running("RENDER"))
 
+    @property
+    def endures(self) -> bool:
+        """Whether it can go on from wherever undo puts the curves."""
+        return self.state in (State.RUNNING, State.PAUSED) and not self.group.rebakes
+
     # -- what the buttons do ------------------------------------------------------------------------------------
 
     def toggle_pause(self) -> None:
         """Show no more iterates, or go on; meanwhile the worker fills its queue and then waits too."""
+        self._show()
         self.state = {State.RUNNING: State.PAUSED, State.PAUSED: State.RUNNING}.get(self.state, self.state)
 
     def keep(self, reason: str = "") -> None:
@@ -90,6 +126,7 @@ class Run:
         if self.last is None:
             self.cancel("Stopped before anything had moved")
             return
+        self._show()
         if self._session.outcome is None:
             reason = reason or f"stopped after {self.last.index} iterations"
             self._session.outcome = Outcome(Status.INTERRUPTED, reason)
@@ -103,10 +140,28 @@ class Run:
             self._close(State.CANCELLED, message)
             self.preview.put_back()
 
+    @property
+    def recoverable(self) -> bool:
+        """Whether it has ended with the curves put back, but what it had found is still known."""
+        return self.state in (State.CANCELLED, State.LOST) and self.last is not None
+
+    def recover(self) -> None:
+        """Keep after all what the run had reached when it was cancelled.
+
+        Raises
+        ------
+        MobiusFlowError
+            If the curves are no longer what they were when the run began.
+        """
+        self._session.take_up()
+        self._prepare()
+        self.state, self.message, self.failed, self.shown = State.RUNNING, "", False, None
+        self.keep()
+
     # -- what the timer does ------------------------------------------------------------------------------------
 
     def tick(self) -> None:
-        """Do a little: take in one iterate, or write some keys. Nothing moves while Blender renders."""
+        """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
         if self.state.over or self.waits:
             return
         try:
@@ -125,20 +180,40 @@ class Run:
             raise
 
     def _take(self) -> None:
+        """Take in all iterates that have arrived up to the next one to be shown; the last of them is shown."""
+        self._refresh.drawn()
+        until = time.perf_counter() + _SLICE
+        while self.state is State.RUNNING and time.perf_counter() < until:
+            arrived = self._poll()
+            if arrived is None:
+                break
+            if isinstance(arrived, Outcome):
+                self._session.outcome = arrived
+                self.keep()
+                return
+            self._session.take(arrived)
+            self.last = arrived
+            if self._refresh.ends_batch(arrived.index):
+                break
+        if self.last is not None and self._refresh.due(self.last.index):
+            self._show()
+
+    def _poll(self) -> Iterate | Outcome | None:
         try:
-            arrived = self._worker.poll()
+            return self._worker.poll()
         except WorkerError as error:
             if self.last is None:
                 raise
             self.failed = True
             self.keep(str(error))
-            return
-        if isinstance(arrived, Outcome):
-            self._session.outcome = arrived
-            self.keep()
-        elif arrived is not None:
-            self.last = arrived
-            self.preview.show(arrived.curve, self._session.take(arrived))
+            return None
+
+    def _show(self) -> None:
+        """Show the last iterate, unless it is shown."""
+        if self.last is not None and self.last is not self.shown:
+            self.preview.show(self._session.start, self._session.frame)
+            self.shown = self.last
+            self._refresh.shown()
 
     def _write(self) -> None:
         self.report = self._keys.advance()

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ...core.types import FloatArray
-from ..curves.keyframes import FCurves
+from ..curves.fcurves import FCurves
 from ..engine.placement import Frame
 from .stage import Stage, add, place
 

@@ -11,6 +11,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...core import Iterate, MobiusFlowError
 from ...core.collision import is_free
 from ...core.errors import OutputError
@@ -69,7 +71,8 @@ def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
     keys = motion.keys(is_free, _MAX_KEYS)
     scene = _empty_scene()
     rendering.use_cycles(scene, *_PICTURE)
-    film.compose(scene, keys, film.steady_frames(keys), motion.start.curve.mesh, origin)
+    frames = film.steady(motion).frames(motion.course(keys))
+    film.compose(scene, keys, frames, motion.start.curve.mesh, origin)
     _make(path, _save)
     return keys.certified
 
@@ -88,8 +91,10 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
     else:
         rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER, draft=True)
         rendering.skip_frames(scene)
-    film.compose(scene, keys, film.smooth_frames(keys), motion.start.curve.mesh)
-    film.add_pauses(scene)
+    timing = film.smooth(keys)
+    frames = timing.frames(motion.course(keys))
+    film.compose(scene, keys, frames, motion.start.curve.mesh)
+    scene.frame_start, scene.frame_end = timing.scene_range(frames)
     _make(path, lambda temporary: render_movie(scene, temporary, progress, oversampling=2 if drawn else 1))
     return keys.certified
 
@@ -100,7 +105,7 @@ def write_still(path: Target, iterates: Sequence[Iterate]) -> bool:
     keys = motion.result(is_free)
     scene = _empty_scene()
     rendering.use_cycles(scene, *_PICTURE)
-    film.compose(scene, keys, film.steady_frames(keys), motion.start.curve.mesh)
+    film.compose(scene, keys, np.ones(1), motion.start.curve.mesh)
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
     return keys.certified
 

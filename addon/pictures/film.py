@@ -14,6 +14,7 @@ from ..curves.keyframes import write_shape_keys
 from ..engine import tube
 from ..engine.motion import Keys, Motion
 from ..engine.placement import Link, Placement
+from ..engine.timing import Pace, Timing
 from . import camera, stage
 
 if TYPE_CHECKING:
@@ -24,9 +25,8 @@ _SHOWN = 40  # keys looked at when the camera is placed
 _MIN_FRAMES = 120  # frames of a keyframed relaxation, if its iterates can be spread over them
 _FRAMES_PER_KEY = 6
 _FILM = (60, 96)  # frames of a film in motion
-_PAUSE = 6  # frames before the motion begins
-_END = 12  # frames after it
-_EVENNESS = 0.7  # 1 for constant speed, 0 for the same time for every iterate
+_PAUSE = 6  # frames at rest before the motion begins
+_END = 12  # frames at rest after it
 _FAR = 8.0  # a curve further from the origin, in its own sizes, gets its own origin: 32 bits are few
 _SIZES = (1e-3, 1e3)  # between these Blender works well
 
@@ -133,27 +133,13 @@ def _put(scene: "bpy.types.Scene", origin: Origin) -> None:
             obj.data.clip_end *= origin.scale
 
 
-def add_pauses(scene: "bpy.types.Scene") -> None:
-    """Let the curve rest for a moment before and after its motion."""
-    scene.frame_start -= _PAUSE
-    scene.frame_end += _END
+def steady(motion: Motion) -> Timing:
+    """Leave every iterate the same time, in whole frames."""
+    return Timing(pace=Pace.ITERATE, frames_per_iterate=max(1.0, round(_MIN_FRAMES / max(motion.last.index, 1))))
 
 
-def steady_frames(keys: Keys) -> FloatArray:
-    """Scene frames of keys that leave every iterate the same time, in whole frames."""
-    times = np.array([key.time for key in keys.keys])
-    return np.asarray(1.0 + max(1.0, np.round(_MIN_FRAMES / max(times[-1], 1.0))) * times)
-
-
-def smooth_frames(keys: Keys) -> FloatArray:
-    """Scene frames of keys for a short film in which the curve moves about evenly; they leave room for `add_pauses`.
-
-    A scene cannot begin before frame 0.
-    """
-    points = np.array([key.points for key in keys.keys], dtype=np.float64)
-    ways = np.sqrt(np.square(np.diff(points, axis=0)).sum(axis=2).mean(axis=1))
-    share = ways / ways.sum() if ways.sum() else np.full(len(ways), 1 / len(ways))
-    even = np.diff([key.time for key in keys.keys]) / (keys.keys[-1].time - keys.keys[0].time)
-    moving = np.clip(_FRAMES_PER_KEY * len(ways), *_FILM)
-    passed = np.cumsum(_EVENNESS * share + (1 - _EVENNESS) * even)
-    return np.asarray(1.0 + _PAUSE + moving * np.concatenate([[0.0], passed]))
+def smooth(keys: Keys) -> Timing:
+    """Make a short film in which the curve moves about evenly, and rests for a moment before and after."""
+    low, high = _FILM
+    moving = min(max(_FRAMES_PER_KEY * (len(keys.keys) - 1), low), high)
+    return Timing(length=1 + _PAUSE + moving + _END, hold_start=_PAUSE, hold_end=_END)

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..curves.keyframes import all_fcurves
+from ..curves.fcurves import all_fcurves
 from . import rendering
 
 if TYPE_CHECKING:

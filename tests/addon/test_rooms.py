@@ -16,6 +16,7 @@ FLOORS = [
     {"pictures", "properties", "labels"},
     {"live"},
     {"operators"},
+    {"baking"},
     {"panel"},
     {"registration"},
     {""},  # the package, which Blender and the command line import

@@ -110,7 +110,7 @@ def test_the_advanced_panel_shows_its_group():
     assert advanced.bl_parent_id == panel.VIEW3D_PT_mobius_flow.__name__
     assert "DEFAULT_CLOSED" in advanced.bl_options
     names = drawn(advanced)
-    assert names == [name for name, each in SHOWN.items() if each.group == "advanced"]
+    assert names == [*(name for name, each in SHOWN.items() if each.group == "advanced"), "view_every"]
     assert {"energy", "metric", "quadrature_points", "penalty", "edge_lengths", "stability"} < set(names)
     assert [each.name for each in properties.shown("basic")] == [name for name in SHOWN if name not in names]
 

@@ -78,7 +78,8 @@ class Armijo:
     def sufficient(self, point: Point, slope: float, slack: float, trial: Point) -> bool:
         """Armijo's rule; where the lengths' cost makes the slope positive, the energy may rise by twice the prediction.
 
-        Where there is nothing left to gain, the way to the lengths may cost ``slack`` in addition. Differences below the rounding of the energy count as none.
+        Where there is nothing left to gain, the way to the lengths may cost ``slack`` in addition.  Differences below
+        the rounding of the energy count as none.
         """
         wanted = self.decrease * slope if slope < 0.0 else 2.0 * slope
         return trial.energy - point.energy <= wanted + slack + ROUNDING * abs(point.energy)

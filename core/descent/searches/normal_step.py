@@ -32,7 +32,7 @@ class NormalStep:
     least
         The share taken even where it costs more energy than can be gained.
     allowance
-        The energy that all of it may cost where there is nothing left to gain: to first order the cost is nothing there.
+        The energy that all of it may cost where there is nothing left to gain: there the first order says nothing.
     """
 
     full: FloatArray

@@ -10,7 +10,7 @@ bpy = pytest.importorskip("bpy")
 from blender_scenes import add_curve, contents, evaluated, fcurves, in_world, relax, sentence, show, stored  # noqa: E402
 from knot_diagrams import linking_number  # noqa: E402
 from mathutils import Euler, Matrix, Vector  # noqa: E402
-from mobius_flow.addon.curves import group, keyframes  # noqa: E402
+from mobius_flow.addon.curves import keyframes  # noqa: E402
 from mobius_flow.core.collision import is_free  # noqa: E402
 from mobius_flow.core.curve import Mesh  # noqa: E402
 from shapes import hopf_link  # noqa: E402
@@ -277,7 +277,7 @@ def test_whatever_fails_while_writing_all_is_put_back(monkeypatch, output, kind)
             yield piece
         raise MemoryError("no room")
 
-    monkeypatch.setattr(group.keyframes, "writing", failing)
+    monkeypatch.setattr(keyframes, "writing", failing)
     with pytest.raises(RuntimeError, match="Memory ran out; all is as it was"):
         bpy.ops.curve.mobius_flow_relax(max_iterations=3, keyframes=output, sample_splines=True)
     assert contents() == before

@@ -57,6 +57,10 @@ def test_the_objects_own_animation_stays():
 def test_keys_that_are_there_are_never_overwritten(keyframes):
     obj = add_trefoil()
     relax(max_iterations=3, keyframes=keyframes)
+    if keyframes == "SHAPE_KEYS":
+        obj.shape_key_add(name="Mine")
+    else:
+        obj.data.keyframe_insert("bevel_depth", frame=1)
     block = obj.data.shape_keys if keyframes == "SHAPE_KEYS" else obj.data
     before, points = keyed(block), stored(obj.data)
     with pytest.raises(RuntimeError, match="without"):

@@ -77,7 +77,8 @@ def test_thinning_inserts_iterates_where_chords_collide():
 def test_thinning_where_nothing_collides(limit):
     curves = [around(angle) for angle in np.linspace(0, 0.5, 21)]
     keys = collected(curves).keys(is_free, limit=limit)
-    assert [key.time for key in keys.keys] == [round(t) for t in np.linspace(0, 20, limit)]
+    assert len(keys.keys) == limit
+    np.testing.assert_allclose([key.time for key in keys.keys], np.linspace(0, 20, limit), atol=0.5 + 1e-9)
     assert_proved(keys, curves[0].mesh)
 
 

@@ -3,6 +3,8 @@
 Without a window Blender runs ``execute`` instead of ``invoke``; ``tests/window`` has the real thing.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -39,7 +41,7 @@ def test_esc_restores_bit_for_bit(operator, kind):
         for point in spline.bezier_points if kind == "BEZIER" else spline.points:
             point.radius, point.tilt = rng.random(2)
     obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.values["vertices"] = 0
     operator.start()
     operator.reach(2)
@@ -76,11 +78,39 @@ def test_pause_and_enter_keep_what_is_shown(operator):
 
 def test_undo_key_is_esc(operator):
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(1)
     assert operator.event("Z", ctrl=True) == {"CANCELLED"}
     restored(obj, before)
+
+
+class Screen:
+    """A 3D view beside an outliner."""
+
+    areas = (
+        SimpleNamespace(type="VIEW_3D", x=0, y=0, width=100, height=100),
+        SimpleNamespace(type="OUTLINER", x=100, y=0, width=100, height=100),
+    )
+    is_animation_playing = False
+
+
+@pytest.mark.parametrize("key", [{"kind": "ESC"}, {"kind": "Z", "ctrl": True}, {"kind": "RET"}], ids=str)
+def test_keys_meant_for_something_else_pass_through(operator, key):
+    """With the mouse over another editor, or to stop playback."""
+    add_trefoil()
+    operator.start()
+    operator.reach(1)
+    screen = Screen()
+    operator.context.window = SimpleNamespace(screen=screen)
+    operator.context.workspace = SimpleNamespace(status_text_set=lambda _: None)
+    assert operator.event(**key, mouse=(150, 50)) == {"PASS_THROUGH"}
+    screen.is_animation_playing = True
+    assert operator.event(**key, mouse=(50, 50)) == {"PASS_THROUGH"}
+    assert operator.run.state is State.RUNNING
+    screen.is_animation_playing = False
+    assert operator.event(**key, mouse=(50, 50)) != {"PASS_THROUGH"}
+    assert operator.run.state in (State.CANCELLED, State.FINISHING)
 
 
 def test_other_events_pass_through(operator):
@@ -99,11 +129,11 @@ def test_one_at_a_time(operator):
 
 def test_another_object_has_to_wait(operator):
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(1)
     other = add_hopf_link()
-    untouched = Snapshot(other.data)
+    untouched = Snapshot.of(other.data)
     second = Operator()
     assert second.start() == {"CANCELLED"}
     assert second.reports == [({"ERROR"}, f"'{obj.name}' is being relaxed; stop that first")]
@@ -116,7 +146,7 @@ def test_a_bad_curve_is_refused_untouched(operator):
     points = torus_trefoil(30).vertices.copy()
     points[3] = points[2]
     obj = add_curve([points])
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     assert operator.until(lambda: False) == {"CANCELLED"}
     assert operator.reports[-1][0] == {"ERROR"}
@@ -167,7 +197,7 @@ def test_shape_keys_of_somebody_else_are_left_alone(operator):
 
 def test_edit_mode(operator):
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(1)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -203,7 +233,7 @@ def test_loading_a_file(operator):
 
 def test_disabling_ends_the_run(operator, addon):
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(1)
     addon.unregister()
@@ -235,7 +265,7 @@ def test_without_a_process_a_thread(operator, monkeypatch):
 def test_esc_while_keys_are_written(operator, monkeypatch):
     monkeypatch.setattr(key_writer, "_SLICE", 0.0)  # a key at a tick
     obj = add_trefoil()
-    before = Snapshot(obj.data)
+    before = Snapshot.of(obj.data)
     actions = len(bpy.data.actions)
     operator.start()
     operator.until(lambda: obj.data.shape_keys is not None)

@@ -125,15 +125,33 @@ def shape_keys():
     return "has shape keys"
 
 
-def relaxed_before():
+def relaxed_before_and_a_key_added():
     add_trefoil()
-    relax(max_iterations=2)
+    relax(max_iterations=2).shape_key_add(name="Mine")
     return "has shape keys"
 
 
-def relaxed_before_to_fcurves():
+def relaxed_before_and_its_keys_driven():
     add_trefoil()
-    relax(max_iterations=2, keyframes="FCURVES")
+    relax(max_iterations=2).data.shape_keys.driver_add("eval_time")
+    return "has shape keys"
+
+
+def relaxed_before_and_another_action_given():
+    add_trefoil()
+    relax(max_iterations=2).data.shape_keys.animation_data.action = bpy.data.actions.new("Mine")
+    return "has shape keys"
+
+
+def relaxed_before_and_points_added():
+    add_trefoil()
+    relax(max_iterations=2).data.splines[0].points.add(1)
+    return "has shape keys"
+
+
+def relaxed_before_to_fcurves_and_the_bevel_animated():
+    add_trefoil()
+    relax(max_iterations=2, keyframes="FCURVES").data.keyframe_insert("bevel_depth", frame=1)
     return "is animated"
 
 
@@ -208,8 +226,11 @@ CASES = [
     bezier,
     nurbs,
     shape_keys,
-    relaxed_before,
-    relaxed_before_to_fcurves,
+    relaxed_before_and_a_key_added,
+    relaxed_before_and_its_keys_driven,
+    relaxed_before_and_another_action_given,
+    relaxed_before_and_points_added,
+    relaxed_before_to_fcurves_and_the_bevel_animated,
     animated,
     driven,
     flat,
@@ -309,7 +330,10 @@ NAN = float("nan")
         ({"tolerance": NAN}, "tolerance is nan"),
         ({"start_frame": 2**24}, "Start Frame is 1.67772e+07; it must be from -1048574 to 1048574"),
         ({"start_frame": -(2**24)}, "it must be from -1048574 to 1048574"),
-        ({"start_frame": 1_048_000}, "The keys would go on to frame 1050000, but Blender's last is 1048574"),
+        (
+            {"start_frame": 1_048_000, "timing": "ITERATE"},
+            "would go on to frame 1050000, but Blender's last is 1048574",
+        ),
         ({"frames_per_iterate": 10_000.0}, "The keys would go on to frame 20000001"),
     ],
 )

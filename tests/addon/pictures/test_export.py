@@ -121,10 +121,11 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
 def test_a_film_rests_before_and_after(iterates):
     motion, _ = film.recorded(iterates)
     keys = motion.keys(lambda *_: True)
-    frames = film.smooth_frames(keys)
+    timing = film.smooth(keys)
+    frames = timing.frames(motion.course(keys))
     scene = bpy.context.scene
     film.compose(scene, keys, frames, motion.start.curve.mesh)
-    film.add_pauses(scene)
+    scene.frame_start, scene.frame_end = timing.scene_range(frames)
     assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (film._PAUSE, film._END)
 
 

@@ -1,4 +1,4 @@
-"""Relax, Pause, Resume and Stop by mouse clicks; the curve moves; undo takes it all back at once."""
+"""Relax, Pause, Resume and Keep by mouse clicks; the curve moves; undo takes it all back at once."""
 
 import numpy as np
 from case import Steps, picture, until
@@ -7,7 +7,7 @@ from scene import is_, iterate, look, obj, points, reaches, ready, run, state
 
 
 def case() -> Steps:
-    yield from ready(vertices=400)
+    yield from ready(vertices=1200)  # it takes longer than finding the buttons
     before = points()
     yield from picture("buttons-1-ready")
     yield from button("curve.mobius_flow_relax")

@@ -9,7 +9,8 @@ from scene import obj, points, reaches, ready, run, state
 
 
 def case() -> Steps:
-    yield from ready()
+    yield from ready(vertices=1200)
+    window().scene.mobius_flow.tolerance = 1e-7  # it takes longer than rendering
     before = points()
     camera()
     window().view_layer.objects.active = obj()
@@ -32,7 +33,7 @@ def case() -> Steps:
     yield from until(lambda: bpy.app.is_job_running("RENDER"), "the render to start again")
     yield from key("ESC")
     yield from until(lambda: not bpy.app.is_job_running("RENDER"), "Esc to end the render")
-    assert state() == "running", "Esc was for the render"
+    assert state() == "running", f"Esc was for the render: {state()}"
     yield from reaches(run().last.index + 1)
     yield from key("ESC")
     yield from over("Esc after rendering")

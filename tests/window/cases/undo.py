@@ -1,10 +1,10 @@
-"""Undo during a run, by key or from the menu, ends it and puts the curve back; so does redo."""
+"""Undo during a run, by key or from the menu, ends it and puts the curve back, unless it undoes something else."""
 
 import bpy
-from case import Steps, picture
-from hands import here, key
+from case import Steps, picture, until
+from hands import addon, here, key, window
 from interruption import is_whole, over, relax, undo
-from scene import points, reaches, ready
+from scene import iterate, points, reaches, ready, run
 
 
 def case() -> Steps:
@@ -31,6 +31,26 @@ def case() -> Steps:
     is_whole(before)
 
     yield from relax()
+    objects = len(bpy.data.objects)
+    for what in ("key", "menu"):
+        with here():
+            bpy.ops.object.empty_add("EXEC_DEFAULT", True)
+            window().view_layer.objects.active = bpy.data.objects["5_2"]
+        yield from reaches(iterate() + 1)
+        if what == "key":
+            yield from key("Z", ctrl=True)
+        else:
+            undo()
+        yield from until(lambda: len(bpy.data.objects) == objects, f"undo of something else by {what}")
+        assert run(), addon("live.registry").latest().message
+        yield from reaches(iterate() + 2)
+    yield from picture("undo-3-of-something-else", differs_from="undo-2-ctrl-z")
+    window().view_layer.objects.active = bpy.data.objects["5_2"]
+    yield from key("Z", ctrl=True)
+    yield from over("Ctrl-Z when there is nothing else to undo")
+    is_whole(before)
+
+    yield from relax()
     with here():
         bpy.ops.ed.undo_push(message="Something else")
     yield from key("ESC")
@@ -39,4 +59,4 @@ def case() -> Steps:
     yield from key("Z", ctrl=True)
     yield
     is_whole(before)
-    yield from picture("undo-3-twice")
+    yield from picture("undo-4-twice")

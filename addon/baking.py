@@ -1,0 +1,77 @@
+"""What can be done with curves that were baked before: bake again, continue, clear, and fit the scene's frames."""
+
+import bpy
+
+from .curves import bake
+from .live.checks import edited, refusal, selected_curves, unbaked, unclearable
+from .operators import Relaxing
+
+
+class CURVE_OT_mobius_flow_bake_again(Relaxing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+    """Relax the selected curves anew from how they were before they were baked; new keys replace the old ones"""
+
+    bl_idname = "curve.mobius_flow_bake_again"
+    bl_label = "Bake Again"
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str | None:
+        """Baked curves are wanted."""
+        return refusal(context) or unbaked(context)
+
+
+class CURVE_OT_mobius_flow_continue(Relaxing, bpy.types.Operator):  # noqa: N801
+    """Relax the selected curves on from the end of their animation; new keys follow the old ones"""
+
+    bl_idname = "curve.mobius_flow_continue"
+    bl_label = "Continue"
+    continues = True
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str | None:
+        """Baked curves are wanted."""
+        return refusal(context) or unbaked(context)
+
+
+class CURVE_OT_mobius_flow_clear(bpy.types.Operator):  # noqa: N801
+    """Take the keys away and give the selected curves back as they were before they were baked"""
+
+    bl_idname = "curve.mobius_flow_clear"
+    bl_label = "Clear"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether there is something to clear."""
+        reason = unclearable(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return reason is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Clear all of them."""
+        if reason := unclearable(context) or edited(context):
+            self.report({"ERROR"}, reason)
+            return {"CANCELLED"}
+        for obj in selected_curves(context):
+            bake.clear(obj)
+        return {"FINISHED"}
+
+
+class CURVE_OT_mobius_flow_scene_range(bpy.types.Operator):  # noqa: N801
+    """Let the scene play all frames of the selected curves' animation, and no others"""
+
+    bl_idname = "curve.mobius_flow_scene_range"
+    bl_label = "Set Scene Range"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether a baked curve is selected."""
+        cls.poll_message_set("Select a curve that was baked first")
+        return bake.scene_range(selected_curves(context)) is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Set the range."""
+        scene = context.scene
+        scene.frame_start, scene.frame_end = bake.scene_range(selected_curves(context))
+        return {"FINISHED"}

@@ -1,0 +1,128 @@
+"""What a curve that was keyed here remembers: how it was before, kept in a custom property, so in the file too."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..engine.key_options import KeyOptions, Output
+from ..engine.timing import Timing
+from . import keyframes
+from .fcurves import count_own
+from .snapshot import Snapshot, shape
+
+if TYPE_CHECKING:
+    import bpy
+
+_RECORD = "mobius_flow_bake"  # custom property of curve data
+
+
+def remember(data: "bpy.types.Curve", original: Snapshot, timing: Timing) -> None:
+    """Note on curve data that has just been keyed how it was before; nothing is noted on data without keys."""
+    if _animated(data) is not None:
+        data[_RECORD] = {"original": original.to_values()}
+        update(data, timing)
+
+
+def update(data: "bpy.types.Curve", timing: Timing) -> None:
+    """Note how the keys are that were written last."""
+    record = data[_RECORD]
+    record["fingerprint"] = _fingerprint(data)
+    record["shapes"] = _digest(data)
+    record["bevel_depth"] = data.bevel_depth
+    record["holds"] = [timing.hold_start, timing.hold_end]
+
+
+def is_baked(data: "bpy.types.Curve") -> bool:
+    """Whether a curve has the keys that were written here, and neither others nor other points."""
+    record = data.get(_RECORD)
+    return record is not None and list(record["fingerprint"]) == _fingerprint(data)
+
+
+def is_edited(data: "bpy.types.Curve") -> bool:
+    """Whether somebody has moved points of a baked curve's shape keys: a look at all of them, not for every redraw."""
+    return bool(data[_RECORD]["shapes"] != _digest(data))
+
+
+def scene_range(objects: Sequence["bpy.types.Object"]) -> tuple[int, int] | None:
+    """First and last frame of baked objects' animations with their rests, wherever keys have been moved to."""
+    ranges = [_scene_range(obj.data) for obj in objects if is_baked(obj.data)]
+    return (min(first for first, _ in ranges), max(last for _, last in ranges)) if ranges else None
+
+
+def _scene_range(data: "bpy.types.Curve") -> tuple[int, int]:
+    owner = _animated(data)
+    assert owner is not None, "it is baked"
+    first, last = owner.animation_data.action.curve_frame_range
+    before, after = data[_RECORD]["holds"]
+    return int(np.floor(first - before)), int(np.ceil(last + after))
+
+
+def continued(objects: Sequence["bpy.types.Object"], options: KeyOptions) -> KeyOptions:
+    """The options that let an animation go on where the last of some baked objects comes to rest."""
+    played = scene_range(objects)
+    assert played is not None, "they are baked"
+    # the first of the new frames is the last of the old ones
+    timing = replace(options.timing, start_frame=float(played[1]), length=options.timing.length + 1)
+    return replace(options, output=Output.SHAPE_KEYS if not options.animated else options.output, timing=timing)
+
+
+def clear(obj: "bpy.types.Object") -> None:
+    """Take a baked curve's keys away and give the curve back that was there before.
+
+    A bevel that was changed since the keys were written stays.
+    """
+    data = obj.data
+    record = data[_RECORD]
+    original, bevel_depth = Snapshot.from_values(record["original"]), record["bevel_depth"]
+    forget(obj)
+    if data.bevel_depth == bevel_depth:
+        original.restore(data)
+    else:
+        original.restore_splines(data)
+
+
+def forget(obj: "bpy.types.Object") -> None:
+    """Take a baked curve's keys away, and what is remembered; the curve itself is left as its last key."""
+    keyframes.erase(obj)
+    del obj.data[_RECORD]
+
+
+def _animated(data: "bpy.types.Curve") -> "bpy.types.ID | None":
+    """The datablock that has the animation: the shape keys, or the curve itself."""
+    for owner in (data.shape_keys, data):
+        if owner is not None and owner.animation_data is not None and owner.animation_data.action is not None:
+            return owner
+    return None
+
+
+def _fingerprint(data: "bpy.types.Curve") -> list[int]:
+    """Numbers of keys, of F-curves and of points; -1 where somebody else's animation is."""
+    keys = data.shape_keys
+    owner: Any = keys or data
+    blocks = 0 if keys is None else -1 if keys.use_relative else len(keys.key_blocks)
+    own, other = count_own(owner), keys is not None and _moves(data)
+    return [blocks, -1 if own is None or other or _driven(owner) else own, sum(count for _, count in shape(data))]
+
+
+def _digest(data: "bpy.types.Curve") -> str:
+    """A name for where the points are at all shape keys."""
+    hashed = hashlib.blake2b(digest_size=16)
+    for block in data.shape_keys.key_blocks if data.shape_keys else ():
+        points = np.empty(3 * len(block.data), dtype=np.float32)
+        block.data.foreach_get("co", points)
+        hashed.update(points.tobytes())
+    return hashed.hexdigest()
+
+
+def _moves(block: "bpy.types.ID") -> bool:
+    animation = block.animation_data
+    return animation is not None and bool(animation.action or animation.nla_tracks)
+
+
+def _driven(block: "bpy.types.ID") -> bool:
+    animation = block.animation_data
+    paths = ("splines", "eval_time", "key_blocks")
+    return animation is not None and any(driver.data_path.startswith(paths) for driver in animation.drivers)
