@@ -1,5 +1,7 @@
 """Values for options that tests know nothing of but their declaration."""
 
+import math
+
 from mobius_flow.core.option import Option
 
 
@@ -9,5 +11,7 @@ def unlike_default(option: Option) -> object:
         return not option.default
     if option.choices is not None:
         return next(name for name in reversed(list(option.choices)) if name != option.default)
+    if math.isfinite(option.high):
+        return option.kind(2.0 ** math.floor(math.log2(option.high)))
     value = option.kind(max(option.low, 0) + 2.5)
     return value if value != option.default else option.kind(value + 1)

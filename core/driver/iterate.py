@@ -19,7 +19,8 @@ class Iterate:
     energy
         The objective: the energy that is minimised, and the barrier.
     gradient_norm
-        Metric norm of the projected gradient at this curve (dimensionless).
+        Norm of the projected gradient at this curve (dimensionless), in the metric that the method takes it in: that of
+        this curve, or of one up to two steps before.
     step_size
         Step size τ that led here, 0 for the start and where the mesh changes.
     path

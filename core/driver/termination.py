@@ -13,5 +13,7 @@ def termination(run: Run) -> Outcome | None:
     iterate, bound = run.iterate, run.options.tolerance * float(np.sqrt(abs(run.point.energy)))
     feasible = not run.problem.geometry.prescribes or iterate.edge_length_error <= LENGTHS_REACHED
     if run.point.gradient_norm <= bound and feasible:
-        return converged(run.point.gradient_norm, bound)
+        norm = run.point.with_own_metric().gradient_norm
+        if norm <= bound:
+            return converged(norm, bound)
     return out_of_iterations(iterate.index) if run.at_limit else None

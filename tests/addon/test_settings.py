@@ -52,7 +52,7 @@ def test_every_option_is_a_setting_of_scene_and_operator(each):
             assert len({item.value for item in shown.enum_items}) == len(shown.enum_items)
         elif each.kind is not bool:
             assert shown.hard_min == pytest.approx(0 if each.default is None else each.low)
-            assert shown.hard_max >= min(each.high, 2**31 - 1)
+            assert shown.hard_max >= min(each.high * (1 - 1e-7), 2**31 - 1)
         assert ("; 0: " in shown.description) == (each.default is None and each.choices is None)
 
 
@@ -64,8 +64,8 @@ def test_what_changes_the_mesh_is_left_out():
 
 def test_defaults_are_the_librarys():
     options = asdict(properties.relax_options(scene_values()))
-    assert options.pop("tolerance") == pytest.approx(RelaxOptions().tolerance)
-    assert options == {name: value for name, value in asdict(RelaxOptions()).items() if name != "tolerance"}
+    for name, value in asdict(RelaxOptions(mesh="fixed")).items():
+        assert options[name] == (pytest.approx(value) if isinstance(value, float) else value)
 
 
 @pytest.mark.parametrize("name", GIVEN)

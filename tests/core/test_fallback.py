@@ -7,7 +7,7 @@ from mobius_flow.core import METHODS, RelaxOptions, Status, minimize
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver import run as run_module
-from mobius_flow.core.driver.change import Change
+from mobius_flow.core.driver.events import Change
 from mobius_flow.core.driver.interventions import fallback as fallback_module
 from mobius_flow.core.driver.interventions.fallback import HELPER, HELPS, Fallback
 from mobius_flow.core.driver.prepare import start_problem
