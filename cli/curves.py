@@ -15,7 +15,7 @@ from .streams import OutputStreamError, emit
 
 STREAM, DEVICE = "-", "/dev/stdout"
 INPUT, OUTPUT = "standard input", "standard output"
-MAX_VERTICES = 50_000  # of curves that any command takes; their energy takes a minute or so, growing with the square
+MAX_VERTICES = 200_000  # of curves that any command takes
 
 
 def add_format(parser: argparse.ArgumentParser) -> None:

@@ -3,8 +3,12 @@
 from .checks import named
 from .collision import check_embedded, check_gap
 from .curve import Curve, check_is_curve
-from .energies import ENERGIES
+from .energies import ENERGIES, MoebiusEnergy
+from .errors import CurveError
+from .hierarchy import moebius_energy
 from .units import centred, check_units
+
+MAX_VERTICES = 50_000  # of energies that sum over all pairs of edges: a minute or so, growing with the square
 
 
 def measure(curve: Curve, energy: str = "moebius") -> float:
@@ -13,7 +17,8 @@ def measure(curve: Curve, energy: str = "moebius") -> float:
     Raises
     ------
     CurveError
-        If the curve touches itself, or strands are too near, or units too large or small, to compute with.
+        If the curve has too many vertices, touches itself, or has strands too near, or units too large or small, to
+        compute with.
     OptionError
         If the energy is unknown.
     """
@@ -22,4 +27,8 @@ def measure(curve: Curve, energy: str = "moebius") -> float:
     check_units(curve)
     check_embedded(curve)
     check_gap(curve)
+    if isinstance(wanted, MoebiusEnergy):
+        return moebius_energy(centred(curve))[0]
+    if len(curve) > MAX_VERTICES:
+        raise CurveError(f"the curve has {len(curve)} vertices; {wanted.name} is for at most {MAX_VERTICES}")
     return wanted.value(centred(curve))

@@ -1,7 +1,6 @@
 """The feasible geometry: lengths and barycenter are prescribed, and (42) of [RS21] leads back to them after a step."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,9 +10,7 @@ from ..errors import OptionError
 from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
-
-if TYPE_CHECKING:
-    from .problem import Point, Problem
+from .problem import Point, Problem
 
 
 @dataclass(frozen=True)
@@ -45,19 +42,19 @@ class Constrained:
             self, tolerance=(0.0, 1.0), max_iterations=(0, np.inf), small=(0.0, np.inf), contraction=(0.0, 1.0)
         )
 
-    def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
+    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
         """The objective alone."""
         return problem.objective.value_and_derivative(curve)
 
-    def tangent_space(self, problem: "Problem", curve: Curve, inner: InnerProduct) -> TangentSpace:
+    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
         """ker DΦ."""
         return inner.tangent_space(problem.constraints.derivative(curve))
 
-    def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
+    def residual(self, problem: Problem, curve: Curve) -> FloatArray:
         """Φ."""
         return problem.constraints.residual(curve)
 
-    def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
+    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
         """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point: (42).
 
         Once corrections are small the derivative is that at Q and the pseudo-inverse one that is cheap, by which the
@@ -81,7 +78,7 @@ class Constrained:
             vertices = vertices + correction
         return None
 
-    def transport(self, point: "Point", u: FloatArray) -> FloatArray:
+    def transport(self, point: Point, u: FloatArray) -> FloatArray:
         """By orthogonal projection."""
         return point.tangent_space.project(u)
 

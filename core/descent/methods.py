@@ -8,9 +8,8 @@ from typing import Protocol
 from ..metrics import METRICS, Metric
 from .constrained import Constrained
 from .directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
-from .geometry import Geometry
 from .penalised import Penalised
-from .problem import Point
+from .problem import Geometry, Point
 from .searches import Accelerated, Armijo, BackwardEuler, LineSearch, TrustRegion, WeakWolfe
 from .state import State
 from .step import NoStep, Step

@@ -1,7 +1,6 @@
 """The infeasible geometry of Section 6.4 of [RS21]: E_α = E + α ∫ log(|γ'|/L)² L dt, without constraints."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,9 +10,7 @@ from ..curve import Curve
 from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
-
-if TYPE_CHECKING:
-    from .problem import Point, Problem
+from .problem import Point, Problem
 
 
 @dataclass(frozen=True)
@@ -39,7 +36,7 @@ class Penalised:
     def __post_init__(self) -> None:
         check_fields(self, penalty=(0.0, np.inf))
 
-    def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
+    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
         """E_α and its derivative."""
         energy, derivative = problem.objective.value_and_derivative(curve)
         targets = problem.constraints.lengths
@@ -48,22 +45,22 @@ class Penalised:
         pull = ConstraintDerivative.of_lengths(curve).apply_transpose(2.0 * weights * stretch)
         return energy + float(weights @ stretch**2), derivative + pull
 
-    def tangent_space(self, problem: "Problem", curve: Curve, inner: InnerProduct) -> TangentSpace:
+    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
         """The whole space."""
         penalty = self.penalty if problem.metric.extends_penalty else 0.0
         rows = ConstraintDerivative.of_lengths(curve)
         return inner.whole_space(rows, penalty * problem.constraints.lengths)
 
-    def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
+    def residual(self, problem: Problem, curve: Curve) -> FloatArray:
         """Every polygon is allowed: 0."""
         return np.zeros(len(curve))
 
-    def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
+    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
         """The vertices as they are, unless an edge has no length."""
         point = base.problem.at(vertices)
         return point if point.nondegenerate else None
 
-    def transport(self, point: "Point", u: FloatArray) -> FloatArray:
+    def transport(self, point: Point, u: FloatArray) -> FloatArray:
         """There is only one tangent space."""
         return u
 

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from ..curve import Curve
-from ..energies import MoebiusEnergy
 from ..errors import CurveError, OptionError
+from ..hierarchy import moebius_energy
 from ..units import centred
 from .iterate import Iterate
 from .loop import Relaxation, iterates
@@ -68,10 +68,14 @@ class Result:
         """Whether every motion from the (refined) start to the result was proved free of contact."""
         return self.last.certified
 
-    @cached_property
+    @property
     def final_energy(self) -> float:
         """The Möbius energy of the last curve, without what the objective adds: what ``mobius-flow energy`` prints."""
-        return MoebiusEnergy().value(centred(self.curve))
+        return self._final_energy[0]
+
+    @cached_property
+    def _final_energy(self) -> tuple[float, float]:
+        return moebius_energy(centred(self.curve))
 
     def report(self) -> dict[str, object]:
         """The result as the plain values that ``--report`` writes."""
@@ -82,6 +86,7 @@ class Result:
             "seconds": self.seconds,
             "energy": list(self.energies),
             "final_energy": self.final_energy,
+            "final_energy_error": self._final_energy[1],
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
             "max_edge_length_error": self.last.edge_length_error,

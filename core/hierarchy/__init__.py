@@ -2,7 +2,7 @@
 
 from .blocks import BlockList
 from .clusters import ClusterTree
-from .energy import HierarchicalMoebiusEnergy
+from .energy import HierarchicalMoebiusEnergy, moebius_energy
 from .metric import CompressedMetric, compressed
 
-__all__ = ["BlockList", "ClusterTree", "CompressedMetric", "HierarchicalMoebiusEnergy", "compressed"]
+__all__ = ["BlockList", "ClusterTree", "CompressedMetric", "HierarchicalMoebiusEnergy", "compressed", "moebius_energy"]

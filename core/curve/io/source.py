@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 from ...errors import CurveFileError, reason_of
 
-MAX_BYTES = 8 << 20  # a hundred thousand vertices with all their digits
+MAX_BYTES = 16 << 20  # two hundred thousand vertices with all their digits
 MAX_LINES = 500_000
 _INTEGER = re.compile(r"[+-]?[0-9]+", re.ASCII)
 _MAX_DIGITS = 18  # digits; beyond that it is no count or index of anything in memory

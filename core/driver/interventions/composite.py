@@ -1,7 +1,7 @@
 """A composite curve has no shape of least energy: only the mesh keeps one of its parts from shrinking to a point."""
 
 from ...curve import Curve
-from ...energies import MoebiusEnergy
+from ...hierarchy import moebius_energy
 from ...knots.composite import Ball, knotted_ball
 from ..events import Event
 from ..outcome import COMPOSITE, Outcome, stalled
@@ -34,6 +34,6 @@ class Composite:
 def _cutting_ball(curve: Curve) -> Ball | None:
     """A ball that proves a curve composite, looked for only where there is energy enough for that."""
     components = len(curve.mesh.component_sizes)
-    if MoebiusEnergy().value(curve) < (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK):
+    if moebius_energy(curve)[0] < (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK):
         return None
     return knotted_ball(curve)

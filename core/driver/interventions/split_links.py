@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 from ...constraints import Parts
 from ...curve import Curve
 from ...descent import Step
-from ...energies import MoebiusEnergy
+from ...hierarchy import moebius_energy
 from ...types import BoolArray, FloatArray, IntArray
 from ..events import Change, Event
 from ..outcome import HELD, Outcome
@@ -29,7 +29,7 @@ class SplitLinks:
         """Look for parts now and then, and tell of them in the end."""
         run, constraints = self._run, self._run.problem.constraints
         if isinstance(event, Outcome) and event.converged and constraints.parts is not None:
-            alone = sum(MoebiusEnergy().value(part) for part in split(run.iterate.curve, constraints.parts))
+            alone = sum(moebius_energy(part)[0] for part in split(run.iterate.curve, constraints.parts))
             return event.adding(HELD.format(energy=alone))
         if isinstance(event, Step) and run.problem.geometry.prescribes and run.iterate.index % INTERVAL == 0:
             parts = separate_parts(run.iterate.curve)

@@ -149,7 +149,7 @@ def test_any_bytes_give_a_curve_or_one_sentence(tmp_path: Path, suffix: str, dat
 def test_files_longer_than_any_curve(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"long{suffix}"
     path.write_bytes(b"0 0 0\n" * (MAX_BYTES // 6 + 1))
-    with pytest.raises(CurveFileError, match=r"longer than 8 MB"):
+    with pytest.raises(CurveFileError, match=r"longer than 16 MB"):
         read_curve(path)
 
 

@@ -22,9 +22,9 @@ from mobius_flow.core.descent import NoStep, Point, Problem, State, Step
 from mobius_flow.core.descent.constrained import Constrained
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian
-from mobius_flow.core.descent.geometry import Geometry
 from mobius_flow.core.descent.methods import StepRule
 from mobius_flow.core.descent.penalised import Penalised
+from mobius_flow.core.descent.problem import Geometry
 from mobius_flow.core.descent.searches import (
     Accelerated,
     Armijo,
