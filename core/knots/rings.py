@@ -12,7 +12,7 @@ from ..types import FloatArray, IntArray
 
 _EDGE = 0.7  # default edge length in units of the gap; tilted strands are a little nearer than the gap
 _PAGES_PER_EDGE = 8
-MAX_VERTICES = 200_000  # of any knot that is made: what any command takes
+MAX_VERTICES = 400_000  # of any knot that is made: twice what any command takes
 
 
 @dataclass(frozen=True)

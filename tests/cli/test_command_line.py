@@ -93,10 +93,10 @@ def test_knots_are_listed(capsys):
 def test_knots_that_no_command_reads_are_not_written(tmp_path, capsys):
     path = tmp_path / "k.txt"
     assert run("knot", "T(300,301)", path) == 2
-    assert "give --vertices 50000" in capsys.readouterr().err
+    assert "give --vertices 200000" in capsys.readouterr().err
     assert not path.exists()
-    assert run("knot", "T(300,301)", path, "--vertices", 50_000) == 0
-    assert len(read_curve(path)) == 50_000
+    assert run("knot", "T(300,301)", path, "--vertices", 200_000) == 0
+    assert len(read_curve(path)) == 200_000
 
 
 def test_module_is_the_same_program():

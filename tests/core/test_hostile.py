@@ -138,10 +138,12 @@ def test_thousands_of_components(tmp_path: Path, capsys: pytest.CaptureFixture[s
     shifts = [[3.0 * (k % 80), 3.0 * (k // 80), 0.0] for k in range(5000)]
     text = "\n".join("".join(f"{x} {y} {z}\n" for x, y, z in (np.eye(3) + shift).tolist()) for shift in shifts)
     (tmp_path / "in.txt").write_text(text)
-    assert main(["relax", str(tmp_path / "in.txt"), str(tmp_path / "out.txt")]) == 2
+    assert main(["relax", str(tmp_path / "in.txt"), str(tmp_path / "out.txt"), "--solver", "dense"]) == 2
     error = capsys.readouterr().err
     assert "room and time for 12000" in error
     assert error.count("\n") == 1
+    words = ["relax", str(tmp_path / "in.txt"), str(tmp_path / "out.txt"), "--max-iterations", "0", "--quiet"]
+    assert main(words) == 0
 
 
 ANYTHING = st.one_of(
