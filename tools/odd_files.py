@@ -83,8 +83,8 @@ VALUES = [
     "🙂",
 ]
 OPTIONS = {
-    "relax": "method max-iterations tolerance vertices energy metric quadrature-points penalty edge-lengths adaptive "
-    "resolve stability escape-saddles report trajectory quiet format",
+    "relax": "method max-iterations tolerance vertices energy metric quadrature-points penalty edge-lengths mesh "
+    "solver accuracy adaptive resolve stability escape-saddles report trajectory quiet format",
     "energy": "energy json format",
     "knot": "vertices format",
     "compare": "methods time-limit format tolerance vertices metric",

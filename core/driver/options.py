@@ -90,8 +90,7 @@ class RelaxOptions:
     accuracy: float = _advanced(
         1e-4,
         "Accuracy",
-        "relative error of the projected gradient's norm by the hierarchical solver; that of the energy is below a "
-        "hundredth of it",
+        "relative error of the projected gradient's norm by the hierarchical solver; its energies are good to some 1e-6",
         low=0,
         high=1e-2,
         metavar="A",
