@@ -217,9 +217,9 @@ def measured(words: list[str], **options: object) -> tuple[int, int, str]:
 def test_limits_are_looked_at_before_memory_is_taken(command: str, kind: str, tmp_path: Path) -> None:
     path = tmp_path / ("in.json" if kind == "dimension" else "in.txt")
     if kind == "vertices":
-        write_curve(path, regular_polygon(51_000))
+        write_curve(path, regular_polygon(201_000))
     elif kind == "more":
-        write_curve(path, regular_polygon(200_000))
+        write_curve(path, regular_polygon(400_000))
     elif kind == "dimension":
         path.write_text(json.dumps([[float(k == i) for k in range(100_000)] for i in range(3)]))
     else:
@@ -229,10 +229,10 @@ def test_limits_are_looked_at_before_memory_is_taken(command: str, kind: str, tm
     assert status == 2
     assert error.count("\n") == 1
     assert str(path) in error
-    assert megabytes < 250
+    assert megabytes < 400
 
 
-@pytest.mark.parametrize("count", ["12001", "200000", "9" * 40])
+@pytest.mark.parametrize("count", ["200001", "1000000", "9" * 40])
 @pytest.mark.parametrize("command", ["relax", "compare", "bench"])
 def test_refinement_is_limited(
     count: str, command: str, trefoil: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -248,7 +248,7 @@ def test_refinement_is_limited(
 
 def test_written_curves_can_be_read(tmp_path: Path) -> None:
     """The longest file that a relaxation can write is below the limit of files that are read."""
-    curve = regular_polygon(12_000)
+    curve = regular_polygon(200_000)
     path = tmp_path / "o.json"
     write_curve(path, curve.with_vertices(np.pi * 1e-100 * curve.vertices))
-    assert len(read_curve(path)) == 12_000
+    assert len(read_curve(path)) == 200_000
