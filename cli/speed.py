@@ -64,17 +64,19 @@ def _print(machine: Machine, rows: Iterator[Row]) -> None:
         emit(f"\nthe same in {unit}, of {seconds / _MILLI:.1f} ms each\n{_head(done[0])}")
         for row in done:
             emit(_line(row, seconds))
-    emit("".join(_conclusions(done)))
+    conclusions = list(_conclusions(done))
+    if conclusions:
+        emit("\n".join(["", *conclusions]))
 
 
 def _conclusions(rows: Sequence[Row]) -> Iterator[str]:
     for solver, exponent in exponents(rows).items():
-        yield f"\n{solver} iterations take time like N^{exponent:.2f} from {ASYMPTOTIC} vertices on"
+        yield f"{solver} iterations take time like N^{exponent:.2f} from {ASYMPTOTIC} vertices on"
     for row in rows:
         if row.deviation is not None:
             off = row.deviation
             yield (
-                f"\n{row.vertices} vertices, against dense: energy {off.energy:.1e}, derivative {off.derivative:.1e}, "
+                f"{row.vertices} vertices, against dense: energy {off.energy:.1e}, derivative {off.derivative:.1e}, "
                 f"norm of the gradient {off.norm:.1e}, cosine {off.cosine:.6f}"
             )
 
