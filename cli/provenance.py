@@ -15,9 +15,16 @@ from ..core.curve.io import CurveFile
 def provenance(options: RelaxOptions, file: CurveFile) -> dict[str, object]:
     """The version, the options as used, the input and its hash, the BLAS threads and the libraries, as plain values."""
     return {
-        "version": __version__,
         "options": asdict(options),
         "input": {"name": str(file.source.path), "sha256": file.source.sha256},
+        **environment(),
+    }
+
+
+def environment() -> dict[str, object]:
+    """The version, the BLAS threads and the libraries, as plain values."""
+    return {
+        "version": __version__,
         "blas_threads": _blas_threads(),
         "python": platform.python_version(),
         "numpy": numpy.__version__,

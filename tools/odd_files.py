@@ -88,7 +88,7 @@ OPTIONS = {
     "energy": "energy json format",
     "knot": "vertices format",
     "compare": "methods time-limit format tolerance vertices metric",
-    "bench": "only tolerance vertices method",
+    "bench": "only sizes json tolerance vertices method",
     "verify": "json",
     "methods": "help",
 }
