@@ -90,8 +90,8 @@ class RelaxOptions:
     accuracy: float = _advanced(
         1e-4,
         "Accuracy",
-        "relative error of the projected gradient's norm by the hierarchical solver; that of the energy is below a "
-        "hundredth of it",
+        "relative error of the projected gradient's norm in the hierarchical solver's metric, which makes norms differ "
+        "by some per cent from the dense solver's; energies differ by some 1e-6, whatever the accuracy",
         low=0,
         high=1e-2,
         metavar="A",
