@@ -35,6 +35,7 @@ from .provenance import provenance
 from .recovery import Write, kept
 
 EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1, Status.INTERRUPTED: 130}
+FIXED = "fixed"  # the mesh that keyframes can follow
 _DESCRIPTION = "Relax a curve: a tangled one in, one of less energy of the same knot type out."
 _EPILOG = """\
 examples:
@@ -85,12 +86,12 @@ def run(options: argparse.Namespace) -> int:
     output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
     moving = [option for option in declared(RelaxOptions) if not option.keyframes]
-    changed = [relax_options.flag(each) for each in moving if getattr(wanted, each.name) != each.default]
+    changed = [relax_options.flag(each) for each in moving if getattr(wanted, each.name) not in (each.default, FIXED)]
     if output.needs_iterates and changed:
         names = " and ".join(changed)
         raise OptionError(f"{options.output}: keyframes need a fixed mesh; leave {names} out, or write a curve file")
     if output.needs_iterates:
-        wanted = replace(wanted, mesh="fixed")
+        wanted = replace(wanted, mesh=FIXED)
     check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
     file = curves.read(options.input, options.format)
     admit(output, options.output, file.curve)

@@ -90,7 +90,8 @@ class RelaxOptions:
     accuracy: float = _advanced(
         1e-4,
         "Accuracy",
-        "relative error of the projected gradient's norm by the hierarchical solver; its energies are good to some 1e-6",
+        "relative error of the projected gradient's norm in the hierarchical solver's metric, which makes norms differ "
+        "by some per cent from the dense solver's; energies differ by some 1e-6, whatever the accuracy",
         low=0,
         high=1e-2,
         metavar="A",

@@ -82,3 +82,10 @@ def test_keyframes_follow_no_mesh_that_changes(word, tmp_path, capsys):
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert "keyframes need a fixed mesh; leave --mesh out, or write a curve file" in said
+
+
+def test_keyframes_follow_a_fixed_mesh_that_is_asked_for(tmp_path):
+    pytest.importorskip("bpy")
+    write_curve(tmp_path / "a.txt", torus_trefoil(60))
+    words = ["--quiet", "--mesh=fixed", "--max-iterations=1"]
+    assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), *words]) == 0

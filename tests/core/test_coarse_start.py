@@ -66,14 +66,35 @@ def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
 
 
 @pytest.mark.usefixtures("everywhere")
-@pytest.mark.parametrize("limit", [0, 1, 5, 12])
-def test_a_run_that_is_cut_short_has_all_vertices(limit: int) -> None:
-    iterates: list[Iterate] = []
-    curve = bent(torus_trefoil(900))
-    result = minimize(curve, RelaxOptions(vertices=900, max_iterations=limit), iterates.append)
+@pytest.mark.parametrize("limit", [0, 1, 5, 12, coarse_start.MIN_ITERATIONS, 33])
+@pytest.mark.parametrize("least", [0, coarse_start.MIN_ITERATIONS])
+def test_a_run_that_is_cut_short_has_all_vertices(limit: int, least: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The way back is within the limit, and ends on the smooth curve: no corners of the coarse one are left."""
+    monkeypatch.setattr(coarse_start, "MIN_ITERATIONS", least)
+    options = RelaxOptions(vertices=900, max_iterations=limit, tolerance=1e-9, method="flow-h1")
+    result = minimize(torus_trefoil(900), options)
     assert result.status is Status.ITERATION_LIMIT
+    assert len(result.energies) == limit + 1
     assert len(result.curve) == 900
     assert result.certified
+    assert result.last.energy < 1.0005 * result.energies[0]
+
+
+@pytest.mark.usefixtures("everywhere")
+def test_few_iterations_are_all_for_untangling() -> None:
+    iterates, _ = relaxed(torus_trefoil(900), max_iterations=4)
+    assert iterates[-1].energy < 0.95 * iterates[0].energy
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize("corners", [3, 4])
+def test_no_component_has_more_vertices_at_first_than_in_the_end(corners: int) -> None:
+    """A polygon around a ring is coarser than its gap; it may keep that, but what is added could not be left out."""
+    square = regular_polygon(corners).vertices[:, [0, 2, 1]] + np.array([1.0, 0.0, 0.0])
+    iterates, _ = relaxed(Curve.from_components([regular_polygon(900).vertices, 0.9 * square]))
+    assert {iterate.curve.mesh.component_sizes[1] for iterate in iterates} == {corners}
+    assert min(iterate.curve.mesh.component_sizes[0] for iterate in iterates) < 900
+    assert iterates[-1].curve.mesh.component_sizes == (900, corners)
 
 
 @pytest.mark.parametrize("options", [{"mesh": "fixed"}, {"edge_lengths": "keep"}, {"mesh": "finer"}])
@@ -92,6 +113,6 @@ def test_small_curves_keep_their_vertices() -> None:
 def test_smooth_curves_through_polygons(dimension: int) -> None:
     coarse = regular_polygon(24, dimension)
     fine = smoothed(coarse, Mesh((500,)))
-    np.testing.assert_allclose(np.linalg.norm(fine.vertices, axis=1), 1.0, atol=1e-5)
+    np.testing.assert_allclose(np.linalg.norm(fine.vertices, axis=1), 1.0, atol=1.5e-5)  # (2π∕24)⁴∕384
     assert np.ptp(fine.edge_lengths) < 1e-3 * fine.edge_lengths.mean()
     np.testing.assert_array_equal(fine.vertices[0], coarse.vertices[0])

@@ -11,9 +11,10 @@ from ...types import FloatArray
 from ..problem import Point
 from ..step import Leg, NoStep, Rejected, Step, attempt
 from .first_trial import NOTHING, FirstTrial
-from .normal_step import TowardsTargets
+from .normal_step import TowardsTargets, on_target
 
 ROUNDING = 1e-14  # relative differences of energies that count as none
+LEAST = 1e-3  # displacement, in the program's units, that is tried again on the way to the targets
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ class Armijo:
         last
             The last accepted one.
         """
-        tau, limited_by = self.first(point, direction, min(natural, self.first.growth * last))
+        tau, limited_by = self.first(point, direction, min(natural, self._longest(point, direction, last)))
         normal = self.lengths.at(point, point.tangent_space)
         slope_along = float(np.sum(point.derivative * direction))
         shrink = 1.0
@@ -83,6 +84,16 @@ class Armijo:
         """
         wanted = self.decrease * slope if slope < 0.0 else 2.0 * slope
         return trial.energy - point.energy <= wanted + slack + ROUNDING * abs(point.energy)
+
+    def _longest(self, point: Point, direction: FloatArray, last: float) -> float:
+        """A multiple of the last step, unless the lengths' part of that one may be what made it short.
+
+        Step sizes that shrink again and again would leave the lengths' part alone, which costs energy and sees no
+        strands.
+        """
+        longest = self.first.growth * last
+        speed = float(np.max(np.abs(direction)))
+        return LEAST / speed if longest * speed < LEAST and not on_target(point) else longest
 
     def _shorter(self, point: Point, rejected: Rejected, slope: float) -> float:
         """Factor for the next trial."""

@@ -18,6 +18,8 @@ from .remesh import proved_remesh
 
 MIN_VERTICES = 1500  # from which it is worth while
 MIN_GAIN = 2.0  # factor by which there must be fewer at first
+MIN_ITERATIONS = 30  # the way there and back takes a dozen: with fewer nothing would be left for untangling
+PASS = WAY_BACK = 2  # iterations: a motion and a change of mesh
 
 
 class CoarseStart:
@@ -25,7 +27,7 @@ class CoarseStart:
 
     def __init__(self, run: Run) -> None:
         self._run, self._problem = run, _with_equal_lengths(run.problem)
-        self._options = replace(run.options, vertices=None, edge_lengths="keep")
+        self._options = replace(run.options, vertices=None, edge_lengths="keep", mesh="fixed")
         self._sizes = np.array(run.problem.mesh.component_sizes)
         self._wanted = self._is_wanted()
         self._coarse: Curve | None = None
@@ -35,21 +37,31 @@ class CoarseStart:
         if isinstance(event, Start):
             return (self._coarser() if self._wanted else self._smoother()) or event
         self._wanted = False
-        if self._coarse is not None and isinstance(event, Outcome | NoStep):
+        if self._coarse is not None and (isinstance(event, Outcome | NoStep) or self._left <= WAY_BACK):
             return self._finest() or event
         return event
 
+    @property
+    def _left(self) -> int:
+        """Iterations that are left."""
+        return self._run.options.max_iterations - self._run.iterate.index
+
     def _is_wanted(self) -> bool:
         options, curve = self._run.options, self._run.iterate.curve
-        if options.mesh != "auto" or options.edge_lengths not in ("auto", "equal") or len(curve) < MIN_VERTICES:
+        if options.mesh != "auto" or options.edge_lengths not in ("auto", "equal"):
+            return False
+        if len(curve) < MIN_VERTICES or options.max_iterations < MIN_ITERATIONS:
             return False
         return bool(MIN_GAIN * np.sum(curve.edge_lengths / graded_spacing(curve, None)) <= len(curve))
 
     def _coarser(self) -> Change | None:
-        """A pass that leaves out up to a third of the vertices; None if there are none to leave out."""
+        """A pass that leaves out up to a third of the vertices; None if there are none to leave out, or no time."""
+        if self._left < PASS + WAY_BACK:
+            return None
         curve, problem = self._run.iterate.curve, self._run.problem
         spacing = graded_spacing(curve, None)
-        change, proof = proved_remesh(problem, curve, None, superfluous(curve, spacing), spacing)
+        unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no component has more vertices than in the end
+        change, proof = proved_remesh(problem, curve, None, superfluous(curve, spacing), unsplit)
         if len(change.curve) >= len(curve) or not (survives_rounding(change.moved) and survives_rounding(change.curve)):
             return None
         self._coarse = change.curve

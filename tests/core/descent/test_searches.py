@@ -227,6 +227,15 @@ def test_the_first_trial_is_bounded() -> None:
     assert FirstTrial()(point, 0.0 * up, np.inf) == (0.0, None)
 
 
+@pytest.mark.parametrize(("lengths", "bounded"), [("keep", True), ("equal", False)])
+def test_step_sizes_recover_where_the_way_to_the_lengths_made_them_short(lengths: str, bounded: bool) -> None:
+    point = point_on(start().curve, edge_lengths=lengths)
+    step = Armijo().along(point, -point.gradient, np.inf, 1e-100)
+    assert isinstance(step, Step) != bounded  # a motion of 10⁻¹⁰⁰ changes no coordinate
+    if isinstance(step, Step):
+        assert 1e-5 < np.abs(step.size * point.gradient).max() <= 1e-3
+
+
 def test_steps_grow_by_a_bounded_factor() -> None:
     point = start()
     step, _ = taken(LineSearch(SteepestDescent(), Armijo()).step(point, State(None, 1e-5)))
