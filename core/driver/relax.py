@@ -14,7 +14,7 @@ from ..units import centred
 from .iterate import Iterate
 from .loop import Relaxation, iterates
 from .options import RelaxOptions
-from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
+from .outcome import COARSE, INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import prepared_start, start_problem
 from .run import Run
 
@@ -159,9 +159,11 @@ def finish(relaxation: Relaxation, method: str, callback: Callable[[Iterate], No
     energies: list[float] = []
     fallback: list[int] = []
     last: Iterate | None = None
+    given = 0  # vertices at the start
     try:
         while True:
             last = next(relaxation)
+            given = given or len(last.curve)
             energies.append(last.energy)
             if last.method != method:
                 fallback.append(last.index)
@@ -173,5 +175,7 @@ def finish(relaxation: Relaxation, method: str, callback: Callable[[Iterate], No
         if last is None:
             raise
         outcome = OUT_OF_MEMORY if isinstance(error, MemoryError) else INTERRUPTED
+        if len(last.curve) < given:
+            outcome = outcome.adding(COARSE.format(vertices=len(last.curve), all=given))
     assert last is not None, "relax yields at least its start"
     return Result(outcome, last, tuple(energies), tuple(fallback), time.perf_counter() - started, method)

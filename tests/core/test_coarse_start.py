@@ -9,7 +9,7 @@ from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, Trajectory, m
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.curve.smooth import smoothed
 from mobius_flow.core.driver.interventions import coarse_start
-from mobius_flow.core.knots import hard_unknot, knot
+from mobius_flow.core.knots import hard_unknot, knot, scramble
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
 
@@ -116,3 +116,30 @@ def test_smooth_curves_through_polygons(dimension: int) -> None:
     np.testing.assert_allclose(np.linalg.norm(fine.vertices, axis=1), 1.0, atol=1.5e-5)  # (2π∕24)⁴∕384
     assert np.ptp(fine.edge_lengths) < 1e-3 * fine.edge_lengths.mean()
     np.testing.assert_array_equal(fine.vertices[0], coarse.vertices[0])
+
+
+@pytest.mark.usefixtures("everywhere")
+def test_an_interrupt_tells_that_vertices_are_missing() -> None:
+    def interrupt(iterate: Iterate) -> None:
+        if iterate.index == 9:
+            raise KeyboardInterrupt
+
+    result = minimize(bent(torus_trefoil(900)), RelaxOptions(vertices=900), interrupt)
+    assert result.status is Status.INTERRUPTED
+    assert f"it still has {len(result.curve)} of its 900 vertices" in result.message
+
+
+@pytest.mark.usefixtures("everywhere")
+def test_vertices_come_back_in_a_tangle_too() -> None:
+    """Strands leave way for part of the motion to the smooth curve."""
+    tangle = scramble(regular_polygon(60), seed=5)
+    fine = minimize(tangle, RelaxOptions(vertices=2000, mesh="fixed", max_iterations=0)).curve
+    iterates, _ = relaxed(fine, max_iterations=60)
+    assert len(iterates[-1].curve) == 2000
+    assert iterates[-1].edge_length_error < 0.5
+
+
+@pytest.mark.usefixtures("everywhere")
+def test_penalised_lengths_keep_all_vertices() -> None:
+    iterates, _ = relaxed(bent(torus_trefoil(900)), max_iterations=40, method="penalty-lbfgs")
+    assert {len(iterate.curve) for iterate in iterates} == {900}

@@ -19,6 +19,7 @@ from .remesh import proved_remesh
 MIN_VERTICES = 1500  # from which it is worth while
 MIN_GAIN = 2.0  # factor by which there must be fewer at first
 MIN_ITERATIONS = 30  # the way there and back takes a dozen: with fewer nothing would be left for untangling
+MIN_SHARE = 0.05  # of the way to the smooth curve
 PASS = WAY_BACK = 2  # iterations: a motion and a change of mesh
 
 
@@ -50,6 +51,8 @@ class CoarseStart:
         options, curve = self._run.options, self._run.iterate.curve
         if options.mesh != "auto" or options.edge_lengths not in ("auto", "equal"):
             return False
+        if not self._problem.geometry.prescribes:
+            return False  # lengths that are penalised would take the jump of the energy at once
         if len(curve) < MIN_VERTICES or options.max_iterations < MIN_ITERATIONS:
             return False
         return bool(MIN_GAIN * np.sum(curve.edge_lengths / graded_spacing(curve, None)) <= len(curve))
@@ -79,14 +82,20 @@ class CoarseStart:
         return Change(point=with_parts_of(self._run.problem, self._problem, finest))
 
     def _smoother(self) -> Change | None:
-        """The motion to a smooth curve through the vertices of the coarse one; None if strands are in its way."""
+        """The motion to a smooth curve through the vertices of the coarse one, as far as strands leave way for it."""
         if self._coarse is None:
             return None
         problem, start = self._run.problem, self._run.iterate.curve
-        end = problem.at_curve(smoothed(self._coarse, start.mesh))
+        way = smoothed(self._coarse, start.mesh).vertices - start.vertices
         self._coarse = None
-        proof = problem.free_motion(start.vertices, end.placed)
-        return Change(Step((Leg(end, proof),), 0.0, None)) if proof.time == 1.0 else None
+        share = 1.0
+        while share > MIN_SHARE:
+            end = problem.at_curve(start.with_vertices(start.vertices + share * way))
+            proof = problem.free_motion(start.vertices, end.placed)
+            if proof.time == 1.0:
+                return Change(Step((Leg(end, proof),), 0.0, None))
+            share *= min(0.9, proof.time)
+        return None
 
 
 def _with_equal_lengths(problem: Problem) -> Problem:
