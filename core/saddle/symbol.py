@@ -72,7 +72,9 @@ class Parameter:
         waves = np.stack(self.waves(frequencies))
         images = np.stack([apply(wave) for wave in waves])
         quotients = np.sum(waves * images, axis=(0, 1)) / np.sum(weights[:, None] * waves**2, axis=(0, 1))
-        if not quotients.min() > 0.0:
+        constant = np.ones((len(weights), 1))
+        rounding = 100.0 * np.finfo(np.float64).eps * float(np.abs(apply(constant)).sum() / weights.sum())
+        if not quotients.min() > rounding:
             raise np.linalg.LinAlgError("matrix is not positive definite: a Rayleigh quotient is not positive")
         logarithms, last = (np.log(frequencies), np.log(quotients)), frequencies[-1]
         return lambda f: np.exp(np.interp(np.log(np.maximum(f, turn)), *logarithms)) * np.maximum(f / last, 1.0) ** 3

@@ -32,7 +32,7 @@ def test_names_come_from_the_registries():
     tables = {"method": METHODS, "energy": ENERGIES, "metric": METRICS}
     assert all(DECLARED[name].choices is table for name, table in tables.items())
     assert DECLARED["edge_lengths"].choices == ("auto", "equal", "keep")
-    assert DECLARED["mesh"].choices == ("fixed", "finer", "adaptive")
+    assert DECLARED["mesh"].choices == ("auto", "fixed", "finer", "adaptive")
 
 
 def test_only_options_that_change_the_mesh_have_no_keyframes():
