@@ -125,7 +125,7 @@ def _write_figure(path: Path, runs: Sequence[History]) -> None:
     for index, run in enumerate(runs):
         style = {"color": f"C{index % 10}", "linestyle": ("-", "--", ":")[index // 10 % 3], "linewidth": 1.4}
         label = run.method if run.status == "converged" else f"{run.method} ({run.status.replace('_', ' ')})"
-        helped = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)}
+        helped = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)} if run.fallback else {}
         left.plot(range(len(run.energy)), run.energy, label=label, **style, **helped)
         right.plot(run.seconds, run.energy, **style, **helped)
     left.set(xlabel="iterations", ylabel="objective", xscale="symlog", yscale="log")
