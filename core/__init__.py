@@ -6,7 +6,7 @@
 from .curve import Curve, Mesh
 from .curve.io import read_curve, write_curve
 from .descent import METHODS
-from .driver import Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, minimize, relax
+from .driver import Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, WithOutcome, minimize, relax
 from .energies import MoebiusEnergy, Objective
 from .errors import CurveError, CurveFileError, MobiusFlowError, OptionError
 
@@ -26,6 +26,7 @@ __all__ = [
     "Result",
     "Status",
     "Trajectory",
+    "WithOutcome",
     "minimize",
     "read_curve",
     "relax",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status, relax
+from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status, WithOutcome, relax
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.types import FloatArray
@@ -152,12 +152,10 @@ class Session:
         return self.report(prepared)
 
     def _relaxed(self) -> Prepared:
-        relaxation = relax(self.group.curve, self.options)
-        while self.outcome is None:
-            try:
-                self.take(next(relaxation))
-            except StopIteration as end:
-                self.outcome = end.value
+        run = WithOutcome(relax(self.group.curve, self.options))
+        for iterate in run:
+            self.take(iterate)
+        self.outcome = run.outcome
         return self.prepare(is_free)
 
     def take(self, iterate: Iterate) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import pairwise
 
-from ...core import Iterate, MobiusFlowError, relax
+from ...core import Iterate, MobiusFlowError, WithOutcome, relax
 from ...core.collision import is_free
 from . import wire
 from .motion import frames_of
@@ -15,14 +15,13 @@ def messages(job: wire.Message) -> Iterator[wire.Message]:
     curve, options, link = wire.unpack_job(job)
     last: Frame | None = None
     try:
-        relaxation = relax(curve, options)
-        while True:
-            iterate = next(relaxation)
+        run = WithOutcome(relax(curve, options))
+        for iterate in run:
             frames = frames_of(link, iterate)
             yield wire.pack_iterate(iterate, _proved(iterate, link, [*([] if last is None else [last]), *frames]))
             last = frames[-1]
-    except StopIteration as end:
-        yield wire.pack_outcome(end.value)
+        assert run.outcome is not None, "the loop is through"
+        yield wire.pack_outcome(run.outcome)
     except MobiusFlowError as error:
         yield {"error": str(error)}, []
 

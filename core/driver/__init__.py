@@ -1,7 +1,7 @@
 """The driver: options and a curve in, proved iterates and an outcome out; its decisions are `interventions`."""
 
 from .iterate import Iterate
-from .loop import Relaxation
+from .loop import Relaxation, WithOutcome
 from .options import RelaxOptions
 from .outcome import Outcome, Status
 from .relax import Result, finish, minimize, relax
@@ -15,6 +15,7 @@ __all__ = [
     "Result",
     "Status",
     "Trajectory",
+    "WithOutcome",
     "finish",
     "minimize",
     "relax",

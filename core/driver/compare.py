@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from ..curve import Curve
 from ..errors import OptionError
+from .loop import WithOutcome
 from .options import RelaxOptions
 from .prepare import prepared_start, start_problem
 from .relax import relax
@@ -38,10 +39,11 @@ class History:
 def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_limit: float) -> Iterator[History]:
     """Give one run per method, all from the same refined curve, each ended at ``time_limit`` seconds.
 
-    Whether every method can be run is looked at before the first one is. Raises as `relax` does.
+    Whether every method can be run is looked at before the first one is. The mesh ``auto`` is a fixed one here, so that
+    steps are compared on one mesh. Raises as `relax` does.
     """
     if options.mesh == "auto":
-        options = replace(options, mesh="fixed")  # steps are to be compared on one mesh
+        options = replace(options, mesh="fixed")
     if isinstance(methods, str):
         raise OptionError(f"methods are {methods!r:.60}; give a list of names")
     start = prepared_start(curve, options.vertices, [replace(options, method=method) for method in methods])
@@ -52,18 +54,15 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
 
 
 def _run(start: Curve, options: RelaxOptions, time_limit: float) -> History:
-    status = "time_limit"
     rows: list[tuple[float, float, float]] = []
     fallback: list[int] = []
-    relaxation = relax(start, options)
+    run = WithOutcome(relax(start, options))
     began = time.perf_counter()
-    while not rows or rows[-1][0] <= time_limit:
-        try:
-            iterate = next(relaxation)
-        except StopIteration as end:
-            status = end.value.status.value
-            break
+    for iterate in run:
         rows.append((time.perf_counter() - began, iterate.energy, iterate.gradient_norm))
         fallback += [iterate.index] if iterate.method != options.method else []
+        if rows[-1][0] > time_limit:
+            break
+    status = "time_limit" if run.outcome is None else run.outcome.status.value
     seconds, energy, norm = zip(*rows, strict=True)
     return History(options.method, status, seconds, energy, norm, tuple(fallback))

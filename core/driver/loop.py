@@ -15,6 +15,24 @@ from .termination import termination
 Relaxation = Generator[Iterate, None, Outcome]
 
 
+class WithOutcome:
+    """The iterates of a relaxation for a ``for`` loop, which by itself would lose the outcome.
+
+    Attributes
+    ----------
+    outcome
+        How it ended; None before the loop is through.
+    """
+
+    def __init__(self, relaxation: Relaxation) -> None:
+        self._relaxation = relaxation
+        self.outcome: Outcome | None = None
+
+    def __iter__(self) -> Iterator[Iterate]:
+        """Yield the iterates that are left."""
+        self.outcome = yield from self._relaxation
+
+
 def iterates(run: Run) -> Relaxation:
     """Yield the start and every accepted step or change of mesh, each once; return how it ended."""
     try:

@@ -58,7 +58,7 @@ def stalled(reason: str) -> Outcome:
 
 INTERRUPTED = Outcome(Status.INTERRUPTED, "interrupted: the curve reached so far is kept")
 OUT_OF_MEMORY = stalled("memory ran out; the curve reached so far is kept")
-COARSE = "it still has {vertices} of its {all} vertices, the others come back in the end"
+FEWER = "it has {vertices} vertices, {given} at the start"
 DEGENERATE = "the curve has become too degenerate: {error}"
 HELD = (
     "parts that are not linked, which would drift apart without limit, are held in place; "

@@ -8,7 +8,7 @@ import numpy as np
 from ..checks import named
 from ..collision import check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
-from ..curve import Curve, check_is_curve, refine
+from ..curve import Curve, Mesh, check_is_curve, refine
 from ..curve.remesh import graded_spacing
 from ..descent import METHODS, Point, Problem
 from ..energies import Objective
@@ -131,7 +131,12 @@ def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatA
     uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
     if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and uneven):
         return start.edge_lengths
-    return np.concatenate([np.full(s.stop - s.start, start.edge_lengths[s].mean()) for s in start.mesh.slices])
+    return equal_lengths(start.mesh, start.edge_lengths)
+
+
+def equal_lengths(mesh: Mesh, lengths: FloatArray) -> FloatArray:
+    """The total length of every component spread evenly over its edges; shape (n,)."""
+    return np.concatenate([np.full(part.stop - part.start, lengths[part].mean()) for part in mesh.slices])
 
 
 def _graded(start: Curve, vertices: int | None) -> FloatArray:

@@ -12,9 +12,9 @@ from ..errors import CurveError, OptionError
 from ..hierarchy import moebius_energy
 from ..units import centred
 from .iterate import Iterate
-from .loop import Relaxation, iterates
+from .loop import Relaxation, WithOutcome, iterates
 from .options import RelaxOptions
-from .outcome import COARSE, INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
+from .outcome import FEWER, INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import prepared_start, start_problem
 from .run import Run
 
@@ -100,8 +100,8 @@ class Result:
 def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
-    In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from the ``value`` of the
-    generator's StopIteration, or from `minimize`.
+    In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
+    `minimize`.
 
     Parameters
     ----------
@@ -160,22 +160,21 @@ def finish(relaxation: Relaxation, method: str, callback: Callable[[Iterate], No
     fallback: list[int] = []
     last: Iterate | None = None
     given = 0  # vertices at the start
+    run = WithOutcome(relaxation)
     try:
-        while True:
-            last = next(relaxation)
+        for last in run:
             given = given or len(last.curve)
             energies.append(last.energy)
             if last.method != method:
                 fallback.append(last.index)
             if callback is not None:
                 callback(last)
-    except StopIteration as end:
-        outcome = end.value
     except (KeyboardInterrupt, MemoryError) as error:
         if last is None:
             raise
-        outcome = OUT_OF_MEMORY if isinstance(error, MemoryError) else INTERRUPTED
+        run.outcome = OUT_OF_MEMORY if isinstance(error, MemoryError) else INTERRUPTED
         if len(last.curve) < given:
-            outcome = outcome.adding(COARSE.format(vertices=len(last.curve), all=given))
+            run.outcome = run.outcome.adding(FEWER.format(vertices=len(last.curve), given=given))
     assert last is not None, "relax yields at least its start"
-    return Result(outcome, last, tuple(energies), tuple(fallback), time.perf_counter() - started, method)
+    assert run.outcome is not None, "the loop is through"
+    return Result(run.outcome, last, tuple(energies), tuple(fallback), time.perf_counter() - started, method)

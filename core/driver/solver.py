@@ -11,9 +11,8 @@ from ..quadrature import Rule
 from ..saddle.iterative import Tolerances
 from .options import RelaxOptions
 
-DENSE_UP_TO = (
-    2500  # vertices; on smooth curves hierarchical steps are faster from 1,100 on, on some tangles only from 3,500
-)
+# vertices: on smooth curves hierarchical steps are faster from 1,100 on, on some tangles only from 3,500
+DENSE_UP_TO = 2500
 
 
 class Solver:
@@ -46,20 +45,21 @@ class Solver:
 
     @property
     def metric(self) -> Metric:
-        """The metric of the method, or the one that is asked for in its place."""
-        return self.of_metric(_metric(self._method, self._options))
-
-    def of_metric(self, metric: Metric) -> Metric:
-        """A metric in the form that is solved with, by the energy's quadrature rule or the one that is asked for.
+        """The metric of the method, or the one that is asked for in its place.
 
         Raises
         ------
         OptionError
-            If it has no such rule.
+            If a quadrature rule is asked for, and it has none.
         """
-        points = self._options.quadrature_points
+        metric, points = _metric(self._method, self._options), self._options.quadrature_points
         if points is not None and metric.rule is None:
             raise OptionError(f"quadrature_points is {points}; metric {metric.name!r} has no such rule")
+        return self.of_metric(metric)
+
+    def of_metric(self, metric: Metric) -> Metric:
+        """A metric in the form that is solved with, and by the quadrature rule if it has any."""
+        points = self._options.quadrature_points
         # the energy's own rule, as Section 6.1.2 of [RS21] has it, unless another one is asked for
         metric = metric.with_rule(_energy(self._options).rule if points is None else Rule.gauss(points))
         return compressed(metric, Tolerances.of_norms(self._options.accuracy)) if self.hierarchical else metric

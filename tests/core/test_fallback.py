@@ -95,3 +95,9 @@ def test_energies_of_another_mesh_are_not_compared(rule):
 @pytest.mark.parametrize("method", ["penalty-lbfgs", HELPER.name])
 def test_the_helper_and_penalised_problems_get_no_help(rule, method):
     assert Fallback(run_by(method))(STUCK) is STUCK
+
+
+def test_quadrature_points_are_for_the_method_and_not_for_the_helper(rule):
+    """The helper's metric has no such rule, which nobody asked for."""
+    result = minimize(knot("3_1"), RelaxOptions(quadrature_points=2, max_iterations=2))
+    assert result.fallback_steps == (1, 2)

@@ -1,6 +1,7 @@
 """The driver: what it yields, how it ends, and that it does not care for units or place."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from mobius_flow.core import (
     RelaxOptions,
     Status,
     Trajectory,
+    WithOutcome,
     minimize,
     read_curve,
     relax,
@@ -22,6 +24,7 @@ from mobius_flow.core import (
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.compare import compare
+from mobius_flow.core.driver.interventions import coarse_start
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import knot
 from mobius_flow.core.measure import measure
@@ -340,3 +343,41 @@ def test_energies_know_how_they_scale(name):
     energy = ENERGIES[name]
     value, larger = (energy.value_and_derivative(curve.with_vertices(s * curve.vertices))[0] for s in (1.0, 2.0))
     assert larger == pytest.approx(2.0**energy.scale_exponent * value)
+
+
+def test_steps_are_compared_on_one_mesh(monkeypatch):
+    """Also of curves that `relax` would begin with fewer vertices."""
+    monkeypatch.setattr(coarse_start, "MIN_VERTICES", 100)
+    options = RelaxOptions(vertices=600, max_iterations=40)
+    (history,) = compare(torus_trefoil(600), ["lbfgs"], options, 60.0)
+    fixed = minimize(torus_trefoil(600), replace(options, mesh="fixed"))
+    assert history.energy == fixed.energies
+    assert history.status == fixed.status.value
+
+
+def test_compare_ends_at_the_time_limit():
+    (history,) = compare(torus_trefoil(60), ["flow-l2"], RelaxOptions(vertices=60, tolerance=1e-12), 1e-9)
+    assert history.status == "time_limit"
+    assert len(history.energy) == len(history.seconds) == 1
+
+
+def test_a_for_loop_that_keeps_the_outcome():
+    run = WithOutcome(relax(torus_trefoil(60), SHORT))
+    assert run.outcome is None
+    assert [iterate.index for iterate in run] == list(range(6))
+    assert run.outcome is not None
+    assert run.outcome.status is Status.ITERATION_LIMIT
+
+
+def test_an_interrupt_of_an_adaptive_run_promises_no_vertices():
+    """Fewer than at the start are no coarse start here."""
+
+    def interrupt(iterate):
+        if iterate.index == 12:
+            raise KeyboardInterrupt
+
+    result = minimize(hopf_link(500), RelaxOptions(mesh="adaptive"), interrupt)
+    assert len(result.curve) < 1000
+    assert result.message == (
+        f"interrupted: the curve reached so far is kept; it has {len(result.curve)} vertices, 1000 at the start"
+    )

@@ -9,10 +9,10 @@ from ...curve import Curve
 from ...curve.refine import apportion, subdivide
 from ...curve.remesh import graded_spacing, superfluous
 from ...curve.smooth import smoothed
-from ...descent import Leg, NoStep, Problem, Step
+from ...descent import Leg, NoStep, Step
 from ..events import Change, Event, Start
 from ..outcome import Outcome
-from ..prepare import on_mesh, with_parts_of
+from ..prepare import equal_lengths, on_mesh, with_parts_of
 from ..run import Run
 from .remesh import proved_remesh
 
@@ -27,7 +27,11 @@ class CoarseStart:
     """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve."""
 
     def __init__(self, run: Run) -> None:
-        self._run, self._problem = run, _with_equal_lengths(run.problem)
+        self._run = run
+        # what kept lengths from being equal at the start is gone in the end
+        constraints = run.problem.constraints
+        lengths = equal_lengths(run.problem.mesh, constraints.lengths)
+        self._problem = replace(run.problem, constraints=replace(constraints, lengths=lengths))
         self._options = replace(run.options, vertices=None, edge_lengths="keep", mesh="fixed")
         self._sizes = np.array(run.problem.mesh.component_sizes)
         self._wanted = self._is_wanted()
@@ -64,12 +68,12 @@ class CoarseStart:
         curve, problem = self._run.iterate.curve, self._run.problem
         spacing = graded_spacing(curve, None)
         unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no component has more vertices than in the end
-        change, proof = proved_remesh(problem, curve, None, superfluous(curve, spacing), unsplit)
-        if len(change.curve) >= len(curve) or not (survives_rounding(change.moved) and survives_rounding(change.curve)):
+        found = proved_remesh(problem, curve, None, superfluous(curve, spacing), unsplit)
+        if found is None or len(found[1].curve) >= len(curve):
             return None
-        self._coarse = change.curve
-        step = Step((Leg(problem.at_curve(change.moved), proof),), 0.0, None)
-        return Change(step, on_mesh(problem, change.curve, self._options))
+        step, remeshed = found
+        self._coarse = remeshed.curve
+        return Change(step, on_mesh(problem, remeshed.curve, self._options))
 
     def _finest(self) -> Change | None:
         """The same curve with all vertices, in the problem of the start; None if doubles do not tell them apart."""
@@ -96,10 +100,3 @@ class CoarseStart:
                 return Change(Step((Leg(end, proof),), 0.0, None))
             share *= min(0.9, proof.time)
         return None
-
-
-def _with_equal_lengths(problem: Problem) -> Problem:
-    """The same total lengths, evenly spread: what kept them from that at the start is gone in the end."""
-    lengths = problem.constraints.lengths
-    equal = np.concatenate([np.full(part.stop - part.start, lengths[part].mean()) for part in problem.mesh.slices])
-    return replace(problem, constraints=replace(problem.constraints, lengths=equal))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...collision import FreeMotion, survives_rounding
+from ...collision import survives_rounding
 from ...curve import Curve
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
 from ...descent import Leg, Problem, Step
@@ -56,25 +56,31 @@ class Remesh:
         elif not needs_remesh(curve, spacing):
             return None
         problem = self._run.problem
-        change, proof = proved_remesh(problem, curve, vertices, superfluous(curve, spacing), spacing)
-        if not (survives_rounding(change.moved) and survives_rounding(change.curve)):
+        found = proved_remesh(problem, curve, vertices, superfluous(curve, spacing), spacing)
+        if found is None:
             return None
-        constraints = replace(problem.constraints, lengths=change.lengths / problem.units.scale)
-        # the last motion on the old mesh, then the same curve on the new one
-        step = Step((Leg(problem.at_curve(change.moved), proof),), 0.0, None)
-        return Change(step, replace(problem, mesh=change.curve.mesh, constraints=constraints).at_curve(change.curve))
+        step, remeshed = found
+        constraints = replace(problem.constraints, lengths=remeshed.lengths / problem.units.scale)
+        problem = replace(problem, mesh=remeshed.curve.mesh, constraints=constraints)
+        return Change(step, problem.at_curve(remeshed.curve))
 
 
 def proved_remesh(
     problem: Problem, curve: Curve, vertices: int | None, removable: IntArray, spacing: FloatArray
-) -> tuple[Remeshed, FreeMotion]:
-    """The change of mesh with as many of the collapses as are free of contact, and the proof."""
+) -> tuple[Step, Remeshed] | None:
+    """The last motion on the old mesh and the change to a new one, with as many collapses as are free of contact.
+
+    None if doubles do not tell the vertices apart.
+    """
     while True:
         change = remesh(curve, vertices, removable, spacing)
         free = problem.free_motion(curve.vertices, change.moved.vertices)
         if free.time == 1.0 or not len(removable):
-            return change, free
+            break
         assert free.pair is not None
         ends = [curve.mesh.tails[e] for e in free.pair] + [curve.mesh.heads[e] for e in free.pair]
         guilty = np.isin(removable, ends)
         removable = removable[~guilty] if guilty.any() else removable[:0]
+    if not (survives_rounding(change.moved) and survives_rounding(change.curve)):
+        return None
+    return Step((Leg(problem.at_curve(change.moved), free),), 0.0, None), change
