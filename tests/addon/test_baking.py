@@ -155,7 +155,9 @@ def test_continuing_gets_where_a_longer_run_gets():
     np.testing.assert_allclose(*lengths, atol=2e-2)
 
 
-def test_a_fitted_tube_keeps_its_radius_when_it_goes_on():
+@pytest.mark.parametrize("keyframes", [*KEYED, "RESULT"])
+def test_a_fitted_tube_keeps_its_radius_when_it_goes_on(keyframes):
+    """Its keys go on as what they are, whatever is asked for."""
     obj = add_trefoil()
     relax(max_iterations=4, fit_bevel=True)
 
@@ -163,7 +165,7 @@ def test_a_fitted_tube_keeps_its_radius_when_it_goes_on():
         return obj.data.bevel_depth * block.data[0].radius
 
     before = [radius(block) for block in obj.data.shape_keys.key_blocks]
-    go_on(max_iterations=30, fit_bevel=True)
+    go_on(max_iterations=30, fit_bevel=True, keyframes=keyframes)
     after = [radius(block) for block in obj.data.shape_keys.key_blocks]
     np.testing.assert_allclose(after[:5], before, rtol=1e-5)
     assert after[-1] == pytest.approx(obj.data.bevel_depth)
