@@ -384,7 +384,7 @@ def test_the_scene_plays_what_is_asked_for(capfd):
 def test_nobody_is_told_to_play_negative_frames(capfd):
     add_trefoil()
     scene = bpy.context.scene
-    sentence = "only, the animation has -9 to 30: no scene plays negative frames, so bake again with a later Start Frame"
+    sentence = "only, the animation has -9 to 30: no scene plays negative frames, so bake again with a later Start"
     relax(max_iterations=3, timing="EVEN", length=40, start_frame=-9)
     assert f"The scene plays frames 1 to 250 {sentence}" in capfd.readouterr().out
     bpy.ops.curve.mobius_flow_scene_range()
