@@ -4,6 +4,7 @@ import bpy
 
 from .curves import bake
 from .live.checks import edited, refusal, selected_curves, unbaked, unclearable
+from .live.start import unseen
 from .operators import Relaxing
 
 
@@ -72,6 +73,8 @@ class CURVE_OT_mobius_flow_scene_range(bpy.types.Operator):  # noqa: N801
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Set the range."""
-        scene = context.scene
-        scene.frame_start, scene.frame_end = bake.scene_range(selected_curves(context))
+        scene, animation = context.scene, bake.scene_range(selected_curves(context))
+        scene.frame_start, scene.frame_end = animation
+        if hidden := unseen(scene, animation):
+            self.report({"WARNING"}, hidden)
         return {"FINISHED"}

@@ -130,7 +130,7 @@ def _bake_buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
     column.operator(CURVE_OT_mobius_flow_clear.bl_idname, icon="TRASH")
     column.operator(CURVE_OT_mobius_flow_scene_range.bl_idname, icon="PREVIEW_RANGE")
     if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
-        labels.sentence(layout, context, f"{hidden[0].upper()}{hidden[1:]}")
+        labels.sentence(layout, context, hidden)
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:

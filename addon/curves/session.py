@@ -174,7 +174,9 @@ class Session:
 
     def _radii(self, keys: Keys) -> FloatArray:
         """Radii of the tube at the keys, in the common space; without shape keys the last one only."""
-        shown = keys.keys if self._key_options.output is Output.SHAPE_KEYS else keys.keys[-1:]
+        # an animation that goes on may have shape keys whatever is asked for, see `Member.writing`
+        shape_keys = self._key_options.output is Output.SHAPE_KEYS or self.group.continues
+        shown = keys.keys if shape_keys else keys.keys[-1:]
         mesh, common = self._mesh, self.group.link.to_common
         return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh)) for key in shown])
 

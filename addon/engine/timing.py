@@ -113,7 +113,7 @@ class Timing:
 
     def __post_init__(self) -> None:
         if not abs(self.start_frame) <= LAST_FRAME:  # not a number is refused too
-            raise OptionError(f"Start Frame is {self.start_frame:g}; it must be from {-LAST_FRAME} to {LAST_FRAME}")
+            raise OptionError(f"Start Frame is {self.start_frame:.12g}; it must be from {-LAST_FRAME} to {LAST_FRAME}")
         low, high = FRAMES_PER_ITERATE
         if not low <= self.frames_per_iterate <= high:
             raise OptionError(f"Frames/Iterate is {self.frames_per_iterate:g}; it must be from {low:g} to {high:g}")
@@ -128,11 +128,13 @@ class Timing:
     def check_room(self, iterations: int) -> None:
         """Raise an OptionError if so many iterations would take frames beyond the last one that a scene may have."""
         _, end = self._motion(iterations)
-        if end + self.hold_end > LAST_FRAME:
-            fewer = "fewer Frames/Iterate or fewer Max Iterations" if self.pace is Pace.ITERATE else "a smaller Length"
+        last = end + self.hold_end
+        if last > LAST_FRAME:
+            by_iterate = self.pace is Pace.ITERATE
+            smaller = "Start Frame, Frames/Iterate or Max Iterations" if by_iterate else "Start Frame or Length"
             raise OptionError(
-                f"The keys would go on to frame {end:.0f}, but Blender's last is {LAST_FRAME}; "
-                f"give a smaller Start Frame, {fewer}"
+                f"The animation would go on to frame {last:.0f}, but Blender's last is {LAST_FRAME}; "
+                f"give a smaller {smaller}"
             )
 
     def frames(self, course: Course) -> FloatArray:

@@ -96,13 +96,17 @@ def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = F
     """Say what was done, and whether the scene shows all of it."""
     hidden = unseen(scene, report.scene_range)
     clean = report.clean and not failed and hidden is None
-    more = f"; {hidden}: press Set Scene Range to see all of it" if hidden else ""
+    more = f". {hidden}" if hidden else ""
     operator.report({"INFO"} if clean else {"WARNING"}, report.sentence + more)
 
 
 def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> str | None:
-    """Say that a scene does not play all frames of an animation, or return None if it does."""
+    """Say that a scene does not play all frames of an animation, and what helps, or return None if it does."""
     if animation is None or (scene.frame_start <= animation[0] and animation[1] <= scene.frame_end):
         return None
     first, last = animation
-    return f"the scene plays frames {scene.frame_start} to {scene.frame_end} only, the animation has {first} to {last}"
+    helps = "press Set Scene Range to see all of it"
+    if first < scene.bl_rna.properties["frame_start"].hard_min:
+        helps = "no scene plays negative frames, so bake again with a later Start Frame"
+    played = f"{scene.frame_start} to {scene.frame_end}"
+    return f"The scene plays frames {played} only, the animation has {first} to {last}: {helps}"

@@ -72,8 +72,7 @@ COMPOSITE = (
 )
 TIGHT = "strands pull tight, nearer than {vertices} vertices resolve"
 UNRESOLVED = (
-    "strands are nearer than this mesh resolves, and with more vertices there is less energy to reach: "
-    "--mesh finer (mesh='finer') or more vertices go on"
+    "strands are nearer than this mesh resolves; with more vertices or a finer mesh there is less energy to reach"
 )
 ADVICE = "more vertices or an adaptive mesh may help"
 ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"

@@ -155,7 +155,9 @@ def test_continuing_gets_where_a_longer_run_gets():
     np.testing.assert_allclose(*lengths, atol=2e-2)
 
 
-def test_a_fitted_tube_keeps_its_radius_when_it_goes_on():
+@pytest.mark.parametrize("keyframes", [*KEYED, "RESULT"])
+def test_a_fitted_tube_keeps_its_radius_when_it_goes_on(keyframes):
+    """Its keys go on as what they are, whatever is asked for."""
     obj = add_trefoil()
     relax(max_iterations=4, fit_bevel=True)
 
@@ -163,7 +165,7 @@ def test_a_fitted_tube_keeps_its_radius_when_it_goes_on():
         return obj.data.bevel_depth * block.data[0].radius
 
     before = [radius(block) for block in obj.data.shape_keys.key_blocks]
-    go_on(max_iterations=30, fit_bevel=True)
+    go_on(max_iterations=30, fit_bevel=True, keyframes=keyframes)
     after = [radius(block) for block in obj.data.shape_keys.key_blocks]
     np.testing.assert_allclose(after[:5], before, rtol=1e-5)
     assert after[-1] == pytest.approx(obj.data.bevel_depth)
@@ -373,9 +375,21 @@ def test_the_scene_plays_what_is_asked_for(capfd):
     assert "Set Scene Range" not in capfd.readouterr().out
     relax(max_iterations=3, timing="EVEN", length=40, hold_end=5, start_frame=6)
     said = capfd.readouterr().out
-    assert "the scene plays frames 1 to 40 only, the animation has 6 to 45: press Set Scene Range" in said
+    assert "The scene plays frames 1 to 40 only, the animation has 6 to 45: press Set Scene Range" in said
     assert bpy.ops.curve.mobius_flow_scene_range() == {"FINISHED"}
     assert (scene.frame_start, scene.frame_end) == (6, 45)
+    assert not capfd.readouterr().out
+
+
+def test_nobody_is_told_to_play_negative_frames(capfd):
+    add_trefoil()
+    scene = bpy.context.scene
+    sentence = "only, the animation has -9 to 30: no scene plays negative frames, so bake again with a later Start"
+    relax(max_iterations=3, timing="EVEN", length=40, start_frame=-9)
+    assert f"The scene plays frames 1 to 250 {sentence}" in capfd.readouterr().out
+    bpy.ops.curve.mobius_flow_scene_range()
+    assert f"The scene plays frames 0 to 30 {sentence}" in capfd.readouterr().out
+    assert (scene.frame_start, scene.frame_end) == (0, 30)
 
 
 def test_frames_per_iterate_alone_means_by_iterate():

@@ -333,7 +333,7 @@ def test_strands_that_are_too_near_for_the_mesh_come_with_a_remedy():
     result = minimize(knot("5_1", 60), RelaxOptions(vertices=60))
     assert result.status is Status.CONVERGED
     assert "nearer than this mesh resolves" in result.message
-    assert "--mesh finer" in result.message
+    assert "with more vertices or a finer mesh" in result.message
     assert result.final_energy > result.energies[-1] + 1  # the midpoint rule does not see them well
 
 

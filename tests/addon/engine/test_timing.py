@@ -153,9 +153,9 @@ def test_what_is_out_of_range_is_refused(values, said):
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"pace": Pace.ITERATE}, "The keys would go on to frame 1049324, but Blender's last is 1048574; .*Frames/Iter"),
-        ({"length": 1000}, "The keys would go on to frame 1049323, .*a smaller Length"),
-        ({"length": 252, "hold_end": 9}, "would go on to frame 1048566"),
+        ({"pace": Pace.ITERATE}, "The animation would go on to frame 1049324, but .*Frames/Iterate or Max Iter"),
+        ({"length": 1000}, "The animation would go on to frame 1049323, .*a smaller Start Frame or Length"),
+        ({"length": 252, "hold_end": 9}, "would go on to frame 1048575, but Blender's last is 1048574"),
     ],
 )
 def test_frames_beyond_the_last_are_refused(values, said):

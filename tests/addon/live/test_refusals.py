@@ -328,13 +328,13 @@ NAN = float("nan")
     [
         ({"frames_per_iterate": NAN}, "Frames/Iterate is nan; it must be from 0.1 to 10000"),
         ({"tolerance": NAN}, "tolerance is nan"),
-        ({"start_frame": 2**24}, "Start Frame is 1.67772e+07; it must be from -1048574 to 1048574"),
+        ({"start_frame": 2**24}, "Start Frame is 16777216; it must be from -1048574 to 1048574"),
         ({"start_frame": -(2**24)}, "it must be from -1048574 to 1048574"),
         (
             {"start_frame": 1_048_000, "timing": "ITERATE"},
             "would go on to frame 1050000, but Blender's last is 1048574",
         ),
-        ({"frames_per_iterate": 10_000.0}, "The keys would go on to frame 20000001"),
+        ({"frames_per_iterate": 10_000.0}, "The animation would go on to frame 20000001"),
     ],
 )
 def test_frames_that_a_scene_does_not_have(options, said):
