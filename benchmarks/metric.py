@@ -13,7 +13,7 @@ from typing import TypeVar
 
 import numpy as np
 from mobius_flow.core import Curve
-from mobius_flow.core.constraints import ConstraintDerivative
+from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
 from mobius_flow.core.curve import refine
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
 from mobius_flow.core.knots import knot, torus_knot
@@ -64,8 +64,9 @@ def line(curve: Curve) -> str:
     space = inner.tangent_space(constraints)
     gradient, _ = timed(lambda: space.gradient(load))
     error = constraints.apply(np.sin(3 * curve.vertices))
+    residual, targets = 1e-3 * error / np.abs(error).max(), Constraints(curve.edge_lengths, weighted_barycenter(curve))
     large, _ = timed(lambda: space.pseudo_inverse(error))
-    small, _ = timed(lambda: space.restoration(1e-3 * error / np.abs(error).max(), constraints))
+    small, _ = timed(lambda: space.restoration(targets, curve, residual))
     times = "".join(f"{value:10.1f}" for value in (build, product, model, gradient, large, small))
     return f"{len(curve):8}{times}"
 

@@ -49,7 +49,7 @@ def random_options(rng: np.random.Generator, given: int) -> RelaxOptions:
     """Options of every kind for a curve of so many vertices; mostly coarse meshes, which are quick and harder."""
     method = str(rng.choice(COMMON if rng.random() < 0.8 else list(METHODS)))
     energies = [name for name in ENERGIES if not METHODS[method].rule.second_order or name == "moebius"]
-    mesh = str(rng.choice(MESHES, p=[0.7, 0.1, 0.2]))
+    mesh = str(rng.choice(MESHES, p=[0.35, 0.35, 0.1, 0.2]))
     return RelaxOptions(
         method=method,
         energy=str(rng.choice(energies)) if rng.random() < 0.2 else "moebius",

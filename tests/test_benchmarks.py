@@ -1,0 +1,21 @@
+"""Benchmarks still fit the program they measure; what they measure is no matter for tests."""
+
+import sys
+from pathlib import Path
+
+import pytest
+from processes import finished
+
+BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
+ARGUMENTS = {"collision": ["60"], "hierarchy": ["60"], "metric": ["100"], "soak": ["--flows", "2"]}
+
+
+def test_every_benchmark_is_tried():
+    assert {path.stem for path in BENCHMARKS.glob("*.py")} == set(ARGUMENTS)
+
+
+@pytest.mark.parametrize("name", ARGUMENTS)
+def test_it_runs(name, tmp_path):
+    done = finished([sys.executable, str(BENCHMARKS / f"{name}.py"), *ARGUMENTS[name]], cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert len(done.stdout.splitlines()) > (0 if name == "soak" else 4)  # a title, and a line for each of four curves
