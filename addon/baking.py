@@ -8,29 +8,28 @@ from .live.start import unseen
 from .operators import Relaxing
 
 
-class CURVE_OT_mobius_flow_bake_again(Relaxing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+class _Rebaking(Relaxing):
+    """What operators that relax baked curves have in common."""
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str | None:
+        """Say why the selected curves cannot be relaxed again, or return None if they can."""
+        return refusal(context) or unbaked(context)
+
+
+class CURVE_OT_mobius_flow_bake_again(_Rebaking, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
     """Relax the selected curves anew from how they were before they were baked; new keys replace the old ones"""
 
     bl_idname = "curve.mobius_flow_bake_again"
     bl_label = "Bake Again"
 
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
-        """Baked curves are wanted."""
-        return refusal(context) or unbaked(context)
 
-
-class CURVE_OT_mobius_flow_continue(Relaxing, bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_continue(_Rebaking, bpy.types.Operator):  # noqa: N801
     """Relax the selected curves on from the end of their animation; new keys follow the old ones"""
 
     bl_idname = "curve.mobius_flow_continue"
     bl_label = "Continue"
     continues = True
-
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
-        """Baked curves are wanted."""
-        return refusal(context) or unbaked(context)
 
 
 class CURVE_OT_mobius_flow_clear(bpy.types.Operator):  # noqa: N801
@@ -78,3 +77,11 @@ class CURVE_OT_mobius_flow_scene_range(bpy.types.Operator):  # noqa: N801
         if hidden := unseen(scene, animation):
             self.report({"WARNING"}, hidden)
         return {"FINISHED"}
+
+
+CLASSES = (
+    CURVE_OT_mobius_flow_bake_again,
+    CURVE_OT_mobius_flow_continue,
+    CURVE_OT_mobius_flow_clear,
+    CURVE_OT_mobius_flow_scene_range,
+)

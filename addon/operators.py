@@ -175,3 +175,9 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
         row.prop(self, "thickness")
         for name in ("align", "location", "rotation"):
             layout.prop(self, name)
+
+
+CLASSES = (
+    CURVE_OT_mobius_flow_relax,
+    CURVE_OT_mobius_flow_add_knot,
+)

@@ -10,6 +10,8 @@ from .baking import (
     CURVE_OT_mobius_flow_scene_range,
 )
 from .curves import bake, neighbours
+from .engine.key_options import Output
+from .engine.timing import Pace
 from .live import registry
 from .live.checks import refusal, selected_curves
 from .live.operators import (
@@ -24,20 +26,33 @@ from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
 from .properties import shown
 
 
-class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
-    """The buttons, how the relaxation goes, and settings; when Relax is disabled, the reason stands below it."""
+class _InSidebar:
+    """A panel in our tab of the sidebar, with the names of settings before them."""
 
-    bl_label = "Möbius Flow"
     bl_category = "Möbius Flow"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
 
+    layout: bpy.types.UILayout
+
     def draw(self, context: bpy.types.Context) -> None:
         """Lay the panel out."""
-        layout = self.layout
-        settings = context.scene.mobius_flow
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        self.fill(self.layout, context, context.scene.mobius_flow)
+
+    def fill(self, layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:
+        """Put in what the panel is for."""
+        raise NotImplementedError
+
+
+class VIEW3D_PT_mobius_flow(_InSidebar, bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
+    """The buttons, how the relaxation goes, and settings; when Relax is disabled, the reason stands below it."""
+
+    bl_label = "Möbius Flow"
+
+    def fill(self, layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:
+        """Put in buttons, what is known of the run, and the basic settings."""
         _buttons(layout, context)
         if run := registry.latest():
             _progress(layout, context, run)
@@ -48,45 +63,36 @@ class VIEW3D_PT_mobius_flow(bpy.types.Panel):  # noqa: N801 - Blender's naming s
         layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
 
 
-class VIEW3D_PT_mobius_flow_animation(bpy.types.Panel):  # noqa: N801
+class VIEW3D_PT_mobius_flow_animation(_InSidebar, bpy.types.Panel):  # noqa: N801
     """How the motion is kept as keyframes, and what can be done with them afterwards."""
 
     bl_label = "Animation"
     bl_parent_id = "VIEW3D_PT_mobius_flow"
-    bl_category = "Möbius Flow"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Buttons for curves that were baked, then settings."""
-        layout = self.layout
-        settings = context.scene.mobius_flow
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+    def fill(self, layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:
+        """Put in buttons for curves that were baked, then settings."""
         _bake_buttons(layout, context)
-        if settings.keyframes != "RESULT":
-            lasting = "frames_per_iterate" if settings.timing == "ITERATE" else "length"
+        animated = settings.keyframes != Output.RESULT.name
+        if animated:
+            lasting = "frames_per_iterate" if settings.timing == Pace.ITERATE.name else "length"
             _column(layout, settings, "timing", lasting, "start_frame", "hold_start", "hold_end")
-        _column(layout, settings, "keyframes", *(["max_keys"] if settings.keyframes != "RESULT" else []))
+        _column(layout, settings, "keyframes", *(["max_keys"] if animated else []))
 
 
-class VIEW3D_PT_mobius_flow_advanced(bpy.types.Panel):  # noqa: N801
+class VIEW3D_PT_mobius_flow_advanced(_InSidebar, bpy.types.Panel):  # noqa: N801
     """The options for those who know the mathematics."""
 
     bl_label = "Advanced"
     bl_parent_id = "VIEW3D_PT_mobius_flow"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - read by Blender
-    bl_category = "Möbius Flow"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Show them all."""
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        settings = context.scene.mobius_flow
-        _column(self.layout, settings, *(option.name for option in shown("advanced")))
-        _column(self.layout, settings, "view_every")
+    def fill(self, layout: bpy.types.UILayout, _context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:
+        """Put them all in."""
+        _column(layout, settings, *(option.name for option in shown("advanced")))
+        _column(layout, settings, "view_every")
+
+
+CLASSES = (VIEW3D_PT_mobius_flow, VIEW3D_PT_mobius_flow_animation, VIEW3D_PT_mobius_flow_advanced)
 
 
 def add_menu_entry(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:

@@ -3,46 +3,12 @@
 import bpy
 from bpy.props import PointerProperty
 
-from .baking import (
-    CURVE_OT_mobius_flow_bake_again,
-    CURVE_OT_mobius_flow_clear,
-    CURVE_OT_mobius_flow_continue,
-    CURVE_OT_mobius_flow_scene_range,
-)
+from . import baking, operators, panel
 from .live import handlers
-from .live.operators import (
-    CURVE_OT_mobius_flow_cancel,
-    CURVE_OT_mobius_flow_pause,
-    CURVE_OT_mobius_flow_recover,
-    CURVE_OT_mobius_flow_sample,
-    CURVE_OT_mobius_flow_stop,
-)
-from .operators import CURVE_OT_mobius_flow_add_knot, CURVE_OT_mobius_flow_relax
-from .panel import (
-    VIEW3D_PT_mobius_flow,
-    VIEW3D_PT_mobius_flow_advanced,
-    VIEW3D_PT_mobius_flow_animation,
-    add_menu_entry,
-)
+from .live import operators as of_runs
 from .properties import MobiusFlowSettings
 
-_CLASSES = (
-    MobiusFlowSettings,
-    CURVE_OT_mobius_flow_relax,
-    CURVE_OT_mobius_flow_pause,
-    CURVE_OT_mobius_flow_stop,
-    CURVE_OT_mobius_flow_cancel,
-    CURVE_OT_mobius_flow_recover,
-    CURVE_OT_mobius_flow_sample,
-    CURVE_OT_mobius_flow_bake_again,
-    CURVE_OT_mobius_flow_continue,
-    CURVE_OT_mobius_flow_clear,
-    CURVE_OT_mobius_flow_scene_range,
-    CURVE_OT_mobius_flow_add_knot,
-    VIEW3D_PT_mobius_flow,
-    VIEW3D_PT_mobius_flow_animation,
-    VIEW3D_PT_mobius_flow_advanced,
-)
+_CLASSES = (MobiusFlowSettings, *operators.CLASSES, *of_runs.CLASSES, *baking.CLASSES, *panel.CLASSES)
 
 
 def register() -> None:
@@ -57,14 +23,14 @@ def register() -> None:
             bpy.utils.unregister_class(cls)
         raise
     bpy.types.Scene.mobius_flow = PointerProperty(type=MobiusFlowSettings)
-    bpy.types.VIEW3D_MT_curve_add.append(add_menu_entry)
+    bpy.types.VIEW3D_MT_curve_add.append(panel.add_menu_entry)
     handlers.register()
 
 
 def unregister() -> None:
     """Remove all of it; what is running ends first."""
     handlers.unregister()
-    bpy.types.VIEW3D_MT_curve_add.remove(add_menu_entry)
+    bpy.types.VIEW3D_MT_curve_add.remove(panel.add_menu_entry)
     del bpy.types.Scene.mobius_flow
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

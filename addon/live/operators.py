@@ -157,3 +157,12 @@ class CURVE_OT_mobius_flow_sample(bpy.types.Operator):  # noqa: N801
         """Relax with the answer."""
         bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT", sample_splines=True)
         return {"FINISHED"}
+
+
+CLASSES = (
+    CURVE_OT_mobius_flow_pause,
+    CURVE_OT_mobius_flow_stop,
+    CURVE_OT_mobius_flow_cancel,
+    CURVE_OT_mobius_flow_recover,
+    CURVE_OT_mobius_flow_sample,
+)
