@@ -3,12 +3,12 @@
 import bpy
 from bpy.props import PointerProperty
 
-from . import baking, operators, panel
+from . import buttons, sidebar
 from .live import handlers
-from .live import operators as of_runs
 from .properties import MobiusFlowSettings
+from .sidebar import menus
 
-_CLASSES = (MobiusFlowSettings, *operators.CLASSES, *of_runs.CLASSES, *baking.CLASSES, *panel.CLASSES)
+_CLASSES = (MobiusFlowSettings, *buttons.CLASSES, *sidebar.CLASSES)
 
 
 def register() -> None:
@@ -23,14 +23,14 @@ def register() -> None:
             bpy.utils.unregister_class(cls)
         raise
     bpy.types.Scene.mobius_flow = PointerProperty(type=MobiusFlowSettings)
-    bpy.types.VIEW3D_MT_curve_add.append(panel.add_menu_entry)
+    menus.register()
     handlers.register()
 
 
 def unregister() -> None:
     """Remove all of it; what is running ends first."""
     handlers.unregister()
-    bpy.types.VIEW3D_MT_curve_add.remove(panel.add_menu_entry)
+    menus.unregister()
     del bpy.types.Scene.mobius_flow
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import bpy
 import numpy as np
+from mobius_flow.addon.buttons.relaxing import CURVE_OT_mobius_flow_relax
 from mobius_flow.addon.curves.snapshot import Snapshot
-from mobius_flow.addon.operators import CURVE_OT_mobius_flow_relax
 from mobius_flow.addon.properties import SETTINGS
 from processes import PATIENCE
 

@@ -228,8 +228,7 @@ IN_BLENDER = """
 import json
 import bpy, mobius_flow
 mobius_flow.register()
-from types import SimpleNamespace
-from mobius_flow.addon import panel, properties
+from mobius_flow.addon import properties
 owners = bpy.context.scene.mobius_flow.bl_rna.properties, bpy.ops.curve.mobius_flow_relax.get_rna_type().properties
 for owner in owners:
     for name in ("energy", "metric", "method"):

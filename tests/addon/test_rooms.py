@@ -13,11 +13,10 @@ ENGINE = sorted((ADDON / "engine").glob("*.py"))
 FLOORS = [
     {"engine"},
     {"curves"},
-    {"pictures", "properties", "labels"},
+    {"pictures", "properties"},
     {"live"},
-    {"operators"},
-    {"baking"},
-    {"panel"},
+    {"buttons"},
+    {"sidebar"},
     {"registration"},
     {""},  # the package, which Blender and the command line import
 ]

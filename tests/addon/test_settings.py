@@ -2,7 +2,6 @@
 
 from dataclasses import asdict, dataclass
 from io import BytesIO
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,9 +9,11 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil, relax, sentence, stored  # noqa: E402
-from mobius_flow.addon import panel, properties  # noqa: E402
+from mobius_flow.addon import properties  # noqa: E402
 from mobius_flow.addon.engine import wire  # noqa: E402
 from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
+from mobius_flow.addon.sidebar.advanced import VIEW3D_PT_mobius_flow_advanced  # noqa: E402
+from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow  # noqa: E402
 from mobius_flow.core import Curve, OptionError, RelaxOptions, minimize  # noqa: E402
 from mobius_flow.core.option import declared, option  # noqa: E402
 from option_values import unlike_default  # noqa: E402
@@ -100,14 +101,14 @@ def drawn(cls):
         def prop(self, _owner, name):
             names.append(name)
 
-    cls.draw(SimpleNamespace(layout=Layout()), bpy.context)
+    cls.fill(None, Layout(), bpy.context, bpy.context.scene.mobius_flow)
     return names
 
 
 def test_the_advanced_panel_shows_its_group():
-    advanced = panel.VIEW3D_PT_mobius_flow_advanced
+    advanced = VIEW3D_PT_mobius_flow_advanced
     assert advanced.is_registered
-    assert advanced.bl_parent_id == panel.VIEW3D_PT_mobius_flow.__name__
+    assert advanced.bl_parent_id == VIEW3D_PT_mobius_flow.__name__
     assert "DEFAULT_CLOSED" in advanced.bl_options
     names = drawn(advanced)
     assert names == [*(name for name, each in SHOWN.items() if each.group == "advanced"), "view_every"]
@@ -122,7 +123,7 @@ def test_options_that_nothing_else_knows_of_appear_by_themselves(monkeypatch):
     assert patience["description"] == "How long to wait; 0: without limit"
     assert (patience["min"], patience["max"], patience["default"]) == (0.0, 9.0, 0.0)
     assert ([item[0] for item in colour["items"]], colour["default"]) == (["red", "blue"], "red")
-    assert "colour" in drawn(panel.VIEW3D_PT_mobius_flow_advanced)
+    assert "colour" in drawn(VIEW3D_PT_mobius_flow_advanced)
     values = scene_values() | {"patience": 0.0, "colour": "blue"}
     assert asdict(properties.relax_options(values))["patience"] is None
     assert properties.relax_options(values | {"patience": 2.0}).patience == 2.0

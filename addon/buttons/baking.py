@@ -2,10 +2,10 @@
 
 import bpy
 
-from .curves import bake
-from .live.checks import edited, refusal, selected_curves, unbaked, unclearable
-from .live.start import unseen
-from .operators import Relaxing
+from ..curves import bake
+from ..live.checks import edited, refusal, selected_curves, unbaked, unclearable
+from ..live.start import unseen
+from .relaxing import Relaxing
 
 
 class _Rebaking(Relaxing):

@@ -7,11 +7,11 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..curves import sampling
-from . import registry
-from .checks import hindrance, selected_curves
-from .modal import redraw_views
-from .run import Run, State
-from .start import Listening, tell_end
+from ..live import registry
+from ..live.checks import hindrance, selected_curves
+from ..live.modal import redraw_views
+from ..live.run import Run, State
+from ..live.start import Listening, tell_end
 
 _NOTHING = "Nothing is being relaxed"
 _PATIENCE = 0.005  # seconds between looks at whether the keys are ready

@@ -1,88 +1,17 @@
-"""The operators: they check, start a session, and say what happened."""
+"""The operator that adds knots by name."""
 
 import re
-from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
-from ..core import MobiusFlowError, OptionError
-from .curves import bevel
-from .curves.exchange import new_curve_data, write_points
-from .curves.session import Session
-from .engine.timing import Pace
-from .live.checks import edited, refusal, selected_curves, unsampled
-from .live.start import LiveRelax, tell
-from .properties import SETTINGS, relax_options, settings
+from ...core import MobiusFlowError, OptionError
+from ..curves import bevel
+from ..curves.exchange import new_curve_data, write_points
 
 _MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
 _MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
-
-
-class Relaxing(LiveRelax):
-    """What all operators that relax have in common: their settings, and the whole job in one call."""
-
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
-    # For scripts; what is not given comes from the scene's settings, and nothing is remembered from run to run.
-    __annotations__ = {
-        **settings({"SKIP_SAVE", "HIDDEN"}),
-        "sample_splines": BoolProperty(
-            name="Sample Splines",
-            description="Replace Bézier and NURBS splines by the polygons drawn for them",
-            options={"SKIP_SAVE", "HIDDEN"},
-        ),
-    }
-
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
-        """Say why the selected curves cannot be relaxed in this way, or return None if they can."""
-        return refusal(context)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the selected curves can be relaxed; the tooltip says why not."""
-        reason = cls.refusal(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return reason is None
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Do the whole job."""
-        context.view_layer.update()  # a script may have moved the object just before
-        values = self.values(context)
-        try:
-            if reason := self.refusal(context) or edited(context) or self._unasked(context):
-                raise MobiusFlowError(reason)
-            options, objects = self.key_options(context, values), selected_curves(context)
-            report = Session(objects, relax_options(values), options, self.continues).run()
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        except MemoryError:
-            self.report({"ERROR"}, "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations")
-            return {"CANCELLED"}
-        tell(self, context.scene, report)
-        return {"FINISHED"}
-
-    def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        """The settings: those given to the operator, and the scene's."""
-        scene = context.scene.mobius_flow
-        given = self.properties.is_property_set
-        values = {name: getattr(self if given(name) else scene, name) for name in SETTINGS}
-        # scripts that say how many frames an iterate takes mean that
-        by_iterate = given("frames_per_iterate") and not given("timing")
-        return values | ({"timing": Pace.ITERATE.name} if by_iterate else {})
-
-    def _unasked(self, context: bpy.types.Context) -> str | None:
-        return None if self.sample_splines else unsampled(selected_curves(context))
-
-
-class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
-    """Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes"""
-
-    bl_idname = "curve.mobius_flow_relax"
-    bl_label = "Relax"
 
 
 class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noqa: N801
@@ -125,7 +54,7 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add the object at the 3D cursor."""
-        from ..core.knots import knot
+        from ...core.knots import knot
 
         name = self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})"
         try:
@@ -177,7 +106,4 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
             layout.prop(self, name)
 
 
-CLASSES = (
-    CURVE_OT_mobius_flow_relax,
-    CURVE_OT_mobius_flow_add_knot,
-)
+CLASSES = (CURVE_OT_mobius_flow_add_knot,)

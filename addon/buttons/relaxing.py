@@ -1,0 +1,81 @@
+"""The operator that relaxes: it checks, starts a session, and says what happened."""
+
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty
+
+from ...core import MobiusFlowError
+from ..curves.session import Session
+from ..engine.timing import Pace
+from ..live.checks import edited, refusal, selected_curves, unsampled
+from ..live.start import LiveRelax, tell
+from ..properties import SETTINGS, relax_options, settings
+
+
+class Relaxing(LiveRelax):
+    """What all operators that relax have in common: their settings, and the whole job in one call."""
+
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
+    # For scripts; what is not given comes from the scene's settings, and nothing is remembered from run to run.
+    __annotations__ = {
+        **settings({"SKIP_SAVE", "HIDDEN"}),
+        "sample_splines": BoolProperty(
+            name="Sample Splines",
+            description="Replace Bézier and NURBS splines by the polygons drawn for them",
+            options={"SKIP_SAVE", "HIDDEN"},
+        ),
+    }
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> str | None:
+        """Say why the selected curves cannot be relaxed in this way, or return None if they can."""
+        return refusal(context)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether the selected curves can be relaxed; the tooltip says why not."""
+        reason = cls.refusal(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return reason is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Do the whole job."""
+        context.view_layer.update()  # a script may have moved the object just before
+        values = self.values(context)
+        try:
+            if reason := self.refusal(context) or edited(context) or self._unasked(context):
+                raise MobiusFlowError(reason)
+            options, objects = self.key_options(context, values), selected_curves(context)
+            report = Session(objects, relax_options(values), options, self.continues).run()
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        except MemoryError:
+            self.report({"ERROR"}, "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations")
+            return {"CANCELLED"}
+        tell(self, context.scene, report)
+        return {"FINISHED"}
+
+    def values(self, context: bpy.types.Context) -> dict[str, Any]:
+        """The settings: those given to the operator, and the scene's."""
+        scene = context.scene.mobius_flow
+        given = self.properties.is_property_set
+        values = {name: getattr(self if given(name) else scene, name) for name in SETTINGS}
+        # scripts that say how many frames an iterate takes mean that
+        by_iterate = given("frames_per_iterate") and not given("timing")
+        return values | ({"timing": Pace.ITERATE.name} if by_iterate else {})
+
+    def _unasked(self, context: bpy.types.Context) -> str | None:
+        return None if self.sample_splines else unsampled(selected_curves(context))
+
+
+class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+    """Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes"""
+
+    bl_idname = "curve.mobius_flow_relax"
+    bl_label = "Relax"
+
+
+CLASSES = (CURVE_OT_mobius_flow_relax,)

@@ -1,0 +1,5 @@
+"""The sidebar's panels, each a module, and the entries in Blender's menus."""
+
+from . import advanced, animation, relax
+
+CLASSES = (*relax.CLASSES, *animation.CLASSES, *advanced.CLASSES)  # sub-panels in the order they are shown

@@ -1,0 +1,84 @@
+"""The panel in the sidebar: what is done first, and how it goes."""
+
+import bpy
+
+from ..buttons.add_knot import CURVE_OT_mobius_flow_add_knot
+from ..buttons.relaxing import CURVE_OT_mobius_flow_relax
+from ..buttons.running import (
+    CURVE_OT_mobius_flow_cancel,
+    CURVE_OT_mobius_flow_pause,
+    CURVE_OT_mobius_flow_recover,
+    CURVE_OT_mobius_flow_stop,
+)
+from ..curves import neighbours
+from ..live import registry
+from ..live.checks import refusal, selected_curves
+from ..live.run import Run, State
+from ..properties import shown
+from .labels import sentence
+from .layout import InSidebar, settings_column, value
+
+
+class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
+    """The buttons, how the relaxation goes, and settings; when Relax is disabled, the reason stands below it."""
+
+    bl_label = "Möbius Flow"
+
+    def fill(self, layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:
+        """Put in buttons, what is known of the run, and the basic settings."""
+        _buttons(layout, context)
+        if run := registry.latest():
+            _progress(layout, context, run)
+        elif context.active_object and context.active_object.type == "CURVE":
+            value(layout, "Tube radius", f"{context.active_object.data.bevel_depth:.4g}")
+        settings_column(layout, settings, *(option.name for option in shown("basic")))
+        layout.prop(settings, "fit_bevel")
+        layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
+
+
+def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    run = registry.current()
+    column = layout.column(align=True)
+    objects = run.group.objects if run is not None else selected_curves(context)
+    text = f"Relax {len(objects)} Curves Together" if len(objects) > 1 else "Relax"
+    large = column.row(align=True)
+    large.scale_y = 1.8
+    if run is None:
+        large.operator(CURVE_OT_mobius_flow_relax.bl_idname, text=text, icon="PLAY")
+    else:
+        _run_buttons(large, run)
+    latest = registry.latest()
+    if latest is not None and latest.recoverable:
+        column.operator(CURVE_OT_mobius_flow_recover.bl_idname, icon="RECOVER_LAST")
+    reason = refusal(context)
+    if reason and (run is None or any(obj not in objects for obj in selected_curves(context))):
+        sentence(layout, context, reason)
+    if (run or not reason) and (unguarded := neighbours.warning(context, objects)):
+        sentence(layout, context, unguarded, icon="ERROR")
+
+
+def _run_buttons(row: bpy.types.UILayout, run: Run) -> None:
+    text, icon = ("Resume", "PLAY") if run.state is State.PAUSED else ("Pause", "PAUSE")
+    row.operator(CURVE_OT_mobius_flow_pause.bl_idname, text=text, icon=icon)
+    row.operator(CURVE_OT_mobius_flow_stop.bl_idname, icon="CHECKMARK")
+    row.operator(CURVE_OT_mobius_flow_cancel.bl_idname, icon="X")
+
+
+def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:
+    """What is known of the run that is going on, or of the last one."""
+    box = layout.box().column(align=True)
+    value(box, ", ".join(run.group.names), "Waiting for the render" if run.waits else run.state.value.capitalize())
+    if run.last is not None:
+        value(box, "Energy", f"{run.last.energy:.4f}")
+        value(box, "Iteration", f"{run.last.index}")
+        value(box, "Step", f"{run.last.step_size:.3g}")
+        proved = run.last.certified if run.report is None else run.report.certified
+        whom = "with itself" if len(run.group.names) == 1 else "among themselves"
+        value(box, "Free of contact", whom if proved else "not proved")
+    if run.report is not None and run.report.radius is not None:
+        value(box, "Tube radius", f"{run.report.radius:.4g}")
+    if run.message:
+        sentence(box, context, run.message, icon="ERROR" if run.failed else "INFO")
+
+
+CLASSES = (VIEW3D_PT_mobius_flow,)
