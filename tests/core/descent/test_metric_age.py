@@ -1,11 +1,11 @@
-"""A metric serves several steps, as long as they go well."""
+"""A metric serves several steps, as long as they go well, but none says of another curve that it is critical."""
 
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from descent_cases import narrow, start
-from descent_contracts import taken
-from mobius_flow.core import Curve
+from descent_contracts import point_on, taken
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, minimize, relax
 from mobius_flow.core.descent import NoStep, Point, State, Step
 from mobius_flow.core.descent.directions import LimitedMemoryBFGS
 from mobius_flow.core.descent.searches import Armijo, LineSearch
@@ -66,3 +66,20 @@ def test_a_search_that_fails_gets_the_metric_of_its_curve() -> None:
     assert step.point.metric_age == 1
     step, _ = taken(rule.step(step.point, state))
     assert step.point.metric_age == 1  # that of the point at which the search succeeded
+
+
+def test_a_curve_has_converged_only_in_its_own_metric() -> None:
+    """The gradient may be small enough in the metric of the step before, and not in that of the curve."""
+    curve, options = start().curve, RelaxOptions(vertices=60, tolerance=1e-3)
+    early = list(relax(curve, replace(options, max_iterations=2)))[-1]
+    old, own = relative_gradient(early, early.gradient_norm), relative_gradient(early)
+    assert 1.1 * old < own
+    result = minimize(curve, replace(options, tolerance=0.5 * (old + own)))
+    assert result.status is Status.CONVERGED
+    assert relative_gradient(result.last) <= 0.5 * (old + own)
+
+
+def relative_gradient(iterate: Iterate, norm: float | None = None) -> float:
+    """What tolerances bound: the norm of the projected gradient, by default in the curve's own metric, to √E."""
+    norm = point_on(iterate.curve).gradient_norm if norm is None else norm
+    return norm / float(np.sqrt(iterate.energy))
