@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SEARCHES, CONDITIONS = "tests/core/descent/test_searches.py", "tests/core/descent/test_conditions.py"
 DIRECTIONS, CLAIMS = "tests/core/descent/test_directions.py", "tests/core/descent/test_claims.py"
 FIRST_TRIAL, METRIC_AGE = "tests/core/descent/test_first_trial.py", "tests/core/descent/test_metric_age.py"
-RESTORATION = "tests/core/test_restoration.py"
+RESTORATION, ADAPTIVE = "tests/core/test_restoration.py", "tests/core/test_adaptive.py"
 CERTIFICATE, VERIFY = "tests/core/test_certificate.py", "tests/core/verify"
 
 
@@ -222,6 +222,55 @@ MUTANTS = (
         "        if last is not None:\n            _check_transition",
         "        if last is None and sizes:\n            _check_transition",
         f"{VERIFY}/test_forgeries.py::test_forgeries_are_refused",
+    ),
+    Mutant(
+        "converged in the metric of another curve",
+        "core/driver/termination.py",
+        "run.point.with_own_metric().gradient_norm",
+        "run.point.gradient_norm",
+        f"{METRIC_AGE}::test_a_curve_has_converged_only_in_its_own_metric",
+    ),
+    Mutant(
+        "changes of mesh beyond the limit",
+        "core/driver/loop.py",
+        "isinstance(answer, Change) and run.allows(answer)",
+        "isinstance(answer, Change) and not (run.at_limit and answer.step)",
+        f"{ADAPTIVE}::test_changes_of_mesh_are_within_the_limit",
+    ),
+    Mutant(
+        "changes of mesh told by the number of vertices",
+        "core/driver/run.py",
+        "change.point.problem.mesh is not self.problem.mesh",
+        "change.point.problem.mesh != self.problem.mesh",
+        f"{ADAPTIVE}::test_another_mesh_is_another_iterate_even_of_the_same_size",
+    ),
+    Mutant(
+        "a block list for every trial",
+        "core/descent/problem.py",
+        "return self if same else ",
+        "return self if True else ",
+        "tests/core/test_solver.py::test_a_search_compares_energies_by_the_block_list_of_its_start",
+    ),
+    Mutant(
+        "lengths creep to their targets",
+        "core/descent/searches/armijo.py",
+        "wanted + slack + ROUNDING",
+        "wanted + ROUNDING",
+        "tests/core/test_lengths.py::test_lengths_do_not_creep_where_nothing_is_left_to_gain",
+    ),
+    Mutant(
+        "parts let go by another mesh",
+        "core/driver/prepare.py",
+        "if parts is not None:\n        own_units",
+        "if False:\n        own_units",
+        "tests/core/test_split_links.py::test_held_parts_stay_held_on_another_mesh",
+    ),
+    Mutant(
+        "iterates lost to signals",
+        "cli/relax.py",
+        "        signals.hold()\n        yield iterate",
+        "        yield iterate",
+        "tests/cli/test_signals.py::test_signals_wait_while_an_iterate_is_recorded",
     ),
 )
 

@@ -49,6 +49,12 @@ def test_every_option_can_be_given(each):
     assert asdict(parsed(*words)) == asdict(RelaxOptions()) | {each.name: value}
 
 
+@pytest.mark.parametrize("words", [["--adaptive", "--resolve"], ["--resolve", "--adaptive"]])
+def test_of_two_short_words_the_one_that_goes_farther_holds(words):
+    """An adaptive mesh ends finer where strands are near, too: who writes both wants both, in whatever order."""
+    assert parsed(*words).mesh == "adaptive"
+
+
 def test_one_more_option_appears_by_itself(monkeypatch):
     monkeypatch.setattr(relax_options, "RelaxOptions", OneMore)
     assert parsed().patience is None
