@@ -70,6 +70,8 @@ def test_one_more_option_appears_by_itself(monkeypatch):
     ("words", "said"),
     [
         (["--vertices", "2"], "vertices is 2; it must be 3 or more"),
+        (["--vertices", "1e3"], "argument --vertices: '1e3' is not a whole number"),
+        (["--tolerance", "small"], "argument --tolerance: 'small' is not a number"),
         (["--quadrature-points", "17"], "quadrature_points is 17; it must be from 1 to 16"),
         (["--penalty", "0"], "penalty is 0.0; it must be a finite number above 0"),
         (["--metric", "l7"], "metric 'l7' is unknown"),
