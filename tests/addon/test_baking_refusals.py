@@ -7,7 +7,7 @@ bpy = pytest.importorskip("bpy")
 
 
 from baked_curves import KEYED, SHORT, again, blocks, clear, go_on  # noqa: E402
-from blender_scenes import add_trefoil, contents, evaluated, relax  # noqa: E402
+from blender_scenes import add_trefoil, contents, evaluated, linked, relax, show  # noqa: E402
 from mobius_flow.addon.curves import keyframes  # noqa: E402
 
 
@@ -91,13 +91,7 @@ def test_a_look_into_edit_mode_edits_nothing():
 def test_a_linked_baked_curve_is_left_alone(tmp_path):
     add_trefoil()
     relax(max_iterations=2)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    with bpy.data.libraries.load(str(tmp_path / "a.blend"), link=True) as (_, linked):
-        linked.objects = ["Knot"]
-    (obj,) = linked.objects
-    bpy.context.scene.collection.objects.link(obj)
-    obj.select_set(True)
+    show(linked(tmp_path / "a.blend", "objects", "Knot"))
     for call in (bpy.ops.curve.mobius_flow_relax, bpy.ops.curve.mobius_flow_clear):
         with pytest.raises(RuntimeError, match="'Knot' is linked from another file"):
             call()
