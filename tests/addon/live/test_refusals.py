@@ -264,7 +264,8 @@ def test_linked_from_a_library(tmp_path):
 
 def test_object_of_ones_own_with_linked_data(tmp_path):
     add_trefoil()
-    show(bpy.data.objects.new("Mine", linked(tmp_path / "library.blend", "curves", "Knot")))
+    data = linked(tmp_path / "library.blend", "curves", "Knot")  # first: it opens another file, with other `bpy.data`
+    show(bpy.data.objects.new("Mine", data))
     assert "linked from another file" in refused()
 
 
