@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from ..core import METHODS, MobiusFlowError
 from ..core.curve.io import FORMATS
 from ..core.driver.compare import History, compare
-from ..core.errors import OptionError, OutputError, wrong_suffix
+from ..core.errors import OptionError, OutputError, counted, wrong_suffix
 from ..core.system.files import atomic_write
 from . import curves, signals
 from . import options as relax_options
@@ -101,8 +101,8 @@ def _write(path: str, writer: Callable[[Path, Sequence[History]], None], runs: S
 
 def _line(run: History) -> str:
     return (
-        f"{run.method:18} {run.status:16} objective {run.energy[-1]:.9g} after {len(run.energy) - 1} iterations, "
-        f"{run.seconds[-1]:.1f} s, gradient {run.gradient_norm[-1]:.2g}"
+        f"{run.method:18} {run.status:16} objective {run.energy[-1]:.9g} after "
+        f"{counted(len(run.energy) - 1, 'iteration')}, {run.seconds[-1]:.1f} s, gradient {run.gradient_norm[-1]:.2g}"
     )
 
 
@@ -121,6 +121,8 @@ def _write_csv(path: Path, runs: Sequence[History]) -> None:
 
 def _write_figure(path: Path, runs: Sequence[History]) -> None:
     figure = _figure_class()(figsize=(13, 6), layout="constrained")
+    from matplotlib.ticker import LogFormatter
+
     left, right = figure.subplots(1, 2, sharey=True)
     for index, run in enumerate(runs):
         style = {"color": f"C{index % 10}", "linestyle": ("-", "--", ":")[index // 10 % 3], "linewidth": 1.4}
@@ -130,6 +132,7 @@ def _write_figure(path: Path, runs: Sequence[History]) -> None:
         right.plot(run.seconds, run.energy, **style, **helped)
     left.set(xlabel="iterations", ylabel="objective", xscale="symlog", yscale="log")
     right.set(xlabel="seconds", xscale="log")
+    left.yaxis.set(major_formatter=LogFormatter(), minor_formatter=LogFormatter())  # 200, 300, not 2 × 10², 3 × 10²
     for axes in (left, right):
         axes.grid(alpha=0.3)
     figure.legend(*left.get_legend_handles_labels(), loc="outside right center", fontsize="small")

@@ -22,7 +22,7 @@ from ..core import (
 )
 from ..core.curve.io import FORMATS
 from ..core.driver import Relaxation, finish
-from ..core.errors import OptionError, OutputError
+from ..core.errors import OptionError, OutputError, counted
 from ..core.option import declared
 from ..core.system.files import atomic_write
 from . import curves, signals
@@ -220,6 +220,6 @@ def _summary(result: Result) -> str:
     certified = "certified free of contact" if result.certified else "NOT certified"
     return (
         f"{result.message}; objective {result.energies[0]:.6g} → {result.energies[-1]:.9g} in "
-        f"{len(result.energies) - 1} iterations, {result.seconds:.1f} s, Möbius energy {result.final_energy:.9g}, "
-        f"{certified}"
+        f"{counted(len(result.energies) - 1, 'iteration')}, {result.seconds:.1f} s, "
+        f"Möbius energy {result.final_energy:.9g}, {certified}"
     )

@@ -50,6 +50,17 @@ def reason_of(error: Exception) -> str:
     return getattr(error, "strerror", None) or str(error).strip()
 
 
+def counted(number: int, noun: str) -> str:
+    """Say how many things there are, one or several.
+
+    Examples
+    --------
+    >>> counted(1, "stage"), counted(56, "leg")
+    ('1 stage', '56 legs')
+    """
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def choice(name: str, known: Iterable[str]) -> str:
     """Say what can be chosen instead of an unknown name, the likeliest first.
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -50,6 +51,16 @@ def relax(**options: object) -> bpy.types.Object:
     obj = bpy.context.object
     assert bpy.ops.curve.mobius_flow_relax(**{"fit_bevel": False, "timing": "ITERATE"} | options) == {"FINISHED"}
     return obj
+
+
+def linked(path: Path, kind: str, name: str) -> bpy.types.ID:
+    """A datablock of the open file, which is saved as a library and linked into an empty one."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(path), link=True) as (_, wanted):
+        setattr(wanted, kind, [name])
+    (block,) = getattr(wanted, kind)
+    return block
 
 
 def stored(data: bpy.types.Curve) -> np.ndarray:

@@ -16,8 +16,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
-SEARCHES, CLAIMS = "tests/core/descent/test_searches.py", "tests/core/descent/test_claims.py"
-RESTORATION = "tests/core/test_restoration.py"
+SEARCHES, CONDITIONS = "tests/core/descent/test_searches.py", "tests/core/descent/test_conditions.py"
+DIRECTIONS, CLAIMS = "tests/core/descent/test_directions.py", "tests/core/descent/test_claims.py"
+FIRST_TRIAL, METRIC_AGE = "tests/core/descent/test_first_trial.py", "tests/core/descent/test_metric_age.py"
+RESTORATION, ADAPTIVE = "tests/core/test_restoration.py", "tests/core/test_adaptive.py"
 CERTIFICATE, VERIFY = "tests/core/test_certificate.py", "tests/core/verify"
 
 
@@ -37,49 +39,49 @@ MUTANTS = (
         "core/descent/directions/conjugate_gradient.py",
         "beta = max(0.0, ",
         "beta = 0.0 * max(0.0, ",
-        f"{SEARCHES}::test_conjugate_gradients_by_their_formula",
+        f"{DIRECTIONS}::test_conjugate_gradients_by_their_formula",
     ),
     Mutant(
         "implicit Euler is explicit",
         "core/descent/searches/backward_euler.py",
         "right = -(trial.derivative +",
         "right = -(point.derivative +",
-        f"{SEARCHES}::test_backward_euler_takes_the_gradient_at_the_end",
+        f"{CONDITIONS}::test_backward_euler_takes_the_gradient_at_the_end",
     ),
     Mutant(
         "Nesterov without momentum",
         "core/descent/searches/accelerated.py",
         "(memory.t - 1.0) / t *",
         "0.0 * (memory.t - 1.0) / t *",
-        f"{SEARCHES}::test_nesterov_goes_on_in_the_direction_of_the_last_step",
+        f"{CONDITIONS}::test_nesterov_goes_on_in_the_direction_of_the_last_step",
     ),
     Mutant(
         "half the penalty's derivative",
         "core/descent/penalised.py",
         "2.0 * weights * stretch",
         "weights * stretch",
-        f"{SEARCHES}::test_the_penalised_energy_has_slope_two",
+        f"{DIRECTIONS}::test_the_penalised_energy_has_slope_two",
     ),
     Mutant(
         "trust region without the last gradient",
         "core/descent/searches/trust_region.py",
         "if last_gradient is not None:",
         "if False:",
-        f"{SEARCHES}::test_trust_region_uses_the_last_gradient",
+        f"{CONDITIONS}::test_trust_region_uses_the_last_gradient",
     ),
     Mutant(
         "trust region without its ratio test",
         "core/descent/searches/trust_region.py",
         "_ratio(point, q, predicted) >= self.accept",
         "_ratio(point, q, predicted) > 0.0",
-        f"{SEARCHES}::test_trust_region_rejects_what_the_model_did_not_foresee",
+        f"{CONDITIONS}::test_trust_region_rejects_what_the_model_did_not_foresee",
     ),
     Mutant(
         "no curvature condition",
         "core/descent/searches/wolfe.py",
         "if self.flat(trial.end, direction, slope) or tau >= end:",
         "if True:",
-        f"{SEARCHES}::test_wolfe_does_not_take_steps_that_are_too_short",
+        f"{CONDITIONS}::test_wolfe_does_not_take_steps_that_are_too_short",
     ),
     Mutant(
         "footnote 8 reversed",
@@ -93,42 +95,42 @@ MUTANTS = (
         "core/descent/searches/first_trial.py",
         "collision_fraction: float = 2.0 / 3.0",
         "collision_fraction: float = 1.0",
-        f"{SEARCHES}::test_the_first_trial_is_two_thirds_of_the_first_contact",
+        f"{FIRST_TRIAL}::test_the_first_trial_is_two_thirds_of_the_first_contact",
     ),
     Mutant(
         "the first trial is a tenth of the way",
         "core/descent/searches/first_trial.py",
         "collision_fraction: float = 2.0 / 3.0",
         "collision_fraction: float = 0.1",
-        f"{SEARCHES}::test_the_first_trial_is_two_thirds_of_the_first_contact",
+        f"{FIRST_TRIAL}::test_the_first_trial_is_two_thirds_of_the_first_contact",
     ),
     Mutant(
         "Armijo asks for next to nothing",
         "core/descent/searches/armijo.py",
         "decrease: float = 0.5",
         "decrease: float = 1e-4",
-        f"{SEARCHES}::test_armijo_asks_for_half_of_the_predicted_decrease",
+        f"{CONDITIONS}::test_armijo_asks_for_half_of_the_predicted_decrease",
     ),
     Mutant(
         "one metric for all steps",
         "core/descent/searches/line_search.py",
         "point.metric_age + 1 < self.metric_steps",
         "True",
-        f"{SEARCHES}::test_a_metric_serves_several_steps",
+        f"{METRIC_AGE}::test_a_metric_serves_several_steps",
     ),
     Mutant(
         "an old metric after contact",
         "core/descent/searches/line_search.py",
         "step.limited_by is None and ",
         "",
-        f"{SEARCHES}::test_a_metric_serves_no_longer_where_contact_limits_a_step",
+        f"{METRIC_AGE}::test_a_metric_serves_no_longer_where_contact_limits_a_step",
     ),
     Mutant(
         "an old metric after a failed search",
         "core/descent/searches/line_search.py",
         "point.with_own_metric()",
         "point",
-        f"{SEARCHES}::test_a_search_that_fails_gets_the_metric_of_its_curve",
+        f"{METRIC_AGE}::test_a_search_that_fails_gets_the_metric_of_its_curve",
     ),
     Mutant(
         "lengths move the barycenter",
@@ -220,6 +222,55 @@ MUTANTS = (
         "        if last is not None:\n            _check_transition",
         "        if last is None and sizes:\n            _check_transition",
         f"{VERIFY}/test_forgeries.py::test_forgeries_are_refused",
+    ),
+    Mutant(
+        "converged in the metric of another curve",
+        "core/driver/termination.py",
+        "run.point.with_own_metric().gradient_norm",
+        "run.point.gradient_norm",
+        f"{METRIC_AGE}::test_a_curve_has_converged_only_in_its_own_metric",
+    ),
+    Mutant(
+        "changes of mesh beyond the limit",
+        "core/driver/loop.py",
+        "isinstance(answer, Change) and run.allows(answer)",
+        "isinstance(answer, Change) and not (run.at_limit and answer.step)",
+        f"{ADAPTIVE}::test_changes_of_mesh_are_within_the_limit",
+    ),
+    Mutant(
+        "changes of mesh told by the number of vertices",
+        "core/driver/run.py",
+        "change.point.problem.mesh is not self.problem.mesh",
+        "change.point.problem.mesh != self.problem.mesh",
+        f"{ADAPTIVE}::test_another_mesh_is_another_iterate_even_of_the_same_size",
+    ),
+    Mutant(
+        "a block list for every trial",
+        "core/descent/problem.py",
+        "return self if same else ",
+        "return self if True else ",
+        "tests/core/test_solver.py::test_a_search_compares_energies_by_the_block_list_of_its_start",
+    ),
+    Mutant(
+        "lengths creep to their targets",
+        "core/descent/searches/armijo.py",
+        "wanted + slack + ROUNDING",
+        "wanted + ROUNDING",
+        "tests/core/test_lengths.py::test_lengths_do_not_creep_where_nothing_is_left_to_gain",
+    ),
+    Mutant(
+        "parts let go by another mesh",
+        "core/driver/prepare.py",
+        "if parts is not None:\n        own_units",
+        "if False:\n        own_units",
+        "tests/core/test_split_links.py::test_held_parts_stay_held_on_another_mesh",
+    ),
+    Mutant(
+        "iterates lost to signals",
+        "cli/relax.py",
+        "        signals.hold()\n        yield iterate",
+        "        yield iterate",
+        "tests/cli/test_signals.py::test_signals_wait_while_an_iterate_is_recorded",
     ),
 )
 

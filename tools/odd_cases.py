@@ -256,11 +256,11 @@ def interrupted(rng: random.Random, room: Path) -> Case:
 @kind
 def huge(rng: random.Random, room: Path) -> Case:
     """More vertices, coordinates or components than can be used."""
-    n = rng.choice([12_001, 60_000, 200_000])
+    options, most = rng.choice([([], 200_000), (["--solver", "dense"], 12_000), (["--method", "trust-region"], 12_000)])
     which = rng.choice(["file", "vertices", "dimension", "words", "components"])
     if which == "file":
-        path = good_file(room, rng.choice(TEXTS), n)
-        return Case(rng.choice([["relax", path, "out.txt"], ["compare", path, "-o", "c.csv"]]), statuses=(2,))
+        path = good_file(room, rng.choice(TEXTS), rng.choice([most + 1, 2 * most]))
+        return Case(rng.choice([["relax", path, "out.txt", *options], ["compare", path, "-o", "c.csv"]]), statuses=(2,))
     if which == "dimension":
         (room / "in.json").write_text(json.dumps([[float(k == i) for k in range(100_000)] for i in range(3)]))
         return Case(command_on(rng, "in.json"), statuses=(2,))
@@ -270,8 +270,8 @@ def huge(rng: random.Random, room: Path) -> Case:
     if which == "words":
         (room / "in.obj").write_text("v 0 0 0\n" * 3 + "l " + "1 2 3 " * 500_000)
         return Case(command_on(rng, "in.obj"), statuses=(2,))
-    count = rng.choice(["12001", "200000", "1000000000", "9" * 30])
-    return Case(["relax", good_file(room), "out.txt", "--vertices", count], statuses=(2,))
+    count = rng.choice([str(most + 1), "1000000000", "9" * 30])
+    return Case(["relax", good_file(room), "out.txt", "--vertices", count, *options], statuses=(2,))
 
 
 @kind
@@ -330,7 +330,6 @@ def dependencies(rng: random.Random, room: Path) -> Case:
 def low_memory(rng: random.Random, room: Path) -> Case:
     """Too little address space."""
     good = good_file(room, n=rng.choice([24, 3000]))
-    words = rng.choice(
-        [["relax", good, "out.txt", *SHORT], ["energy", good], ["relax", good, "out.txt", "--vertices", "9000"]]
-    )
+    dense = ["--vertices", "9000", "--solver", "dense", *SHORT]
+    words = rng.choice([["relax", good, "out.txt", *SHORT], ["energy", good], ["relax", good, "out.txt", *dense]])
     return Case(words, limits={resource.RLIMIT_AS: rng.choice([420, 500, 700]) << 20})

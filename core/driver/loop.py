@@ -50,7 +50,7 @@ def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
     event: Event = Start()
     while True:
         answer = _answer(event, interventions)
-        if isinstance(answer, Change) and not (run.at_limit and answer.step):
+        if isinstance(answer, Change) and run.allows(answer):
             mesh = run.problem.mesh
             yield from _changed(run, answer)
             if run.problem.mesh is not mesh:

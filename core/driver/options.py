@@ -40,7 +40,9 @@ class RelaxOptions:
     """
 
     method: str = option("lbfgs", "Method", "how the energy is minimised", choices=METHODS, metavar="M")
-    max_iterations: int = option(2000, "Max Iterations", "stop after this many accepted steps", low=0, metavar="K")
+    max_iterations: int = option(
+        2000, "Max Iterations", "stop after this many accepted steps and changes of mesh", low=0, metavar="K"
+    )
     tolerance: float = option(
         1e-4, "Tolerance", "stop when the projected gradient's metric norm is at most this times √E", low=0, metavar="T"
     )

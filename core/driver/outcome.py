@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from ..errors import counted
+
 
 class Status(Enum):
     """Why a relaxation ended."""
@@ -48,7 +50,7 @@ def converged(norm: float, bound: float) -> Outcome:
 
 def out_of_iterations(count: int) -> Outcome:
     """The limit is reached."""
-    return Outcome(Status.ITERATION_LIMIT, f"stopped after {count} iterations, as asked for")
+    return Outcome(Status.ITERATION_LIMIT, f"stopped after {counted(count, 'iteration')}, as asked for")
 
 
 def stalled(reason: str) -> Outcome:

@@ -90,6 +90,11 @@ class Run:
             self.rises.append(now.energy - before.energy)
         return now
 
+    def allows(self, change: Change) -> bool:
+        """Whether a change is within the limit: a step is an iteration, and so is another mesh."""
+        iterations = (change.step is not None) + self._remeshes(change)
+        return self.iterate.index + iterations <= self.options.max_iterations
+
     def change(self, change: Change) -> Iterate | None:
         """Go on from a point of another problem, or by another method; a new mesh makes a new iterate."""
         self.vertices = change.vertices or self.vertices
@@ -97,11 +102,15 @@ class Run:
             self.method, self._memory = change.method, State()
         if change.point is None:
             return None
-        remeshed = change.point.placed is not self.point.placed  # perhaps with as many vertices
+        remeshed = self._remeshes(change)
         self.point = change.point.anchored
         self._memory = State(None, self._memory.last_step)
         self.iterate = self._described(self.iterate.index + remeshed)
         return self.iterate if remeshed else None
+
+    def _remeshes(self, change: Change) -> bool:
+        """Whether it is to another mesh, perhaps with as many vertices."""
+        return change.point is not None and change.point.problem.mesh is not self.problem.mesh
 
     def _described(self, index: int, step_size: float = 0.0, path: tuple[FloatArray, ...] = ()) -> Iterate:
         point = self.point

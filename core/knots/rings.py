@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Curve
-from ..errors import CurveError
+from ..errors import CurveError, counted
 from ..types import FloatArray, IntArray
 
 _EDGE = 0.7  # default edge length in units of the gap; tilted strands are a little nearer than the gap
@@ -95,7 +95,7 @@ def _shares(vertices: int, lengths: FloatArray) -> list[int]:
     marks: IntArray = np.rint(vertices * np.cumsum(lengths) / lengths.sum()).astype(np.intp)
     counts = np.diff(marks, prepend=0)
     if counts.min() < 3:
-        raise CurveError(f"{vertices} vertices are too few for {len(lengths)} components; give more")
+        raise CurveError(f"{vertices} vertices are too few for {counted(len(lengths), 'component')}; give more")
     return [int(count) for count in counts]
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import counted
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .segments import Point, meet
@@ -51,7 +52,7 @@ class Verdict:
 
     def __str__(self) -> str:
         if self.accepted:
-            return f"accepted: no contact on {self.legs} legs in {self.stages} stages"
+            return f"accepted: no contact on {counted(self.legs, 'leg')} in {counted(self.stages, 'stage')}"
         place = "" if self.stage is None else f"stage {self.stage}"
         place += "" if self.frame is None else f", frame {self.frame}"
         return f"rejected: {place}: {self.reason}" if place else f"rejected: {self.reason}"

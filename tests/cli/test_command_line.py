@@ -54,7 +54,7 @@ def test_the_last_line_tells_objective_and_energy(tmp_path, capsys):
 def test_compare_prints_objectives(trefoil, tmp_path, capsys):
     assert run("compare", trefoil, "--methods", "cg", "--max-iterations", 1, "-o", tmp_path / "c.json") == 0
     last = json.loads((tmp_path / "c.json").read_text())[0]["energy"][-1]
-    assert f"objective {last:.9g} after 1 iterations" in capsys.readouterr().err
+    assert f"objective {last:.9g} after 1 iteration, " in capsys.readouterr().err
 
 
 def test_quiet(trefoil, tmp_path, capsys):

@@ -49,6 +49,12 @@ def test_every_option_can_be_given(each):
     assert asdict(parsed(*words)) == asdict(RelaxOptions()) | {each.name: value}
 
 
+@pytest.mark.parametrize("words", [["--adaptive", "--resolve"], ["--resolve", "--adaptive"]])
+def test_of_two_short_words_the_one_that_goes_farther_holds(words):
+    """An adaptive mesh ends finer where strands are near, too: who writes both wants both, in whatever order."""
+    assert parsed(*words).mesh == "adaptive"
+
+
 def test_one_more_option_appears_by_itself(monkeypatch):
     monkeypatch.setattr(relax_options, "RelaxOptions", OneMore)
     assert parsed().patience is None
@@ -64,6 +70,8 @@ def test_one_more_option_appears_by_itself(monkeypatch):
     ("words", "said"),
     [
         (["--vertices", "2"], "vertices is 2; it must be 3 or more"),
+        (["--vertices", "1e3"], "argument --vertices: '1e3' is not a whole number"),
+        (["--tolerance", "small"], "argument --tolerance: 'small' is not a number"),
         (["--quadrature-points", "17"], "quadrature_points is 17; it must be from 1 to 16"),
         (["--penalty", "0"], "penalty is 0.0; it must be a finite number above 0"),
         (["--metric", "l7"], "metric 'l7' is unknown"),

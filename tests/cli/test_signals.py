@@ -13,7 +13,8 @@ import pytest
 from mobius_flow.cli import compare as compare_command
 from mobius_flow.cli import main, outputs, signals
 from mobius_flow.cli.progress import Progress
-from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, Trajectory, read_curve, write_curve
+from mobius_flow.cli.relax import _interruptible
+from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, Trajectory, read_curve, relax, write_curve
 from mobius_flow.core.bench import SETS, bench
 from mobius_flow.core.driver import finish
 from mobius_flow.core.driver.compare import History, compare
@@ -55,6 +56,16 @@ def test_held_signals_wait_until_they_are_allowed() -> None:
         with pytest.raises(KeyboardInterrupt):
             signals.allow()
         signals.allow()  # both were one
+
+
+def test_signals_wait_while_an_iterate_is_recorded() -> None:
+    """They interrupt the computation of the next one: what is written ends with one and the same iterate."""
+    with signals.raised():
+        iterates = _interruptible(relax(torus_trefoil(60)))
+        next(iterates)
+        send(signal.SIGTERM)
+        with pytest.raises(KeyboardInterrupt):
+            next(iterates)
 
 
 def test_one_that_comes_later_interrupts_again(monkeypatch: pytest.MonkeyPatch) -> None:

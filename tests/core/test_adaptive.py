@@ -1,5 +1,6 @@
 """Adaptive meshes: neighbours stay nearer than strands, and the changes of mesh are inside the proof."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,9 @@ from mobius_flow.core.curve.remesh import (
     remesh,
     superfluous,
 )
+from mobius_flow.core.driver.events import Change
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
@@ -89,6 +93,35 @@ def test_stages_begin_where_the_mesh_changes_even_to_the_same_size():
     trajectory.add(first)
     trajectory.add(replace(first, index=1))
     assert set(trajectory.arrays()) == {"stage_000", "stage_001", "component_sizes_000", "component_sizes_001"}
+
+
+def test_another_mesh_is_another_iterate_even_of_the_same_size():
+    """What has no iterate is in no trajectory; other constraints on the same mesh are no motion, and have none."""
+    curve, options = torus_trefoil(60), RelaxOptions(vertices=60, mesh="adaptive")
+    run = Run(start_problem(curve, options), curve, options)
+    other_lengths = replace(run.problem, constraints=replace(run.problem.constraints))
+    assert run.change(Change(point=run.point.within(other_lengths))) is None
+    shifted = Curve(np.roll(curve.vertices, 1, axis=0))
+    assert shifted.mesh == curve.mesh
+    iterate = run.change(Change(point=start_problem(shifted, options).at_curve(shifted)))
+    assert iterate.index == 1
+    np.testing.assert_array_equal(iterate.curve.vertices, shifted.vertices)
+
+
+@pytest.mark.parametrize(
+    ("curve", "options"),
+    [(near_strands(0.02), {"mesh": "adaptive"}), (lattice_knot("3_1"), {"mesh": "finer", "vertices": 60})],
+    ids=["adaptive", "finer"],
+)
+def test_changes_of_mesh_are_within_the_limit(curve, options):
+    """A change is an iteration, and so is the motion before it: at no limit do they make more of them."""
+    steps = itertools.pairwise(relax(curve, RelaxOptions(**options)))
+    before, after = next((a, b) for a, b in steps if b.curve.mesh is not a.curve.mesh)
+    for limit in range(after.index - 2, after.index + 1):
+        result = minimize(curve, RelaxOptions(**options, max_iterations=limit))
+        assert result.last.index == limit
+        assert result.message == f"stopped after {limit} iterations, as asked for"
+        assert len(result.curve) == len((after if limit == after.index else before).curve)
 
 
 def test_famous_unknot_adaptively(tmp_path):

@@ -1,7 +1,10 @@
 """The options solver and accuracy: what they promise, and what they do not go together with."""
 
 import pytest
-from mobius_flow.core import Iterate, OptionError, RelaxOptions, relax
+from mobius_flow.core import Iterate, Objective, OptionError, RelaxOptions, relax
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.run import Run
+from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
 from shapes import torus_trefoil
 
 
@@ -32,3 +35,12 @@ def test_what_needs_dense_matrices_is_refused_in_one_sentence(options: dict[str,
     with pytest.raises(OptionError) as caught:
         start(solver="hierarchical", **options)
     assert str(caught.value) == f"{obstacle}; solver='hierarchical' does without: leave it out"
+
+
+def test_a_search_compares_energies_by_the_block_list_of_its_start() -> None:
+    """Between the lists of two curves the value jumps, by more than the last steps of a relaxation gain."""
+    curve, options = torus_trefoil(2000), RelaxOptions(vertices=2000, solver="hierarchical")
+    run = Run(start_problem(curve, options), curve, options)
+    trial = run.problem.at(run.point.vertices * [1.0, 1.0, 0.95])
+    afresh = Objective.of(HierarchicalMoebiusEnergy()).value(trial.curve)
+    assert 0.0 < abs(trial.energy - afresh) < 1e-6 * afresh

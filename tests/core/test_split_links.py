@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.curve import refine
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian
 from mobius_flow.core.driver.interventions.split_links import separate_parts
-from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.prepare import on_mesh, start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.metrics import METRICS
@@ -104,6 +105,16 @@ def test_unlinked_circles_come_to_rest(method):
         radius = np.linalg.norm(component - component.mean(axis=0), axis=1)
         assert radius.std() < 1e-2 * radius.mean()
         assert edges.std() < 1e-9
+
+
+def test_held_parts_stay_held_on_another_mesh():
+    options = RelaxOptions(vertices=60)
+    curve, fine = (refine(rings(0, 5), vertices) for vertices in (30, 60))
+    problem = start_problem(curve, options)
+    problem = replace(problem, constraints=problem.constraints.of_parts(problem.at_curve(curve).curve, (0, 1)))
+    point = on_mesh(problem, fine, options)
+    assert point.problem.constraints.parts == (0, 1)
+    np.testing.assert_allclose(point.residual[len(fine) :], np.zeros(6), atol=1e-12)
 
 
 def test_linked_components_are_not_held():

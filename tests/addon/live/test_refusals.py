@@ -5,7 +5,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, relax, sentence, show  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, linked, relax, sentence, show  # noqa: E402
 from mobius_flow.addon.curves import sampling  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
 
@@ -258,22 +258,14 @@ def test_edit_mode():
 
 def test_linked_from_a_library(tmp_path):
     add_trefoil()
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "library.blend"))
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, linked):
-        linked.objects = ["Knot"]
-    (obj,) = linked.objects
-    show(obj)
+    show(linked(tmp_path / "library.blend", "objects", "Knot"))
     assert "linked from another file" in refused()
 
 
 def test_object_of_ones_own_with_linked_data(tmp_path):
     add_trefoil()
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "library.blend"))
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, linked):
-        linked.curves = ["Knot"]
-    show(bpy.data.objects.new("Mine", linked.curves[0]))
+    data = linked(tmp_path / "library.blend", "curves", "Knot")  # first: it opens another file, with other `bpy.data`
+    show(bpy.data.objects.new("Mine", data))
     assert "linked from another file" in refused()
 
 

@@ -6,7 +6,7 @@ from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, R
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.energies import ENERGIES, Energy
 from mobius_flow.core.energies.near_pairs import near_pairs, replaced_pairs
-from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy
+from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy, moebius_energy
 from mobius_flow.core.hierarchy.energy import THETA
 from mobius_flow.core.knots import knot
 from mobius_flow.core.metrics.moebius import MoebiusMetric
@@ -178,6 +178,15 @@ def test_other_energies_have_no_fast_form() -> None:
 
 def test_it_is_an_energy() -> None:
     assert isinstance(HierarchicalMoebiusEnergy(), Energy)
+
+
+def test_reported_energies_are_exact_unless_their_error_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = torus_trefoil(700)
+    exact = MoebiusEnergy().value(curve)
+    assert moebius_energy(curve) == (exact, 0.0)
+    monkeypatch.setattr("mobius_flow.core.hierarchy.energy.EXACT_UP_TO", len(curve) - 1)
+    value, error = moebius_energy(curve)
+    assert 0.0 < abs(value / exact - 1.0) <= error
 
 
 def test_relax_takes_the_same_steps_with_it() -> None:

@@ -48,7 +48,7 @@ def test_accepts_a_free_motion(tmp_path: Path, compressed: bool, offset: float) 
     frames = [frame + offset for frame in walk(trefoil, 12)]
     verdict = verify(write(tmp_path / "T.npz", ((60,), frames), compressed=compressed))
     assert verdict == Verdict(True, 1, 12)
-    assert str(verdict) == "accepted: no contact on 12 legs in 1 stages"
+    assert str(verdict) == "accepted: no contact on 12 legs in 1 stage"
 
 
 def test_accepts_links_and_plane_curves(tmp_path: Path) -> None:

@@ -1,0 +1,129 @@
+"""Animations go on from their ends: what is added, when, and as what."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+
+from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings  # noqa: E402
+from blender_scenes import add_trefoil, evaluated, relax, stored  # noqa: E402
+from mobius_flow.addon.curves import keyframes  # noqa: E402
+from mobius_flow.core.collision import is_free  # noqa: E402
+from mobius_flow.core.curve import Mesh  # noqa: E402
+
+
+@pytest.mark.parametrize("reopened", [False, True])
+@pytest.mark.parametrize("keyframes", KEYED)
+def test_continuing_adds_proved_keys_after_the_old_ones(tmp_path, capfd, keyframes, reopened):
+    obj = add_trefoil()
+    relax(max_iterations=4, keyframes=keyframes)
+    old = [evaluated(obj, 1 + k) for k in range(5)]
+    names = blocks()
+    if reopened:
+        obj = reopen(tmp_path / "a.blend")
+    bpy.context.scene.frame_set(2)  # F-curves leave the points of this frame in the curve
+    capfd.readouterr()
+    go_on(max_iterations=2, timing="ITERATE", keyframes="RESULT")
+    assert "2 new keys up to frame 7, proved free of contact" in capfd.readouterr().out
+    shown = [evaluated(obj, 1 + k) for k in range(7)]
+    np.testing.assert_array_equal(shown[:5], old)
+    mesh = Mesh((len(old[0]),))
+    for a, b in pairwise(shown):
+        assert not np.array_equal(a, b)
+        assert is_free(mesh, a.astype(np.float64), b.astype(np.float64))
+    assert last_frame(obj) == 7
+    assert blocks() == names
+
+
+def test_continuing_by_length_goes_on_after_the_rest():
+    obj = add_trefoil()
+    relax(max_iterations=3, timing="EVEN", length=50, hold_end=10)
+    go_on(length=100, hold_start=5, hold_end=2)
+    curve = curve_of(obj)
+    frames = [point.co[0] for point in curve.keyframe_points]
+    assert frames[3] == 40
+    assert (frames[4], frames[-1]) == (55, 148)
+    np.testing.assert_array_equal(evaluated(obj, 55), evaluated(obj, 40))
+    clear()
+    assert len(obj.data.splines[0].points) == 30
+
+
+def test_continuing_gets_where_a_longer_run_gets():
+    obj = add_trefoil()
+    relax(max_iterations=3)
+    go_on(max_iterations=400)
+    split = keyframes.end_of(obj.data).astype(np.float64)
+    relax(max_iterations=400)
+    whole = keyframes.end_of(obj.data).astype(np.float64)
+    lengths = [np.sort(np.linalg.norm(p - p.mean(axis=0), axis=1)) for p in (split, whole)]
+    np.testing.assert_allclose(*lengths, atol=2e-2)
+
+
+@pytest.mark.parametrize("keyframes", [*KEYED, "RESULT"])
+def test_a_fitted_tube_keeps_its_radius_when_it_goes_on(keyframes):
+    """Its keys go on as what they are, whatever is asked for."""
+    obj = add_trefoil()
+    relax(max_iterations=4, fit_bevel=True)
+
+    def radius(block):
+        return obj.data.bevel_depth * block.data[0].radius
+
+    before = [radius(block) for block in obj.data.shape_keys.key_blocks]
+    go_on(max_iterations=30, fit_bevel=True, keyframes=keyframes)
+    after = [radius(block) for block in obj.data.shape_keys.key_blocks]
+    np.testing.assert_allclose(after[:5], before, rtol=1e-5)
+    assert after[-1] == pytest.approx(obj.data.bevel_depth)
+
+
+def test_baked_apart_they_go_on_together():
+    """The one that rests earlier waits for the other."""
+    pair = two_rings()
+    for obj, count in zip(pair, (2, 5), strict=True):
+        bpy.ops.object.select_all(action="DESELECT")
+        obj.select_set(True)
+        bpy.context.view_layer.objects.active = obj
+        relax(max_iterations=count)
+    ends = [keyframes.end_of(obj.data) for obj in pair]
+    for obj in pair:
+        obj.select_set(True)
+    go_on(max_iterations=2, timing="ITERATE")
+    for obj, end in zip(pair, ends, strict=True):
+        np.testing.assert_array_equal(evaluated(obj, 6), end)
+        assert last_frame(obj) == 8
+
+
+def test_retimed_keys_go_on_where_they_end_now():
+    obj = add_trefoil()
+    relax(max_iterations=2)
+    curve = curve_of(obj)
+    for point in curve.keyframe_points:
+        point.co[0] = 10 * point.co[0]
+    go_on(max_iterations=2, timing="ITERATE")
+    assert [point.co[0] for point in curve_of(obj).keyframe_points] == [10, 20, 30, 31, 32]
+
+
+@pytest.mark.parametrize("keyframes_as", KEYED)
+def test_an_animation_without_motion_goes_on(keyframes_as):
+    obj = add_trefoil()
+    relax(max_iterations=0, keyframes=keyframes_as)
+    assert last_frame(obj) == 1
+    go_on(max_iterations=3, timing="ITERATE")
+    assert last_frame(obj) == 4
+    again(max_iterations=400, keyframes=keyframes_as, timing="ITERATE")
+    end, shown = last_frame(obj), keyframes.end_of(obj.data)
+    go_on(max_iterations=400, tolerance=0.01)  # there is nothing left to do
+    assert last_frame(obj) == end
+    np.testing.assert_array_equal(keyframes.end_of(obj.data), shown)
+
+
+def test_what_was_thinned_goes_on_thinned():
+    obj = add_trefoil()
+    relax(max_iterations=6, max_keys=3)
+    go_on(max_iterations=2, max_keys=2)
+    assert 4 <= len(obj.data.shape_keys.key_blocks) < 9
+    mesh = Mesh((len(stored(obj.data)),))
+    points = [np.array([p.co[:] for p in block.data]) for block in obj.data.shape_keys.key_blocks]
+    assert all(is_free(mesh, a, b) for a, b in pairwise(points))
