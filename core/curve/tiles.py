@@ -23,6 +23,14 @@ class Tile(NamedTuple):
     excluded: BoolArray
 
 
+class RowTile(NamedTuple):
+    """The same for rows that do not follow each other, and all columns."""
+
+    rows: IntArray
+    columns: slice
+    excluded: BoolArray
+
+
 EdgePairIndices = tuple[IntArray, IntArray]
 """Unordered pairs of edges (i, j), each of shape (pairs,)."""
 
@@ -39,6 +47,20 @@ def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None) -> Iterator[T
         excluded[row, column] = True
         yield Tile(slice(first, last), slice(first, n), excluded)
         first = last
+
+
+def row_tiles(mesh: Mesh, rows: IntArray, without: EdgePairIndices | None = None) -> Iterator[RowTile]:
+    """Cover the pairs of some edges with all others, each edge's in one row, but for pairs that are left out."""
+    height = max(1, ROWS_TIMES_COLUMNS // mesh.size)
+    for first in range(0, len(rows), height):
+        own = rows[first : first + height]
+        excluded = np.zeros((len(own), mesh.size), dtype=np.bool_)
+        for neighbour in (own, mesh.heads[own], mesh.previous[own]):
+            excluded[np.arange(len(own)), neighbour] = True
+        for i, j in () if without is None else (without, without[::-1]):
+            row, pair = np.nonzero(own[:, None] == i)
+            excluded[row, j[pair]] = True
+        yield RowTile(own, slice(None), excluded)
 
 
 def _excluded(mesh: Mesh, first: int, last: int) -> BoolArray:

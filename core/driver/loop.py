@@ -7,6 +7,7 @@ import numpy as np
 from ..descent import NoStep, Step
 from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
+from .interventions.check_accuracy import with_errors
 from .iterate import Iterate
 from .outcome import DEGENERATE, ROSE, Outcome, out_of_iterations, stalled
 from .run import Run
@@ -42,7 +43,7 @@ def iterates(run: Run) -> Relaxation:
     rises = run.rises
     if rises:
         outcome = outcome.adding(ROSE.format(count=len(rises), steps=run.iterate.index, total=sum(rises)))
-    return outcome
+    return with_errors(outcome, run)
 
 
 def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:

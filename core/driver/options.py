@@ -92,8 +92,9 @@ class RelaxOptions:
     accuracy: float = _advanced(
         1e-4,
         "Accuracy",
-        "relative error of the projected gradient's norm in the hierarchical solver's metric, which makes norms differ "
-        "by some per cent from the dense solver's; energies differ by some 1e-6, whatever the accuracy",
+        "largest error of the hierarchical solver, kept by checks against dense sums over sampled edges: of the "
+        "projected gradient's norm, relative to it or to √E; a hundredth of it for the energy; the norm is that of the "
+        "solver's own metric, some per cent from the dense solver's",
         low=0,
         high=1e-2,
         metavar="A",

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from ..errors import counted
+from ..hierarchy import SampledErrors
 
 
 class Status(Enum):
@@ -27,11 +28,14 @@ class Outcome:
         The same in one sentence.
     negative_eigenvalues
         Of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum, more at a saddle.
+    sampled_errors
+        Of the hierarchical solver, when they were last looked at: in the end, unless that came of a sudden; else None.
     """
 
     status: Status
     message: str
     negative_eigenvalues: int | None = None
+    sampled_errors: SampledErrors | None = None
 
     @property
     def converged(self) -> bool:
@@ -77,4 +81,9 @@ UNRESOLVED = (
     "strands are nearer than this mesh resolves; with more vertices or a finer mesh there is less energy to reach"
 )
 ADVICE = "more vertices or an adaptive mesh may help"
+TIGHTENED = "distant clusters were expanded to order {order} for the accuracy asked for"
+INACCURATE = (
+    "the hierarchical solver is less accurate than asked for: dense sums over sampled edges put its relative errors at "
+    "up to {energy:.1g} in the energy and {norm:.1g} in the gradient's norm; the dense solver has none of them"
+)
 ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..curve import Curve
 from ..descent import METHODS, NoStep, Problem, State, Step
+from ..hierarchy import SampledErrors
 from ..types import FloatArray
 from .events import Change
 from .iterate import Iterate
@@ -42,6 +43,8 @@ class Run:
         Number of vertices where no strands are near, None for the default.
     rises
         Increases of the energy, which are allowed while edge lengths are being evened out.
+    sampled_errors
+        Of the hierarchical solver, when they were last looked at.
     """
 
     def __init__(self, problem: Problem, start: Curve, options: RelaxOptions) -> None:
@@ -49,6 +52,7 @@ class Run:
         self.vertices = options.vertices
         self.method = METHODS[options.method]
         self.rises: list[float] = []
+        self.sampled_errors: SampledErrors | None = None
         self.point = problem.at_curve(start).anchored
         self._memory = State()
         self._certified = problem.certifiable  # an embedded start, and so far no motion

@@ -9,10 +9,12 @@ Ishizeki and Nagasawa's density (1 − cos α)/r² at the midpoints.  A round ci
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..curve import Curve
-from ..curve.tiles import EdgePairIndices, pair_tiles
+from ..curve.tiles import EdgePairIndices, pair_tiles, row_tiles
 from ..quadrature import MIDPOINT
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .moebius_hessian import hessian
 from .moebius_hessian_product import hessian_product
 from .moebius_pairs import DerivativeSums, Edges, Pairs
@@ -54,6 +56,13 @@ class MoebiusEnergy:
             total += pairs.energy()
             sums.add(tile.rows, tile.columns, pairs.coefficients(), edges.vectors)
         return energy_of_pairs(curve, total), 2.0 * sums.at_vertices(curve.mesh, edges.tau)
+
+    def row_energies(self, curve: Curve, rows: IntArray) -> FloatArray:
+        """Σ_J W_IJ for some edges I, shape (rows,): over all edges these add up to E − 4·components."""
+        edges = Edges.of(curve)
+        return np.concatenate(
+            [Pairs.of(edges, tile).row_energies() for tile in row_tiles(curve.mesh, rows, self.without)]
+        )
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative D²E, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from ..curve import Curve, Mesh
-from ..curve.tiles import Tile
+from ..curve.tiles import RowTile, Tile
 from ..types import FloatArray
 
 
@@ -65,7 +65,7 @@ class Pairs(NamedTuple):
     s: FloatArray  # 1/|Δ|²
 
     @classmethod
-    def of(cls, edges: Edges, tile: Tile) -> "Pairs":
+    def of(cls, edges: Edges, tile: Tile | RowTile) -> "Pairs":
         """Compute them for one tile."""
         (e_ell, m_one), foot = edges.vectors, edges.foot
         rows, columns = tile.rows, tile.columns
@@ -82,6 +82,10 @@ class Pairs(NamedTuple):
     def energy(self) -> float:
         """Σ W_IJ over the tile, W_IJ = g s − 2 p q."""
         return float(np.vdot(self.g, self.s) - 2.0 * np.vdot(self.p, self.q))
+
+    def row_energies(self) -> FloatArray:
+        """Σ_J W_IJ for each row I; shape (rows,)."""
+        return np.asarray(np.einsum("ij,ij->i", self.g, self.s) - 2.0 * np.einsum("ij,ij->i", self.p, self.q))
 
     def coefficients(self) -> "Coefficients":
         """The derivative's coefficients; overwrites g."""
@@ -136,6 +140,10 @@ class DerivativeSums(NamedTuple):
         self.by_midpoint[own] += 2.0 * (am[:, d:] * m - am[:, :d] - sign * (bm[:, d:] * e + ce))
         self.by_edge[own] += sl[:, :d] - (2.0 * sign) * (bm[:, d:] * m - bm[:, :d])
         self.by_length[own] += sl[:, d]
+
+    def row_energies(self, vectors: Vectors) -> FloatArray:
+        """Σ_J W_IJ for each edge I, shape (n,): the derivative itself tells, W_IJ being linear in (e_I, ℓ_I)."""
+        return np.asarray(np.einsum("ij,ij->i", self.by_edge, vectors.e) + self.by_length * vectors.ell)
 
     def at_vertices(self, mesh: Mesh, tau: FloatArray) -> FloatArray:
         """The derivative with respect to the vertices, shape (n, m)."""

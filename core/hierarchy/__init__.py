@@ -2,7 +2,17 @@
 
 from .blocks import BlockList
 from .clusters import ClusterTree
-from .energy import HierarchicalMoebiusEnergy, moebius_energy
+from .energy import HierarchicalMoebiusEnergy
 from .metric import CompressedMetric, compressed
+from .reported import moebius_energy
+from .sampling import SampledErrors
 
-__all__ = ["BlockList", "ClusterTree", "CompressedMetric", "HierarchicalMoebiusEnergy", "compressed", "moebius_energy"]
+__all__ = [
+    "BlockList",
+    "ClusterTree",
+    "CompressedMetric",
+    "HierarchicalMoebiusEnergy",
+    "SampledErrors",
+    "compressed",
+    "moebius_energy",
+]

@@ -70,6 +70,12 @@ class BlockList:
         return np.delete(self.i, place), np.delete(self.j, place)
 
     @cached_property
+    def middles(self) -> EdgePairIndices:
+        """The middle edges of the two clusters of each block; shape (blocks,) twice."""
+        order = self.tree.order
+        return order[(self.a + self.b) // 2], order[(self.c + self.d) // 2]
+
+    @cached_property
     def a(self) -> IntArray:
         """Where the first cluster's range [a, b) starts; shape (blocks,)."""
         return self.tree.start[self.first]

@@ -12,7 +12,7 @@ from ..curve import Curve
 from ..curve.tiles import EdgePairIndices
 from ..energies.energy import Energy
 from ..energies.moebius import MoebiusEnergy, energy_of_pairs
-from ..energies.moebius_pairs import Edges
+from ..energies.moebius_pairs import DerivativeSums, Edges
 from ..errors import OptionError
 from ..quadrature import MIDPOINT
 from ..types import FloatArray
@@ -21,11 +21,10 @@ from .far_field import FarField
 from .near_field import NearField
 
 ORDER = 4  # even orders are worth more: errors of the next odd one nearly cancel
-THETA = 0.2  # with that order errors of 10⁻⁷ to 10⁻⁶ of a knot's energy, of 10⁻⁵ of the derivative in J_C's dual norm
+MAX_ORDER = 8  # each two orders make errors some forty times smaller, and half of the work twice as much
+THETA = 0.19  # with that order errors below 10⁻⁶ of a knot's energy, of 10⁻⁵ of the derivative in J_C's dual norm
 LEAF = 16  # edges; halving ends at 8 to 16 of them, with which the near field takes no longer than the far one
-KEPT = 1.1 * THETA  # separation up to which a list is as good as a new one
-EXACT_UP_TO = 30_000  # vertices; all pairs of edges take some fifteen seconds there
-ACCURACY = 5e-6  # relative error of the value, on curves of low energy; on knots it is smaller
+KEPT = 0.2  # separation up to which a list is as good as a new one
 OUTDATED = 1.0 / 3.0  # less separated blocks make a new list; up to 1/3 all replaced pairs are near pairs
 
 
@@ -42,10 +41,13 @@ class HierarchicalMoebiusEnergy:
         The list to be used as long as its blocks stay well separated; None for that of each curve.
     without
         Near pairs of edges that are left out of the sum, because something else stands for them.
+    order
+        Of the expansions.
     """
 
     blocks: BlockList | None = None
     without: EdgePairIndices | None = None
+    order: int = ORDER
 
     name = "moebius"
     rule = MIDPOINT
@@ -78,6 +80,16 @@ class HierarchicalMoebiusEnergy:
         """The same sum without some near pairs of edges, such as `replaced_pairs`."""
         return replace(self, without=pairs)
 
+    @property
+    def exact(self) -> MoebiusEnergy:
+        """The sum that this one approximates, pair by pair."""
+        return MoebiusEnergy(self.without)
+
+    @property
+    def tightened(self) -> "HierarchicalMoebiusEnergy | None":
+        """The same with expansions of higher order; None if there are none."""
+        return replace(self, order=self.order + 2) if self.order < MAX_ORDER else None
+
     def value(self, curve: Curve) -> float:
         """Energy E of the curve."""
         near, far = self._fields(curve, _unit_sized(curve)[0])
@@ -87,34 +99,38 @@ class HierarchicalMoebiusEnergy:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
         unit, exponent = _unit_sized(curve)
         near, far = self._fields(curve, unit)
-        value, sums = near.value_and_derivative()
-        far_value, far_sums = far.value_and_derivative()
-        for part, far_part in zip(sums, far_sums, strict=True):
-            part += far_part
+        value, sums = _value_and_sums(near, far)
         derivative = np.ldexp(2.0 * sums.at_vertices(curve.mesh, near.edges.tau), -exponent)
-        return energy_of_pairs(curve, value + far_value), derivative
+        return energy_of_pairs(curve, value), derivative
+
+    def row_energies(self, curve: Curve) -> FloatArray:
+        """What `MoebiusEnergy.row_energies` gives for all edges; shape (n,)."""
+        near, far = self._fields(curve, _unit_sized(curve)[0])
+        return _value_and_sums(near, far)[1].row_energies(near.edges.vectors)
 
     def _fields(self, curve: Curve, unit: Curve) -> tuple[NearField, FarField]:
-        blocks, edges = self._blocks(curve), Edges.of(unit)
-        return NearField(edges, blocks.near_pairs(self.without)), FarField(blocks, edges.vectors, ORDER)
+        blocks, edges = self.block_list(curve), Edges.of(unit)
+        return NearField(edges, blocks.near_pairs(self.without)), FarField(blocks, edges.vectors, self.order)
 
-    def _blocks(self, curve: Curve) -> BlockList:
+    def block_list(self, curve: Curve) -> BlockList:
+        """The list that counts at a curve: its own, or that of the curve."""
         if self.blocks is not None and self.blocks.is_separated(curve, OUTDATED):
             return self.blocks
         return block_list(curve)
-
-
-def moebius_energy(curve: Curve) -> tuple[float, float]:
-    """The Möbius energy that is reported, and a bound of its relative error: 0 up to `EXACT_UP_TO` vertices."""
-    if len(curve) <= EXACT_UP_TO:
-        return MoebiusEnergy().value(curve), 0.0
-    return HierarchicalMoebiusEnergy().value(curve), ACCURACY
 
 
 @lru_cache(maxsize=1)
 def block_list(curve: Curve) -> BlockList:
     """The list of a curve by which its energy is computed; the last one is kept, for value and derivative alike."""
     return BlockList.of(curve, THETA, LEAF)
+
+
+def _value_and_sums(near: NearField, far: FarField) -> tuple[float, DerivativeSums]:
+    value, sums = near.value_and_derivative()
+    far_value, far_sums = far.value_and_derivative()
+    for part, far_part in zip(sums, far_sums, strict=True):
+        part += far_part
+    return value + far_value, sums
 
 
 def _unit_sized(curve: Curve) -> tuple[Curve, int]:

@@ -45,11 +45,10 @@ class PairForms:
         """The two edges of each near pair."""
         return self._blocks.i, self._blocks.j
 
-    @cached_property
+    @property
     def middles(self) -> EdgePairs:
         """The middle edges of the two clusters of each block."""
-        b, order = self._blocks, self._blocks.tree.order
-        return order[(b.a + b.b) // 2], order[(b.c + b.d) // 2]
+        return self._blocks.middles
 
     def of_slopes(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
         """The matrix of Σ w ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|², shape (n, n)."""

@@ -9,6 +9,7 @@ from typing import Protocol
 
 from ..events import Change, Event
 from ..run import Run
+from .check_accuracy import CheckAccuracy
 from .coarse_start import CoarseStart
 from .composite import Composite
 from .escape_saddle import EscapeSaddle
@@ -33,5 +34,6 @@ INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
     FinerMesh,
     Fallback,
     Remesh,
+    CheckAccuracy,
 )
 """In the order in which they are asked."""

@@ -1,0 +1,143 @@
+"""How far the compressed energy is off, from edges whose pairs are summed one by one.
+
+The error is Σ_I δ_I, δ_I that of Σ_J W_IJ over the partners of edge I: its mean over a sample, one edge from each of as
+many equal stretches of the curve, tells it up to a standard error.  That of the derivative along a field u is told by
+differences of δ_I between two curves P ± t u: forces on single edges would tell nothing, because their errors, of the
+sign of whichever side of its cluster's centre an edge is on, all but cancel, the more so the finer the mesh.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..curve import Curve
+from ..types import FloatArray, IntArray
+from .energy import HierarchicalMoebiusEnergy
+
+EDGES = 512  # sampled for the energy: its standard error is some 3e-7 at order 4, and they take half a step
+EDGES_ALONG = 128  # for each of the two curves
+CHANGE = 1e-4  # of distances between edges from P to P ± t u, relative
+CONFIDENCE = 2.0  # standard errors on either side, with 95 % probability
+ENERGY_SHARE = 1e-2  # of an accuracy, which the energy's relative error may have
+NORM_SHARE = 0.5  # of an accuracy, which the derivative's error may have in the projected gradient's norm
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """An estimate of an error, with its sign, from a sample.
+
+    Attributes
+    ----------
+    mean
+        What is expected.
+    standard_error
+        Of that; 0 where all has been looked at.
+    """
+
+    mean: float
+    standard_error: float
+
+    @classmethod
+    def of_sum(cls, sample: FloatArray, size: int, rest: float = 0.0) -> "Estimate":
+        """Of a number that is known, and the sum of ``size`` numbers of which there is a sample, shape (k,)."""
+        k = len(sample)
+        spread = float(np.std(sample, ddof=1)) if k < size else 0.0
+        return cls(rest + size * float(np.mean(sample)), size * spread * float(np.sqrt((1.0 - k / size) / k)))
+
+    @property
+    def bound(self) -> float:
+        """What the error's modulus is at most, with 95 % probability."""
+        return abs(self.mean) + CONFIDENCE * self.standard_error
+
+    def as_report(self) -> dict[str, float]:
+        """As the plain values of a report."""
+        return {"mean": self.mean, "standard_error": self.standard_error}
+
+    def relative(self, scale: float) -> "Estimate":
+        """The same in units of something positive."""
+        return Estimate(self.mean / scale, self.standard_error / scale)
+
+
+def energy_error(energy: HierarchicalMoebiusEnergy, curve: Curve, count: int = EDGES) -> Estimate:
+    """The error of the energy, from so many edges."""
+    energy, sample = energy.frozen_at(curve), sampled_edges(curve, count)
+    rows = energy.row_energies(curve)
+    off = rows[sample] - energy.exact.row_energies(curve, sample)
+    # the value is computed without the sums of single edges
+    rest = energy.value(curve) - (4.0 * len(curve.mesh.component_sizes) + float(rows.sum()))
+    return Estimate.of_sum(off, len(curve), rest)
+
+
+def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, count: int = EDGES_ALONG) -> Estimate:
+    """The error of the derivative's product with a field u, shape (n, m), from so many edges."""
+    energy, sample = energy.frozen_at(curve), sampled_edges(curve, count)
+    change = _relative_change(energy, curve, u)
+    if change == 0.0:
+        return Estimate(0.0, 0.0)
+    t = CHANGE / change
+    ends = [curve.with_vertices(curve.vertices + way * u) for way in (t, -t)]
+    rows = [energy.row_energies(end) for end in ends]
+    off = [each[sample] - energy.exact.row_energies(end, sample) for each, end in zip(rows, ends, strict=True)]
+    slope = float(np.sum(energy.value_and_derivative(curve)[1] * u))
+    rest = slope - float(np.sum(rows[0] - rows[1])) / (2.0 * t)
+    return Estimate.of_sum((off[0] - off[1]) / (2.0 * t), len(curve), rest)
+
+
+def _relative_change(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray) -> float:
+    """The largest rate, relative to it, at which the distance of two near edges or two clusters can change along u."""
+    blocks = energy.block_list(curve)
+    i, j = np.concatenate([(blocks.i, blocks.j), blocks.middles], axis=1)
+    motion = 0.5 * (u[curve.mesh.tails] + u[curve.mesh.heads])
+    speed, distance = (np.linalg.norm(x[i] - x[j], axis=1) for x in (motion, curve.midpoints))
+    return float(np.max(speed / distance, initial=0.0))
+
+
+def sampled_edges(curve: Curve, count: int) -> IntArray:
+    """One edge of each of so many stretches with equal numbers of edges, at random but always the same; all if few."""
+    n = len(curve)
+    if n <= count:
+        return np.arange(n)
+    ends = np.arange(count + 1) * n // count
+    return np.asarray(np.random.default_rng(1).integers(ends[:-1], ends[1:]))
+
+
+@dataclass(frozen=True)
+class SampledErrors:
+    """What a sample tells of the errors of an energy and of a projected gradient.
+
+    Attributes
+    ----------
+    energy
+        Of the energy E, relative.
+    gradient_norm
+        Of the norm |u| that the projected gradient has in the metric it is taken in, relative to it, or to √E if that
+        is larger.
+    order
+        Of the expansions.
+    """
+
+    energy: Estimate
+    gradient_norm: Estimate
+    order: int
+
+    @classmethod
+    def at(
+        cls, energy: HierarchicalMoebiusEnergy, curve: Curve, value: float, u: FloatArray, norm: float
+    ) -> "SampledErrors":
+        """Those at a curve, with the energy or objective E, the projected gradient u, shape (n, m), and its norm.
+
+        To first order an error δ of the derivative changes the norm by δ·u/|u|.
+        """
+        along = slope_error(energy, curve, u).relative(norm) if norm > 0.0 else Estimate(0.0, 0.0)
+        unit = max(norm, float(np.sqrt(abs(value))))
+        return cls(energy_error(energy, curve).relative(abs(value)), along.relative(unit), energy.order)
+
+    def within(self, accuracy: float) -> bool:
+        """Whether the bounds are: for the norm, to whose error that of the solution is added, half of it."""
+        energy, norm = ENERGY_SHARE * accuracy, NORM_SHARE * accuracy
+        return self.energy.bound <= energy and self.gradient_norm.bound <= norm
+
+    def as_report(self) -> dict[str, object]:
+        """As the plain values of a report."""
+        energy, norm = self.energy.as_report(), self.gradient_norm.as_report()
+        return {"energy": energy, "gradient_norm": norm, "order": self.order}

@@ -1,0 +1,106 @@
+"""The hierarchical solver looks at its own errors during a run."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, RelaxOptions, Result, minimize
+from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, far_field
+from mobius_flow.core.speed import bent_trefoil
+
+LESS_ACCURATE = "the hierarchical solver is less accurate than asked for"
+
+
+def short(vertices: int = 600, **options: object) -> Result:
+    wanted = RelaxOptions(**({"solver": "hierarchical", "mesh": "fixed", "max_iterations": 3} | options))  # type: ignore[arg-type]
+    return minimize(bent_trefoil(vertices), wanted)
+
+
+def test_errors_are_in_outcome_and_report() -> None:
+    result = short()
+    errors = result.outcome.sampled_errors
+    assert errors is not None
+    assert 0.0 < errors.energy.bound < 1e-6
+    assert 0.0 < errors.gradient_norm.bound < 5e-5
+    report = result.report()["sampled_errors"]
+    assert report == {
+        "energy": {"mean": errors.energy.mean, "standard_error": errors.energy.standard_error},
+        "gradient_norm": {
+            "mean": errors.gradient_norm.mean,
+            "standard_error": errors.gradient_norm.standard_error,
+        },
+        "order": 4,
+    }
+    assert ";" not in result.message
+
+
+def test_dense_sums_have_no_errors() -> None:
+    result = short(200, solver="dense")
+    assert result.outcome.sampled_errors is None
+    assert result.report()["sampled_errors"] is None
+
+
+def test_expansions_are_tightened_for_the_accuracy_asked_for() -> None:
+    result = short(accuracy=1e-5)
+    errors = result.outcome.sampled_errors
+    assert errors is not None
+    assert errors.order == 6
+    assert errors.energy.bound < 1e-7
+    assert errors.gradient_norm.bound < 5e-6
+    assert "distant clusters were expanded to order 6 for the accuracy asked for" in result.message
+    assert LESS_ACCURATE not in result.message
+    assert len(result.energies) == 4
+    assert result.certified
+
+
+def test_what_cannot_be_reached_is_told() -> None:
+    assert LESS_ACCURATE in short(accuracy=1e-12).message
+
+
+def wrong_kernels(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One Taylor coefficient of the logarithm is wrong."""
+    original = far_field.kernel_derivatives
+
+    def kernels(*arguments):  # type: ignore[no-untyped-def]
+        square, log = original(*arguments)
+        log[4] *= 1.01
+        return square, log
+
+    monkeypatch.setattr(far_field, "kernel_derivatives", kernels)
+
+
+def wrong_derivative(monkeypatch: pytest.MonkeyPatch) -> None:
+    original = HierarchicalMoebiusEnergy.value_and_derivative
+
+    def value_and_derivative(self: HierarchicalMoebiusEnergy, curve: Curve) -> tuple[float, np.ndarray]:
+        value, derivative = original(self, curve)
+        return value, 1.01 * derivative
+
+    monkeypatch.setattr(HierarchicalMoebiusEnergy, "value_and_derivative", value_and_derivative)
+
+
+def wrong_value(monkeypatch: pytest.MonkeyPatch) -> None:
+    original = HierarchicalMoebiusEnergy.value
+    monkeypatch.setattr(HierarchicalMoebiusEnergy, "value", lambda self, curve: (1.0 + 3e-6) * original(self, curve))
+
+
+@pytest.mark.parametrize("defect", [wrong_kernels, wrong_derivative, wrong_value])
+def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+    defect(monkeypatch)
+    message = short().message
+    assert f"{LESS_ACCURATE}: dense sums over sampled edges put its relative errors at up to " in message
+    assert message.endswith("in the gradient's norm; the dense solver has none of them")
+
+
+def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    from mobius_flow.core.driver.interventions import check_accuracy
+
+    looked_at: list[int] = []
+    original = check_accuracy.SampledErrors.at
+
+    def at(energy, curve, *rest):  # type: ignore[no-untyped-def]
+        looked_at.append(len(curve))
+        return original(energy, curve, *rest)
+
+    monkeypatch.setattr(check_accuracy.SampledErrors, "at", at)
+    short(1700, max_iterations=31, mesh="auto", tolerance=1e-2)
+    assert len(looked_at) >= 3
+    assert looked_at[0] < looked_at[-1] == looked_at[-2] == 1700
