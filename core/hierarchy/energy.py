@@ -26,6 +26,7 @@ LEAF = 16  # edges; halving ends at 8 to 16 of them, with which the near field t
 KEPT = 1.1 * THETA  # separation up to which a list is as good as a new one
 EXACT_UP_TO = 30_000  # vertices; all pairs of edges take some fifteen seconds there
 ACCURACY = 5e-6  # relative error of the value, on curves of low energy; on knots it is smaller
+MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are faster than near ones in a list
 OUTDATED = 1.0 / 3.0  # less separated blocks make a new list; up to 1/3 all replaced pairs are near pairs
 
 
@@ -34,7 +35,8 @@ class HierarchicalMoebiusEnergy:
     """The midpoint sum `MoebiusEnergy` for curves of many vertices.
 
     Every curve has a block list of its own, at whose change the value jumps by its error.  `frozen_at` keeps one list,
-    which makes a smooth function as long as it fits: what a line search should see.
+    which makes a smooth function as long as it fits: what a line search should see.  Where strands are so dense that
+    much of the list would be near pairs, it is the midpoint sum itself.
 
     Parameters
     ----------
@@ -80,13 +82,19 @@ class HierarchicalMoebiusEnergy:
 
     def value(self, curve: Curve) -> float:
         """Energy E of the curve."""
-        near, far = self._fields(curve, _unit_sized(curve)[0])
+        blocks = self._blocks(curve)
+        if blocks.near_share > MOSTLY_NEAR:
+            return MoebiusEnergy(self.without).value(curve)
+        near, far = self._fields(blocks, _unit_sized(curve)[0])
         return energy_of_pairs(curve, near.value() + far.value())
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
+        blocks = self._blocks(curve)
+        if blocks.near_share > MOSTLY_NEAR:
+            return MoebiusEnergy(self.without).value_and_derivative(curve)
         unit, exponent = _unit_sized(curve)
-        near, far = self._fields(curve, unit)
+        near, far = self._fields(blocks, unit)
         value, sums = near.value_and_derivative()
         far_value, far_sums = far.value_and_derivative()
         for part, far_part in zip(sums, far_sums, strict=True):
@@ -94,8 +102,8 @@ class HierarchicalMoebiusEnergy:
         derivative = np.ldexp(2.0 * sums.at_vertices(curve.mesh, near.edges.tau), -exponent)
         return energy_of_pairs(curve, value + far_value), derivative
 
-    def _fields(self, curve: Curve, unit: Curve) -> tuple[NearField, FarField]:
-        blocks, edges = self._blocks(curve), Edges.of(unit)
+    def _fields(self, blocks: BlockList, unit: Curve) -> tuple[NearField, FarField]:
+        edges = Edges.of(unit)
         return NearField(edges, blocks.near_pairs(self.without)), FarField(blocks, edges.vectors, ORDER)
 
     def _blocks(self, curve: Curve) -> BlockList:
