@@ -8,7 +8,8 @@ from ..descent import NoStep, Step
 from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
 from .iterate import Iterate
-from .outcome import DEGENERATE, ROSE, Outcome, out_of_iterations, stalled
+from .outcome import DEGENERATE, Outcome, out_of_iterations, stalled
+from .rises import Rises
 from .run import Run
 from .termination import termination
 
@@ -35,24 +36,22 @@ class WithOutcome:
 
 def iterates(run: Run) -> Relaxation:
     """Yield the start and every accepted step or change of mesh, each once; return how it ended."""
+    rises = Rises()
     try:
-        outcome = yield from _iterates(run, [make(run) for make in INTERVENTIONS])
+        outcome = yield from _iterates(run, [make(run) for make in INTERVENTIONS], rises)
     except np.linalg.LinAlgError as error:
         outcome = stalled(DEGENERATE.format(error=error))
-    rises = run.rises
-    if rises:
-        outcome = outcome.adding(ROSE.format(count=len(rises), steps=run.iterate.index, total=sum(rises)))
-    return outcome
+    return rises.told(outcome, run.iterate.index)
 
 
-def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
+def _iterates(run: Run, interventions: Sequence[Intervention], rises: Rises) -> Relaxation:
     yield run.iterate
     event: Event = Start()
     while True:
         answer = _answer(event, interventions)
         if isinstance(answer, Change) and not (run.at_limit and answer.step):
             mesh = run.problem.mesh
-            yield from _changed(run, answer)
+            yield from _changed(run, answer, rises)
             if run.problem.mesh is not mesh:
                 event = Start()
                 continue
@@ -62,7 +61,10 @@ def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
             return answer if isinstance(answer, Outcome) else out_of_iterations(run.iterate.index)
         event = termination(run) or run.step()
         if isinstance(event, Step):
+            before = run.iterate
             yield run.accept(event)
+            if run.problem.geometry.prescribes:
+                rises.step(before, run.iterate)
 
 
 def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Change:
@@ -75,10 +77,15 @@ def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Chan
     return event
 
 
-def _changed(run: Run, change: Change) -> Iterator[Iterate]:
+def _changed(run: Run, change: Change, rises: Rises) -> Iterator[Iterate]:
     """Make a change; yield the iterates it leads to, if any."""
+    before = run.iterate
     if change.step is not None:
-        yield run.accept(change.step)
-    iterate = run.change(change)
-    if iterate is not None:
-        yield iterate
+        moved = run.accept(change.step)
+        rises.change(before, moved)
+        yield moved
+    before = run.iterate
+    remeshed = run.change(change)
+    if remeshed is not None:
+        rises.change(before, remeshed)
+        yield remeshed

@@ -76,3 +76,4 @@ UNRESOLVED = (
 )
 ADVICE = "more vertices or an adaptive mesh may help"
 ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"
+REMESHED = "the energy rose where the mesh changed: {rises}"

@@ -13,8 +13,6 @@ from .options import RelaxOptions
 from .outcome import DEGENERATE
 from .solver import Solver
 
-RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
-
 
 class Run:
     """A relaxation under way: the point it has reached, and what its method remembers.
@@ -40,15 +38,12 @@ class Run:
         Which method takes the next step.
     vertices
         Number of vertices where no strands are near, None for the default.
-    rises
-        Increases of the energy, which are allowed while edge lengths are being evened out.
     """
 
     def __init__(self, problem: Problem, start: Curve, options: RelaxOptions) -> None:
         self.options = options
         self.vertices = options.vertices
         self.method = METHODS[options.method]
-        self.rises: list[float] = []
         self.point = problem.at_curve(start).anchored
         self._memory = State()
         self._certified = problem.certifiable  # an embedded start, and so far no motion
@@ -81,14 +76,11 @@ class Run:
 
     def accept(self, step: Step) -> Iterate:
         """Go to the end of a step."""
-        before = self.iterate
         self.point = step.point.anchored
         self._certified &= step.certified
-        self.iterate = now = self._described(before.index + 1, step.size, tuple(leg.end.placed for leg in step.legs))
-        evening_out = self.problem.geometry.prescribes and now.edge_length_error < before.edge_length_error
-        if evening_out and now.energy > (1.0 + RISE) * before.energy:
-            self.rises.append(now.energy - before.energy)
-        return now
+        path = tuple(leg.end.placed for leg in step.legs)
+        self.iterate = self._described(self.iterate.index + 1, step.size, path)
+        return self.iterate
 
     def change(self, change: Change) -> Iterate | None:
         """Go on from a point of another problem, or by another method; a new mesh makes a new iterate."""
