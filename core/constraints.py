@@ -48,6 +48,16 @@ class Constraints:
         shift = weighted_barycenter(curve, self.parts) - self.barycenter
         return np.concatenate([np.log(curve.edge_lengths / self.lengths), shift])
 
+    def error(self, mesh: Mesh, residual: FloatArray) -> float:
+        """The largest relative error of a length, or distance of a barycenter from its target, that a residual means.
+
+        Σ ℓ_I m_I itself is so large on long chains of components that its rounding is above any tolerance.
+        """
+        n = mesh.size
+        totals = np.array([own @ self.lengths for own in _memberships(mesh, self.parts)])
+        shifts = residual[n:].reshape(len(totals), -1) / totals[:, None]
+        return max(float(np.max(np.abs(residual[:n]))), float(np.max(np.abs(shifts), initial=0.0)))
+
     def length_error(self, curve: Curve) -> float:
         """max |log ℓ/ℓ⁰| over the edges."""
         return float(np.max(np.abs(np.log(curve.edge_lengths / self.lengths))))

@@ -39,11 +39,13 @@ def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None) -> Iterator[T
     """Cover every unordered pair of edges with disjoint closures exactly once, but for some that are left out."""
     n = mesh.size
     left_out = np.sort(np.empty((2, 0), dtype=np.intp) if without is None else np.stack(without), axis=0)
+    left_out = left_out[:, np.argsort(left_out[0])]
+    begins = np.searchsorted(left_out[0], np.arange(n + 1))
     first = 0
     while first < n:
         last = min(n, first + max(1, ROWS_TIMES_COLUMNS // (n - first)))
         excluded = _excluded(mesh, first, last)
-        row, column = left_out[:, (left_out[0] >= first) & (left_out[0] < last)] - first
+        row, column = left_out[:, begins[first] : begins[last]] - first
         excluded[row, column] = True
         yield Tile(slice(first, last), slice(first, n), excluded)
         first = last

@@ -20,7 +20,7 @@ class Constrained:
     Parameters
     ----------
     tolerance
-        Of the constraints' residual, relative error of edge lengths: far below any gap that can be proved.
+        Of lengths, a relative error, and of barycenters: far below any gap that can be proved.
     max_iterations
         Of the modified Newton method (42), and of Newton's for what it leaves over.
     small
@@ -66,7 +66,7 @@ class Constrained:
             if not point.nondegenerate:
                 return None
             residual = point.residual - level
-            error = float(np.max(np.abs(residual)))
+            error = base.problem.constraints.error(point.curve.mesh, residual)
             if error <= self.tolerance:
                 return point
             if not error <= self.contraction * last:

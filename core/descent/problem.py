@@ -182,6 +182,11 @@ class Point:
         """How far constraints are from their targets, shape (n + p·m,) for p parts; 0 where nothing is prescribed."""
         return self.problem.geometry.residual(self.problem, self.curve)
 
+    @property
+    def infeasibility(self) -> float:
+        """The same as one number: relative error of a length, or displacement of a barycenter."""
+        return self.problem.constraints.error(self.problem.mesh, self.residual)
+
     @cached_property
     def inner_product(self) -> InnerProduct:
         """The metric, on functions along the curve: that of this curve, or of one some steps ago."""

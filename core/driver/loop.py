@@ -9,7 +9,8 @@ from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
 from .interventions.check_accuracy import with_errors
 from .iterate import Iterate
-from .outcome import DEGENERATE, ROSE, Outcome, out_of_iterations, stalled
+from .outcome import DEGENERATE, Outcome, out_of_iterations, stalled
+from .rises import Rises
 from .run import Run
 from .termination import termination
 
@@ -36,24 +37,22 @@ class WithOutcome:
 
 def iterates(run: Run) -> Relaxation:
     """Yield the start and every accepted step or change of mesh, each once; return how it ended."""
+    rises = Rises()
     try:
-        outcome = yield from _iterates(run, [make(run) for make in INTERVENTIONS])
+        outcome = yield from _iterates(run, [make(run) for make in INTERVENTIONS], rises)
     except np.linalg.LinAlgError as error:
         outcome = stalled(DEGENERATE.format(error=error))
-    rises = run.rises
-    if rises:
-        outcome = outcome.adding(ROSE.format(count=len(rises), steps=run.iterate.index, total=sum(rises)))
-    return with_errors(outcome, run)
+    return with_errors(rises.told(outcome, run.iterate.index), run)
 
 
-def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
+def _iterates(run: Run, interventions: Sequence[Intervention], rises: Rises) -> Relaxation:
     yield run.iterate
     event: Event = Start()
     while True:
         answer = _answer(event, interventions)
         if isinstance(answer, Change) and run.allows(answer):
             mesh = run.problem.mesh
-            yield from _changed(run, answer)
+            yield from _changed(run, answer, rises)
             if run.problem.mesh is not mesh:
                 event = Start()
                 continue
@@ -63,7 +62,10 @@ def _iterates(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
             return answer if isinstance(answer, Outcome) else out_of_iterations(run.iterate.index)
         event = termination(run) or run.step()
         if isinstance(event, Step):
+            before = run.iterate
             yield run.accept(event)
+            if run.problem.geometry.prescribes:
+                rises.step(before, run.iterate)
 
 
 def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Change:
@@ -76,10 +78,15 @@ def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Chan
     return event
 
 
-def _changed(run: Run, change: Change) -> Iterator[Iterate]:
+def _changed(run: Run, change: Change, rises: Rises) -> Iterator[Iterate]:
     """Make a change; yield the iterates it leads to, if any."""
+    before = run.iterate
     if change.step is not None:
-        yield run.accept(change.step)
-    iterate = run.change(change)
-    if iterate is not None:
-        yield iterate
+        moved = run.accept(change.step)
+        rises.change(before, moved)
+        yield moved
+    before = run.iterate
+    remeshed = run.change(change)
+    if remeshed is not None:
+        rises.change(before, remeshed)
+        yield remeshed

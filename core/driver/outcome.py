@@ -87,3 +87,4 @@ INACCURATE = (
     "up to {energy:.1g} in the energy and {norm:.1g} in the gradient's norm; the dense solver has none of them"
 )
 ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"
+REMESHED = "the energy rose where the mesh changed: {rises}"

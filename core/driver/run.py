@@ -14,8 +14,6 @@ from .options import RelaxOptions
 from .outcome import DEGENERATE
 from .solver import Solver
 
-RISE = 1e-9  # relative increase of the energy in one step that is told of; less is rounding
-
 
 class Run:
     """A relaxation under way: the point it has reached, and what its method remembers.
@@ -41,8 +39,6 @@ class Run:
         Which method takes the next step.
     vertices
         Number of vertices where no strands are near, None for the default.
-    rises
-        Increases of the energy, which are allowed while edge lengths are being evened out.
     sampled_errors
         Of the hierarchical solver, when they were last looked at.
     """
@@ -51,7 +47,6 @@ class Run:
         self.options = options
         self.vertices = options.vertices
         self.method = METHODS[options.method]
-        self.rises: list[float] = []
         self.sampled_errors: SampledErrors | None = None
         self.point = problem.at_curve(start).anchored
         self._memory = State()
@@ -85,14 +80,11 @@ class Run:
 
     def accept(self, step: Step) -> Iterate:
         """Go to the end of a step."""
-        before = self.iterate
         self.point = step.point.anchored
         self._certified &= step.certified
-        self.iterate = now = self._described(before.index + 1, step.size, tuple(leg.end.placed for leg in step.legs))
-        evening_out = self.problem.geometry.prescribes and now.edge_length_error < before.edge_length_error
-        if evening_out and now.energy > (1.0 + RISE) * before.energy:
-            self.rises.append(now.energy - before.energy)
-        return now
+        path = tuple(leg.end.placed for leg in step.legs)
+        self.iterate = self._described(self.iterate.index + 1, step.size, path)
+        return self.iterate
 
     def allows(self, change: Change) -> bool:
         """Whether a change is within the limit: a step is an iteration, and so is another mesh."""

@@ -28,22 +28,21 @@ class BlockList:
         The clusters; all ranges are of positions in ``tree.order``.
     first, second
         The two clusters of each block; shape (blocks,).
-    i, j
-        The edges of each near pair, i < j, sorted by i and then by j; shape (pairs,).
+    leaves
+        The pairs of leaves that are no blocks, two arrays; a leaf and itself are such a pair.
     """
 
     tree: ClusterTree
     first: IntArray
     second: IntArray
-    i: IntArray
-    j: IntArray
+    leaves: ClusterPairs
 
     @classmethod
     def of(cls, curve: Curve, theta: float, leaf: int) -> "BlockList":
         """The list of a curve: separation parameter 0 < θ < 1, and the largest number of edges in a leaf."""
         tree = ClusterTree.of(curve, leaf)
         blocks, near = _traverse(tree, *tree.balls(curve), theta)
-        return cls(tree, *blocks, *_edge_pairs(tree, near))
+        return cls(tree, *blocks, near)
 
     def is_separated(self, curve: Curve, theta: float) -> bool:
         """Whether another curve has the same mesh, and all blocks are admissible there with such a parameter."""
@@ -51,6 +50,27 @@ class BlockList:
             return False
         centre, radius = self.tree.balls(curve)
         return bool(_admissible(centre, radius, self.first, self.second, theta).all())
+
+    @property
+    def i(self) -> IntArray:
+        """The first edge of each near pair, i < j, sorted by i and then by j; shape (pairs,)."""
+        return self._edge_pairs[0]
+
+    @property
+    def j(self) -> IntArray:
+        """The second edge; shape (pairs,)."""
+        return self._edge_pairs[1]
+
+    @cached_property
+    def _edge_pairs(self) -> EdgePairIndices:
+        return _edge_pairs(self.tree, self.leaves)
+
+    @property
+    def near_share(self) -> float:
+        """How many of all pairs of edges are near ones, neighbours among them; they are not listed for that."""
+        first, second = ((self.tree.stop - self.tree.start)[side] for side in self.leaves)
+        count = float(np.where(self.leaves[0] == self.leaves[1], 0.5, 1.0) @ (first * second))
+        return count / (0.5 * self.tree.mesh.size**2)
 
     def near_pairs(self, without: EdgePairIndices | None = None) -> EdgePairIndices:
         """The near pairs but for some that are left out.

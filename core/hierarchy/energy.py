@@ -25,6 +25,7 @@ MAX_ORDER = 8  # each two orders make errors some forty times smaller, and half 
 THETA = 0.19  # with that order errors below 10⁻⁶ of a knot's energy, of 10⁻⁵ of the derivative in J_C's dual norm
 LEAF = 16  # edges; halving ends at 8 to 16 of them, with which the near field takes no longer than the far one
 KEPT = 0.2  # separation up to which a list is as good as a new one
+MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are faster than near ones in a list
 OUTDATED = 1.0 / 3.0  # less separated blocks make a new list; up to 1/3 all replaced pairs are near pairs
 
 
@@ -33,7 +34,8 @@ class HierarchicalMoebiusEnergy:
     """The midpoint sum `MoebiusEnergy` for curves of many vertices.
 
     Every curve has a block list of its own, at whose change the value jumps by its error.  `frozen_at` keeps one list,
-    which makes a smooth function as long as it fits: what a line search should see.
+    which makes a smooth function as long as it fits: what a line search should see.  Where strands are so dense that
+    much of the list would be near pairs, it is the midpoint sum itself.
 
     Parameters
     ----------
@@ -92,24 +94,33 @@ class HierarchicalMoebiusEnergy:
 
     def value(self, curve: Curve) -> float:
         """Energy E of the curve."""
-        near, far = self._fields(curve, _unit_sized(curve)[0])
+        blocks = self.block_list(curve)
+        if blocks.near_share > MOSTLY_NEAR:
+            return self.exact.value(curve)
+        near, far = self._fields(blocks, _unit_sized(curve)[0])
         return energy_of_pairs(curve, near.value() + far.value())
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
+        blocks = self.block_list(curve)
+        if blocks.near_share > MOSTLY_NEAR:
+            return self.exact.value_and_derivative(curve)
         unit, exponent = _unit_sized(curve)
-        near, far = self._fields(curve, unit)
+        near, far = self._fields(blocks, unit)
         value, sums = _value_and_sums(near, far)
         derivative = np.ldexp(2.0 * sums.at_vertices(curve.mesh, near.edges.tau), -exponent)
         return energy_of_pairs(curve, value), derivative
 
     def row_energies(self, curve: Curve) -> FloatArray:
         """What `MoebiusEnergy.row_energies` gives for all edges; shape (n,)."""
-        near, far = self._fields(curve, _unit_sized(curve)[0])
+        blocks = self.block_list(curve)
+        if blocks.near_share > MOSTLY_NEAR:
+            return self.exact.row_energies(curve, np.arange(len(curve)))
+        near, far = self._fields(blocks, _unit_sized(curve)[0])
         return _value_and_sums(near, far)[1].row_energies(near.edges.vectors)
 
-    def _fields(self, curve: Curve, unit: Curve) -> tuple[NearField, FarField]:
-        blocks, edges = self.block_list(curve), Edges.of(unit)
+    def _fields(self, blocks: BlockList, unit: Curve) -> tuple[NearField, FarField]:
+        edges = Edges.of(unit)
         return NearField(edges, blocks.near_pairs(self.without)), FarField(blocks, edges.vectors, self.order)
 
     def block_list(self, curve: Curve) -> BlockList:

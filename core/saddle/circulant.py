@@ -14,6 +14,8 @@ from .fourier import ComponentTransform
 from .krylov import LinearMap
 from .symbol import Parameter
 
+LEAST = 1e-6  # of the largest value: of doubled edges alone the nearest circulant matrix is singular
+
 
 class Circulants:
     """M = W⁻¹ F W⁻¹, F circulant on each component, of one symbol, and W the mean edge length of the component.
@@ -40,15 +42,18 @@ class Circulants:
         one = np.ones(mesh.size)
         symbol = Parameter.of_steps(mesh, one).symbol(lambda v: self._scale * apply(self._scale * v), one, np.pi)
         values = self._transform.sampled(symbol)
-        # the circulant matrix D F⁻¹ Dᵀ of edge differences D vanishes on constants; any positive value does there
-        stretches = self._transform.sampled(lambda theta: 4.0 * np.sin(0.5 * np.maximum(theta, theta[1])) ** 2)
         self._inverse = [1.0 / value for value in values]
-        self._stiffness = [value / stretch for value, stretch in zip(values, stretches, strict=True)]
+        stretches = self._transform.sampled(lambda theta: 4.0 * np.sin(0.5 * theta) ** 2)
+        self._compliance = [stretch / value for value, stretch in zip(values, stretches, strict=True)]
 
     def solve(self, f: FloatArray) -> FloatArray:
         """M⁻¹ f; shape (n, k)."""
         return np.asarray(self._scale * self._transform.filtered(self._scale * f, self._inverse))
 
-    def solve_differences(self, g: FloatArray) -> FloatArray:
-        """(D M⁻¹ Dᵀ)⁻¹ g for edge differences D, on their range; shape (n, k)."""
-        return np.asarray(self._transform.filtered(g / self._scale, self._stiffness) / self._scale)
+    def tension(self, tangents: FloatArray) -> LinearMap:
+        """With D F⁻¹ Dᵀ, which is circulant, modulated by the directions of edges."""
+        weighted = self._scale * tangents
+        size = np.linalg.norm(weighted, axis=1, keepdims=True)
+        modulated = self._transform.modulated(self._compliance, weighted / size)
+        factors = [1.0 / np.maximum(each, LEAST * each.max(axis=1, keepdims=True)) for each in modulated]
+        return lambda g: self._transform.filtered(g[:, None] / size, factors)[:, 0] / size[:, 0]

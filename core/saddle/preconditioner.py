@@ -11,7 +11,7 @@ import numpy as np
 
 from ..constraints import ConstraintDerivative
 from ..types import FloatArray
-from .krylov import conjugate_gradients
+from .krylov import LinearMap, conjugate_gradients
 
 ROUNDING = 1e-12  # relative to all of a covector, below which its tangential part is rounding
 MAX_ITERATIONS = 500
@@ -23,23 +23,24 @@ class Model(Protocol):
     def solve(self, f: FloatArray) -> FloatArray:
         """M⁻¹ f; shape (n, k)."""
 
-    def solve_differences(self, g: FloatArray) -> FloatArray:
-        """Near (D M⁻¹ Dᵀ)⁻¹ g, D the edge differences; shape (n, k)."""
+    def tension(self, tangents: FloatArray) -> LinearMap:
+        """A map near the inverse of Σ_k diag(t_k) D M⁻¹ Dᵀ diag(t_k), D the edge differences; (n,) to (n,).
+
+        It leads from changes of edge lengths to tensions that cause them, for t = τ/ℓ of shape (n, m).
+        """
 
 
 class ConstraintPreconditioner:
     """[M Cᵀ; C 0] through the Schur complement S = C M⁻¹ Cᵀ, by conjugate gradients.
 
-    On the lengths S = Σ_k diag(t_k) D M⁻¹ Dᵀ diag(t_k) with t_I = τ_I/ℓ_I.  Compared with the shortest waves t turns
-    slowly along the curve, so that Σ_k diag(t̂_k) (D M⁻¹ Dᵀ)⁻¹ diag(t̂_k), t̂ = t/|t|², is near S⁻¹.
+    On the lengths S = Σ_k diag(t_k) D M⁻¹ Dᵀ diag(t_k) with t_I = τ_I/ℓ_I, which the model all but inverts.
     """
 
     def __init__(self, model: Model, constraints: ConstraintDerivative) -> None:
         self._model = model
         self.constraints = constraints
-        self._dual = constraints.tangents / np.sum(constraints.tangents**2, axis=1, keepdims=True)
-        pinned = constraints.barycenter
-        n = len(self._dual)
+        self._tension = model.tension(constraints.tangents)
+        pinned, n = constraints.barycenter, len(constraints.tangents)
         forced = [constraints.apply(model.solve(row))[n:] for row in pinned]
         self._pinned = np.linalg.inv(np.reshape(forced, (len(pinned), len(pinned))))
 
@@ -74,6 +75,5 @@ class ConstraintPreconditioner:
         return c.apply(self._model.solve(c.apply_transpose(multipliers)))
 
     def _near_inverse(self, residual: FloatArray) -> FloatArray:
-        n = len(self._dual)
-        pull = self._model.solve_differences(self._dual * residual[:n, None])
-        return np.concatenate([np.einsum("ij,ij->i", self._dual, pull), self._pinned @ residual[n:]])
+        n = len(self.constraints.tangents)
+        return np.concatenate([self._tension(residual[:n]), self._pinned @ residual[n:]])

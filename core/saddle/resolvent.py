@@ -1,9 +1,10 @@
 """Models of inner products of order 3/2 by resolvents of the Laplacian along the curve, for any edge lengths.
 
 For λ > 0 we have λ^{-3/2} = 2/π ∫ σ^{1/2} (λ + σ)⁻² dσ and λ^{1/2} = 1/π ∫ σ^{-1/2} λ (λ + σ)⁻¹ dσ.  By the
-trapezoidal rule in log σ both are sums over a few σ, and with a symbol f(σ) in place of σ^{3/2}, slowly varying in
-comparison, they are near 1/f(λ) and f(λ)/λ.  Each resolvent is a sparse factorisation with three entries a row, for
-all components at once: together several times slower than a Fourier transform, but insensitive to the mesh.
+trapezoidal rule in log σ both are sums over a few σ, and with a symbol f(σ) in place of σ^{3/2}, or one in place of
+σ^{1/2}, slowly varying in comparison, they are near 1/f(λ), or near this one at λ.  Each resolvent is a sparse
+factorisation with three entries a row, for all components at once: together several times slower than a Fourier
+transform, but insensitive to the mesh.
 """
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..curve import Mesh
 from ..types import FloatArray
 from .krylov import LinearMap
 from .sparse import factorised
-from .symbol import Parameter
+from .symbol import Parameter, modulated
 
 SPACING = 3.5  # of log σ: with 2.3 there is no iteration less, with 5 there are half as many more
 RESOLVED = 0.9  # share of the edges that are shorter than half of any wave tried
@@ -43,13 +44,11 @@ class Resolvents:
         symbol = parameter.symbol(apply, mass, np.pi / float(np.quantile(lengths, RESOLVED)))
         least, largest = (2.0 * np.pi / float(parameter.periods.max())) ** 2, 4.0 / float(lengths.min()) ** 2
         sigma = np.exp(np.arange(np.log(least), np.log(largest) + SPACING, SPACING))
-        f = symbol(np.sqrt(sigma))
         self._mass, self._lengths = mass[:, None], lengths[:, None]
         at_vertices = d.T @ sp.diags_array(1.0 / lengths) @ d
         at_edges = d @ sp.diags_array(1.0 / mass) @ d.T
-        self._weights = 2.0 / np.pi * SPACING * sigma**2 / f
-        self._edge_weights = SPACING / np.pi * f / sigma
-        self._sigma = sigma
+        self._weights = 2.0 / np.pi * SPACING * sigma**2 / symbol(np.sqrt(sigma))
+        self._sigma, self._symbol = sigma, symbol
         self._at_vertices = [factorised(at_vertices + s * sp.diags_array(mass)) for s in sigma]
         self._at_edges = [factorised(at_edges + s * sp.diags_array(lengths)) for s in sigma]
 
@@ -60,9 +59,18 @@ class Resolvents:
             total += weight * factor.solve(self._mass * factor.solve(f))
         return total
 
-    def solve_differences(self, g: FloatArray) -> FloatArray:
-        """(D M⁻¹ Dᵀ)⁻¹ g for edge differences D, nearly; shape (n, k)."""
-        total = np.asarray(np.sum(self._edge_weights) * g / self._lengths)
-        for weight, factor in zip(self._sigma * self._edge_weights, self._at_edges, strict=True):
-            total -= weight * factor.solve(g)
-        return total
+    def tension(self, tangents: FloatArray) -> LinearMap:
+        """By λ^{1/2} with the inverse of the modulated symbol, which is constant on long waves, in place of σ^{1/2}."""
+        lengths = self._lengths[:, 0]
+        symbol = modulated(lambda w: w**2 / self._symbol(w), tangents * self._lengths, lengths)
+        stiffness = np.maximum.accumulate(1.0 / symbol(np.sqrt(self._sigma)))
+        weights = SPACING / np.pi * (stiffness - stiffness[0])
+
+        def tension(change: FloatArray) -> FloatArray:
+            right = lengths * change
+            total = (stiffness[0] + np.sum(weights)) * change
+            for weight, factor in zip(self._sigma * weights, self._at_edges, strict=True):
+                total -= weight * factor.solve(right)
+            return np.asarray(lengths * total)
+
+        return tension

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import irfft, rfft
 
 from ..curve import Mesh
 from ..types import FloatArray
@@ -78,3 +79,30 @@ class Parameter:
             raise np.linalg.LinAlgError("matrix is not positive definite: a Rayleigh quotient is not positive")
         logarithms, last = (np.log(frequencies), np.log(quotients)), frequencies[-1]
         return lambda f: np.exp(np.interp(np.log(np.maximum(f, turn)), *logarithms)) * np.maximum(f / last, 1.0) ** 3
+
+
+def autocorrelation(t: FloatArray) -> FloatArray:
+    """Means of ⟨t_I, t_{I+d}⟩ over I, for t of period k; shapes (..., k, m) -> (..., k)."""
+    count = t.shape[-2]
+    return np.asarray(irfft(np.sum(np.abs(rfft(t, axis=-2)) ** 2, axis=-1), count) / count)
+
+
+def modulated(symbol: Symbol, tau: FloatArray, lengths: FloatArray) -> Symbol:
+    """What Σ_k diag(τ_k) K diag(τ_k) costs waves on edges, on an average along the curve, for K of a symbol.
+
+    The kernel of K is multiplied by the autocorrelation of τ, on a uniform grid on which components follow each other.
+    Waves that are too short for this grid do not see the curve turn.
+
+    Parameters
+    ----------
+    tau
+        Unit tangents, shape (n, m).
+    lengths
+        Edge lengths, shape (n,).
+    """
+    ends, count = np.cumsum(lengths), 2 * len(lengths)
+    spacing = ends[-1] / count
+    nearest = np.searchsorted(ends[:-1], spacing * (np.arange(count) + 0.5))
+    frequencies = 2.0 * np.pi / ends[-1] * np.arange(count // 2 + 1)
+    values = rfft(autocorrelation(tau[nearest]) * irfft(symbol(frequencies), count)).real
+    return lambda f: np.where(f < frequencies[-1], np.interp(f, frequencies, values), symbol(f))

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from ..curve import Mesh
 from ..types import FloatArray
+from .krylov import LinearMap
 from .preconditioner import Model
 from .sparse import factorised
 
@@ -48,6 +49,6 @@ class TwoLevel:
         shift = self._factor.solve(padded)[: len(force)]
         return np.asarray(self._fine.solve(f) + shift[self._component])
 
-    def solve_differences(self, g: FloatArray) -> FloatArray:
-        """(D M⁻¹ Dᵀ)⁻¹ g, approximately: whole components have no edge differences; shape (n, k)."""
-        return self._fine.solve_differences(g)
+    def tension(self, tangents: FloatArray) -> LinearMap:
+        """That of the model along the components: as a whole these have no edge differences."""
+        return self._fine.tension(tangents)

@@ -9,7 +9,7 @@ from mobius_flow.core.speed import bent_trefoil
 LESS_ACCURATE = "the hierarchical solver is less accurate than asked for"
 
 
-def short(vertices: int = 600, **options: object) -> Result:
+def short(vertices: int = 1500, **options: object) -> Result:
     wanted = RelaxOptions(**({"solver": "hierarchical", "mesh": "fixed", "max_iterations": 3} | options))  # type: ignore[arg-type]
     return minimize(bent_trefoil(vertices), wanted)
 

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Iterate, RelaxOptions, Status, Trajectory, minimize
+from mobius_flow.core import Curve, Iterate, Outcome, RelaxOptions, Status, Trajectory, minimize
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.curve.smooth import smoothed
 from mobius_flow.core.driver.interventions import coarse_start
+from mobius_flow.core.driver.rises import Rises
 from mobius_flow.core.knots import hard_unknot, knot, scramble
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
@@ -143,3 +144,33 @@ def test_vertices_come_back_in_a_tangle_too() -> None:
 def test_penalised_lengths_keep_all_vertices() -> None:
     iterates, _ = relaxed(bent(torus_trefoil(900)), max_iterations=40, method="penalty-lbfgs")
     assert {len(iterate.curve) for iterate in iterates} == {900}
+
+
+@pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize("options", [{"vertices": 900}, {"mesh": "adaptive"}], ids=["coarse start", "adaptive"])
+def test_rises_of_the_energy_with_the_mesh_are_told_of(options: dict[str, object]) -> None:
+    iterates: list[Iterate] = []
+    result = minimize(bent(torus_trefoil(900)), RelaxOptions(**options), iterates.append)  # type: ignore[arg-type]
+    energies, told = result.energies, []
+    changed = [k for k, iterate in enumerate(iterates) if k and iterate.step_size == 0.0]
+    for _, group in itertools.groupby(enumerate(changed), lambda place: place[1] - place[0]):
+        first, *_, last = [k for _, k in group]
+        highest = max(energies[first : last + 1])
+        assert highest > max(energies[first - 1], energies[last])
+        passed = " → ".join(f"{energy:.6g}" for energy in (energies[first - 1], highest, energies[last]))
+        told.append(f"{passed} at iteration {last}")
+    assert len(told) == 2
+    assert result.message.endswith(f"; the energy rose where the mesh changed: {', '.join(told)}")
+
+
+def test_many_rises_are_added_up() -> None:
+    curve = regular_polygon(5)
+    rises, energies = Rises(), [4.0, 4.5, 3.0, 3.5, 2.0, 2.25, 1.0, 1.125, 1.0, 1.0625]
+    iterates = [Iterate(2 * k, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for k, energy in enumerate(energies)]
+    for k in range(0, len(iterates), 2):
+        rises.change(iterates[k], iterates[k + 1])
+    message = rises.told(Outcome(Status.CONVERGED, "done"), 9).message
+    assert message == (
+        "done; the energy rose where the mesh changed: 4 → 4.5 at iteration 2, 3 → 3.5 at iteration 6, "
+        "2 → 2.25 at iteration 10, and 2 times more, by 0.188 in all"
+    )

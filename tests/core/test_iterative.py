@@ -54,7 +54,7 @@ def test_gradient(name: str) -> None:
     # multipliers are as exact in what they do, measured by the displacement that corresponds to their pull
     pull = space.constraints.apply_transpose(multipliers - forces)
     displacement = spaces(name)[1]._inner.solve(pull)  # type: ignore[attr-defined]
-    assert np.sqrt(np.sum(pull * displacement)) < 5e-2 * size
+    assert np.sqrt(np.sum(pull * displacement)) < 6e-2 * size
 
 
 @CURVE

@@ -68,7 +68,7 @@ def test_lists_and_values_are_made_anew_in_every_round(monkeypatch):
 
 def test_the_hierarchical_solver_is_compared_with_the_dense_one():
     assert row(200, solver="dense").deviation is None
-    off = row(600, solver="hierarchical").deviation
+    off = row(1200, solver="hierarchical").deviation
     assert 0.0 < off.energy < 1e-5
     assert 0.0 < off.derivative < 1e-4
     assert 0.998 < off.cosine < 1.0

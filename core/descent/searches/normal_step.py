@@ -9,12 +9,12 @@ from ...saddle import TangentSpace
 from ...types import FloatArray
 from ..problem import Point
 
-FEASIBLE = 1e-7  # residual below which a curve counts as being on the constraints
+FEASIBLE = 1e-7  # error below which a curve counts as being on the constraints
 
 
 def on_target(point: Point) -> bool:
     """Whether a point is on the constraints, or on its way there no more."""
-    return float(np.max(np.abs(point.residual))) <= FEASIBLE
+    return point.infeasibility <= FEASIBLE
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +83,6 @@ class TowardsTargets:
         if on_target(point):
             return NormalStep(np.zeros_like(point.vertices), 0.0, 1.0, 1.0, 0.0)
         full = space.pseudo_inverse(-point.residual)
-        longest = min(1.0, self.length_change / float(np.max(np.abs(point.residual))))
+        longest = min(1.0, self.length_change / point.infeasibility)
         cost, allowance = float(np.sum(point.derivative * full)), self.allowance * abs(point.energy)
         return NormalStep(full, cost, longest, self.least_share * longest, allowance)

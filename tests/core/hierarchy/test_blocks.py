@@ -51,6 +51,13 @@ def test_near_pairs_are_sorted(curve: Curve) -> None:
     assert np.all(np.diff(blocks.i * len(curve) + blocks.j) > 0)
 
 
+@CURVE
+def test_share_of_near_pairs(curve: Curve) -> None:
+    blocks, n = BlockList.of(curve, 0.25, 4), len(curve)
+    neighbours_and_halves = 1.5 * n
+    assert blocks.near_share * n**2 / 2 == pytest.approx(len(blocks.i) + neighbours_and_halves, abs=1e-9)
+
+
 @pytest.mark.parametrize("curve", [torus_trefoil(20_000), scattered_rings(3_000, 5, spread=40.0)], ids=["long", "many"])
 def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
     blocks, n = BlockList.of(curve, 0.25, 4), len(curve)

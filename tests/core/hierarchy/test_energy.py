@@ -34,6 +34,14 @@ CURVES = {
     "tangle": subdivide(random_polygon(3, (30,), 3), np.full(30, 20)),
     "uneven": Curve.from_components([torus_trefoil(301).vertices, *scattered_rings(20, 3, 20.0).components]),
 }
+
+
+@pytest.fixture(autouse=True)
+def lists(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Near pairs are listed even where, as on curves as small as these, they are most of all."""
+    monkeypatch.setattr("mobius_flow.core.hierarchy.energy.MOSTLY_NEAR", 1.0)
+
+
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 
@@ -166,6 +174,21 @@ def test_a_frozen_list_is_of_no_use_to_another_mesh() -> None:
     frozen = HierarchicalMoebiusEnergy().frozen_at(hopf_link(60))
     for other in (torus_trefoil(120), hopf_link(80)):
         assert frozen.value(other) == HierarchicalMoebiusEnergy().value(other)
+
+
+def test_densely_packed_strands_are_summed_pair_by_pair(monkeypatch: pytest.MonkeyPatch) -> None:
+    packed, loose = CURVES["tangle"], torus_trefoil(2000)
+    pairs = packed.mesh.tails[:2], packed.mesh.tails[2:4]
+    listed = HierarchicalMoebiusEnergy().value(loose)
+    monkeypatch.undo()
+    for fast, slow in (
+        (HierarchicalMoebiusEnergy(), MoebiusEnergy()),
+        (HierarchicalMoebiusEnergy(without=pairs), MoebiusEnergy(pairs)),
+    ):
+        assert fast.value(packed) == slow.value(packed)
+        for one, other in zip(fast.value_and_derivative(packed), slow.value_and_derivative(packed), strict=True):
+            np.testing.assert_array_equal(one, other)
+    assert HierarchicalMoebiusEnergy().value(loose) == listed != MoebiusEnergy().value(loose)
 
 
 def test_other_energies_have_no_fast_form() -> None:

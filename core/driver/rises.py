@@ -1,0 +1,57 @@
+"""Where the energy went up, as it may where edge lengths are evened out or the mesh changes: told of in the end."""
+
+from itertools import pairwise
+
+from .iterate import Iterate
+from .outcome import REMESHED, ROSE, Outcome
+
+RISE = 1e-9  # relative increase of the energy that is told of; less is rounding
+NAMED = 3  # changes of mesh whose energies are told one by one
+
+
+class Rises:
+    """All of one relaxation."""
+
+    def __init__(self) -> None:
+        self._steps: list[float] = []
+        self._changes: list[list[Iterate]] = []
+
+    def step(self, before: Iterate, after: Iterate) -> None:
+        """Note a method's step."""
+        if after.edge_length_error < before.edge_length_error:
+            self._steps.append(_rise(before, after))
+
+    def change(self, before: Iterate, after: Iterate) -> None:
+        """Note a change of mesh, or a motion that goes with it; what follows right after it is part of the same."""
+        if not (self._changes and self._changes[-1][-1].index == before.index):
+            self._changes.append([before])
+        self._changes[-1].append(after)
+
+    def told(self, outcome: Outcome, steps: int) -> Outcome:
+        """The outcome after so many steps, with a clause for each kind of rise."""
+        rises = [rise for rise in self._steps if rise]
+        if rises:
+            outcome = outcome.adding(ROSE.format(count=len(rises), steps=steps, total=sum(rises)))
+        changes = [change for change in self._changes if _total(change)]
+        if not changes:
+            return outcome
+        rest, total = len(changes) - NAMED, sum(map(_total, changes[NAMED:]))
+        more = f", and {rest} times more, by {total:.3g} in all" if rest > 0 else ""
+        return outcome.adding(REMESHED.format(rises=", ".join(map(_energies, changes[:NAMED])) + more))
+
+
+def _rise(before: Iterate, after: Iterate) -> float:
+    """By how much the energy went up; 0 if it did not."""
+    return after.energy - before.energy if after.energy > (1.0 + RISE) * before.energy else 0.0
+
+
+def _total(change: list[Iterate]) -> float:
+    return sum(_rise(before, after) for before, after in pairwise(change))
+
+
+def _energies(change: list[Iterate]) -> str:
+    """The energies before, between if that is the highest, and after."""
+    first, last = change[0].energy, change[-1].energy
+    highest = max(iterate.energy for iterate in change)
+    passed = [first, last] if highest in (first, last) else [first, highest, last]
+    return f"{' → '.join(f'{energy:.6g}' for energy in passed)} at iteration {change[-1].index}"
