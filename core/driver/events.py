@@ -21,6 +21,8 @@ class Change:
     ----------
     step
         A motion that comes first.
+    further
+        More of them after it, as far as there are iterations left.
     point
         The curve reached, in another problem: with other constraints, or on another mesh.
     method
@@ -33,3 +35,4 @@ class Change:
     point: Point | None = None
     method: Method | None = None
     vertices: int | None = None
+    further: tuple[Step, ...] = ()

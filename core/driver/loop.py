@@ -79,6 +79,9 @@ def _changed(run: Run, change: Change) -> Iterator[Iterate]:
     """Make a change; yield the iterates it leads to, if any."""
     if change.step is not None:
         yield run.accept(change.step)
+    for step in change.further:
+        if not run.at_limit:
+            yield run.accept(step)
     iterate = run.change(change)
     if iterate is not None:
         yield iterate

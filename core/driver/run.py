@@ -85,7 +85,9 @@ class Run:
         self.point = step.point.anchored
         self._certified &= step.certified
         self.iterate = now = self._described(before.index + 1, step.size, tuple(leg.end.placed for leg in step.legs))
-        evening_out = self.problem.geometry.prescribes and now.edge_length_error < before.edge_length_error
+        evening_out = (
+            step.size > 0.0 and self.problem.geometry.prescribes and now.edge_length_error < before.edge_length_error
+        )
         if evening_out and now.energy > (1.0 + RISE) * before.energy:
             self.rises.append(now.energy - before.energy)
         return now

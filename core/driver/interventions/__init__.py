@@ -9,6 +9,7 @@ from typing import Protocol
 
 from ..events import Change, Event
 from ..run import Run
+from .balance import Balance
 from .coarse_start import CoarseStart
 from .composite import Composite
 from .escape_saddle import EscapeSaddle
@@ -31,6 +32,7 @@ INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
     EscapeSaddle,
     Composite,
     FinerMesh,
+    Balance,
     Fallback,
     Remesh,
 )
