@@ -39,4 +39,4 @@ def moebius_pullback(points: FloatArray, q: FloatArray, covector: FloatArray) ->
 
 def _denominator(q: FloatArray, along: FloatArray, square: FloatArray) -> FloatArray:
     c, v = q[0], q[1:]
-    return np.maximum(c**2 + 2.0 * c * along + (v @ v) * square, NEAREST)
+    return np.asarray(np.maximum(c**2 + 2.0 * c * along + (v @ v) * square, NEAREST))
