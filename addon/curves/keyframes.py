@@ -75,7 +75,7 @@ def end_of(data: "bpy.types.Curve") -> Frame:
         points = np.empty(3 * sum(len(spline.points) for spline in data.splines), dtype=np.float32)
         data.shape_keys.key_blocks[-1].data.foreach_get("co", points)
         return points.reshape(-1, 3)
-    curves = fcurves_of(data.animation_data.action)
+    curves = fcurves_of(data)
     last = {(curve.data_path, curve.array_index): curve.keyframe_points[-1].co[1] for curve in curves}
     return np.array([[last[path, axis] for axis in range(3)] for path in point_paths(data)], dtype=np.float32)
 

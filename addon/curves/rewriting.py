@@ -67,7 +67,7 @@ def _points_of(block: "bpy.types.ShapeKey") -> Frame:
 
 def _coordinates(data: "bpy.types.Curve") -> "list[bpy.types.FCurve]":
     """The F-curves of all coordinates, point by point."""
-    found = {(curve.data_path, curve.array_index): curve for curve in fcurves_of(data.animation_data.action)}
+    found = {(curve.data_path, curve.array_index): curve for curve in fcurves_of(data)}
     return [found[path, axis] for path in point_paths(data) for axis in range(3)]
 
 

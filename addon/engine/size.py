@@ -31,7 +31,7 @@ class Measure(Enum):
             return curve.length
         if self is Measure.BOX:
             return float(np.ptp(curve.vertices, axis=0).max())
-        away = np.square(curve.midpoints - barycenter(curve)).sum(axis=1)
+        away = np.square(curve.midpoints - barycenter(curve)).sum(axis=1) + curve.edge_lengths**2 / 12
         return float(np.sqrt(curve.edge_lengths @ away / curve.length))
 
 

@@ -8,6 +8,7 @@ import pytest
 from mobius_flow.addon.engine.size import Measure, Size, barycenter
 from mobius_flow.core import RelaxOptions, relax
 from mobius_flow.core.collision import free_motion, is_free
+from mobius_flow.core.curve import refine
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
 
@@ -28,6 +29,12 @@ def test_sizes_are_lengths_and_do_not_see_places(measure):
     curve = torus_trefoil(40)
     moved = curve.with_vertices(3.0 * curve.vertices + np.array([1.0, -7.0, 5.0]))
     assert measure.of(moved) == pytest.approx(3.0 * measure.of(curve))
+
+
+@pytest.mark.parametrize("measure", Measure)
+def test_vertices_on_edges_change_no_size(measure):
+    curve = torus_trefoil(20)
+    assert measure.of(refine(curve, 70)) == pytest.approx(measure.of(curve))
 
 
 @pytest.mark.parametrize("measure", Measure)
