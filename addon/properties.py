@@ -11,6 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 from ..core import RelaxOptions
 from ..core.option import Option, declared
 from .engine.key_options import KeyOptions, Output
+from .engine.size import Measure
 from .engine.timing import FRAMES_PER_ITERATE, LAST_FRAME, Pace, Timing
 
 _KEY_DEFAULTS = KeyOptions()
@@ -23,6 +24,11 @@ _OUTPUT_DESCRIPTIONS = {
     Output.FCURVES: "An F-curve for every coordinate of every point, for exporters that know no shape keys",
     Output.RESULT: "Move the points to the relaxed curves, without animation",
 }
+_MEASURE_DESCRIPTIONS = {
+    Measure.LENGTH: "The length of the curves, which is what the relaxation itself keeps",
+    Measure.BOX: "The longest side of the box around the curves",
+    Measure.RADIUS: "The mean distance of the curves from their center (root mean square)",
+}
 _PACE_DESCRIPTIONS = {
     Pace.EVEN: "The curves move about evenly over the whole length, and their last, small motions get some frames too",
     Pace.DISTANCE: "The curves move by the same distance in every frame of the whole length",
@@ -33,6 +39,11 @@ _PACE_DESCRIPTIONS = {
 
 def _output_items() -> list[tuple[str, str, str]]:
     return [(output.name, output.value, _OUTPUT_DESCRIPTIONS[output]) for output in Output]
+
+
+def measure_items() -> list[tuple[str, str, str]]:
+    """What can be kept while curves move."""
+    return [(measure.name, measure.value, _MEASURE_DESCRIPTIONS[measure]) for measure in Measure]
 
 
 def shown(group: str | None = None) -> list[Option]:
@@ -90,6 +101,13 @@ def settings(options: set[str]) -> dict[str, Any]:
             name="Fit Tube",
             description="Draw the curves as the thickest round tubes that do not touch, where they have a round bevel",
             default=True,
+            options=options,
+        ),
+        "keep_size": EnumProperty(
+            name="Keep",
+            description="What stays as it is at the beginning while the curves move; they are scaled for that",
+            items=measure_items(),
+            default=_KEY_DEFAULTS.keep_size.name,
             options=options,
         ),
         "view_every": IntProperty(
@@ -171,4 +189,5 @@ def key_options(values: dict[str, Any]) -> KeyOptions:
         timing=timing,
         max_keys=values["max_keys"] or None,
         fit_bevel=values["fit_bevel"],
+        keep_size=Measure[values["keep_size"]],
     )

@@ -8,7 +8,7 @@ from ..live.start import unseen
 from .relaxing import Relaxing
 
 
-class _Rebaking(Relaxing):
+class Rebaking(Relaxing):
     """What operators that relax baked curves have in common."""
 
     @classmethod
@@ -17,14 +17,14 @@ class _Rebaking(Relaxing):
         return refusal(context) or unbaked(context)
 
 
-class CURVE_OT_mobius_flow_bake_again(_Rebaking, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+class CURVE_OT_mobius_flow_bake_again(Rebaking, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
     """Relax the selected curves anew from how they were before they were baked; new keys replace the old ones"""
 
     bl_idname = "curve.mobius_flow_bake_again"
     bl_label = "Bake Again"
 
 
-class CURVE_OT_mobius_flow_continue(_Rebaking, bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_continue(Rebaking, bpy.types.Operator):  # noqa: N801
     """Relax the selected curves on from the end of their animation; new keys follow the old ones"""
 
     bl_idname = "curve.mobius_flow_continue"

@@ -35,6 +35,20 @@ def update(data: "bpy.types.Curve", timing: Timing) -> None:
     record["holds"] = [timing.hold_start, timing.hold_end]
 
 
+def renew(data: "bpy.types.Curve") -> None:
+    """Note how the keys are that were there, after they have been changed here."""
+    record = data[_RECORD]
+    record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
+
+
+def scale_bevel(data: "bpy.types.Curve", factor: float) -> None:
+    """Scale the bevel; if it is the one that was baked, it still counts as such."""
+    record, ours = data[_RECORD], data.bevel_depth == data[_RECORD]["bevel_depth"]
+    data.bevel_depth *= factor
+    if ours:
+        record["bevel_depth"] = data.bevel_depth
+
+
 def is_baked(data: "bpy.types.Curve") -> bool:
     """Whether a curve has the keys that were written here, and neither others nor other points."""
     record = data.get(_RECORD)

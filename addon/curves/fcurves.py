@@ -19,12 +19,16 @@ def all_fcurves() -> Iterator["bpy.types.FCurve"]:
     import bpy
 
     for action in bpy.data.actions:
-        yield from fcurves_of(action)
+        for fcurves in _collections(action):
+            yield from fcurves
 
 
-def fcurves_of(action: "bpy.types.Action") -> Iterator["bpy.types.FCurve"]:
-    """Yield the F-curves of an action."""
-    for fcurves in _collections(action):
+def fcurves_of(block: "bpy.types.ID") -> Iterator["bpy.types.FCurve"]:
+    """Yield the F-curves of a datablock that has an action: those of its own slot.
+
+    Since 4.4 Blender puts keys of an object into the action of its curve, if that has one, and the other way round.
+    """
+    for fcurves in _own_collections(block):
         yield from fcurves
 
 
@@ -33,27 +37,36 @@ def count_own(block: "bpy.types.ID") -> int | None:
     animation = block.animation_data
     if animation is None or animation.action is None or animation.nla_tracks or _MARK not in animation.action:
         return None
-    return sum(len(fcurves) for fcurves in _collections(animation.action))
+    return sum(len(fcurves) for fcurves in _own_collections(block))
 
 
 def own_action(block: "bpy.types.ID") -> None:
-    """Give a datablock that shares its action with the one it was copied from an action of its own."""
+    """Give a datablock that shares its action with others, such as the one it was copied from, an action of its own."""
     animation = block.animation_data
-    animation.action = animation.action.copy()
-    if hasattr(animation.action, "slots"):
-        animation.action_slot = animation.action.slots[0]
+    slot = animation.action_slot.identifier if hasattr(animation.action, "slots") else None
+    animation.action = action = animation.action.copy()
+    if slot is not None:
+        for other in [each for each in action.slots if each.identifier != slot]:
+            action.slots.remove(other)
+        animation.action_slot = action.slots[0]
 
 
 def drop_actions(data: "bpy.types.Curve") -> None:
-    """Take the actions of a curve and its shape keys away, and remove those that nothing else uses."""
+    """Take the actions of a curve and its shape keys away, and remove what nothing else uses of them."""
+    for owner in (data.shape_keys, data):
+        if owner is not None and owner.animation_data is not None and owner.animation_data.action is not None:
+            _drop_action(owner.animation_data)
+
+
+def _drop_action(animation: "bpy.types.AnimData") -> None:
     import bpy
 
-    for owner in (data.shape_keys, data):
-        action = owner.animation_data.action if owner and owner.animation_data else None
-        if action is not None:
-            owner.animation_data.action = None
-            if action.users == action.use_fake_user:
-                bpy.data.actions.remove(action)
+    action, slot = animation.action, getattr(animation, "action_slot", None)
+    animation.action = None
+    if action.users == action.use_fake_user:
+        bpy.data.actions.remove(action)
+    elif slot is not None and not slot.users():
+        action.slots.remove(slot)
 
 
 def _collections(action: "bpy.types.Action") -> Iterator[Any]:
@@ -63,6 +76,18 @@ def _collections(action: "bpy.types.Action") -> Iterator[Any]:
     for layer in action.layers:
         for strip in layer.strips:
             for channels in strip.channelbags:
+                yield channels.fcurves
+
+
+def _own_collections(block: "bpy.types.ID") -> Iterator[Any]:
+    animation = block.animation_data
+    if not hasattr(animation.action, "slots"):  # Blender 4.3 and before
+        yield animation.action.fcurves
+        return
+    for layer in animation.action.layers:
+        for strip in layer.strips:
+            channels = animation.action_slot and strip.channelbag(animation.action_slot)
+            if channels:
                 yield channels.fcurves
 
 
@@ -80,7 +105,7 @@ class FCurves:
     def __init__(self, block: "bpy.types.ID", name: str) -> None:
         if not (block.animation_data and block.animation_data.action):
             _make_action(block, name)
-        (self._fcurves,) = _collections(block.animation_data.action)
+        (self._fcurves,) = _own_collections(block)
 
     def add(self, path: str, axis: int, frames: FloatArray, values: FloatArray) -> None:
         """Add keys to a piecewise linear F-curve, made if there is none; what is not after its last is left out."""

@@ -20,7 +20,7 @@ def _movers(obj: "bpy.types.Object") -> Iterator[str]:
     animation = obj.animation_data
     if animation and animation.nla_tracks:
         yield "an NLA track"
-    if animation and animation.action and _transforms(fcurves_of(animation.action)):
+    if animation and animation.action and _transforms(fcurves_of(obj)):
         yield "animation"
     if animation and _transforms(animation.drivers):
         yield "a driver"

@@ -17,6 +17,7 @@ from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
 from ..engine.placement import Frame
+from ..engine.size import Measure, Size
 from ..engine.words import named
 from . import bake, bevel
 from .group import Group
@@ -130,6 +131,7 @@ class Session:
         self.options = replace(options, vertices=len(self.group.curve)) if continues else options
         self._key_options = key_options
         self._motion = Motion(self.group.link, self.group.stored if continues else None)
+        self._size: Size | None = None
         self.outcome: Outcome | None = None
 
     def run(self) -> Report:
@@ -160,7 +162,15 @@ class Session:
 
     def take(self, iterate: Iterate) -> None:
         """Take in an iterate."""
-        self._motion.add(iterate)
+        self._motion.add(self._sized(iterate))
+
+    def _sized(self, iterate: Iterate) -> Iterate:
+        """An iterate as it is shown, in the size that is to be kept."""
+        measure = self._key_options.keep_size
+        if measure is Measure.LENGTH:
+            return iterate
+        self._size = self._size or Size.of(measure, iterate.curve)
+        return self._size.given_to_iterate(iterate)
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""

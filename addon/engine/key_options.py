@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import Enum
 
+from .size import Measure
 from .timing import Timing
 
 
@@ -28,12 +29,15 @@ class KeyOptions:
         Wanted number of keys, see `Motion.keys`.
     fit_bevel
         Draw the curve as the thickest tube that does not touch itself, at every key.
+    keep_size
+        What stays as it is at the first key; where it is not the length, which the flow keeps, keys are scaled.
     """
 
     output: Output = Output.SHAPE_KEYS
     timing: Timing = field(default_factory=Timing)
     max_keys: int | None = None
     fit_bevel: bool = False
+    keep_size: Measure = Measure.LENGTH
 
     @property
     def animated(self) -> bool:

@@ -24,13 +24,25 @@ def smoothed(curve: Curve, mesh: Mesh) -> Curve:
 
 def _resampled(points: FloatArray, size: int) -> FloatArray:
     """Points on the spline, the first of them the first one given; shape (size, m)."""
-    closed = np.concatenate([points, points[:1]])
-    spline = CubicSpline(_arc(closed), closed, bc_type="periodic")
-    parameter = np.interp(np.linspace(0.0, len(points), SAMPLES * len(points) + 1), np.arange(len(closed)), spline.x)
-    arc = _arc(spline(parameter))
+    spline = periodic_spline(points)
+    parameter = sample_parameters(spline)
+    arc = arc_lengths(spline(parameter))
     return np.asarray(spline(np.interp(arc[-1] * np.arange(size) / size, arc, parameter)))
 
 
-def _arc(points: FloatArray) -> FloatArray:
+def periodic_spline(points: FloatArray) -> CubicSpline:
+    """The periodic cubic spline through the vertices of a closed polygon, shape (n, m), by its arc length."""
+    closed = np.concatenate([points, points[:1]])
+    return CubicSpline(arc_lengths(closed), closed, bc_type="periodic")
+
+
+def sample_parameters(spline: CubicSpline) -> FloatArray:
+    """Parameters from the first to the last, so many to each piece that chords between them are as good as arcs."""
+    pieces = len(spline.x) - 1
+    places = np.linspace(0.0, pieces, SAMPLES * pieces + 1)
+    return np.asarray(np.interp(places, np.arange(pieces + 1), spline.x))
+
+
+def arc_lengths(points: FloatArray) -> FloatArray:
     """Distances along a polyline from its first point; shape (n,)."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])

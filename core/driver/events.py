@@ -15,12 +15,12 @@ Event = Start | Step | NoStep | Outcome
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """A step, perhaps, and then the same curve seen otherwise.
+    """Steps, perhaps, and then the same curve seen otherwise.
 
     Attributes
     ----------
-    step
-        A motion that comes first.
+    steps
+        Motions that come first.
     point
         The curve reached, in another problem: with other constraints, or on another mesh.
     method
@@ -29,7 +29,7 @@ class Change:
         Number of vertices from now on where no strands are near.
     """
 
-    step: Step | None = None
+    steps: tuple[Step, ...] = ()
     point: Point | None = None
     method: Method | None = None
     vertices: int | None = None

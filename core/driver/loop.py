@@ -80,11 +80,10 @@ def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Chan
 
 def _changed(run: Run, change: Change, rises: Rises) -> Iterator[Iterate]:
     """Make a change; yield the iterates it leads to, if any."""
-    before = run.iterate
-    if change.step is not None:
-        moved = run.accept(change.step)
-        rises.change(before, moved)
-        yield moved
+    for step in change.steps:
+        before = run.iterate
+        yield run.accept(step)
+        rises.change(before, run.iterate)
     before = run.iterate
     remeshed = run.change(change)
     if remeshed is not None:

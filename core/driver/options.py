@@ -128,6 +128,12 @@ class RelaxOptions:
     escape_saddles: bool = _advanced(
         False, "Escape Saddles", "tell whether a converged curve is a minimum, and go on downhill from a saddle"
     )
+    balance: bool = _advanced(
+        False,
+        "Balance",
+        "go from a converged curve to the one of its Möbius images, all of the same energy, that bends least for its "
+        "length, and relax that",
+    )
 
     def __post_init__(self) -> None:
         for each in declared(type(self)):

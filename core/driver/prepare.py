@@ -99,6 +99,9 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
         raise OptionError(f"{method.name} with these options needs a second derivative; energy {name} has none")
     if (options.stability or options.escape_saddles) and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
+    if options.balance and objective.energy.scale_exponent != 0.0:
+        name = objective.energy.name
+        raise OptionError(f"balance takes Möbius images for curves of equal energy; that is not so for energy {name}")
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     return Problem(curve.mesh, objective, solver.metric, constraints, units, geometry)
 

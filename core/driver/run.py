@@ -88,7 +88,7 @@ class Run:
 
     def allows(self, change: Change) -> bool:
         """Whether a change is within the limit: a step is an iteration, and so is another mesh."""
-        iterations = (change.step is not None) + self._remeshes(change)
+        iterations = len(change.steps) + self._remeshes(change)
         return self.iterate.index + iterations <= self.options.max_iterations
 
     def change(self, change: Change) -> Iterate | None:

@@ -9,6 +9,7 @@ from typing import Protocol
 
 from ..events import Change, Event
 from ..run import Run
+from .balance import Balance
 from .check_accuracy import CheckAccuracy
 from .coarse_start import CoarseStart
 from .composite import Composite
@@ -32,6 +33,7 @@ INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
     EscapeSaddle,
     Composite,
     FinerMesh,
+    Balance,
     Fallback,
     Remesh,
     CheckAccuracy,

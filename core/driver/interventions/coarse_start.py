@@ -73,7 +73,7 @@ class CoarseStart:
             return None
         step, remeshed = found
         self._coarse = remeshed.curve
-        return Change(step, on_mesh(problem, remeshed.curve, self._options))
+        return Change((step,), on_mesh(problem, remeshed.curve, self._options))
 
     def _finest(self) -> Change | None:
         """The same curve with all vertices, in the problem of the start; None if doubles do not tell them apart."""
@@ -97,6 +97,6 @@ class CoarseStart:
             end = problem.at_curve(start.with_vertices(start.vertices + share * way))
             proof = problem.free_motion(start.vertices, end.placed)
             if proof.time == 1.0:
-                return Change(Step((Leg(end, proof),), 0.0, None))
+                return Change((Step((Leg(end, proof),), 0.0, None),))
             share *= min(0.9, proof.time)
         return None

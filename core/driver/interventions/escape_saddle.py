@@ -29,4 +29,4 @@ class EscapeSaddle:
         if not options.escape_saddles:
             return event
         step = Escape().step(self._run.point, found.directions[0], float(found.eigenvalues[0]))
-        return Change(step) if isinstance(step, Step) else event.adding(NO_WAY_DOWN)
+        return Change((step,)) if isinstance(step, Step) else event.adding(NO_WAY_DOWN)

@@ -62,7 +62,7 @@ class Remesh:
         step, remeshed = found
         constraints = replace(problem.constraints, lengths=remeshed.lengths / problem.units.scale)
         problem = replace(problem, mesh=remeshed.curve.mesh, constraints=constraints)
-        return Change(step, problem.at_curve(remeshed.curve))
+        return Change((step,), problem.at_curve(remeshed.curve))
 
 
 def proved_remesh(

@@ -1,0 +1,81 @@
+"""Curve objects turned as one rigid body, or their keys where something else turns the object."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core import Curve, MobiusFlowError
+from ...core.types import FloatArray
+from ..engine.turning import Turn, orthonormal
+from . import bake
+from .baked_keys import BakedKeys
+from .exchange import read_link
+from .moving import what_moves
+
+if TYPE_CHECKING:
+    import bpy
+
+
+def lay_flat(objects: Sequence["bpy.types.Object"]) -> int:
+    """Turn curves so that they extend least upwards; one that is animated, least along its own Z axis.
+
+    Returns
+    -------
+    int
+        Number of motions of keys that are not proved any more.
+
+    Raises
+    ------
+    MobiusFlowError
+        If one of them is moved by something, and is not the only one, or has no keys that could be turned.
+    """
+    flat = np.array(objects[0].matrix_world, dtype=np.float64)[:3, :3].T if what_moves(objects[0]) else np.eye(3)
+    return _turn(objects, orthonormal(flat))
+
+
+def face_camera(objects: Sequence["bpy.types.Object"], camera: "bpy.types.Object") -> int:
+    """Turn curves so that a camera sees their widest side, its longest axis across the picture; as `lay_flat`."""
+    view = np.array(camera.matrix_world, dtype=np.float64)
+    axes = view[:3, :3].T.copy()
+    if camera.data.type != "ORTHO":
+        axes[2] = view[:3, 3] - Turn.onto(_shape(objects), np.eye(3)).center
+    return _turn(objects, orthonormal(axes))
+
+
+def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
+    turn = Turn.onto(_shape(objects), wanted)
+    mover = next(((obj, mover) for obj in objects if (mover := what_moves(obj))), None)
+    if mover is None:
+        _turn_objects(objects, turn)
+    elif len(objects) == 1 and bake.is_baked(objects[0].data):
+        keys = BakedKeys(objects)
+        keys.rewrite([turn.of(curve) for curve in keys.curves])
+    else:
+        obj, what = mover
+        raise MobiusFlowError(f"'{obj.name}' is moved by {what}; remove that, or bake it and turn it alone")
+    baked = all(bake.is_baked(obj.data) for obj in objects)
+    # a single object goes wherever it likes; places of several against each other are rounded anew
+    return BakedKeys(objects).unproved if baked and (mover or len(objects) > 1) else 0
+
+
+def _shape(objects: Sequence["bpy.types.Object"]) -> Curve:
+    """The curves in the world, at the end of their animation if they are baked."""
+    if all(bake.is_baked(obj.data) for obj in objects):
+        return BakedKeys(objects).curves[-1]
+    return read_link(objects)[0]
+
+
+def _turn_objects(objects: Sequence["bpy.types.Object"], turn: Turn) -> None:
+    """Parents first, as they carry their children along."""
+    import bpy
+    from mathutils import Matrix
+
+    wanted = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}
+    for obj in sorted(objects, key=_depth):
+        obj.matrix_world = wanted[obj]
+        bpy.context.view_layer.update()
+
+
+def _depth(obj: "bpy.types.Object") -> int:
+    return 0 if obj.parent is None else 1 + _depth(obj.parent)

@@ -1,0 +1,59 @@
+"""Rotations that lay a curve flat, or show its widest side."""
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from ...core import Curve
+from ...core.types import FloatArray
+from .size import barycenter
+
+
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """The rotation x ↦ center + rotation · (x − center)."""
+
+    rotation: FloatArray
+    center: FloatArray
+
+    @classmethod
+    def onto(cls, curve: Curve, wanted: FloatArray) -> "Turn":
+        """Turn a curve's principal axes, the longest first, into wanted ones, orthonormal rows, by the least angle.
+
+        Which way an axis points is left open.
+        """
+        axes = principal_axes(curve)
+        return cls(max(_rotations(axes, wanted), key=np.trace), barycenter(curve))
+
+    def of(self, curve: Curve) -> Curve:
+        """A curve turned."""
+        return curve.with_vertices(self.center + (curve.vertices - self.center) @ self.rotation.T)
+
+    @property
+    def matrix(self) -> FloatArray:
+        """The same in homogeneous coordinates; shape (4, 4)."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.rotation, self.center - self.rotation @ self.center
+        return matrix
+
+
+def _rotations(axes: FloatArray, wanted: FloatArray) -> list[FloatArray]:
+    signs = (np.array(each)[:, None] for each in product((1.0, -1.0), repeat=3))
+    turned = [(sign * wanted).T @ axes for sign in signs]
+    return [each for each in turned if np.linalg.det(each) > 0.0]
+
+
+def principal_axes(curve: Curve) -> FloatArray:
+    """Axes of the curve's inertia, in which it extends most, less and least, as rows; shape (3, 3)."""
+    away = curve.midpoints - barycenter(curve)
+    _, axes = np.linalg.eigh((curve.edge_lengths[:, None] * away).T @ away)
+    return np.asarray(axes[:, ::-1].T)
+
+
+def orthonormal(axes: FloatArray) -> FloatArray:
+    """Three independent rows made orthonormal: the last keeps its direction, the first its plane with the last."""
+    back = axes[2] / np.linalg.norm(axes[2])
+    right = axes[0] - (axes[0] @ back) * back
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(back, right), back])

@@ -1,0 +1,31 @@
+"""Among the shapes of equal energy that Möbius maps make of a converged curve, the one that bends least."""
+
+from ...curve.bending import bending
+from ..balance import way_to_balance
+from ..events import Change, Event
+from ..outcome import Outcome
+from ..run import Run
+
+BALANCED = "balanced: bending {after:.4g} instead of {before:.4g} (4π² on a round circle)"
+IS_BALANCED = "no Möbius image bends less"
+
+
+class Balance:
+    """Go from a converged curve to its balanced image, once, and tell of it in the end."""
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+        self._before: float | None = None  # bending that the balanced curve had
+
+    def __call__(self, event: Event) -> Event | Change:
+        """Look at converged curves."""
+        run = self._run
+        if not (run.options.balance and isinstance(event, Outcome) and event.converged):
+            return event
+        if self._before is not None:
+            return event.adding(BALANCED.format(before=self._before, after=bending(run.iterate.curve)))
+        steps = way_to_balance(run.point)
+        if not steps:
+            return event.adding(IS_BALANCED)
+        self._before = bending(run.iterate.curve)
+        return Change(steps, method=run.method)  # which remembers nothing of the curve before

@@ -1,0 +1,56 @@
+"""Rotations that lay curves flat."""
+
+import numpy as np
+import pytest
+from mobius_flow.addon.engine.size import barycenter
+from mobius_flow.addon.engine.turning import Turn, orthonormal, principal_axes
+from mobius_flow.core import Curve
+from shapes import regular_polygon
+
+ELLIPSE = regular_polygon(80).vertices * np.array([3.0, 1.0, 1.0]) + np.linspace(0, 0.1, 80)[:, None] ** 2
+
+
+def rotation(seed):
+    matrix, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return matrix * np.linalg.det(matrix)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_turned_curve_has_the_wanted_axes(seed):
+    curve, wanted = Curve(ELLIPSE @ rotation(seed) + 5.0), rotation(seed + 10)
+    turn = Turn.onto(curve, wanted)
+    turned = turn.of(curve)
+    assert np.linalg.det(turn.rotation) == pytest.approx(1.0)
+    np.testing.assert_allclose(np.abs(principal_axes(turned) @ wanted.T), np.eye(3), atol=1e-9)
+    np.testing.assert_allclose(barycenter(turned), barycenter(curve), atol=1e-12)
+    homogeneous = np.pad(curve.vertices, ((0, 0), (0, 1)), constant_values=1.0)
+    np.testing.assert_allclose((homogeneous @ turn.matrix.T)[:, :3], turned.vertices, atol=1e-12)
+
+
+def test_extents_are_in_order():
+    flat = Turn.onto(Curve(ELLIPSE @ rotation(3)), np.eye(3)).of(Curve(ELLIPSE @ rotation(3)))
+    x, y, z = np.ptp(flat.vertices, axis=0)
+    assert x == pytest.approx(6.0, rel=0.01)
+    assert y == pytest.approx(2.0, rel=0.02)
+    assert z < 0.02
+
+
+def test_what_lies_as_wanted_is_not_turned():
+    curve = Turn.onto(Curve(ELLIPSE), np.eye(3)).of(Curve(ELLIPSE))
+    np.testing.assert_allclose(Turn.onto(curve, np.eye(3)).rotation, np.eye(3), atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_of_all_rotations_it_is_the_least(seed):
+    """A half turn about an axis leads to the same axes: none of them is nearer."""
+    wanted = np.eye(3)
+    found = Turn.onto(Curve(ELLIPSE @ rotation(seed)), wanted).rotation
+    for half in ((1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
+        assert np.trace(np.diag(half) @ found) <= np.trace(found) + 1e-12
+
+
+def test_axes_made_orthonormal():
+    axes = orthonormal(np.array([[2.0, 0.3, 0.4], [0.0, 1.0, 0.0], [0.1, 0.0, 3.0]]))
+    np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(axes) == pytest.approx(1.0)
+    assert axes[2] @ np.array([0.1, 0.0, 3.0]) == pytest.approx(np.hypot(0.1, 3.0))
