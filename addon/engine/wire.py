@@ -9,7 +9,8 @@ from typing import IO, Any
 
 import numpy as np
 
-from ...core import Curve, Iterate, Mesh, Outcome, RelaxOptions, Status
+from ...core import Curve, CurveError, Iterate, Mesh, MobiusFlowError, Outcome, RelaxOptions, Status
+from ...core.errors import Place
 from ...core.types import FloatArray
 from .placement import Link, Placement
 
@@ -83,7 +84,22 @@ def pack_outcome(outcome: Outcome) -> Message:
 def unpack_outcome(message: Message) -> Outcome:
     """The inverse of `pack_outcome`."""
     values = message[0]["outcome"]
-    return Outcome(**values | {"status": Status(values["status"])})
+    return Outcome(**values | {"status": Status(values["status"]), "place": _place(values["place"])})
+
+
+def pack_error(error: MobiusFlowError) -> Message:
+    """Why a job cannot be done."""
+    place = error.place if isinstance(error, CurveError) else None
+    return {"error": str(error), "place": None if place is None else asdict(place)}, []
+
+
+def unpack_error(message: Message) -> CurveError:
+    """The inverse of `pack_error`."""
+    return CurveError(message[0]["error"], _place(message[0]["place"]))
+
+
+def _place(values: dict[str, Any] | None) -> Place | None:
+    return None if values is None else Place(**{name: tuple(numbers) for name, numbers in values.items()})
 
 
 def digest(start: FloatArray, end: FloatArray) -> str:

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from ..errors import Place
+
 
 class Status(Enum):
     """Why a relaxation ended."""
@@ -25,11 +27,14 @@ class Outcome:
         The same in one sentence.
     negative_eigenvalues
         Of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum, more at a saddle.
+    place
+        Where on the last curve the reason is, if it is somewhere.
     """
 
     status: Status
     message: str
     negative_eigenvalues: int | None = None
+    place: Place | None = None
 
     @property
     def converged(self) -> bool:
@@ -51,9 +56,9 @@ def out_of_iterations(count: int) -> Outcome:
     return Outcome(Status.ITERATION_LIMIT, f"stopped after {count} iterations, as asked for")
 
 
-def stalled(reason: str) -> Outcome:
+def stalled(reason: str, place: Place | None = None) -> Outcome:
     """There is no way on, for a reason that is a clause."""
-    return Outcome(Status.STALLED, f"stalled: {reason}")
+    return Outcome(Status.STALLED, f"stalled: {reason}", place=place)
 
 
 INTERRUPTED = Outcome(Status.INTERRUPTED, "interrupted: the curve reached so far is kept")

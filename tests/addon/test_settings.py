@@ -14,7 +14,7 @@ from mobius_flow.addon.engine import wire  # noqa: E402
 from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
 from mobius_flow.addon.sidebar.advanced import VIEW3D_PT_mobius_flow_advanced  # noqa: E402
 from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow  # noqa: E402
-from mobius_flow.core import Curve, OptionError, RelaxOptions, minimize  # noqa: E402
+from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, minimize  # noqa: E402
 from mobius_flow.core.option import declared, option  # noqa: E402
 from option_values import unlike_default  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
@@ -88,6 +88,20 @@ def test_names_keep_their_numbers_in_files(tmp_path):
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
     for name, (item, _) in numbers.items():
         assert getattr(bpy.context.scene.mobius_flow, name) == item
+
+
+def test_methods_have_names_for_people_and_those_for_comparison_are_apart():
+    for owner in owners():
+        shown = owner["method"]
+        assert {item.identifier: item.name for item in shown.enum_items} == {k: each.label for k, each in METHODS.items()}
+        menu = [item.name for item in shown.enum_items_static_ui]
+        apart = menu.index("For Comparison")
+        assert menu[0] == "Recommended"
+        assert set(menu[apart + 1 :]) == {each.label for each in METHODS.values() if each.comparison}
+        assert "Sobolev L-BFGS" in menu[:apart]
+        assert "Sobolev Gradient Flow (the Paper's)" in menu[:apart]
+        assert "projected fractional Sobolev gradients" in shown.enum_items["lbfgs"].description
+    assert {name for name, each in METHODS.items() if each.label == name} == set()
 
 
 def drawn(cls):
