@@ -66,8 +66,9 @@ def _items(choices: Collection[str]) -> list[_Item]:
 
 def _item(name: str, entry: Any) -> _Item:
     """A name to choose; it keeps its number in files when others are added."""
-    label, description = (getattr(entry, word, "") for word in ("label", "description"))
-    return name, label or name, description[:1].upper() + description[1:], "NONE", zlib.crc32(name.encode()) & 0x7FFFFFFF
+    label, description = getattr(entry, "label", name), getattr(entry, "description", "")
+    number = zlib.crc32(name.encode()) & 0x7FFFFFFF
+    return name, label, description[:1].upper() + description[1:], "NONE", number
 
 
 def _heading(text: str) -> _Item:

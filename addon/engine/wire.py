@@ -9,7 +9,7 @@ from typing import IO, Any
 
 import numpy as np
 
-from ...core import Curve, CurveError, Iterate, Mesh, MobiusFlowError, Outcome, RelaxOptions, Status
+from ...core import Curve, CurveError, Iterate, Mesh, MobiusFlowError, OptionError, Outcome, RelaxOptions, Status
 from ...core.errors import Place
 from ...core.types import FloatArray
 from .placement import Link, Placement
@@ -90,12 +90,14 @@ def unpack_outcome(message: Message) -> Outcome:
 def pack_error(error: MobiusFlowError) -> Message:
     """Why a job cannot be done."""
     place = error.place if isinstance(error, CurveError) else None
-    return {"error": str(error), "place": None if place is None else asdict(place)}, []
+    header = {"error": str(error), "place": None if place is None else asdict(place)}
+    return header | {"of_option": isinstance(error, OptionError)}, []
 
 
-def unpack_error(message: Message) -> CurveError:
-    """The inverse of `pack_error`."""
-    return CurveError(message[0]["error"], _place(message[0]["place"]))
+def unpack_error(message: Message) -> MobiusFlowError:
+    """The inverse of `pack_error`, as far as Blender tells errors apart."""
+    header = message[0]
+    return OptionError(header["error"]) if header["of_option"] else CurveError(header["error"], _place(header["place"]))
 
 
 def _place(values: dict[str, Any] | None) -> Place | None:

@@ -1,5 +1,11 @@
 """The sidebar's panels, each a module, and the entries in Blender's menus."""
 
-from . import advanced, animation, relax
+from . import animation, expert, presets, relax
 
-CLASSES = (*relax.CLASSES, *animation.CLASSES, *advanced.CLASSES)  # sub-panels in the order they are shown
+# presets go into the head of the panel; the sub-panels follow in the order they are shown
+CLASSES = (
+    *presets.CLASSES,
+    *relax.CLASSES,
+    *animation.CLASSES,
+    *expert.CLASSES,
+)

@@ -14,13 +14,14 @@ FLOORS = [
     {"engine"},
     {"curves"},
     {"pictures", "properties"},
+    {"panel_settings"},
     {"live"},
     {"buttons"},
     {"sidebar"},
     {"registration"},
     {""},  # the package, which Blender and the command line import
 ]
-OF_BLENDER = ("bpy", "bpy_extras", "blf", "bmesh", "gpu", "mathutils")
+OF_BLENDER = ("bpy", "bpy_extras", "blf", "bl_operators", "bl_ui", "bmesh", "gpu", "gpu_extras", "mathutils")
 WITHOUT_BLENDER = f"""
 import importlib
 import sys
