@@ -6,6 +6,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, PointerProperty
 
 from .engine.quality import QUALITIES, quality_of
+from .live.modal import redraw_views
 
 _LEVELS = [*QUALITIES, "CUSTOM"]
 
@@ -41,6 +42,7 @@ class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
             name="Energy Plot",
             description="Draw the energy against the iterations in the 3D view",
             default=True,
+            update=lambda _panel, context: redraw_views(context.window_manager),
         ),
     }
 

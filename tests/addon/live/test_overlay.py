@@ -31,9 +31,11 @@ def view(width=900, height=700, sidebar=None):
     """The context of a view."""
     region = SimpleNamespace(type="WINDOW", x=20, y=0, width=width, height=height)
     regions = [region] if sidebar is None else [region, SimpleNamespace(type="UI", x=20 + sidebar, width=200)]
-    return SimpleNamespace(
-        preferences=bpy.context.preferences, region=region, area=SimpleNamespace(regions=regions), region_data=None
-    )
+    real = bpy.context.preferences
+    system = SimpleNamespace(ui_scale=1.0)  # 0 where there is no window
+    preferences = SimpleNamespace(system=system, themes=real.themes, ui_styles=real.ui_styles)
+    area = SimpleNamespace(regions=regions)
+    return SimpleNamespace(preferences=preferences, region=region, area=area, region_data=None)
 
 
 @pytest.fixture
@@ -88,7 +90,7 @@ def test_without_a_target_there_is_no_line_for_it(operator, drawn):
     operator.start()
     operator.until(lambda: False)
     overlay._plot(view(), operator.run)
-    assert [said for kind, _, _, said in drawn if kind == "text"][0].startswith("Energy")
+    assert next(said for kind, _, _, said in drawn if kind == "text").startswith("Energy")
 
 
 def test_marks_are_where_the_trouble_is(operator, drawn, monkeypatch):
