@@ -17,6 +17,7 @@ from .engine.timing import FRAMES_PER_ITERATE, LAST_FRAME, Pace, Timing
 _KEY_DEFAULTS = KeyOptions()
 _TIMING_DEFAULTS = Timing()
 _TINY = 1e-37  # just above the smallest of 32-bit numbers that are computed with
+_Item = tuple[str, str, str, str, int]
 _PROPERTIES = {bool: BoolProperty, int: IntProperty, float: FloatProperty}
 _AUTOMATIC = "AUTO"  # stands for None among names, as 0 does among numbers
 _OUTPUT_DESCRIPTIONS = {
@@ -59,14 +60,30 @@ def _property(option: Option, options: set[str]) -> Any:
         words |= {"description": option.sentence("0"), "default": option.default or option.kind()}
         return _PROPERTIES[option.kind](**words, **_bounds(option))
     items = [(_AUTOMATIC, "Automatic", option.automatic, "NONE", 0)] if automatic else []
-    items += [_item(option.choices, name) for name in option.choices]
+    items += _items(option.choices)
     return EnumProperty(**words, description=option.sentence(), items=items, default=option.default or _AUTOMATIC)
 
 
-def _item(choices: Collection[str], name: str) -> tuple[str, str, str, str, int]:
+def _items(choices: Collection[str]) -> list[_Item]:
+    """The names to choose; what is there for comparison only has a heading of its own."""
+    entries = choices if isinstance(choices, Mapping) else dict.fromkeys(choices)
+    apart = [name for name in choices if getattr(entries[name], "comparison", False)]
+    items = {name: _item(name, entries[name]) for name in choices}
+    usual = [item for name, item in items.items() if name not in apart]
+    if not apart:
+        return usual
+    return [_heading("Recommended"), *usual, _heading("For Comparison"), *(items[name] for name in apart)]
+
+
+def _item(name: str, entry: Any) -> _Item:
     """A name to choose; it keeps its number in files when others are added."""
-    description = getattr(choices[name], "description", "") if isinstance(choices, Mapping) else ""
-    return name, name, description, "NONE", zlib.crc32(name.encode()) & 0x7FFFFFFF
+    label, description = getattr(entry, "label", name), getattr(entry, "description", "")
+    number = zlib.crc32(name.encode()) & 0x7FFFFFFF
+    return name, label, description[:1].upper() + description[1:], "NONE", number
+
+
+def _heading(text: str) -> _Item:
+    return "", text, "", "NONE", 0
 
 
 def _bounds(option: Option) -> dict[str, Any]:

@@ -3,12 +3,14 @@
 import bpy
 from bpy.props import PointerProperty
 
-from . import buttons, sidebar
-from .live import handlers
+from . import buttons, panel_settings, sidebar
+from .buttons import presets
+from .live import handlers, overlay
 from .properties import MobiusFlowSettings
 from .sidebar import menus
 
-_CLASSES = (MobiusFlowSettings, *buttons.CLASSES, *sidebar.CLASSES)
+_CLASSES = (MobiusFlowSettings, *panel_settings.CLASSES, *buttons.CLASSES, *sidebar.CLASSES)
+_PARTS = (panel_settings, presets, menus, handlers, overlay)  # what else there is to register
 
 
 def register() -> None:
@@ -23,14 +25,14 @@ def register() -> None:
             bpy.utils.unregister_class(cls)
         raise
     bpy.types.Scene.mobius_flow = PointerProperty(type=MobiusFlowSettings)
-    menus.register()
-    handlers.register()
+    for part in _PARTS:
+        part.register()
 
 
 def unregister() -> None:
     """Remove all of it; what is running ends first."""
-    handlers.unregister()
-    menus.unregister()
+    for part in reversed(_PARTS):
+        part.unregister()
     del bpy.types.Scene.mobius_flow
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

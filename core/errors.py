@@ -3,7 +3,25 @@
 import difflib
 import os
 from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where on a curve something is the matter, for those who can point at it.
+
+    Attributes
+    ----------
+    vertices
+        Indices, from 0 over all components, of the vertices there; for edges their ends. Empty where the matter is with
+        a refined curve, whose vertices nobody has seen.
+    position
+        Coordinates of the place in the curve's units; shape (m,).
+    """
+
+    vertices: tuple[int, ...]
+    position: tuple[float, ...]
 
 
 class MobiusFlowError(ValueError):
@@ -13,12 +31,12 @@ class MobiusFlowError(ValueError):
 class CurveError(MobiusFlowError):
     """A curve that cannot be used: too few points, not finite, touching itself, ...
 
-    ``vertex`` is the index (from 0) of a vertex at the place, for those who know in which line of a file it stands.
+    ``place`` is where on the curve, if it is somewhere; the message says so too, in words.
     """
 
-    def __init__(self, message: str, vertex: int | None = None) -> None:
+    def __init__(self, message: str, place: Place | None = None) -> None:
         super().__init__(message)
-        self.vertex = vertex
+        self.place = place
 
 
 class OptionError(MobiusFlowError):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .curve import Curve
+from .curve.places import at_vertices
 from .errors import CurveError
 from .types import FloatArray, frozen
 
@@ -18,7 +19,7 @@ def check_units(curve: Curve) -> None:
     if sizes[k] > MAX_COORDINATE:
         place = ", ".join(f"{x:.6g}" for x in curve.vertices[k])
         reason = f"vertex {k + 1}, ({place}), has a coordinate beyond {MAX_COORDINATE:g}; use a larger unit of length"
-        raise CurveError(reason, vertex=k)
+        raise CurveError(reason, at_vertices(curve, k))
     width = float(np.ptp(curve.vertices, axis=0).max())
     if 0 < width < 1 / MAX_COORDINATE:
         raise CurveError(

@@ -255,7 +255,7 @@ def test_the_documents_are_out_of_date_until_they_are_rendered(copy, python):
     wanted = {
         "README.md": "number of the component",
         "docs/energies.md": "| `inverse-cube` | 1/r³ at the edges' midpoints | -1 | no |",
-        "docs/methods/README.md": "| `heavy-ball` | heavy ball, metric J_C |  |",
+        "docs/methods/README.md": "| `heavy-ball` | heavy-ball | heavy ball, metric J_C |  |",
         "docs/methods/flow.md": "| `lumped` | L², lumped | Σ (ℓ_I + ℓ_J)/2 |U|², over".replace("|U|", r"\|U\|"),
         "docs/options.md": "| `patience` | how long to wait | always | basic |",
     }

@@ -51,8 +51,8 @@ def methods() -> str:
     rows = []
     for name, each in METHODS.items():
         page = next((f"[{title}]({file})" for file, title, names in pages if _is_one_of(name, names)), "")
-        rows.append((f"`{name}`", each.description, page))
-    return _table(("name", "what it is", "page"), rows)
+        rows.append((f"`{name}`", each.label, each.description, page))
+    return _table(("name", "in Blender", "what it is", "page"), rows)
 
 
 def options() -> str:

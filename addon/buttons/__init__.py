@@ -1,5 +1,6 @@
 """What can be pressed: the operators, which check, act, and say what happened."""
 
-from . import add_knot, baking, relaxing, running, shape
+from . import add_knot, baking, presets, relaxing, running, shape, showing
 
-CLASSES = (*relaxing.CLASSES, *running.CLASSES, *baking.CLASSES, *shape.CLASSES, *add_knot.CLASSES)
+_MODULES = (relaxing, running, showing, baking, shape, add_knot, presets)
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

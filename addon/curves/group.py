@@ -8,10 +8,13 @@ import numpy as np
 
 from ...core import Curve
 from ...core.curve import Mesh
+from ...core.errors import Place
 from ...core.types import FloatArray
+from ..engine.glossary import in_blenders_words, spline_names
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame
+from ..engine.spots import Spot, spots
 from ..engine.words import named
 from .exchange import read_link, spline_points
 from .member import Member
@@ -72,6 +75,18 @@ class Group:
     def objects(self) -> list["bpy.types.Object"]:
         """The objects that are still there."""
         return [obj for member in self._members if (obj := member.object) is not None]
+
+    def member(self, number: int) -> "bpy.types.Object | None":
+        """One of the objects, by its number among those that there were; None if it is gone."""
+        return self._members[number].object
+
+    def told(self, sentence: str) -> str:
+        """What the core says of the link, with the splines named by their objects."""
+        return in_blenders_words(sentence, spline_names(self.names, self.link.counts))
+
+    def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
+        """Where on the objects a place is on the link, or on the same with other vertices."""
+        return [] if place is None else spots(place, curve, self.link)
 
     @property
     def modified(self) -> bool:

@@ -10,7 +10,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status, WithOutcome, relax
+from ...core import (
+    Curve,
+    CurveError,
+    Iterate,
+    MobiusFlowError,
+    OptionError,
+    Outcome,
+    RelaxOptions,
+    Status,
+    WithOutcome,
+    relax,
+)
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.types import FloatArray
@@ -154,11 +165,26 @@ class Session:
         return self.report(prepared)
 
     def _relaxed(self) -> Prepared:
-        run = WithOutcome(relax(self.group.curve, self.options))
-        for iterate in run:
-            self.take(iterate)
-        self.outcome = run.outcome
+        try:
+            run = WithOutcome(relax(self.group.curve, self.options))
+            for iterate in run:
+                self.take(iterate)
+        except CurveError as error:
+            raise self.told(error) from error
+        assert run.outcome is not None, "the loop is through"
+        self.end(run.outcome)
         return self.prepare(is_free)
+
+    def told(self, error: CurveError) -> CurveError:
+        """The core's error in Blender's words; those about options use the names that options have."""
+        if isinstance(error, OptionError):
+            return error
+        sentence = self.group.told(str(error))
+        return CurveError(sentence[:1].upper() + sentence[1:], error.place)
+
+    def end(self, outcome: Outcome) -> None:
+        """Take in how the relaxation ended."""
+        self.outcome = replace(outcome, message=self.group.told(outcome.message))
 
     def take(self, iterate: Iterate) -> None:
         """Take in an iterate."""

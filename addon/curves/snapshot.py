@@ -31,7 +31,7 @@ class _Spline:
 
     @classmethod
     def of(cls, spline: "bpy.types.Spline") -> "_Spline":
-        points = _points(spline)
+        points = control_points(spline)
         arrays = {}
         for prop in _properties(points[0]) if len(points) else ():
             arrays[prop.identifier] = np.empty(len(points) * _width(prop), dtype=_TYPES[prop.type])
@@ -44,7 +44,7 @@ class _Spline:
     def put(self, spline: "bpy.types.Spline") -> None:
         """Fill a spline of this type with this many points."""
         for name, array in self.points.items():
-            _points(spline).foreach_set(name, array)
+            control_points(spline).foreach_set(name, array)
         for name, value in self.settings.items():
             setattr(spline, name, value)
 
@@ -131,7 +131,7 @@ class Snapshot:
             for kept in splines:
                 data.splines.new(kept.type)
         for spline, kept in zip(data.splines, splines, strict=True):
-            _points(spline).add(kept.count - len(_points(spline)))
+            control_points(spline).add(kept.count - len(control_points(spline)))
             kept.put(spline)
         if self._active is not None:
             data.splines.active = data.splines[self._active]
@@ -140,7 +140,7 @@ class Snapshot:
 
 def shape(data: "bpy.types.Curve") -> list[tuple[str, int]]:
     """Type and number of points of every spline."""
-    return [(spline.type, len(_points(spline))) for spline in data.splines]
+    return [(spline.type, len(control_points(spline))) for spline in data.splines]
 
 
 def _grows(old: list[tuple[str, int]], new: list[tuple[str, int]]) -> bool:
@@ -176,7 +176,8 @@ def _array(kept: Any) -> npt.NDArray[Any]:
     return np.array(kept, dtype={"f": np.float32, "i": np.int32}[kept.typecode])
 
 
-def _points(spline: "bpy.types.Spline") -> Any:
+def control_points(spline: "bpy.types.Spline") -> Any:
+    """The points of a spline of any type."""
     return spline.bezier_points if spline.type == "BEZIER" else spline.points
 
 

@@ -23,7 +23,7 @@ def messages(job: wire.Message) -> Iterator[wire.Message]:
         assert run.outcome is not None, "the loop is through"
         yield wire.pack_outcome(run.outcome)
     except MobiusFlowError as error:
-        yield {"error": str(error)}, []
+        yield wire.pack_error(error)
 
 
 def _proved(iterate: Iterate, link: Link, frames: list[Frame]) -> list[str]:

@@ -9,7 +9,8 @@ from typing import IO, Any
 
 import numpy as np
 
-from ...core import Curve, Iterate, Mesh, Outcome, RelaxOptions, Status
+from ...core import Curve, CurveError, Iterate, Mesh, MobiusFlowError, OptionError, Outcome, RelaxOptions, Status
+from ...core.errors import Place
 from ...core.types import FloatArray
 from .placement import Link, Placement
 
@@ -83,7 +84,24 @@ def pack_outcome(outcome: Outcome) -> Message:
 def unpack_outcome(message: Message) -> Outcome:
     """The inverse of `pack_outcome`."""
     values = message[0]["outcome"]
-    return Outcome(**values | {"status": Status(values["status"])})
+    return Outcome(**values | {"status": Status(values["status"]), "place": _place(values["place"])})
+
+
+def pack_error(error: MobiusFlowError) -> Message:
+    """Why a job cannot be done."""
+    place = error.place if isinstance(error, CurveError) else None
+    header = {"error": str(error), "place": None if place is None else asdict(place)}
+    return header | {"of_option": isinstance(error, OptionError)}, []
+
+
+def unpack_error(message: Message) -> MobiusFlowError:
+    """The inverse of `pack_error`, as far as Blender tells errors apart."""
+    header = message[0]
+    return OptionError(header["error"]) if header["of_option"] else CurveError(header["error"], _place(header["place"]))
+
+
+def _place(values: dict[str, Any] | None) -> Place | None:
+    return None if values is None else Place(**{name: tuple(numbers) for name, numbers in values.items()})
 
 
 def digest(start: FloatArray, end: FloatArray) -> str:

@@ -65,7 +65,7 @@ class Worker:
         if message is None:
             raise WorkerError("The computation ended unexpectedly; perhaps memory ran out")
         if "error" in message[0]:
-            raise MobiusFlowError(message[0]["error"])
+            raise wire.unpack_error(message)
         if "outcome" in message[0]:
             return wire.unpack_outcome(message)
         iterate, proved = wire.unpack_iterate(message)

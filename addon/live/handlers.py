@@ -17,6 +17,11 @@ def _load_pre(*_: Any) -> None:
 
 
 @persistent  # type: ignore[untyped-decorator]
+def _load_post(*_: Any) -> None:
+    registry.forget()  # it was about another file
+
+
+@persistent  # type: ignore[untyped-decorator]
 def _undo_pre(*_: Any) -> None:
     if run := registry.current():
         _before(run, run.history.others)
@@ -64,6 +69,7 @@ def _save_post(*_: Any) -> None:
 
 _HANDLERS = {
     "load_pre": _load_pre,
+    "load_post": _load_post,
     "undo_pre": _undo_pre,
     "redo_pre": _redo_pre,
     "undo_post": _undo_post,

@@ -7,12 +7,17 @@ shows them as they are; what they were is kept and put back unless the run is to
 import time
 from collections.abc import Callable, Sequence
 from enum import Enum
+from functools import cached_property
 from typing import TYPE_CHECKING
 
-from ...core import Iterate, MobiusFlowError, Outcome, RelaxOptions, Status
+from ...core import CurveError, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status
+from ...core.errors import Place
 from ..curves.group import Group
+from ..curves.imprint import Imprint
 from ..curves.session import Report, Session
 from ..engine.key_options import KeyOptions
+from ..engine.spots import Spot
+from ..engine.target import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from .history import History
 from .key_writer import KeyWriter
@@ -59,6 +64,15 @@ class Run:
     ------
     MobiusFlowError
         If the curves cannot be relaxed; the message says why.
+
+    Attributes
+    ----------
+    state, message, failed
+        Where it stands, and what is to be said of its end.
+    energies
+        The objective at all iterates that were taken in.
+    trouble
+        Where on the objects the reason is why it failed or got stuck, if it is somewhere.
     """
 
     def __init__(
@@ -76,6 +90,9 @@ class Run:
         self.last: Iterate | None = None
         self.report: Report | None = None
         self.shown: Iterate | None = None
+        self.energies: list[float] = []
+        self.trouble: list[Spot] = []
+        self._left: Imprint | None = None  # what the objects were at its end
         self.history = History()
         self._refresh = refresh
         self._session = Session(objects, options, key_options, continues)
@@ -99,6 +116,21 @@ class Run:
     def name(self) -> str:
         """The names of the objects, as messages show them."""
         return self.group.title
+
+    @cached_property
+    def target(self) -> Target | None:
+        """The least energy that there can be."""
+        return target_of(self.group.curve, self._session.options)
+
+    def concerns(self, obj: "bpy.types.Object | None") -> bool:
+        """Whether it is about an object: always while it goes on, and afterwards if the object is as it was left."""
+        return self._left is None or self._left.fits(obj)
+
+    @property
+    def spots(self) -> dict["bpy.types.Object", Spot]:
+        """The places of trouble by their objects, those that are still there."""
+        found = {self.group.member(spot.member): spot for spot in self.trouble}
+        return {obj: spot for obj, spot in found.items() if obj is not None}
 
     @property
     def waits(self) -> bool:
@@ -139,6 +171,7 @@ class Run:
         if not self.state.over:
             self._close(State.CANCELLED, message)
             self.preview.put_back()
+            self._leave()
 
     @property
     def recoverable(self) -> bool:
@@ -156,6 +189,7 @@ class Run:
         self._session.take_up()
         self._prepare()
         self.state, self.message, self.failed, self.shown = State.RUNNING, "", False, None
+        self.trouble, self._left = [], None
         self.keep()
 
     # -- what the timer does ------------------------------------------------------------------------------------
@@ -172,7 +206,7 @@ class Run:
             elif self.state is State.FINISHING:
                 self._write()
         except MobiusFlowError as error:
-            self._fail(str(error))
+            self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:
             self._fail("Memory ran out; all is as it was")
         except Exception:
@@ -188,11 +222,12 @@ class Run:
             if arrived is None:
                 break
             if isinstance(arrived, Outcome):
-                self._session.outcome = arrived
+                self._session.end(arrived)
                 self.keep()
                 return
             self._session.take(arrived)
             self.last = arrived
+            self.energies.append(arrived.energy)
             if self._refresh.ends_batch(arrived.index):
                 break
         if self.last is not None and self._refresh.due(self.last.index):
@@ -201,6 +236,8 @@ class Run:
     def _poll(self) -> Iterate | Outcome | None:
         try:
             return self._worker.poll()
+        except CurveError as error:
+            raise self._session.told(error) from error
         except WorkerError as error:
             if self.last is None:
                 raise
@@ -218,18 +255,27 @@ class Run:
     def _write(self) -> None:
         self.report = self._keys.advance()
         if self.report is not None:
+            assert self.last is not None, "it was kept"
+            self.trouble = self.group.spots(self.report.outcome.place, self.last.curve)
             self._close(State.DONE, self.report.sentence)
+            self._leave()
 
     # -- ends ---------------------------------------------------------------------------------------------------
 
-    def _fail(self, message: str) -> None:
+    def _fail(self, message: str, place: Place | None = None) -> None:
         self.failed = True
+        self.trouble = self.group.spots(place, self.group.curve)
         self.cancel(message)
 
     def _lose(self, reason: str) -> None:
         """End because of what somebody did to an object; what else there is is put back."""
         self._close(State.LOST, f"{reason}; the relaxation has ended")
         self.message += self.preview.put_back()
+        self._leave()
+
+    def _leave(self) -> None:
+        """Note how the objects are at the end."""
+        self._left = Imprint(self.group.objects)
 
     def _close(self, state: State, message: str) -> None:
         self.state, self.message = state, message

@@ -1,11 +1,7 @@
 """The sidebar's panels, each a module, and the entries in Blender's menus."""
 
-from . import advanced, animation, relax, shape
+from . import animation, expert, presets, relax, shape
 
-# sub-panels in the order they are shown
-CLASSES = (
-    *relax.CLASSES,
-    *animation.CLASSES,
-    *shape.CLASSES,
-    *advanced.CLASSES,
-)
+# presets go into the head of the panel; the sub-panels follow in the order they are shown
+_MODULES = (presets, relax, animation, shape, expert)
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

@@ -10,13 +10,15 @@ from ..buttons.running import (
     CURVE_OT_mobius_flow_recover,
     CURVE_OT_mobius_flow_stop,
 )
+from ..buttons.showing import CURVE_OT_mobius_flow_show
 from ..curves import neighbours
+from ..engine.quality import QUALITIES
 from ..live import registry
 from ..live.checks import refusal, selected_curves
 from ..live.run import Run, State
-from ..properties import shown
 from .labels import sentence
-from .layout import InSidebar, settings_column, value
+from .layout import InSidebar, value
+from .presets import VIEW3D_PT_mobius_flow_presets
 
 
 class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
@@ -24,19 +26,34 @@ class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):  # noqa: N801 - Blender
 
     bl_label = "Möbius Flow"
 
+    def draw_header_preset(self, _context: bpy.types.Context) -> None:
+        """Put the menu of presets into the panel's head."""
+        VIEW3D_PT_mobius_flow_presets.draw_panel_header(self.layout)
+
     def fill(self, layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:
-        """Put in buttons, what is known of the run, and the basic settings."""
-        _buttons(layout, context)
-        if run := registry.latest():
+        """Put in buttons, what is known of the run, and the quality."""
+        run = registry.shown(context.active_object)
+        _buttons(layout, context, run)
+        if run is not None:
             _progress(layout, context, run)
         elif context.active_object and context.active_object.type == "CURVE":
             value(layout, "Tube radius", f"{context.active_object.data.bevel_depth:.4g}")
-        settings_column(layout, settings, *(option.name for option in shown("basic")))
+        _quality(layout, context.scene.mobius_flow_panel)
         layout.prop(settings, "fit_bevel")
         layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
 
 
-def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def _quality(layout: bpy.types.UILayout, panel: bpy.types.PropertyGroup) -> None:
+    column = layout.column(align=True)
+    column.use_property_split = False
+    title = "Quality" if panel.quality in QUALITIES else "Quality: Custom, see Expert"
+    column.label(text=title)
+    row = column.row(align=True)
+    for name in QUALITIES:
+        row.prop_enum(panel, "quality", name)
+
+
+def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context, shown: Run | None) -> None:
     run = registry.current()
     column = layout.column(align=True)
     objects = run.group.objects if run is not None else selected_curves(context)
@@ -47,8 +64,7 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         large.operator(CURVE_OT_mobius_flow_relax.bl_idname, text=text, icon="PLAY")
     else:
         _run_buttons(large, run)
-    latest = registry.latest()
-    if latest is not None and latest.recoverable:
+    if shown is not None and shown.recoverable:
         column.operator(CURVE_OT_mobius_flow_recover.bl_idname, icon="RECOVER_LAST")
     reason = refusal(context)
     if reason and (run is None or any(obj not in objects for obj in selected_curves(context))):
@@ -70,6 +86,8 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) 
     value(box, ", ".join(run.group.names), "Waiting for the render" if run.waits else run.state.value.capitalize())
     if run.last is not None:
         value(box, "Energy", f"{run.last.energy:.4f}")
+        if run.target is not None:
+            value(box, "At least", run.target.label)
         value(box, "Iteration", f"{run.last.index}")
         value(box, "Step", f"{run.last.step_size:.3g}")
         proved = run.last.certified if run.report is None else run.report.certified
@@ -79,6 +97,12 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) 
         value(box, "Tube radius", f"{run.report.radius:.4g}")
     if run.message:
         sentence(box, context, run.message, icon="ERROR" if run.failed else "INFO")
+    if run.trouble and run.state.over:
+        box.operator(CURVE_OT_mobius_flow_show.bl_idname, icon="VIEWZOOM")
+    if run.energies:
+        row = box.row()
+        row.use_property_split = False
+        row.prop(context.scene.mobius_flow_panel, "show_plot")
 
 
 CLASSES = (VIEW3D_PT_mobius_flow,)

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..curve import Curve, Mesh
+from ..curve.places import at_edges, at_vertices
 from ..errors import CurveError
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level
@@ -43,7 +44,7 @@ def _check_repeated(curve: Curve) -> None:
         raise CurveError(
             f"component {component}: vertices {k} and {k % n + 1} are the same point "
             f"{_point(curve.vertices[same[0]])}; remove one of them",
-            vertex=int(same[0]),
+            at_vertices(curve, int(same[0]), int(heads[same[0]])),
         )
 
 
@@ -62,7 +63,7 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
         raise CurveError(
             f"component {component}: edge {k} doubles back on edge {(k - 2) % n + 1} at vertex {k}, "
             f"{_point(curve.vertices[vertex])}; move or remove that vertex",
-            vertex=vertex,
+            at_vertices(curve, vertex),
         )
 
 
@@ -71,7 +72,7 @@ def _check_crossings(curve: Curve, points: FloatArray) -> None:
     for i, j in touching(curve, points):
         where = _meeting_point(curve.vertices[[i, curve.mesh.heads[i], j, curve.mesh.heads[j]]])
         reason = f"{_names(curve.mesh, i, j)} touch or cross near {_point(where)}; move the strands apart"
-        raise CurveError(reason, vertex=i)
+        raise CurveError(reason, at_edges(curve, (i, j), where))
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:

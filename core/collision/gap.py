@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..curve import Curve
-from ..errors import CurveError
+from ..errors import CurveError, Place
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level
 from .planes import closest_chord, relative_motion
@@ -55,7 +55,8 @@ def check_gap(curve: Curve) -> None:
             gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in curve.vertices[i[k]])
             raise CurveError(
                 f"strands are only {gap:.2g} apart near ({place}), less than {MIN_GAP:g} of the curve's "
-                "length, which is too near to compute their energy; move them apart"
+                "length, which is too near to compute their energy; move them apart",
+                Place((), tuple(curve.vertices[i[k]].tolist())),
             )
 
 

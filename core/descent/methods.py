@@ -15,6 +15,7 @@ from .state import State
 from .step import NoStep, Step
 
 _CONSTRAINED = Constrained()
+_GRADIENTS = "projected fractional Sobolev gradients"
 METRIC_STEPS = 3  # of quasi-Newton methods: with more, more steps take back what is saved; conjugacy bears no change
 
 
@@ -40,13 +41,17 @@ class Method:
     Attributes
     ----------
     name, description
-        Name in the registry, and one line for users.
+        Name in the registry, and one line for those who know the mathematics.
     rule
         How steps are found.
     metric
         The inner product that gradients are taken in.
     geometry
         Whether lengths are prescribed or penalised.
+    label
+        What people call it, as a title; its name if nothing else is given.
+    comparison
+        Whether it is there to be compared with, rather than to be used.
     """
 
     name: str
@@ -54,29 +59,59 @@ class Method:
     rule: StepRule
     metric: Metric = METRICS["moebius"]
     geometry: Geometry = _CONSTRAINED
+    label: str = ""
+    comparison: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "label", self.label or self.name)
+
+    @property
+    def sentence(self) -> str:
+        """Its label and its description."""
+        return self.description if self.label == self.name else f"{self.label}: {self.description}"
 
 
 def _all() -> Iterator[Method]:
-    armijo, wolfe, penalised = Armijo(), WeakWolfe(), Penalised()
-    quasi_newton, conjugate, steepest = LimitedMemoryBFGS(), ConjugateGradient(), SteepestDescent()
-    remembering = LimitedMemoryBFGS(history=30)
-    text = "L-BFGS on the constraint manifold, metric J_C"
-    yield Method("lbfgs", text, LineSearch(quasi_newton, armijo, METRIC_STEPS))
-    text = "conjugate gradients (PR+) on the constraint manifold, metric J_C"
-    yield Method("cg", text, LineSearch(conjugate, armijo))
-    yield Method("trust-region", "trust region in a subspace with Newton's direction, metric J_C", TrustRegion())
-    for name, metric in METRICS.items():
-        text = f"projected gradient flow, explicit, {metric.description}"
-        yield Method(f"flow-{name}", text, LineSearch(steepest, armijo), metric)
-    for name, metric in METRICS.items():
-        text = f"projected gradient flow, implicit, {metric.description}"
-        yield Method(f"implicit-{name}", text, BackwardEuler(), metric)
-    for name, text, rule in (
-        ("lbfgs", "L-BFGS", LineSearch(remembering, wolfe, METRIC_STEPS)),
-        ("cg", "conjugate gradients (PR+)", LineSearch(conjugate, wolfe)),
-        ("nesterov", "Nesterov's accelerated gradient", Accelerated(wolfe)),
+    yield from _for_use()
+    yield from _flows()
+    yield from _penalised()
+
+
+def _for_use() -> Iterator[Method]:
+    armijo, steepest, metric = Armijo(), SteepestDescent(), METRICS["moebius"]
+    text = f"L-BFGS on the constraint manifold with {_GRADIENTS}, metric J_C"
+    yield Method("lbfgs", text, LineSearch(LimitedMemoryBFGS(), armijo, METRIC_STEPS), label="Sobolev L-BFGS")
+    text = f"conjugate gradients (PR+) on the constraint manifold with {_GRADIENTS}, metric J_C"
+    yield Method("cg", text, LineSearch(ConjugateGradient(), armijo), label="Sobolev Conjugate Gradients")
+    text = f"trust region in a subspace with Newton's direction, and {_GRADIENTS}, metric J_C"
+    yield Method("trust-region", text, TrustRegion(), label="Sobolev Trust Region (Newton)")
+    text = f"explicit flow along {_GRADIENTS}, metric {metric.description}"
+    label = "Sobolev Gradient Flow (the Paper's)"
+    yield Method("flow-moebius", text, LineSearch(steepest, armijo), metric, label=label)
+
+
+def _flows() -> Iterator[Method]:
+    explicit = LineSearch(SteepestDescent(), Armijo())
+    for rule, kind, word in ((explicit, "flow", "explicit"), (BackwardEuler(), "implicit", "implicit")):
+        for name, metric in METRICS.items():
+            if (kind, name) != ("flow", "moebius"):
+                text = f"projected gradient flow, {word}, {metric.description}"
+                label = f"{word.title()} Flow in {metric.description}"
+                yield Method(f"{kind}-{name}", text, rule, metric, label=label, comparison=True)
+
+
+def _penalised() -> Iterator[Method]:
+    wolfe, geometry = WeakWolfe(), Penalised()
+    for name, text, title, rule in (
+        ("lbfgs", "L-BFGS", "L-BFGS", LineSearch(LimitedMemoryBFGS(history=30), wolfe, METRIC_STEPS)),
+        ("cg", "conjugate gradients (PR+)", "Conjugate Gradients", LineSearch(ConjugateGradient(), wolfe)),
+        ("nesterov", "Nesterov's accelerated gradient", "Nesterov's Accelerated Gradient", Accelerated(wolfe)),
     ):
-        yield Method(f"penalty-{name}", f"{text} on the penalised energy", rule, geometry=penalised)
+        label, text = f"{title} with Length Penalty", f"{text} on the penalised energy"
+        yield Method(f"penalty-{name}", text, rule, geometry=geometry, label=label, comparison=True)
 
 
-METHODS: Mapping[str, Method] = MappingProxyType({method.name: method for method in _all()})
+METHODS: Mapping[str, Method] = MappingProxyType(
+    {method.name: method for method in sorted(_all(), key=lambda each: each.comparison)}
+)
+"""Every method that can be chosen, by name; those for comparison come last."""

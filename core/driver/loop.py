@@ -4,6 +4,7 @@ from collections.abc import Generator, Iterator, Sequence
 
 import numpy as np
 
+from ..curve.places import at_edges
 from ..descent import NoStep, Step
 from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
@@ -57,7 +58,8 @@ def _iterates(run: Run, interventions: Sequence[Intervention], rises: Rises) -> 
                 event = Start()
                 continue
         elif isinstance(answer, NoStep):
-            return stalled(answer.reason)
+            limits, curve = answer.limited_by, run.iterate.curve
+            return stalled(answer.reason, None if limits is None else at_edges(curve, limits))
         elif isinstance(event, Outcome):
             return answer if isinstance(answer, Outcome) else out_of_iterations(run.iterate.index)
         event = termination(run) or run.step()

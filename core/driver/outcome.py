@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from ..errors import counted
+from ..errors import Place, counted
 from ..hierarchy import SampledErrors
 
 
@@ -30,12 +30,15 @@ class Outcome:
         Of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum, more at a saddle.
     sampled_errors
         Of the hierarchical solver, when they were last looked at: in the end, unless that came of a sudden; else None.
+    place
+        Where on the last curve the reason is, if it is somewhere.
     """
 
     status: Status
     message: str
     negative_eigenvalues: int | None = None
     sampled_errors: SampledErrors | None = None
+    place: Place | None = None
 
     @property
     def converged(self) -> bool:
@@ -57,9 +60,9 @@ def out_of_iterations(count: int) -> Outcome:
     return Outcome(Status.ITERATION_LIMIT, f"stopped after {counted(count, 'iteration')}, as asked for")
 
 
-def stalled(reason: str) -> Outcome:
+def stalled(reason: str, place: Place | None = None) -> Outcome:
     """There is no way on, for a reason that is a clause."""
-    return Outcome(Status.STALLED, f"stalled: {reason}")
+    return Outcome(Status.STALLED, f"stalled: {reason}", place=place)
 
 
 INTERRUPTED = Outcome(Status.INTERRUPTED, "interrupted: the curve reached so far is kept")
@@ -87,4 +90,4 @@ INACCURATE = (
     "up to {energy:.1g} in the energy and {norm:.1g} in the gradient's norm; the dense solver has none of them"
 )
 ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"
-REMESHED = "the energy rose where the mesh changed: {rises}"
+REMESHED = "changes of mesh or shape raised the energy: {rises}"

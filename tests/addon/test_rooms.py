@@ -15,12 +15,13 @@ FLOORS = [
     {"curves"},
     {"pictures", "properties"},
     {"live"},
+    {"panel_settings"},
     {"buttons"},
     {"sidebar"},
     {"registration"},
     {""},  # the package, which Blender and the command line import
 ]
-OF_BLENDER = ("bpy", "bpy_extras", "blf", "bmesh", "gpu", "mathutils")
+OF_BLENDER = ("bpy", "bpy_extras", "blf", "bl_operators", "bl_ui", "bmesh", "gpu", "gpu_extras", "mathutils")
 WITHOUT_BLENDER = f"""
 import importlib
 import sys

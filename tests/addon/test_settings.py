@@ -12,9 +12,9 @@ from blender_scenes import add_trefoil, relax, sentence, stored  # noqa: E402
 from mobius_flow.addon import properties  # noqa: E402
 from mobius_flow.addon.engine import wire  # noqa: E402
 from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
-from mobius_flow.addon.sidebar.advanced import VIEW3D_PT_mobius_flow_advanced  # noqa: E402
+from mobius_flow.addon.sidebar.expert import VIEW3D_PT_mobius_flow_expert  # noqa: E402
 from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow  # noqa: E402
-from mobius_flow.core import Curve, OptionError, RelaxOptions, minimize  # noqa: E402
+from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, minimize  # noqa: E402
 from mobius_flow.core.option import declared, option  # noqa: E402
 from option_values import unlike_default  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
@@ -90,6 +90,22 @@ def test_names_keep_their_numbers_in_files(tmp_path):
         assert getattr(bpy.context.scene.mobius_flow, name) == item
 
 
+def test_methods_have_names_for_people_and_those_for_comparison_are_apart():
+    for owner in owners():
+        shown = owner["method"]
+        assert {item.identifier: item.name for item in shown.enum_items} == {
+            k: each.label for k, each in METHODS.items()
+        }
+        menu = [item.name for item in shown.enum_items_static_ui]
+        apart = menu.index("For Comparison")
+        assert menu[0] == "Recommended"
+        assert set(menu[apart + 1 :]) == {each.label for each in METHODS.values() if each.comparison}
+        assert "Sobolev L-BFGS" in menu[:apart]
+        assert "Sobolev Gradient Flow (the Paper's)" in menu[:apart]
+        assert "projected fractional Sobolev gradients" in shown.enum_items["lbfgs"].description
+    assert {name for name, each in METHODS.items() if each.label == name} == set()
+
+
 def drawn(cls):
     """The settings that a panel shows."""
     names = []
@@ -105,15 +121,16 @@ def drawn(cls):
     return names
 
 
-def test_the_advanced_panel_shows_its_group():
-    advanced = VIEW3D_PT_mobius_flow_advanced
-    assert advanced.is_registered
-    assert advanced.bl_parent_id == VIEW3D_PT_mobius_flow.__name__
-    assert "DEFAULT_CLOSED" in advanced.bl_options
-    names = drawn(advanced)
-    assert names == [*(name for name, each in SHOWN.items() if each.group == "advanced"), "view_every"]
-    assert {"energy", "metric", "quadrature_points", "penalty", "edge_lengths", "stability"} < set(names)
-    assert [each.name for each in properties.shown("basic")] == [name for name in SHOWN if name not in names]
+def test_the_expert_panel_shows_every_option():
+    expert = VIEW3D_PT_mobius_flow_expert
+    assert expert.is_registered
+    assert expert.bl_parent_id == VIEW3D_PT_mobius_flow.__name__
+    assert "DEFAULT_CLOSED" in expert.bl_options
+    names = drawn(expert)
+    assert sorted(names) == sorted([*SHOWN, "view_every"])
+    basic = [each.name for each in properties.shown("basic")]
+    assert names[: len(basic)] == basic
+    assert {"method", "tolerance", "max_iterations", "vertices"} <= set(basic)
 
 
 def test_options_that_nothing_else_knows_of_appear_by_themselves(monkeypatch):
@@ -123,7 +140,7 @@ def test_options_that_nothing_else_knows_of_appear_by_themselves(monkeypatch):
     assert patience["description"] == "How long to wait; 0: without limit"
     assert (patience["min"], patience["max"], patience["default"]) == (0.0, 9.0, 0.0)
     assert ([item[0] for item in colour["items"]], colour["default"]) == (["red", "blue"], "red")
-    assert "colour" in drawn(VIEW3D_PT_mobius_flow_advanced)
+    assert "colour" in drawn(VIEW3D_PT_mobius_flow_expert)
     values = scene_values() | {"patience": 0.0, "colour": "blue"}
     assert asdict(properties.relax_options(values))["patience"] is None
     assert properties.relax_options(values | {"patience": 2.0}).patience == 2.0

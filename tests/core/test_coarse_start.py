@@ -160,7 +160,7 @@ def test_rises_of_the_energy_with_the_mesh_are_told_of(options: dict[str, object
         passed = " → ".join(f"{energy:.6g}" for energy in (energies[first - 1], highest, energies[last]))
         told.append(f"{passed} at iteration {last}")
     assert len(told) == 2
-    assert result.message.endswith(f"; the energy rose where the mesh changed: {', '.join(told)}")
+    assert result.message.endswith(f"; changes of mesh or shape raised the energy: {', '.join(told)}")
 
 
 def test_many_rises_are_added_up() -> None:
@@ -171,6 +171,6 @@ def test_many_rises_are_added_up() -> None:
         rises.change(iterates[k], iterates[k + 1])
     message = rises.told(Outcome(Status.CONVERGED, "done"), 9).message
     assert message == (
-        "done; the energy rose where the mesh changed: 4 → 4.5 at iteration 2, 3 → 3.5 at iteration 6, "
+        "done; changes of mesh or shape raised the energy: 4 → 4.5 at iteration 2, 3 → 3.5 at iteration 6, "
         "2 → 2.25 at iteration 10, and 2 times more, by 0.188 in all"
     )

@@ -69,8 +69,9 @@ class CurveFile:
         return self._polygons[part].line_of(vertex - int(self.curve.mesh.offsets[part]))
 
     def refusal(self, error: CurveError) -> CurveFileError:
-        """The same error with the file's name and, where it is about a vertex, the line."""
-        return self.source.error(str(error), None if error.vertex is None else self.line_of(error.vertex))
+        """The same error with the file's name and, where it is about vertices, the line of the first."""
+        vertices = error.place.vertices if error.place is not None else ()
+        return self.source.error(str(error), self.line_of(vertices[0]) if vertices else None)
 
 
 def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream: BinaryIO | None = None) -> CurveFile:

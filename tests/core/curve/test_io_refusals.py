@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from mobius_flow.core.curve.io import FORMATS, load_curve, read_curve
 from mobius_flow.core.curve.io.source import MAX_BYTES, MAX_LINES
-from mobius_flow.core.errors import CurveError, CurveFileError
+from mobius_flow.core.errors import CurveError, CurveFileError, Place
 
 V = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
@@ -174,7 +174,8 @@ def test_later_errors_find_file_and_line(tmp_path: Path) -> None:
     path.write_text("# two triangles\n0 0 0\n1 0 0\n0 1 0\n\n0 0 5\n# here\n1 0 5\n0 1 5\n")
     file = load_curve(path)
     assert [file.line_of(vertex) for vertex in range(6)] == [2, 3, 4, 6, 8, 9]
-    assert str(file.refusal(CurveError("bad", vertex=4))) == f"{path}, line 8: bad"
+    assert str(file.refusal(CurveError("bad", Place((4, 5), (1.0, 0.0, 5.0))))) == f"{path}, line 8: bad"
+    assert str(file.refusal(CurveError("bad", Place((), (0.0, 0.0, 0.0))))) == f"{path}: bad"
     assert str(file.refusal(CurveError("bad"))) == f"{path}: bad"
 
 

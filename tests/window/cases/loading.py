@@ -16,20 +16,20 @@ def case() -> Steps:
     bpy.ops.wm.save_as_mainfile(filepath=FILE)
     yield from relax()
     bpy.ops.wm.open_mainfile(filepath=FILE)
-    yield from over("opening a file")
+    yield from over("opening a file", "none")
     yield
     is_whole(before)
     yield from picture("loading-1-opened")
 
     yield from relax()
     bpy.ops.wm.revert_mainfile()
-    yield from over("going back to the saved file")
+    yield from over("going back to the saved file", "none")
     yield
     is_whole(before)
 
     yield from relax()
     bpy.ops.wm.read_homefile(app_template="")
-    yield from over("a new file")
+    yield from over("a new file", "none")
     yield
     assert obj().name == "Cube"
     yield from picture("loading-2-new")

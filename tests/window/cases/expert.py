@@ -11,10 +11,10 @@ def case() -> Steps:
     y = yield from below("curve.mobius_flow_add_knot")
     sidebar = region("UI")
     yield from click(sidebar.x + int(0.33 * sidebar.width), y - 14)
-    yield from picture("advanced-1-open")
+    yield from picture("expert-1-open")
     settings = bpy.context.scene.mobius_flow
     settings.energy, settings.metric, settings.max_iterations = "edge", "h3-2", 3
-    yield from picture("advanced-2-set")
+    yield from picture("expert-2-set")
     yield from button("curve.mobius_flow_relax")
     yield from is_("done")
     assert run() is None

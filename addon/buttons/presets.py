@@ -1,0 +1,59 @@
+"""Presets: settings under a name, in files of Blender's own kind; some come with the extension."""
+
+from pathlib import Path
+
+import bpy
+from bl_operators.presets import AddPresetBase
+from bpy.props import StringProperty
+
+from ..properties import SETTINGS, shown
+
+PANEL = "VIEW3D_PT_mobius_flow_presets"
+SUBDIRECTORY = "mobius_flow"
+ROOM = Path(__file__).parents[1]  # Blender looks for presets in its "presets"
+SHIPPED = ROOM / "presets" / SUBDIRECTORY
+
+
+class CURVE_OT_mobius_flow_preset(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+    """Set the options of this preset; options that it does not name get their defaults"""
+
+    bl_idname = "curve.mobius_flow_preset"
+    bl_label = "Use Preset"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}  # noqa: RUF012 - read by Blender
+
+    filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"})
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Run the preset; how a motion is kept is changed only by presets that say so."""
+        if not Path(self.filepath).is_file():
+            self.report({"ERROR"}, f"There is no preset {Path(self.filepath).name} any more; choose another one")
+            return {"CANCELLED"}
+        for option in shown():
+            context.scene.mobius_flow.property_unset(option.name)
+        return set(bpy.ops.script.execute_preset(filepath=self.filepath, menu_idname=PANEL))
+
+
+class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
+    """Keep all settings as a preset, or remove one"""
+
+    bl_idname = "curve.mobius_flow_preset_add"
+    bl_label = "Add Preset"
+    preset_menu = PANEL
+    preset_subdir = SUBDIRECTORY
+    preset_defines = ("settings = bpy.context.scene.mobius_flow",)
+    preset_values = tuple(f"settings.{name}" for name in SETTINGS)
+
+
+def register() -> None:
+    """Tell Blender where the presets of the extension are; 4.2 cannot be told, see the panel."""
+    if hasattr(bpy.utils, "register_preset_path"):
+        bpy.utils.register_preset_path(str(ROOM))
+
+
+def unregister() -> None:
+    """Take that back."""
+    if hasattr(bpy.utils, "unregister_preset_path"):
+        bpy.utils.unregister_preset_path(str(ROOM))
+
+
+CLASSES = (CURVE_OT_mobius_flow_preset, CURVE_OT_mobius_flow_preset_add)

@@ -1,0 +1,61 @@
+"""The plot of the energy against the iterations, in pixels."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.types import FloatArray, IntArray
+from .target import Target
+
+_DECADE = 10.0  # ratio of energies from which they are drawn on a logarithmic scale
+_ROOM = 0.06  # of the height, kept free above and below
+
+
+@dataclass(frozen=True, eq=False)
+class Plot:
+    """What is drawn, in pixels from the lower left corner.
+
+    Attributes
+    ----------
+    line
+        The energies; shape (k, 2), at most two points for a pixel's width.
+    target
+        Height of the target's line, if there is one.
+    """
+
+    line: FloatArray
+    target: float | None
+
+
+def plot(energies: Sequence[float], target: Target | None, width: float, height: float) -> Plot:
+    """Lay out the energies of the iterates, of which there is at least one, and their target."""
+    chosen = _thinned(len(energies), width)
+    values = np.asarray(energies, dtype=np.float64)[chosen]
+    low = min(values.min(), np.inf if target is None else target.energy)
+    scale = _scale(low, values.max())
+    bottom, top = scale(np.array([low, values.max()]))
+
+    def heights(of: FloatArray) -> FloatArray:
+        share = (scale(of) - bottom) / (top - bottom) if top > bottom else np.full(of.shape, 0.5)
+        return np.asarray(height * (_ROOM + (1.0 - 2.0 * _ROOM) * share))
+
+    x = width * chosen / max(len(energies) - 1, 1)
+    level = None if target is None else float(heights(np.array([target.energy]))[0])
+    return Plot(np.column_stack([x, heights(values)]), level)
+
+
+def _thinned(count: int, width: float) -> IntArray:
+    """Indices of the first, the last, and evenly spread ones in between."""
+    chosen = np.linspace(0, count - 1, min(count, max(2 * int(width), 2)))
+    return np.asarray(np.unique(chosen.round().astype(np.intp)))
+
+
+def _scale(low: float, high: float) -> "np.ufunc":
+    return np.log if low > 0.0 and _DECADE * low < high else np.positive
+
+
+def dashes(length: float, period: float) -> FloatArray:
+    """Ends of dashes along a line, as pairs; shape (2 k, )."""
+    starts = np.arange(0.0, length, period)
+    return np.column_stack([starts, np.minimum(starts + 0.5 * period, length)]).ravel()

@@ -1,0 +1,124 @@
+"""What is drawn over the 3D views: the energy of the run that the panel shows, and marks at places of trouble."""
+
+import logging
+from dataclasses import dataclass
+
+import bpy
+import mathutils
+import numpy as np
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+
+from ...core.types import FloatArray
+from ..engine.colours import Colour, legible
+from ..engine.plot import dashes, plot
+from . import registry
+from .drawing import area, line, text
+from .run import Run
+
+_SIZE = np.array([280.0, 120.0])  # of the plot, at the usual scale of the interface
+_MARGIN = 16.0
+_PADDING = 10.0
+_CAPTION = 18.0  # height of the line of text above the plot
+_LINE = 2.0
+_DASH = 8.0
+_RADIUS = 14.0  # of marks
+_FONT_SHARE = 0.9  # of the interface's size of text
+_OPACITY = 0.85
+_RED = (0.95, 0.25, 0.2)
+_log = logging.getLogger(__name__)
+_handles: list[object] = []
+
+
+def register() -> None:
+    """Draw from now on."""
+    _handles.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL"))
+
+
+def unregister() -> None:
+    """Draw no more."""
+    while _handles:
+        bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+
+
+def _draw() -> None:
+    """Draw what there is in the view at hand; a view that cannot be drawn into is left alone."""
+    try:
+        context = bpy.context
+        run = registry.shown(context.active_object)
+        if run is None or context.region is None:
+            return
+        if context.space_data.overlay.show_overlays:
+            _marks(context, run)
+            if context.scene.mobius_flow_panel.show_plot and run.energies:
+                _plot(context, run)
+    except Exception:  # whatever happens to windows, files and graphics cards, nobody is to be interrupted by it
+        _log.debug("nothing was drawn over the view", exc_info=True)
+
+
+@dataclass(frozen=True, eq=False)
+class _Style:
+    """Sizes in pixels and colours of the plot, as interface and theme have them."""
+
+    scale: float
+    font: float
+    ground: Colour
+    words: Colour
+    accent: Colour
+
+    @classmethod
+    def of(cls, preferences: bpy.types.Preferences) -> "_Style":
+        theme, scale = preferences.themes[0], preferences.system.ui_scale
+        ground, words = theme.user_interface.wcol_tooltip.inner, theme.user_interface.wcol_tooltip.text
+        font = _FONT_SHARE * scale * preferences.ui_styles[0].widget.points
+        return cls(scale, font, ground, words, legible(theme.view_3d.object_active, ground))
+
+    @property
+    def pale(self) -> Colour:
+        """Halfway from the ground to the words."""
+        return [0.5 * (a + b) for a, b in zip(self.ground[:3], self.words[:3], strict=True)]
+
+
+def _plot(context: bpy.types.Context, run: Run) -> None:
+    """Draw the plot in the lower right corner, unless the view is too small for anything else."""
+    style = _Style.of(context.preferences)
+    size, padding, caption = style.scale * _SIZE, style.scale * _PADDING, style.scale * _CAPTION
+    high = np.array([_right(context), 0.0]) + style.scale * np.array([-_MARGIN, _MARGIN])
+    high[1] += size[1] + 2 * padding + caption
+    low = high - size - 2 * padding - [0.0, caption]
+    if low[0] < 0 or 2 * size[1] > context.region.height:
+        return
+    area(tuple(low), tuple(high), (*style.ground[:3], _OPACITY))
+    origin = low + padding
+    drawn = plot(run.energies, run.target, *size)
+    if run.target is not None and drawn.target is not None:
+        _target(style, run.target.label, np.array([origin[0], origin[1] + drawn.target]), size[0])
+    line(origin + drawn.line, style.accent, style.scale * _LINE)
+    x, y = origin[0], high[1] - 0.8 * caption
+    text(f"Energy {run.energies[-1]:.4f}", (x, y), style.words, style.font)
+    index = run.last.index if run.last is not None else 0
+    text(f"Iteration {index}", (x + size[0], y), style.words, style.font, share=1.0)
+
+
+def _target(style: _Style, label: str, start: FloatArray, width: float) -> None:
+    """Draw a dashed line with its label above it, at the left, where the energy is still high."""
+    across = dashes(width, style.scale * _DASH)
+    line(start + np.column_stack([across, np.zeros(len(across))]), style.pale, style.scale, kind="LINES")
+    text(label, (start[0], start[1] + 4 * style.scale), style.words, style.font)
+
+
+def _right(context: bpy.types.Context) -> float:
+    """Where the view ends at the right, or the sidebar begins that lies over it."""
+    region = context.region
+    sidebars = [each for each in context.area.regions if each.type == "UI" and each.width > 1]
+    return float(min([region.width, *(each.x - region.x for each in sidebars if each.x > region.x)]))
+
+
+def _marks(context: bpy.types.Context, run: Run) -> None:
+    scale = context.preferences.system.ui_scale
+    turns = np.linspace(0.0, 2.0 * np.pi, 33)
+    ring = scale * _RADIUS * np.column_stack([np.cos(turns), np.sin(turns)])
+    places = [obj.matrix_world @ mathutils.Vector(mark) for obj, spot in run.spots.items() for mark in spot.marks]
+    for place in places:
+        there = location_3d_to_region_2d(context.region, context.region_data, place)
+        if there is not None:
+            line(np.array(there) + ring, _RED, scale * _LINE)

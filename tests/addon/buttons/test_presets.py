@@ -1,0 +1,126 @@
+"""Presets in Blender's own menu: those of the extension, and the user's, which can be added and removed."""
+
+from pathlib import Path
+
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from mobius_flow.addon.buttons import presets  # noqa: E402
+from mobius_flow.addon.properties import SETTINGS, key_options, relax_options  # noqa: E402
+from mobius_flow.addon.sidebar.presets import VIEW3D_PT_mobius_flow_presets  # noqa: E402
+from mobius_flow.core import METHODS  # noqa: E402
+
+SHIPPED = {bpy.path.display_name(path.name, title_case=False): path for path in sorted(presets.SHIPPED.glob("*.py"))}
+
+
+@pytest.fixture
+def user(tmp_path, monkeypatch):
+    """Where the user's presets are, instead of in the user's own configuration."""
+    monkeypatch.setattr(bpy.utils, "user_resource", lambda _kind, path="", create=False: _directory(tmp_path / path))
+    monkeypatch.setattr(bpy.utils, "script_paths", lambda **_: [str(_directory(tmp_path / "presets"))])
+    return tmp_path / "presets" / presets.SUBDIRECTORY
+
+
+def _directory(path):
+    path.mkdir(parents=True, exist_ok=True)
+    return str(path)
+
+
+def use(path):
+    assert bpy.ops.curve.mobius_flow_preset(filepath=str(path)) == {"FINISHED"}
+    return bpy.context.scene.mobius_flow
+
+
+def values():
+    settings = bpy.context.scene.mobius_flow
+    return {name: getattr(settings, name) for name in SETTINGS}
+
+
+def test_the_four_are_there():
+    assert set(SHIPPED) == {"Animation", "Energy Minimum", "Gradient Flow of the Paper", "Untangle"}
+
+
+@pytest.mark.parametrize("path", SHIPPED.values(), ids=SHIPPED)
+def test_a_preset_of_the_extension_can_be_relaxed_with(path):
+    before = values()
+    use(path)
+    assert values() != before
+    options = relax_options(values())
+    key_options(values())
+    assert not METHODS[options.method].comparison
+
+
+def test_what_they_are_for():
+    assert use(SHIPPED["Energy Minimum"]).escape_saddles
+    assert use(SHIPPED["Gradient Flow of the Paper"]).method == "flow-moebius"
+    assert bpy.context.scene.mobius_flow.timing == "FLOW_TIME"
+    assert use(SHIPPED["Animation"]).length == 120
+    assert use(SHIPPED["Untangle"]).tolerance == pytest.approx(0.01)
+
+
+def test_options_that_a_preset_does_not_name_get_their_defaults():
+    settings = bpy.context.scene.mobius_flow
+    settings.energy, settings.stability, settings.start_frame = "edge", True, 33
+    use(SHIPPED["Untangle"])
+    assert (settings.energy, settings.stability) == ("moebius", False)
+    assert settings.start_frame == 33, "how the motion is kept is none of its business"
+
+
+def test_a_preset_that_is_gone_is_refused_in_one_sentence(tmp_path):
+    with pytest.raises(RuntimeError, match=r"There is no preset Old\.py any more; choose another one"):
+        bpy.ops.curve.mobius_flow_preset(filepath=str(tmp_path / "Old.py"))
+
+
+def test_a_preset_of_ones_own_keeps_every_setting(user):
+    settings = bpy.context.scene.mobius_flow
+    settings.energy, settings.tolerance, settings.hold_end, settings.fit_bevel = "edge", 0.02, 9, False
+    wanted = values()
+    assert bpy.ops.curve.mobius_flow_preset_add(name="My Knots") == {"FINISHED"}
+    (path,) = user.glob("*.py")
+    assert path.name == "My_Knots.py"
+    for name in SETTINGS:
+        settings.property_unset(name)
+    assert values() != wanted
+    use(path)
+    assert values() == wanted
+    assert bpy.ops.curve.mobius_flow_preset_add(name="My Knots", remove_name=True) == {"FINISHED"}
+    assert not path.exists()
+
+
+def listed():
+    """The files that the menu shows."""
+    shown = []
+
+    class Row:
+        def __getattr__(self, _name):
+            return lambda *_, **__: self
+
+        def operator(self, name, **_):
+            button = type("Button", (), {})()
+            shown.append((name, button))
+            return button
+
+    class Menu:
+        layout = Row()
+        path_menu = VIEW3D_PT_mobius_flow_presets.path_menu
+        bl_idname, preset_subdir = presets.PANEL, presets.SUBDIRECTORY
+        preset_operator, preset_add_operator = (
+            VIEW3D_PT_mobius_flow_presets.preset_operator,
+            VIEW3D_PT_mobius_flow_presets.preset_add_operator,
+        )
+
+    bpy.types.Menu.draw_preset(Menu(), bpy.context)
+    return [Path(button.filepath).stem for name, button in shown if name == Menu.preset_operator]
+
+
+@pytest.mark.parametrize("told", [True, False], ids=["Blender knows the place", "Blender 4.2"])
+def test_the_menu_lists_both_kinds_once(user, told):
+    bpy.ops.curve.mobius_flow_preset_add(name="My Knots")
+    if not told:
+        presets.unregister()
+    try:
+        assert sorted(listed()) == sorted([*(path.stem for path in SHIPPED.values()), "My_Knots"])
+    finally:
+        if not told:
+            presets.register()

@@ -1,0 +1,122 @@
+"""Show selects the points that a message is about, whatever kind of spline they are of."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_trefoil  # noqa: E402
+from mobius_flow.addon.curves.snapshot import control_points  # noqa: E402
+from mobius_flow.core.errors import Place  # noqa: E402
+from shapes import torus_trefoil  # noqa: E402
+
+CROSSED = np.array([[0.0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]])
+AWAY = np.array([[9.0, 0, 0], [9, 2, 0], [9, 0, 2]])
+
+
+def fails(operator):
+    """The message of a run that is refused by the worker."""
+    operator.start()
+    assert operator.until(lambda: False) == {"CANCELLED"}
+    return operator.run.message
+
+
+def selected(obj):
+    """Numbers of the selected points, spline by spline."""
+    bpy.ops.object.mode_set(mode="OBJECT")
+    name = {"BEZIER": "select_control_point"}
+    return [
+        [k for k, point in enumerate(control_points(spline)) if getattr(point, name.get(spline.type, "select"))]
+        for spline in obj.data.splines
+    ]
+
+
+def test_a_crossing(operator):
+    obj = add_curve([AWAY, CROSSED])
+    obj.location, obj.scale = (5, 0, 1), (2, 2, 2)
+    message = fails(operator)
+    assert message.startswith("Spline 2 of 'Knot': segments 1 and 3 touch or cross near (7, 2, 1)")
+    assert bpy.ops.curve.mobius_flow_show() == {"FINISHED"}
+    assert obj.mode == "EDIT"
+    assert selected(obj) == [[], [0, 1, 2, 3]]
+    (spot,) = operator.run.trouble
+    np.testing.assert_allclose(spot.marks, [[1, 1, 0]], atol=0.01)
+
+
+def test_a_doubled_point(operator):
+    points = torus_trefoil(30).vertices
+    obj = add_curve([np.insert(points, 7, points[7], axis=0)])
+    assert fails(operator).startswith("Spline 1 of 'Knot': points 8 and 9 are the same point")
+    bpy.ops.curve.mobius_flow_show()
+    assert selected(obj) == [[7, 8]]
+
+
+def test_two_objects(operator):
+    first, second = add_curve([AWAY], "Away"), add_curve([[[8.0, 1, 0], [10, 1, 0], [9, 1, -3]]], "Near")
+    assert "of spline 1 of 'Near' touch or cross" in fails(operator)
+    assert bpy.ops.curve.mobius_flow_show() == {"FINISHED"}
+    assert {obj.name for obj in bpy.context.objects_in_mode} == {"Away", "Near"}
+    assert sum(map(len, selected(first))) == sum(map(len, selected(second))) == 2
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+def test_smooth_splines_have_their_nearest_points_selected(operator, kind):
+    points = 3 * torus_trefoil(9).vertices
+    obj = add_curve([points, points], kind=kind)
+    operator.values["sample_splines"] = True
+    assert "touch or cross" in fails(operator) or "same point" in operator.run.message
+    assert bpy.ops.curve.mobius_flow_show() == {"FINISHED"}
+    assert any(selected(obj))
+
+
+def test_selection_of_before_is_dropped(operator):
+    obj = add_curve([CROSSED, AWAY])
+    for point in obj.data.splines[1].points:
+        point.select = True
+    fails(operator)
+    bpy.ops.curve.mobius_flow_show()
+    assert selected(obj)[1] == []
+
+
+def test_nothing_to_show(operator):
+    add_trefoil()
+    assert not bpy.ops.curve.mobius_flow_show.poll()
+    operator.start()
+    operator.reach(1)
+    assert not bpy.ops.curve.mobius_flow_show.poll()
+    operator.event("ESC")
+    assert not bpy.ops.curve.mobius_flow_show.poll()
+
+
+def test_what_was_mended_is_not_shown_any_more(operator):
+    obj = add_curve([CROSSED])
+    fails(operator)
+    assert bpy.ops.curve.mobius_flow_show.poll()
+    obj.data.splines[0].points[1].co[2] = 3
+    assert not bpy.ops.curve.mobius_flow_show.poll()
+
+
+def test_a_hidden_curve(operator):
+    obj = add_curve([CROSSED])
+    fails(operator)
+    obj.hide_set(True)
+    bpy.context.view_layer.objects.active = obj
+    with pytest.raises(RuntimeError, match="not in this view layer any more; make it visible first"):
+        bpy.ops.curve.mobius_flow_show()
+
+
+def test_a_stalled_run_shows_where_it_got_stuck(operator):
+    obj = add_trefoil()
+    operator.start()
+    operator.reach(2)
+    session = operator.run._session
+
+    def stalled(outcome):
+        session.outcome = replace(outcome, place=Place((3, 4), tuple(operator.run.last.curve.vertices[3])))
+
+    session.end = stalled
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_show() == {"FINISHED"}
+    assert selected(obj) == [[3, 4]]

@@ -1,0 +1,44 @@
+"""The least energy: 4 for each component, unless a single one is seen to be knotted."""
+
+import numpy as np
+import pytest
+from mobius_flow.addon.engine.target import CIRCLE, target_of
+from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize
+from mobius_flow.core.knots import knot
+from shapes import hopf_link, torus_trefoil
+
+MOEBIUS = RelaxOptions()
+
+
+@pytest.mark.parametrize("name", ["culprit", "goeritz", "thistlethwaite"])
+def test_unknots_may_become_circles(name):
+    target = target_of(knot(name), MOEBIUS)
+    assert (target.energy, target.label) == (4.0, "circle = 4")
+
+
+@pytest.mark.parametrize("name", ["3_1", "4_1", "8_19"])
+def test_knots_do_not(name):
+    assert target_of(knot(name), MOEBIUS) is None
+
+
+def test_a_link_has_a_circles_energy_for_each_component():
+    target = target_of(hopf_link(24), MOEBIUS)
+    assert (target.energy, target.label) == (8.0, "floor = 8")
+    assert minimize(hopf_link(24)).final_energy > target.energy
+
+
+def test_the_type_of_curves_with_very_many_vertices_is_left_open(monkeypatch):
+    monkeypatch.setattr("mobius_flow.addon.engine.target._MOST", 59)
+    assert target_of(torus_trefoil(60), MOEBIUS).label == "circle = 4"
+    assert target_of(torus_trefoil(59), MOEBIUS) is None
+
+
+def test_other_energies_have_other_minima():
+    assert target_of(knot("culprit"), RelaxOptions(energy="edge")) is None
+
+
+@pytest.mark.parametrize("n", [50, 400])
+def test_it_is_the_energy_of_the_circle(n):
+    angles = 2 * np.pi * np.arange(n) / n
+    circle = Curve(np.column_stack([np.cos(angles), np.sin(angles), 0 * angles]))
+    assert MoebiusEnergy().value(circle) == pytest.approx(CIRCLE, rel=10 / n**2)

@@ -1,0 +1,143 @@
+"""The plot and the marks lie in their view, whatever its size and theme, and nothing that happens there raises."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_trefoil  # noqa: E402
+from mobius_flow.addon.engine.colours import contrast  # noqa: E402
+from mobius_flow.addon.live import overlay, registry  # noqa: E402
+from mobius_flow.core.knots import knot  # noqa: E402
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """What is drawn instead of pixels: kind, points, colour, words."""
+    things = []
+    monkeypatch.setattr(overlay, "area", lambda low, high, colour: things.append(("area", (low, high), colour, "")))
+    monkeypatch.setattr(
+        overlay, "line", lambda points, colour, _width, kind="": things.append(("line", points, colour, kind))
+    )
+    monkeypatch.setattr(
+        overlay, "text", lambda words, place, colour, _size, share=0.0: things.append(("text", [place], colour, words))
+    )
+    return things
+
+
+def view(width=900, height=700, sidebar=None):
+    """The context of a view."""
+    region = SimpleNamespace(type="WINDOW", x=20, y=0, width=width, height=height)
+    regions = [region] if sidebar is None else [region, SimpleNamespace(type="UI", x=20 + sidebar, width=200)]
+    real = bpy.context.preferences
+    system = SimpleNamespace(ui_scale=1.0)  # 0 where there is no window
+    preferences = SimpleNamespace(system=system, themes=real.themes, ui_styles=real.ui_styles)
+    area = SimpleNamespace(regions=regions)
+    return SimpleNamespace(preferences=preferences, region=region, area=area, region_data=None)
+
+
+@pytest.fixture
+def run(operator):
+    """A run of a curve that may be unknotted."""
+    add_curve([knot("culprit").vertices])
+    operator.values |= {"max_iterations": 8, "vertices": 0}
+    operator.start()
+    operator.until(lambda: False)
+    return operator.run
+
+
+def corners(drawn):
+    return np.concatenate([np.reshape(np.array(points, dtype=float), (-1, 2)) for _, points, _, _ in drawn])
+
+
+@pytest.mark.parametrize("sidebar", [None, 650])
+def test_the_plot_is_in_the_view_beside_the_sidebar(run, drawn, sidebar):
+    overlay._plot(view(sidebar=sidebar), run)
+    low, high = corners(drawn).min(axis=0), corners(drawn).max(axis=0)
+    (ground,) = [points for kind, points, _, _ in drawn if kind == "area"]
+    np.testing.assert_array_equal(ground, [low, high])
+    assert (low > 0).all()
+    assert high[0] < (sidebar or 900)
+    words = [said for kind, _, _, said in drawn if kind == "text"]
+    assert words == ["circle = 4", f"Energy {run.last.energy:.4f}", "Iteration 8"]
+
+
+@pytest.mark.parametrize("size", [(250, 700), (900, 150)])
+def test_small_views_are_left_alone(run, drawn, size):
+    overlay._plot(view(*size), run)
+    assert drawn == []
+
+
+@pytest.mark.parametrize("ground", [0.05, 0.5, 0.95])
+def test_the_curve_can_be_seen_in_any_theme(run, drawn, ground):
+    inner = bpy.context.preferences.themes[0].user_interface.wcol_tooltip
+    before = tuple(inner.inner)
+    inner.inner = (ground, ground, ground, 1)
+    try:
+        overlay._plot(view(), run)
+    finally:
+        inner.inner = before
+    colours = [colour for kind, _, colour, style in drawn if kind == "line" and style == ""]
+    assert len(colours) == 1
+    assert contrast(colours[0], (ground,) * 3) >= 3
+
+
+def test_without_a_target_there_is_no_line_for_it(operator, drawn):
+    add_trefoil()
+    operator.values["max_iterations"] = 3
+    operator.start()
+    operator.until(lambda: False)
+    overlay._plot(view(), operator.run)
+    assert next(said for kind, _, _, said in drawn if kind == "text").startswith("Energy")
+
+
+def test_marks_are_where_the_trouble_is(operator, drawn, monkeypatch):
+    obj = add_curve([np.array([[0.0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]])])
+    operator.start()
+    operator.until(lambda: False)
+    places = []
+    monkeypatch.setattr(overlay, "location_3d_to_region_2d", lambda *where: places.append(where[2]) or (100.0, 50.0))
+    obj.location = (7, 0, 0)
+    bpy.context.view_layer.update()
+    overlay._marks(view(), operator.run)
+    np.testing.assert_allclose(np.array(places), [[8, 1, 0]], atol=0.01)
+    np.testing.assert_allclose(corners(drawn).mean(axis=0), [100, 50], atol=1)
+
+
+def test_what_is_behind_the_viewer_has_no_mark(operator, drawn, monkeypatch):
+    add_curve([np.array([[0.0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]])])
+    operator.start()
+    operator.until(lambda: False)
+    monkeypatch.setattr(overlay, "location_3d_to_region_2d", lambda *_: None)
+    overlay._marks(view(), operator.run)
+    assert drawn == []
+
+
+def test_whatever_happens_while_drawing_nothing_is_raised(monkeypatch, capfd):
+    class Broken:
+        def __getattr__(self, name):
+            raise ReferenceError("StructRNA of type Window has been removed")
+
+    monkeypatch.setattr(overlay.bpy, "context", Broken())
+    overlay._draw()
+    monkeypatch.setattr(registry, "shown", lambda _: 1 / 0)
+    overlay._draw()
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_forgotten_run_is_not_drawn(run, drawn):
+    registry.forget()
+    overlay._draw()
+    assert drawn == []
+
+
+def test_drawing_ends_with_the_extension(addon):
+    assert len(overlay._handles) == 1
+    addon.unregister()
+    try:
+        assert overlay._handles == []
+    finally:
+        addon.register()
+    assert len(overlay._handles) == 1

@@ -1,0 +1,47 @@
+"""Quality is what the options amount to, whoever sets them."""
+
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from mobius_flow.addon.engine.quality import QUALITIES  # noqa: E402
+
+
+def panel():
+    return bpy.context.scene.mobius_flow_panel
+
+
+def test_the_first_quality_is_the_librarys():
+    assert panel().quality == "GOOD"
+
+
+@pytest.mark.parametrize("name", QUALITIES)
+def test_choosing_a_quality_sets_its_options(name):
+    settings = bpy.context.scene.mobius_flow
+    settings.method, settings.vertices, settings.energy = "flow-l2", 77, "edge"
+    assert panel().quality == "CUSTOM"
+    panel().quality = name
+    assert panel().quality == name
+    for option, value in QUALITIES[name].values.items():
+        assert getattr(settings, option) == (pytest.approx(value) if isinstance(value, float) else value)
+    assert settings.energy == "edge"
+
+
+def test_custom_leaves_all_as_it_is():
+    before = bpy.context.scene.mobius_flow.tolerance
+    panel().quality = "CUSTOM"
+    assert (panel().quality, bpy.context.scene.mobius_flow.tolerance) == ("GOOD", before)
+
+
+def test_tooltips_say_what_a_quality_means():
+    items = panel().bl_rna.properties["quality"].enum_items
+    assert {name: items[name].description for name in QUALITIES} == {
+        k: each.description for k, each in QUALITIES.items()
+    }
+    assert all(items[name].description.isprintable() for name in [*QUALITIES, "CUSTOM"])
+
+
+def test_every_scene_has_its_own():
+    other = bpy.data.scenes.new("Other")
+    other.mobius_flow_panel.quality = "EXACT"
+    assert (other.mobius_flow_panel.quality, panel().quality) == ("EXACT", "GOOD")
