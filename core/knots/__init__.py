@@ -3,6 +3,7 @@
 from .closures import braid_closure
 from .contacts import rope, spiral
 from .lattice import lattice_closure
+from .lifting import Drawing
 from .names import UnknownKnotError, braid_word, knot, knot_names
 from .planar import diagram_knot
 from .scrambles import scramble
@@ -14,6 +15,7 @@ __all__ = [
     "ALIASES",
     "HARD_UNKNOTS",
     "KNOTS",
+    "Drawing",
     "UnknownKnotError",
     "braid_closure",
     "braid_word",
