@@ -42,15 +42,26 @@ class Signature:
 def signature(curve: Curve) -> Signature:
     """The signature of a closed polygon in space, from a generic projection."""
     crossings = _Crossings.of(curve)
-    count = len(curve.mesh.component_sizes)
     component = curve.mesh.component
     over, under = component[crossings.over], component[crossings.under]
-    linking = tuple(
+    parts = range(len(curve.mesh.component_sizes))
+    alexander = tuple(_values(crossings.within(over == k, under == k)) for k in parts)
+    return Signature(alexander, _linking_numbers(curve, crossings))
+
+
+def linking_numbers(curve: Curve) -> tuple[int, ...]:
+    """Linking numbers of all pairs of components of a link in space."""
+    return _linking_numbers(curve, _Crossings.of(curve))
+
+
+def _linking_numbers(curve: Curve, crossings: "_Crossings") -> tuple[int, ...]:
+    component, count = curve.mesh.component, len(curve.mesh.component_sizes)
+    over, under = component[crossings.over], component[crossings.under]
+    return tuple(
         int(np.sum(crossings.sign[((over == a) & (under == b)) | ((over == b) & (under == a))])) // 2
         for a in range(count)
         for b in range(a + 1, count)
     )
-    return Signature(tuple(_values(crossings.within(over == k, under == k)) for k in range(count)), linking)
 
 
 @dataclass(frozen=True, eq=False)
