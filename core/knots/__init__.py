@@ -1,11 +1,15 @@
-"""Knots and links to start from: torus knots, braid closures, diagrams, the named table, hard unknots, scrambles."""
+"""Knots and links to start from: the named table and its relaxed shapes, torus knots, braids, drawings, satellites."""
 
 from .closures import braid_closure
 from .contacts import rope, spiral
 from .lattice import lattice_closure
+from .lifting import Drawing
+from .lissajous import lissajous_knot
 from .names import UnknownKnotError, braid_word, knot, knot_names
 from .planar import diagram_knot
+from .satellites import cable, double
 from .scrambles import scramble
+from .shapes import smooth_knot
 from .table import ALIASES, HARD_UNKNOTS, KNOTS
 from .torus import torus_knot
 from .unknots import hard_unknot, unknot_word
@@ -14,16 +18,21 @@ __all__ = [
     "ALIASES",
     "HARD_UNKNOTS",
     "KNOTS",
+    "Drawing",
     "UnknownKnotError",
     "braid_closure",
     "braid_word",
+    "cable",
     "diagram_knot",
+    "double",
     "hard_unknot",
     "knot",
     "knot_names",
     "lattice_closure",
+    "lissajous_knot",
     "rope",
     "scramble",
+    "smooth_knot",
     "spiral",
     "torus_knot",
     "unknot_word",

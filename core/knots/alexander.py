@@ -12,10 +12,10 @@ import numpy as np
 
 from ..curve import Curve
 from ..types import BoolArray, FloatArray, IntArray
+from .crossings import plane_crossings
 
 _PRIME = 2_147_482_681  # below 2³¹, so that products fit 64 bits; 1 more than a multiple of 2·3·5·7
 _ORDERS = (2, 3, 5, 7)
-_ROWS = 128  # of edge pairs looked at together
 
 
 @dataclass(frozen=True)
@@ -42,15 +42,26 @@ class Signature:
 def signature(curve: Curve) -> Signature:
     """The signature of a closed polygon in space, from a generic projection."""
     crossings = _Crossings.of(curve)
-    count = len(curve.mesh.component_sizes)
     component = curve.mesh.component
     over, under = component[crossings.over], component[crossings.under]
-    linking = tuple(
+    parts = range(len(curve.mesh.component_sizes))
+    alexander = tuple(_values(crossings.within(over == k, under == k)) for k in parts)
+    return Signature(alexander, _linking_numbers(curve, crossings))
+
+
+def linking_numbers(curve: Curve) -> tuple[int, ...]:
+    """Linking numbers of all pairs of components of a link in space."""
+    return _linking_numbers(curve, _Crossings.of(curve))
+
+
+def _linking_numbers(curve: Curve, crossings: "_Crossings") -> tuple[int, ...]:
+    component, count = curve.mesh.component, len(curve.mesh.component_sizes)
+    over, under = component[crossings.over], component[crossings.under]
+    return tuple(
         int(np.sum(crossings.sign[((over == a) & (under == b)) | ((over == b) & (under == a))])) // 2
         for a in range(count)
         for b in range(a + 1, count)
     )
-    return Signature(tuple(_values(crossings.within(over == k, under == k)) for k in range(count)), linking)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +77,13 @@ class _Crossings:
     @classmethod
     def of(cls, curve: Curve) -> "_Crossings":
         points = curve.vertices @ _generic_rotation()
-        rows = [_found(curve, points, first) for first in range(0, len(curve), _ROWS)]
-        over, under, over_at, under_at, sign = np.concatenate(rows, axis=1)
-        return cls(over.astype(np.intp), under.astype(np.intp), over_at, under_at, sign.astype(np.intp))
+        found = plane_crossings(curve.mesh, points)
+        heights = [_height(curve, points, *end) for end in found.ends]
+        above = heights[0] > heights[1]
+        (i, s), (j, t) = found.ends
+        over, under = np.where(above, i, j), np.where(above, j, i)
+        over_at, under_at = np.where(above, s, t), np.where(above, t, s)
+        return cls(over, under, over_at, under_at, np.sign(np.where(above, found.turn, -found.turn)).astype(np.intp))
 
     def within(self, over: BoolArray, under: BoolArray) -> "_Crossings":
         chosen = over & under
@@ -76,26 +91,10 @@ class _Crossings:
         return _Crossings(self.over[chosen], self.under[chosen], *at, self.sign[chosen])
 
 
-def _found(curve: Curve, points: FloatArray, first: int) -> FloatArray:
-    """Crossings of a block of edges with later ones, as rows over, under, over_at, under_at, sign."""
-    mesh = curve.mesh
-    i = np.arange(first, min(first + _ROWS, mesh.size))[:, None]
-    j = np.arange(mesh.size)[None, :]
-    start, edge = points[mesh.tails], points[mesh.heads] - points[mesh.tails]
-    apart = start[j] - start[i]
-    wedge = edge[i, 0] * edge[j, 1] - edge[i, 1] * edge[j, 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        s = (apart[..., 0] * edge[j, 1] - apart[..., 1] * edge[j, 0]) / wedge
-        t = (apart[..., 0] * edge[i, 1] - apart[..., 1] * edge[i, 0]) / wedge
-    neighbours = (mesh.heads[i] == j) | (mesh.heads[j] == i)
-    a, b = np.nonzero((j > i) & ~neighbours & (s > 0) & (s < 1) & (t > 0) & (t < 1))
-    s, t, wedge = s[a, b], t[a, b], wedge[a, b]
-    first_edge, second_edge = a + first, b
-    above = start[first_edge, 2] + s * edge[first_edge, 2] > start[second_edge, 2] + t * edge[second_edge, 2]
-    over, under = np.where(above, first_edge, second_edge), np.where(above, second_edge, first_edge)
-    sign = np.sign(np.where(above, wedge, -wedge))
-    columns = [over, under, np.where(above, s, t), np.where(above, t, s), sign]
-    return np.array(columns, dtype=np.float64)
+def _height(curve: Curve, points: FloatArray, edge: IntArray, at: FloatArray) -> FloatArray:
+    """Third coordinates of points on edges."""
+    start, end = points[curve.mesh.tails[edge], 2], points[curve.mesh.heads[edge], 2]
+    return np.asarray(start + at * (end - start))
 
 
 def _values(crossings: _Crossings) -> tuple[int, ...]:

@@ -69,6 +69,24 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     return braid_closure(braid_word(name), vertices)
 
 
+def table_name(name: str) -> tuple[str, bool]:
+    """The table's name of a knot or link that is in it, and whether its mirror image is meant; raises as `knot` does.
+
+    Examples
+    --------
+    >>> table_name("m Trefoil knot")
+    ('3_1', True)
+    """
+    part = _plain(str(name))
+    mirrors = _MIRRORS.match(part)
+    bare = part[mirrors.end() :] if mirrors else part
+    entry = ALIASES.get(bare, bare)
+    if (found := _TABLE.get(_squeezed(entry))) is None:
+        knot(name, None)  # which says what is wrong with names that mean nothing
+        raise UnknownKnotError(f"{name[:60]!r} is a knot, but none of the table; give one of those, or m and one")
+    return found, mirrors is not None and bool(mirrors[0].count("m") % 2)
+
+
 def braid_word(name: str) -> Word:
     """Braid word of a name in the grammar of :func:`knot`; raises UnknownKnotError, or CurveError as `knot` does."""
     word: Word = ()

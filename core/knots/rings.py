@@ -78,7 +78,7 @@ class ClosedBraid:
         lengths = np.array([_length(ring, self.detail) for ring in self.rings])
         if vertices is None:
             vertices = min(max(math.ceil(lengths.sum() / (_EDGE * self.gap)), self.detail), MAX_VERTICES)
-        counts = _shares(vertices, lengths)
+        counts = shares(vertices, lengths)
         angles = [_equal_edges(ring, count) for ring, count in zip(self.rings, counts, strict=True)]
         if any(_deviation(ring, theta) >= self.gap / 2 for ring, theta in zip(self.rings, angles, strict=True)):
             raise CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
@@ -90,7 +90,7 @@ def _length(ring: Ring, detail: int) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _shares(vertices: int, lengths: FloatArray) -> list[int]:
+def shares(vertices: int, lengths: FloatArray) -> list[int]:
     """Share vertices among the components in proportion to length, by rounding the running sums."""
     marks: IntArray = np.rint(vertices * np.cumsum(lengths) / lengths.sum()).astype(np.intp)
     counts = np.diff(marks, prepend=0)

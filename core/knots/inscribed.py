@@ -1,0 +1,103 @@
+"""Polygons inscribed in smooth closed curves, proved to be isotopic to them."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..collision import is_free
+from ..curve import Curve, Mesh
+from ..errors import CurveError
+from ..types import FloatArray
+from .rings import MAX_VERTICES, shares
+
+_EDGE = 0.5  # default edge length in units of the gap between strands
+_DISTINCT = 2.0  # points are on different strands if they are this many times further apart along the curve
+_FINER = 4  # times as many vertices stand for the smooth curve
+
+
+def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
+    """Inscribe a polygon with equal steps along the components of a smooth link, which is proved to be isotopic.
+
+    Parameters
+    ----------
+    curve
+        Polygons with so many vertices that they stand for the smooth curves.
+    vertices
+        Total number; by default so many that edges are shorter than strands are apart, and ``least`` or more.
+
+    Raises
+    ------
+    CurveError
+        If the curve meets itself, or as good as does, or the vertices are too few or too many.
+    """
+    gap = strand_gap(curve)
+    if vertices is None:
+        vertices = max(least, math.ceil(curve.length / (_EDGE * gap)) if gap > 0 else MAX_VERTICES + 1)
+    if vertices > MAX_VERTICES:
+        raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
+    sizes = shares(vertices, np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices]))
+    coarse, fine = (_resampled(curve, [factor * n for n in sizes]) for factor in (1, _FINER))
+    if not is_isotopic(fine, equal_steps(fine), coarse, equal_steps(coarse)):
+        raise CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
+    return coarse
+
+
+def strand_gap(curve: Curve) -> float:
+    """Least distance of vertices on different strands, which two sides of a bend are too."""
+    nearest = np.inf
+    position = np.concatenate([_arc(part)[:-1] for part in curve.components])
+    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
+    component = curve.mesh.component
+    tree, radius = cKDTree(curve.vertices), 2.0 * float(curve.edge_lengths.max())
+    while not nearest <= radius:
+        i, j = tree.query_pairs(radius, output_type="ndarray").T
+        distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
+        along = np.abs(position[i] - position[j])
+        along = np.minimum(along, lengths[component[i]] - along)
+        apart = (along > _DISTINCT * distance) | (component[i] != component[j])
+        nearest = float(distance[apart].min(initial=np.inf))
+        radius *= 2
+    return nearest
+
+
+def is_isotopic(first: Curve, first_at: Sequence[FloatArray], second: Curve, second_at: Sequence[FloatArray]) -> bool:
+    """Whether the motion of polygons into others, along straight lines at equal parameters, is proved free of contact.
+
+    ``first_at`` and ``second_at`` have the parameters of the vertices of each component, increasing from 0 to below 1.
+    """
+    ends = []
+    for p, t, q, u in zip(first.components, first_at, second.components, second_at, strict=True):
+        both = np.union1d(t, u)
+        ends.append((_along(p, t, both), _along(q, u, both)))
+    start, end = (np.concatenate(parts) for parts in zip(*ends, strict=True))
+    return is_free(Mesh(tuple(len(p) for p, _ in ends)), start, end)
+
+
+def equal_steps(curve: Curve) -> list[FloatArray]:
+    """Parameters of vertices that are equally spaced on each component."""
+    return [np.arange(n) / n for n in curve.mesh.component_sizes]
+
+
+def arc_steps(points: FloatArray) -> FloatArray:
+    """Parameters of the vertices of a closed polygon that are proportional to arc length; shape (n,)."""
+    arc = _arc(points)
+    return arc[:-1] / arc[-1]
+
+
+def _arc(points: FloatArray) -> FloatArray:
+    """Arc length from the first vertex of a closed polygon to each and back to it; shape (n + 1,)."""
+    edges = np.diff(points, axis=0, append=points[:1])
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(edges, axis=1))])
+
+
+def _resampled(curve: Curve, sizes: Sequence[int]) -> Curve:
+    parts = [_along(part, arc_steps(part), np.arange(n) / n) for part, n in zip(curve.components, sizes, strict=True)]
+    return Curve.from_components(parts)
+
+
+def _along(points: FloatArray, at: FloatArray, t: FloatArray) -> FloatArray:
+    """Points of a closed polygon at parameters t; its vertices are at parameters ``at``, the first at 0."""
+    closed = np.concatenate([points, points[:1]])
+    return np.stack([np.interp(t, np.append(at, 1.0), x) for x in closed.T], axis=1)

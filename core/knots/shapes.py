@@ -1,0 +1,122 @@
+"""Relaxed shapes of the table's knots and links: smooth closed curves, stored as a few Fourier coefficients.
+
+``tools/knot_shapes.py`` makes the file from relaxations of the tangent-point energy, which spreads strands evenly, and
+proves that each polygon made here has the type its name says.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from ..curve import Curve
+from ..errors import CurveError
+from ..types import ComplexArray, FloatArray
+from .inscribed import equal_steps, is_isotopic
+from .names import table_name
+from .rings import MAX_VERTICES, shares
+
+FILE = Path(__file__).with_name("shapes.npz")
+QUANTUM = 2.0**-13  # coefficients are stored as multiples of it, in 16 bits
+_PER_MODE, _LEAST = 10, 64  # vertices of a component for each of its modes, and altogether
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A smooth knot or link, about as wide as the interval from −1 to 1, lying flat and facing +z.
+
+    Parameters
+    ----------
+    coefficients
+        For each component c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, at nearly constant speed.
+    """
+
+    coefficients: tuple[ComplexArray, ...]
+
+    @property
+    def sizes(self) -> list[int]:
+        """Numbers of vertices, for each component, of the polygon whose type is proved."""
+        return [max(_LEAST, _PER_MODE * (len(c) - 1)) for c in self.coefficients]
+
+    def polygon(self, sizes: Sequence[int]) -> Curve:
+        """Inscribe a polygon with so many vertices on each component, at equal steps of t."""
+        parts = [_values(c, np.arange(n) / n) for c, n in zip(self.coefficients, sizes, strict=True)]
+        return Curve.from_components(parts)
+
+
+def smooth_knot(name: str, vertices: int | None = None) -> Curve:
+    """Make a knot or link of the table in its relaxed shape.
+
+    Handedness is the table's: 3_1 is the right-handed trefoil.  An m before the name gives the mirror image in the
+    plane of the picture.
+
+    Parameters
+    ----------
+    name
+        A name of the table or another word for one, as in :func:`~mobius_flow.core.knots.knot`.
+    vertices
+        Total number of vertices; by default so many that the curve looks smooth.
+
+    Raises
+    ------
+    UnknownKnotError
+        If no shape is stored for the name.
+    CurveError
+        If the vertices are too few to follow the strands, or too many for any use.
+
+    Examples
+    --------
+    >>> smooth_knot("hopf link", 60).mesh.component_sizes
+    (30, 30)
+    """
+    entry, mirrored = table_name(name)
+    shape = shapes()[entry]
+    curve = shape.polygon(shape.sizes)
+    if vertices is not None:
+        curve = _with_vertices(shape, curve, vertices)
+    return curve.with_vertices(curve.vertices * [1.0, 1.0, -1.0]) if mirrored else curve
+
+
+@cache
+def shapes() -> Mapping[str, Shape]:
+    """All stored shapes by their names in the table."""
+    with np.load(FILE) as stored:
+        names, counts, modes = stored["names"], stored["components"], stored["modes"]
+        values = QUANTUM * stored["coefficients"].astype(np.float64)
+    rows = np.split(values[..., 0] + 1j * values[..., 1], np.cumsum(modes + 1)[:-1])
+    parts = iter(rows)
+    return MappingProxyType(
+        {str(name): Shape(tuple(next(parts) for _ in range(count))) for name, count in zip(names, counts, strict=True)}
+    )
+
+
+def store(given: Mapping[str, Shape], path: Path = FILE) -> None:
+    """Write shapes, whose coefficients are rounded to multiples of the quantum."""
+    parts = [c for shape in given.values() for c in shape.coefficients]
+    values = np.concatenate(parts)
+    np.savez_compressed(
+        path,
+        names=np.array(list(given)),
+        components=np.array([len(shape.coefficients) for shape in given.values()], dtype=np.uint8),
+        modes=np.array([len(c) - 1 for c in parts], dtype=np.uint8),
+        coefficients=np.rint(np.stack([values.real, values.imag], axis=-1) / QUANTUM).astype(np.int16),
+    )
+
+
+def _with_vertices(shape: Shape, proved: Curve, vertices: int) -> Curve:
+    if vertices > MAX_VERTICES:
+        raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
+    lengths = np.array([proved.edge_lengths[s].sum() for s in proved.mesh.slices])
+    curve = shape.polygon(shares(vertices, lengths))
+    if not is_isotopic(proved, equal_steps(proved), curve, equal_steps(curve)):
+        raise CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
+    return curve
+
+
+def _values(coefficients: ComplexArray, t: FloatArray) -> FloatArray:
+    """Points at parameters t of shape (n,); shape (n, 3)."""
+    waves = np.exp(2j * np.pi * np.outer(t, np.arange(len(coefficients))))
+    return np.asarray((waves @ coefficients).real)

@@ -1,0 +1,173 @@
+"""Drawings lifted into space: the drawn crossings and no others, alternating or as told, or refused with the place."""
+
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from curve_checks import strand_distance
+from jones import jones
+from knot_diagrams import pairwise_linking, simplified
+from knot_type import UNKNOT, knot_invariants
+from mobius_flow.core import Curve, CurveError
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.knots import Drawing, knot, torus_knot
+from mobius_flow.core.knots.crossings import plane_crossings
+
+
+def flat(curve: Curve) -> Curve:
+    return curve.with_vertices(curve.vertices[:, :2])
+
+
+def scribble(seed: int, points: int = 160) -> Curve:
+    """A random closed curve with a few dozen crossings at most."""
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0, 2 * np.pi, points, endpoint=False)[:, None]
+    modes = np.arange(1, 6)
+    waves = np.concatenate([np.cos(t * modes), np.sin(t * modes)], axis=1)
+    return Curve(waves @ (rng.normal(size=(10, 2)) / np.tile(modes, 2)[:, None] ** 0.7))
+
+
+def circle(x: float, y: float = 0.0, radius: float = 1.0, points: int = 40) -> np.ndarray:
+    t = 2 * np.pi * (np.arange(points) + 0.3) / points
+    return np.column_stack([x + radius * np.cos(t), y + radius * np.sin(t)])
+
+
+def test_a_drawn_trefoil_is_a_trefoil() -> None:
+    drawing = Drawing.of(flat(torus_knot(2, 3, 60)))
+    assert len(drawing.crossings) == 3
+    found = knot_invariants(drawing.lifted().vertices)
+    assert (found.genus, found.fibered, abs(found.tau)) == (1, True, 1)
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_one_changed_crossing_unknots_it(number: int) -> None:
+    drawing = Drawing.of(flat(torus_knot(2, 3, 60)))
+    assert knot_invariants(drawing.lifted([number]).vertices) == UNKNOT
+
+
+def test_changing_all_crossings_mirrors() -> None:
+    drawing = Drawing.of(flat(torus_knot(2, 5)))
+    one, other = (knot_invariants(drawing.lifted(changed).vertices) for changed in ([], [1, 2, 3, 4, 5]))
+    assert one.tau == -other.tau != 0
+
+
+@pytest.mark.parametrize("name", ["4_1", "6_2", "7_7", "8_18"])
+def test_shadows_of_alternating_braids_give_the_knot(name: str) -> None:
+    curve = knot(name)
+    found, expected = (knot_invariants(c.vertices) for c in (Drawing.of(flat(curve)).lifted(), curve))
+    assert (found.genus, found.alexander, found.rank) == (expected.genus, expected.alexander, expected.rank)
+
+
+@pytest.mark.parametrize("name", ["L2a1", "L4a1", "L5a1", "L6a4"])
+def test_links_alternate_too(name: str) -> None:
+    link = knot(name)
+    found = jones(simplified(Drawing.of(flat(link)).lifted().components))
+    expected = jones(simplified(link.components))
+    assert found in (expected, {-k: c for k, c in expected.items()})
+
+
+def test_components_side_by_side_and_within_each_other_are_drawn() -> None:
+    drawing = Drawing.of(Curve.from_components([circle(0), circle(1.1), circle(4), circle(4, 0.1, 0.5)]))
+    lifted = drawing.lifted()
+    assert len(drawing.crossings) == 2
+    assert {pair: abs(n) for pair, n in pairwise_linking(lifted.components).items() if n} == {(0, 1): 1}
+    assert not lifted.components[3][:, 2].any()
+
+
+def as_drawn(drawing: Drawing, changed: list[int]) -> None:
+    """The lifted curve is embedded, with the drawn crossings, and the upper strands told."""
+    lifted = drawing.lifted(changed)
+    check_embedded(lifted)
+    size = np.ptp(drawing.curve.vertices)
+    generic = lifted.vertices + 1e-7 * size * np.random.default_rng(1).normal(size=(len(lifted), 3))
+    found = plane_crossings(lifted.mesh, generic)
+    first, second = (lifted.vertices[e] + at[:, None] * lifted.edge_vectors[e] for e, at in found.ends)
+    assert len(first) == len(drawing.crossings)
+    for number, crossing in enumerate(drawing.crossings, 1):
+        k = int(np.linalg.norm(first[:, :2] - crossing, axis=1).argmin())
+        assert np.linalg.norm(first[k, :2] - crossing) < 1e-4 * size
+        assert (first[k, 2] > second[k, 2]) == (drawing.first_over[number - 1] ^ (number in changed))
+
+
+def clear_scribbles(count: int) -> list[Drawing]:
+    """The first random scribbles that are no unclear drawings."""
+    found: list[Drawing] = []
+    for seed in range(2 * count):
+        with suppress(CurveError):
+            found.append(Drawing.of(scribble(seed)))
+    return found[:count]
+
+
+SCRIBBLES = clear_scribbles(16)
+
+
+def test_most_scribbles_are_clear() -> None:
+    assert len(SCRIBBLES) == 16
+    assert sum(len(drawing.crossings) > 2 for drawing in SCRIBBLES) > 8
+
+
+@pytest.mark.parametrize("drawing", SCRIBBLES)
+def test_scribbles_have_the_drawn_crossings_and_no_others(drawing: Drawing) -> None:
+    as_drawn(drawing, [])
+    as_drawn(drawing, list(range(1, len(drawing.crossings) + 1, 2)))
+
+
+@pytest.mark.parametrize("drawing", [drawing for drawing in SCRIBBLES if len(drawing.crossings)])
+def test_along_the_curve_over_and_under_take_turns(drawing: Drawing) -> None:
+    order = np.argsort(drawing.passes.ravel())
+    over = np.stack([drawing.first_over, ~drawing.first_over], axis=1).ravel()[order]
+    assert (over[1:] != over[:-1]).all()
+    assert over[0]
+
+
+def test_strands_keep_apart_in_proportion_to_the_room_there() -> None:
+    drawing = Drawing.of(flat(torus_knot(2, 7)))
+    apart = np.linalg.norm(drawing.crossings[:, None] - drawing.crossings[None], axis=2)
+    room = apart[apart > 0].min()
+    assert strand_distance(drawing.lifted()) > 0.4 * room
+
+
+def test_corners_on_a_grid_are_no_trouble() -> None:
+    """Strands through each other's vertices cross all the same."""
+    bow = Curve([(0, 0), (1, 1), (2, 2), (2, 0), (1, 1.0), (0, 2)])
+    drawing = Drawing.of(bow)
+    assert drawing.crossings == pytest.approx(np.array([[1.0, 1.0]]), abs=1e-6)
+    assert knot_invariants(drawing.lifted().vertices) == UNKNOT
+
+
+TRIPLE = [(np.cos(a), np.sin(a)) for a in np.radians([0, 180, 210, 30, 60, 240])]
+
+
+@pytest.mark.parametrize(
+    ("curve", "place"),
+    [
+        (Curve.from_components([circle(0, points=400), circle(2, points=400)]), (1, 0)),
+        (Curve([(0, 0), (2, 0), (2, 1), (1, 0), (0, 1)]), (1, 0)),
+        (Curve([(0, 0), (2, 0), (2, 1), (1.5, 0), (0.5, 0), (0, 1)]), None),
+        (Curve(TRIPLE), (0, 0)),
+        (Curve([*circle(0), *circle(0)]), None),
+    ],
+    ids=["circles", "corner", "along", "triple", "twice round"],
+)
+def test_what_is_unclear_is_refused_with_the_place(curve: Curve, place: tuple[float, float] | None) -> None:
+    with pytest.raises(CurveError, match=r"near \(\S+, \S+\) strands touch") as caught:
+        Drawing.of(curve)
+    assert caught.value.vertex is not None
+    if place is not None:
+        said = str(caught.value).split("(")[1].split(")")[0].split(", ")
+        assert np.linalg.norm(np.array(said, dtype=float) - place) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: Drawing.of(torus_knot(2, 3)), "dimension 3"),
+        (lambda: Drawing.of(Curve(np.ones((5, 2)))), "all points"),
+        (lambda: Drawing.of(Curve(circle(0, points=20_001))), "at most 20000"),
+        (lambda: Drawing.of(Curve(circle(0))).lifted([1]), "no crossing 1; the drawing has 0"),
+        (lambda: Drawing.of(flat(torus_knot(2, 3))).lifted([0]), "no crossing 0"),
+    ],
+)
+def test_what_is_no_drawing(make, said: str) -> None:
+    with pytest.raises(CurveError, match=said):
+        make()

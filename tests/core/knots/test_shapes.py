@@ -1,0 +1,128 @@
+"""Stored shapes: each has the type its name says, faces +z, and makes polygons that are proved to have its type."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from curve_checks import strand_distance
+from jones import jones
+from knot_diagrams import pairwise_linking, simplified
+from knot_type import UNKNOT, knot_invariants
+from mobius_flow.core import CurveError
+from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, knot, smooth_knot
+from mobius_flow.core.knots.inscribed import equal_steps, is_isotopic
+from mobius_flow.core.knots.shapes import FILE, QUANTUM, Shape, shapes, store
+
+_LINES = (Path(__file__).parent / "known_knots.txt").read_text(encoding="utf-8").splitlines()
+KNOWN = {line.split()[0]: line.split()[1:] for line in _LINES if not line.startswith("#")}
+LINKS = [name for name in KNOTS if name not in KNOWN]
+
+
+def integers(text: str) -> tuple[int, ...]:
+    return tuple(map(int, text.split(",")))
+
+
+def test_every_name_of_the_table_has_a_shape() -> None:
+    assert list(shapes()) == list(KNOTS)
+    assert FILE.stat().st_size < 60_000
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_every_shape_has_the_type_of_its_name(name: str) -> None:
+    """Knot Floer homology and the Jones polynomial together tell all knots of the table apart, but for four pairs."""
+    genus, fibered, tau, alexander, lowest, coefficients = KNOWN[name]
+    points = smooth_knot(name).vertices
+    found = knot_invariants(points)
+    assert found.alexander == integers(alexander)
+    assert (found.genus, found.fibered, found.tau) == (int(genus), fibered == "yes", int(tau))
+    expected = {2 * (int(lowest) + i): c for i, c in enumerate(integers(coefficients)) if c}
+    assert jones(simplified([points])) == expected
+
+
+@pytest.mark.parametrize("name", LINKS)
+def test_every_link_has_the_type_of_its_name(name: str) -> None:
+    found, expected = (smooth_knot(name), knot(name))
+    assert pairwise_linking(found.components) == pairwise_linking(expected.components)
+    assert jones(simplified(found.components)) == jones(simplified(expected.components))
+    assert all(knot_invariants(part) == UNKNOT for part in found.components)
+
+
+@pytest.mark.parametrize("name", KNOTS)
+def test_shapes_are_flat_even_and_roomy(name: str) -> None:
+    curve = smooth_knot(name)
+    widths = np.ptp(curve.vertices, axis=0)
+    assert widths.max() == pytest.approx(2.0, abs=0.03)
+    assert abs(curve.vertices.max(axis=0) + curve.vertices.min(axis=0)).max() < 0.03
+    assert widths[2] <= max(widths[:2]) + 0.02
+    for part in curve.components:
+        lengths = np.linalg.norm(np.diff(part, axis=0, append=part[:1]), axis=1)
+        assert lengths.max() < 1.5 * lengths.min()
+    assert strand_distance(curve, apart=8) > 0.12
+
+
+def test_other_spellings_and_mirror_images() -> None:
+    assert np.array_equal(smooth_knot("Trefoil Knot").vertices, smooth_knot("3_1").vertices)
+    assert np.array_equal(smooth_knot("m m trefoil").vertices, smooth_knot("3_1").vertices)
+    assert np.array_equal(smooth_knot("m3_1").vertices, smooth_knot("3_1").vertices * [1, 1, -1])
+    assert knot_invariants(smooth_knot("m3_1").vertices).tau == -1
+    assert all(len(smooth_knot(name)) >= 64 for name, meant in ALIASES.items() if "#" not in meant)
+
+
+@pytest.mark.parametrize("vertices", [40, 101, 1000])
+def test_the_number_of_vertices_is_the_one_asked_for(vertices: int) -> None:
+    for name in ("3_1", "L6n1", "0_1"):
+        assert len(smooth_knot(name, vertices)) == vertices
+    assert knot_invariants(smooth_knot("3_1", vertices).vertices) == knot_invariants(smooth_knot("3_1").vertices)
+
+
+def test_coarse_polygons_are_the_right_knot_or_refused() -> None:
+    for name in ("3_1", "6_2", "10_124"):
+        expected = knot_invariants(smooth_knot(name).vertices)
+        refused = 0
+        for vertices in range(4, 60, 3):
+            try:
+                curve = smooth_knot(name, vertices)
+            except CurveError:
+                refused += 1
+                continue
+            assert knot_invariants(curve.vertices) == expected
+        assert 0 < refused < 19
+
+
+def test_a_motion_through_itself_is_not_isotopic() -> None:
+    curve, mirrored = smooth_knot("3_1"), smooth_knot("m3_1")
+    assert is_isotopic(curve, equal_steps(curve), curve, equal_steps(curve))
+    assert not is_isotopic(curve, equal_steps(curve), mirrored, equal_steps(mirrored))
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("trefol", "did you mean trefoil"),
+        ("granny", "none of the table"),
+        ("T(2,3)", "none of the table"),
+        ("goeritz", "none of the table"),
+        ("", "known are"),
+    ],
+)
+def test_names_without_a_shape(name: str, said: str) -> None:
+    with pytest.raises(UnknownKnotError, match=re.escape(said)):
+        smooth_knot(name)
+
+
+def test_too_many_vertices() -> None:
+    with pytest.raises(CurveError, match="too many"):
+        smooth_knot("3_1", 10**9)
+
+
+def test_what_is_stored_is_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(3)
+    parts = [QUANTUM * rng.integers(-9000, 9000, size=(n, 3, 2)) for n in (4, 2, 7)]
+    first, second, third = (part[..., 0] + 1j * part[..., 1] for part in parts)
+    store({"a": Shape((first, second)), "b": Shape((third,))}, tmp_path / "shapes.npz")
+    monkeypatch.setattr("mobius_flow.core.knots.shapes.FILE", tmp_path / "shapes.npz")
+    found = shapes.__wrapped__()
+    assert list(found) == ["a", "b"]
+    for got, given in zip((*found["a"].coefficients, *found["b"].coefficients), (first, second, third), strict=True):
+        assert np.array_equal(got, given)

@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""Make core/knots/shapes.npz: relaxed smooth shapes of the table's knots and links, with a proof for each.
+
+    tools/knot_shapes.py [NAME ...]
+
+Each knot is relaxed from its closed braid on the tangent-point energy, turned so that it faces +z with little hidden,
+and fitted by Fourier series. What is not proved is an error: that the relaxation kept the type, and that the straight
+motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Relaxations take seconds each,
+together a quarter of an hour; they are kept in build/knot_shapes, and those that are there are not done again.
+"""
+
+import argparse
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+from mobius_flow.core import Curve, CurveError, Mesh, RelaxOptions, minimize
+from mobius_flow.core.knots import KNOTS, knot
+from mobius_flow.core.knots.alexander import signature
+from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic
+from mobius_flow.core.knots.shapes import FILE, Shape, shapes, store
+from mobius_flow.core.types import ComplexArray, FloatArray
+from scipy.interpolate import CubicSpline
+from scipy.spatial import cKDTree
+
+KEPT = Path(__file__).resolve().parents[1] / "build" / "knot_shapes"
+VERTICES = range(100, 400, 20)  # of closed braids: the first number that follows their strands
+ITERATIONS = 160  # of L-BFGS: afterwards little is seen to move
+MODES = range(1, 60)
+TOLERANCE = 0.004  # of the half-width, between relaxed and stored curve: far less than strands are apart
+VIEWS = 400
+NEAR = 0.25  # in the picture, of the curve's radius
+
+
+def main() -> int:
+    """Make the shapes that the command line names, by default all, and write them with those that are there."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="of the table (default: all)")
+    chosen = parser.parse_args().names or list(KNOTS)
+    made = dict(shapes()) if FILE.exists() and set(chosen) != set(KNOTS) else {}
+    for name in chosen:
+        made[name] = shape(name)
+        print(name, [len(c) - 1 for c in made[name].coefficients], flush=True)
+    store({name: made[name] for name in KNOTS if name in made})
+    shapes.cache_clear()
+    for name in chosen:  # as they are read back
+        check(name, facing(relaxed(name)), shapes()[name])
+    return 0
+
+
+def relaxed(name: str) -> Curve:
+    """The relaxed polygon of a knot; the motion there from its closed braid is proved free of contact."""
+    path = KEPT / f"{name}.npz"
+    if not path.exists():
+        start = _start(name)
+        options = RelaxOptions(
+            energy="tangent-point", vertices=len(start), max_iterations=ITERATIONS, tolerance=1e-3, mesh="fixed"
+        )
+        result = minimize(start, options)
+        if not result.certified:
+            sys.exit(f"{name}: the relaxation is not certified")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        np.savez(path, vertices=result.curve.vertices, sizes=result.curve.mesh.component_sizes)
+    with np.load(path) as kept:
+        return Curve(kept["vertices"], Mesh(tuple(map(int, kept["sizes"]))))
+
+
+def _start(name: str) -> Curve:
+    """A knot's closed braid with few vertices, on which relaxations are quick."""
+    for vertices in VERTICES:
+        with suppress(CurveError):
+            return knot(name, vertices)
+    return knot(name)
+
+
+def facing(curve: Curve) -> Curve:
+    """A curve turned so that few of its strands hide others seen from +z, wide along x, and scaled to half-width 1."""
+    points = curve.vertices - curve.vertices.mean(axis=0)
+    turned = min((points @ view for view in _views()), key=_clutter)
+    _, axes = np.linalg.eigh(turned[:, :2].T @ turned[:, :2])
+    plane = axes[:, ::-1] * [1.0, np.sign(np.linalg.det(axes[:, ::-1]))]
+    turned[:, :2] = turned[:, :2] @ plane
+    low, high = turned.min(axis=0), turned.max(axis=0)
+    return curve.with_vertices((turned - 0.5 * (low + high)) / (0.5 * (high - low).max()))
+
+
+def _views() -> list[FloatArray]:
+    """Rotations to look from directions spread over the sphere (Fibonacci's spiral); each (3, 3)."""
+    k = np.arange(VIEWS) + 0.5
+    z, phi = 1.0 - 2.0 * k / VIEWS, np.pi * (1.0 + np.sqrt(5.0)) * k
+    rho = np.sqrt(1.0 - z**2)
+    views = []
+    for normal in np.stack([rho * np.cos(phi), rho * np.sin(phi), z], axis=1):
+        x = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+        x /= np.linalg.norm(x)
+        views.append(np.stack([x, np.cross(normal, x), normal], axis=1))
+    return views
+
+
+def _clutter(points: FloatArray) -> int:
+    """Number of pairs of vertices that are near each other in the picture: at crossings, and where strands recede."""
+    size = float(np.linalg.norm(points, axis=1).max())
+    return len(cKDTree(points[:, :2]).query_pairs(NEAR * size, output_type="ndarray"))
+
+
+def shape(name: str) -> Shape:
+    """Fit a knot's shape with as few modes as stay close to it."""
+    curve = facing(relaxed(name))
+    return Shape(tuple(_fitted(part) for part in curve.components))
+
+
+def _fitted(points: FloatArray) -> ComplexArray:
+    """Fourier coefficients (modes + 1, 3) of a closed polygon's spline by arc length."""
+    spline = CubicSpline(np.append(arc_steps(points), 1.0), np.concatenate([points, points[:1]]), bc_type="periodic")
+    samples = spline(np.arange(1024) / 1024)
+    spectrum = np.fft.rfft(samples, axis=0) / 512
+    spectrum[0] /= 2
+    for modes in MODES:
+        kept = np.where(np.arange(len(spectrum))[:, None] <= modes, spectrum, 0.0)
+        kept[0] *= 2
+        if np.abs(np.fft.irfft(kept * 512, axis=0) - samples).max() < TOLERANCE:
+            break
+    return np.asarray(spectrum[: modes + 1])
+
+
+def check(name: str, curve: Curve, stored: Shape) -> None:
+    """End with an error unless the polygon inscribed in a stored shape is proved to have the relaxed one's type."""
+    polygon = stored.polygon(stored.sizes)
+    steps = [arc_steps(part) for part in curve.components]
+    if not is_isotopic(curve, steps, polygon, equal_steps(polygon)):
+        sys.exit(f"{name}: the motion from the relaxed curve to the stored shape is not proved free of contact")
+    if signature(polygon) != signature(knot(name)):
+        sys.exit(f"{name}: the stored shape has another signature")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
