@@ -15,7 +15,7 @@ from ..collision import check_embedded
 from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs
 from ..curve.refine import subdivide
-from ..errors import CurveError
+from ..errors import CurveError, Place
 from ..types import BoolArray, FloatArray, IntArray
 from .crossings import plane_crossings
 
@@ -149,7 +149,7 @@ def _unclear(point: FloatArray, vertex: int) -> CurveError:
     place = ", ".join(f"{x:.4g}" for x in point)
     return CurveError(
         f"near ({place}) strands touch without crossing clearly, or more than two meet; move one of them away",
-        vertex=vertex,
+        Place((vertex,), tuple(map(float, point))),
     )
 
 

@@ -152,7 +152,7 @@ TRIPLE = [(np.cos(a), np.sin(a)) for a in np.radians([0, 180, 210, 30, 60, 240])
 def test_what_is_unclear_is_refused_with_the_place(curve: Curve, place: tuple[float, float] | None) -> None:
     with pytest.raises(CurveError, match=r"near \(\S+, \S+\) strands touch") as caught:
         Drawing.of(curve)
-    assert caught.value.vertex is not None
+    assert caught.value.place is not None
     if place is not None:
         said = str(caught.value).split("(")[1].split(")")[0].split(", ")
         assert np.linalg.norm(np.array(said, dtype=float) - place) < 0.1
