@@ -8,10 +8,10 @@ from ..descent import NoStep, Step
 from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
 from .iterate import Iterate
-from .outcome import DEGENERATE, Outcome, out_of_iterations, stalled
+from .outcome import DEGENERATE, Outcome, stalled
 from .rises import Rises
 from .run import Run
-from .termination import termination
+from .termination import at_limit, termination
 
 Relaxation = Generator[Iterate, None, Outcome]
 
@@ -58,7 +58,7 @@ def _iterates(run: Run, interventions: Sequence[Intervention], rises: Rises) -> 
         elif isinstance(answer, NoStep):
             return stalled(answer.reason)
         elif isinstance(event, Outcome):
-            return answer if isinstance(answer, Outcome) else out_of_iterations(run.iterate.index)
+            return answer if isinstance(answer, Outcome) else at_limit(run)
         event = termination(run) or run.step()
         if isinstance(event, Step):
             before = run.iterate

@@ -76,4 +76,5 @@ UNRESOLVED = (
 )
 ADVICE = "more vertices or an adaptive mesh may help"
 ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"
+UNEVEN = "edge lengths are still off their targets by up to {percent:.2g} %"
 REMESHED = "the energy rose where the mesh changed: {rises}"
