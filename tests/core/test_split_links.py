@@ -7,7 +7,7 @@ import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian
-from mobius_flow.core.driver.interventions.split_links import separate_parts
+from mobius_flow.core.driver.interventions.split_links import _near, separate_parts
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.composite import knotted_ball
@@ -41,6 +41,24 @@ def test_a_large_part_keeps_small_ones_that_it_could_go_round():
 
 def test_very_many_parts_are_one():
     assert set(separate_parts(rings(*(4.0 * k for k in range(60))))) == {0}
+
+
+def test_parts_of_thousands_of_components_without_a_matrix_of_all_pairs():
+    count = 20_000  # a matrix of all pairs would have 400,000,000 entries
+    chain = [ring([1.5 * k, 0.0, 0.0], size=3) for k in range(count)]
+    far = [ring([1.5 * k, 1e6 * (k + 1), 0.0], size=3) for k in range(10)]
+    parts = separate_parts(Curve.from_components([*chain, *far]))
+    assert parts == (0,) * count + tuple(range(1, 11))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_near_balls_are_all_found(seed):
+    rng = np.random.default_rng(seed)
+    centers, radii = rng.uniform(0, 30, (80, 3)), 10.0 ** rng.uniform(-2, 1, 80)
+    distance = np.linalg.norm(centers[:, None] - centers, axis=2)
+    near = distance < radii[:, None] + radii + np.maximum(radii[:, None], radii)
+    found = _near(centers, radii).toarray()
+    np.testing.assert_array_equal(found | found.T, near)
 
 
 @pytest.fixture
