@@ -60,7 +60,7 @@ Curves = Mapping[str, Callable[[], Curve]]
 
 KNOTS: Curves = MappingProxyType(
     {
-        **{f"unknot-{c}": partial(hard_unknot, c, seed=c) for c in (20, 60, 100)},
+        **{f"unknot-{c}": partial(hard_unknot, c, seed=c) for c in (20, 60, 100, 141)},
         **{f"unknot-lattice-{c}": partial(lattice_unknot, c) for c in (20, 40, 60, 80, 100, 120, 141)},
         **{
             f"unknot-{name}": partial(knot, name) for name in HARD_UNKNOTS if name != "haken"

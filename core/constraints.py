@@ -7,6 +7,7 @@ barycenter each.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -87,40 +88,53 @@ class ConstraintDerivative:
         Connectivity.
     tangents
         τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (n, m).
-    barycenter
-        Rows of the barycenters, entry (k, v, l) the derivative of coordinate k by coordinate l of vertex v;
-        shape (p·m, n, m) for p parts, or (0, n, m) without barycenter.
+    masses, moments
+        Of the barycenters, which also move with vertices and as edges become longer: (ℓ_I + ℓ_{I−1})/2 at each vertex,
+        shape (n,), and ℓ_I m_I for each edge, shape (n, m).
+    membership
+        Which vertices and edges are in which of p parts, as 0 and 1; sparse, shape (p, n), without barycenter (0, n).
     """
 
     mesh: Mesh
     tangents: FloatArray
-    barycenter: FloatArray
+    masses: FloatArray
+    moments: FloatArray
+    membership: sp.csr_array
 
     @classmethod
     def of_lengths(cls, curve: Curve) -> "ConstraintDerivative":
         """The length rows alone."""
-        tangents = curve.edge_vectors / curve.edge_lengths[:, None] ** 2
-        return cls(curve.mesh, tangents, np.zeros((0, *curve.vertices.shape)))
+        return cls._of(curve, sp.csr_array((0, len(curve))))
 
     @classmethod
     def at(cls, curve: Curve, parts: Parts | None = None) -> "ConstraintDerivative":
         """DΦ at the curve."""
+        part = np.asarray(parts or (0,) * len(curve.mesh.component_sizes))
+        places = part[curve.mesh.component], np.arange(len(curve))
+        return cls._of(curve, sp.csr_array((np.ones(len(curve)), places), shape=(part.max() + 1, len(curve))))
+
+    @classmethod
+    def _of(cls, curve: Curve, membership: sp.csr_array) -> "ConstraintDerivative":
         ell, mesh = curve.edge_lengths, curve.mesh
-        tau = curve.edge_vectors / ell[:, None]
-        mass = 0.5 * mesh.scatter(ell, ell)
-        rows = []
-        for own in _memberships(mesh, parts):
-            for k in range(curve.dimension):
-                stretch = np.asarray((own * curve.midpoints[:, k])[:, None] * tau, dtype=np.float64)
-                row = mesh.scatter(-stretch, stretch)
-                row[:, k] += own * mass
-                rows.append(row)
-        return cls(mesh, tau / ell[:, None], np.stack(rows))
+        tangents = curve.edge_vectors / ell[:, None] ** 2
+        return cls(mesh, tangents, 0.5 * mesh.scatter(ell, ell), ell[:, None] * curve.midpoints, membership)
+
+    @property
+    def pinned(self) -> int:
+        """Number of rows of barycenters, p·m."""
+        return int(self.membership.shape[0]) * self.tangents.shape[1]
 
     @property
     def count(self) -> int:
         """Number of rows, n + p·m."""
-        return len(self.tangents) + len(self.barycenter)
+        return len(self.tangents) + self.pinned
+
+    def barycenter_rows(self) -> Iterator[FloatArray]:
+        """The rows of the barycenters one by one, part by part and coordinate by coordinate; shape (n, m) each."""
+        for k in range(self.count - self.pinned, self.count):
+            unit = np.zeros(self.count)
+            unit[k] = 1.0
+            yield self.apply_transpose(unit)
 
     def length_rows(self) -> sp.csr_array:
         """The rows of the lengths as a sparse matrix; shape (n, n·m)."""
@@ -134,11 +148,17 @@ class ConstraintDerivative:
     def apply(self, u: FloatArray) -> FloatArray:
         """DΦ u; shape (n + p·m,) from (n, m)."""
         along = np.einsum("ij,ij->i", self.tangents, u[self.mesh.heads] - u[self.mesh.tails])
-        return np.concatenate([along, np.einsum("kvl,vl->k", self.barycenter, u)])
+        moved = self.membership @ (self.masses[:, None] * u + along[:, None] * self.moments)
+        return np.concatenate([along, moved.ravel()])
 
     def apply_transpose(self, multipliers: FloatArray) -> FloatArray:
         """DΦᵀ λ; shape (n, m) from (n + p·m,)."""
-        n = self.mesh.size
-        pull = multipliers[:n, None] * self.tangents
-        pinned: FloatArray = np.einsum("kvl,k->vl", self.barycenter, multipliers[n:])
-        return self.mesh.scatter(-pull, pull) + pinned
+        n, m = self.tangents.shape
+        force = self._parts_to_vertices @ multipliers[n:].reshape(-1, m)
+        tension = multipliers[:n] + np.einsum("ij,ij->i", self.moments, force)
+        pull = tension[:, None] * self.tangents
+        return np.asarray(self.mesh.scatter(-pull, pull) + self.masses[:, None] * force)
+
+    @cached_property
+    def _parts_to_vertices(self) -> sp.csr_array:
+        return sp.csr_array(self.membership.T)

@@ -10,10 +10,10 @@ from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
 from .interventions.check_accuracy import with_errors
 from .iterate import Iterate
-from .outcome import DEGENERATE, Outcome, out_of_iterations, stalled
+from .outcome import DEGENERATE, Outcome, stalled
 from .rises import Rises
 from .run import Run
-from .termination import termination
+from .termination import at_limit, termination
 
 Relaxation = Generator[Iterate, None, Outcome]
 
@@ -61,7 +61,7 @@ def _iterates(run: Run, interventions: Sequence[Intervention], rises: Rises) -> 
             limits, curve = answer.limited_by, run.iterate.curve
             return stalled(answer.reason, None if limits is None else at_edges(curve, limits))
         elif isinstance(event, Outcome):
-            return answer if isinstance(answer, Outcome) else out_of_iterations(run.iterate.index)
+            return answer if isinstance(answer, Outcome) else at_limit(run)
         event = termination(run) or run.step()
         if isinstance(event, Step):
             before = run.iterate

@@ -90,4 +90,5 @@ INACCURATE = (
     "up to {energy:.1g} in the energy and {norm:.1g} in the gradient's norm; the dense solver has none of them"
 )
 ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"
+UNEVEN = "edge lengths are still off their targets by up to {percent:.2g} %"
 REMESHED = "changes of mesh or shape raised the energy: {rises}"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .outcome import Outcome, converged, out_of_iterations
+from .outcome import UNEVEN, Outcome, converged, out_of_iterations
 from .run import Run
 
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
@@ -10,10 +10,19 @@ LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
 
 def termination(run: Run) -> Outcome | None:
     """How the run ends where it stands; None if it goes on."""
-    iterate, bound = run.iterate, run.options.tolerance * float(np.sqrt(abs(run.point.energy)))
-    feasible = not run.problem.geometry.prescribes or iterate.edge_length_error <= LENGTHS_REACHED
-    if run.point.gradient_norm <= bound and feasible:
+    bound = run.options.tolerance * float(np.sqrt(abs(run.point.energy)))
+    if run.point.gradient_norm <= bound and _feasible(run):
         norm = run.point.with_own_metric().gradient_norm
         if norm <= bound:
             return converged(norm, bound)
-    return out_of_iterations(iterate.index) if run.at_limit else None
+    return at_limit(run) if run.at_limit else None
+
+
+def at_limit(run: Run) -> Outcome:
+    """How a run ends that may not go on."""
+    outcome = out_of_iterations(run.iterate.index)
+    return outcome if _feasible(run) else outcome.adding(UNEVEN.format(percent=100 * run.iterate.edge_length_error))
+
+
+def _feasible(run: Run) -> bool:
+    return not run.problem.geometry.prescribes or run.iterate.edge_length_error <= LENGTHS_REACHED

@@ -87,8 +87,8 @@ def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray
 
     D A⁻¹ Dᵀ comes from differences of rows and columns, block by block in the processor's cache.
     """
-    n, rows = len(c.tangents), len(c.barycenter)
-    schur = np.zeros((n + rows, n + rows), order="F")
+    n = len(c.tangents)
+    schur = np.zeros((c.count, c.count), order="F")
     inverse, upper, heads = inner.inverse.T, schur.T, c.mesh.heads
     width = max(1, ROWS_TIMES_COLUMNS // n)
     for first in range(0, n, width):
@@ -98,8 +98,8 @@ def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray
         part = upper[block, first:n]
         np.subtract(change.take(heads[first:], axis=1), change[:, first:], out=part)
         part *= c.tangents[block] @ c.tangents[first:].T
-    for k in range(rows):
-        schur[n + k, :] = c.apply(inner.solve(c.barycenter[k]))
+    for k, row in enumerate(c.barycenter_rows(), n):
+        schur[k, :] = c.apply(inner.solve(row))
     return schur
 
 

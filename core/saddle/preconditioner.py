@@ -40,9 +40,9 @@ class ConstraintPreconditioner:
         self._model = model
         self.constraints = constraints
         self._tension = model.tension(constraints.tangents)
-        pinned, n = constraints.barycenter, len(constraints.tangents)
-        forced = [constraints.apply(model.solve(row))[n:] for row in pinned]
-        self._pinned = np.linalg.inv(np.reshape(forced, (len(pinned), len(pinned))))
+        n, pinned = len(constraints.tangents), constraints.pinned
+        forced = [constraints.apply(model.solve(row))[n:] for row in constraints.barycenter_rows()]
+        self._pinned = np.linalg.inv(np.reshape(forced, (pinned, pinned)))
 
     def project(self, r: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
         """Solve for the right side (r, 0): u, shape (n, m), and λ.

@@ -27,7 +27,7 @@ class SparseTangentSpace(TangentSpace):
         n, m = constraints.tangents.shape
         lengths = constraints.length_rows()
         self._factor = factorised(sp.block_array([[sp.kron(gram, sp.eye_array(m)), lengths.T], [lengths, None]]))
-        border = constraints.barycenter.reshape(-1, n * m)
+        border = np.reshape(list(constraints.barycenter_rows()), (-1, n * m))
         self._border = np.hstack([border, np.zeros((len(border), n))])
         self._response = self._factor.solve(self._border.T)
         self._pinned = self._border @ self._response

@@ -82,6 +82,23 @@ def test_a_run_that_is_cut_short_has_all_vertices(limit: int, least: int, monkey
 
 
 @pytest.mark.usefixtures("everywhere")
+@pytest.mark.parametrize("limit", [coarse_start.MIN_ITERATIONS, 34])
+def test_a_run_that_is_cut_short_ends_on_the_constraints(limit: int) -> None:
+    """Between strands the smooth curve with all vertices is a hundredth off."""
+    result = minimize(hard_unknot(20, seed=3), RelaxOptions(vertices=900, max_iterations=limit))
+    assert result.message.startswith(f"stopped after {limit} iterations, as asked for; the energy rose")
+    assert result.last.edge_length_error < 1e-10
+    assert result.certified
+
+
+def test_lengths_that_are_not_reached_at_the_limit_are_told_of() -> None:
+    result = minimize(bent(torus_trefoil(300)), RelaxOptions(vertices=300, max_iterations=1))
+    off = 100 * result.last.edge_length_error
+    assert off > 1
+    assert result.message.endswith(f"; edge lengths are still off their targets by up to {off:.2g} %")
+
+
+@pytest.mark.usefixtures("everywhere")
 def test_few_iterations_are_all_for_untangling() -> None:
     iterates, _ = relaxed(torus_trefoil(900), max_iterations=4)
     assert iterates[-1].energy < 0.95 * iterates[0].energy

@@ -1,5 +1,6 @@
 """Parts of a link that are not linked are held in place once they are far apart, and only then."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from mobius_flow.core import Curve, RelaxOptions, Status, minimize
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian
-from mobius_flow.core.driver.interventions.split_links import separate_parts
+from mobius_flow.core.driver.interventions.split_links import _near, separate_parts
 from mobius_flow.core.driver.prepare import on_mesh, start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.composite import knotted_ball
@@ -21,8 +22,8 @@ def ring(center, radius=1.0, size=12):
     return np.array(center) + radius * np.column_stack([np.cos(t), np.sin(t), 0 * t])
 
 
-def rings(*xs, radius=1.0):
-    return Curve.from_components([ring([x, 0, 0], radius) for x in xs])
+def rings(*xs, radius=1.0, size=12):
+    return Curve.from_components([ring([x, 0, 0], radius, size) for x in xs])
 
 
 def test_far_parts_are_told_apart():
@@ -42,6 +43,24 @@ def test_a_large_part_keeps_small_ones_that_it_could_go_round():
 
 def test_very_many_parts_are_one():
     assert set(separate_parts(rings(*(4.0 * k for k in range(60))))) == {0}
+
+
+def test_parts_of_thousands_of_components_without_a_matrix_of_all_pairs():
+    count = 20_000  # a matrix of all pairs would have 400,000,000 entries
+    chain = [ring([1.5 * k, 0.0, 0.0], size=3) for k in range(count)]
+    far = [ring([1.5 * k, 1e6 * (k + 1), 0.0], size=3) for k in range(10)]
+    parts = separate_parts(Curve.from_components([*chain, *far]))
+    assert parts == (0,) * count + tuple(range(1, 11))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_near_balls_are_all_found(seed):
+    rng = np.random.default_rng(seed)
+    centers, radii = rng.uniform(0, 30, (80, 3)), 10.0 ** rng.uniform(-2, 1, 80)
+    distance = np.linalg.norm(centers[:, None] - centers, axis=2)
+    near = distance < radii[:, None] + radii + np.maximum(radii[:, None], radii)
+    found = _near(centers, radii).toarray()
+    np.testing.assert_array_equal(found | found.T, near)
 
 
 @pytest.fixture
@@ -84,10 +103,21 @@ def test_solver_with_parts_against_dense_matrix(parted):
     np.testing.assert_allclose(derivative.apply_transpose(multipliers).ravel(), rows.T @ multipliers, atol=1e-8)
 
 
+def test_barycenters_of_many_parts_take_no_more_memory_than_one():
+    curve = rings(*(4.0 * k for k in range(50)), size=400)
+    tracemalloc.start()
+    derivative = ConstraintDerivative.at(curve, tuple(range(50)))
+    derivative.apply_transpose(derivative.apply(curve.vertices))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert derivative.count == len(curve) + 150
+    assert peak < 1000 * len(curve)  # one row has 24 bytes a vertex
+
+
 def test_one_part_is_the_usual_constraint():
     curve = knot("L2a1")
     usual, one = ConstraintDerivative.at(curve), ConstraintDerivative.at(curve, (0, 0))
-    np.testing.assert_array_equal(usual.barycenter, one.barycenter)
+    np.testing.assert_array_equal(list(usual.barycenter_rows()), list(one.barycenter_rows()))
 
 
 @pytest.mark.parametrize("method", ["lbfgs", "flow-moebius", "trust-region"])

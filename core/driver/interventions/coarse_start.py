@@ -1,5 +1,6 @@
 """A curve of many vertices is untangled with few of them, which is faster, and ends with all."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,8 @@ from ...curve import Curve
 from ...curve.refine import apportion, subdivide
 from ...curve.remesh import graded_spacing, superfluous
 from ...curve.smooth import smoothed
-from ...descent import Leg, NoStep, Step
+from ...descent import Leg, NoStep, Point, Step
+from ...types import FloatArray
 from ..events import Change, Event, Start
 from ..outcome import Outcome
 from ..prepare import equal_lengths, on_mesh, with_parts_of
@@ -86,17 +88,32 @@ class CoarseStart:
         return Change(point=with_parts_of(self._run.problem, self._problem, finest))
 
     def _smoother(self) -> Change | None:
-        """The motion to a smooth curve through the vertices of the coarse one, as far as strands leave way for it."""
+        """The motion to a smooth curve through the vertices of the coarse one, as far as strands leave way for it.
+
+        It ends on the constraints where strands leave way for that too: the run may be at its limit there.
+        """
         if self._coarse is None:
             return None
-        problem, start = self._run.problem, self._run.iterate.curve
+        start = self._run.iterate.curve
         way = smoothed(self._coarse, start.mesh).vertices - start.vertices
         self._coarse = None
+        return self._motion(way, _restored) or self._motion(way, lambda end: end)
+
+    def _motion(self, way: FloatArray, ending: Callable[[Point], Point | None]) -> Change | None:
+        """The longest part of a way that can be gone straight to where it is to end; None if that is hardly any."""
+        problem, start = self._run.problem, self._run.iterate.curve
         share = 1.0
         while share > MIN_SHARE:
-            end = problem.at_curve(start.with_vertices(start.vertices + share * way))
+            end = ending(problem.at_curve(start.with_vertices(start.vertices + share * way)))
+            if end is None:
+                return None
             proof = problem.free_motion(start.vertices, end.placed)
             if proof.time == 1.0:
                 return Change((Step((Leg(end, proof),), 0.0, None),))
             share *= min(0.9, proof.time)
         return None
+
+
+def _restored(point: Point) -> Point | None:
+    """The point on the constraints that one near them is led back to; None if it is too far away."""
+    return point.retract(point.vertices, np.zeros_like(point.residual))

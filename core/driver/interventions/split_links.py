@@ -3,13 +3,15 @@
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from ...constraints import Parts
 from ...curve import Curve
 from ...descent import Step
 from ...hierarchy import moebius_energy
-from ...types import BoolArray, FloatArray, IntArray
+from ...types import FloatArray, IntArray
 from ..events import Change, Event
 from ..outcome import HELD, Outcome
 from ..run import Run
@@ -68,15 +70,26 @@ def split(curve: Curve, parts: Parts | None) -> list[Curve]:
 def _balls(curve: Curve, part: IntArray) -> tuple[FloatArray, FloatArray]:
     """Centres, shape (p, m), and radii, shape (p,), of balls around the parts."""
     of_vertex = part[curve.mesh.component]
-    centers, radii = [], []
-    for k in range(part.max() + 1):
-        own = curve.vertices[of_vertex == k]
-        centers.append(0.5 * (own.min(axis=0) + own.max(axis=0)))
-        radii.append(np.linalg.norm(own - centers[-1], axis=1).max())
-    return np.array(centers), np.array(radii)
+    order = np.argsort(of_vertex, kind="stable")
+    points, own = curve.vertices[order], of_vertex[order]
+    starts = np.searchsorted(own, np.arange(own[-1] + 1))
+    centers = 0.5 * (np.minimum.reduceat(points, starts) + np.maximum.reduceat(points, starts))
+    return centers, np.maximum.reduceat(np.linalg.norm(points - centers[own], axis=1), starts)
 
 
-def _near(centers: FloatArray, radii: FloatArray) -> BoolArray:
-    """Which balls are not far enough from each other to be parts; shape (p, p)."""
-    distance = np.linalg.norm(centers[:, None] - centers[None, :], axis=2)
-    return np.asarray(distance < radii[:, None] + radii[None, :] + APART * np.maximum(radii[:, None], radii[None, :]))
+def _near(centers: FloatArray, radii: FloatArray) -> sp.coo_array:
+    """Which balls are not far enough from each other to be parts; sparse, shape (p, p).
+
+    A k-d tree per octave of radii finds the neighbours among balls that are no larger.
+    """
+    octave = np.frexp(radii)[1]
+    found = []
+    for level in np.unique(octave):
+        large, small = np.flatnonzero(octave == level), np.flatnonzero(octave <= level)
+        reach = (2.0 + APART) * float(radii[large].max())
+        near = cKDTree(centers[large]).sparse_distance_matrix(cKDTree(centers[small]), reach, output_type="ndarray")
+        i, j = large[near["i"]], small[near["j"]]
+        kept = near["v"] < radii[i] + radii[j] + APART * np.maximum(radii[i], radii[j])
+        found.append(np.stack([i[kept], j[kept]]))
+    i, j = np.concatenate(found, axis=1)
+    return sp.coo_array((np.ones(len(i), dtype=bool), (i, j)), shape=(len(radii), len(radii)))
