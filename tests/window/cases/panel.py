@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, button, here, key, open_sidebar, window
+from hands import addon, button, here, key, move, open_sidebar, window
 from interruption import undo
 from scene import clear, is_, knot, look, obj, reaches, ready
 
@@ -31,10 +31,12 @@ def case() -> Steps:
 
 def menus() -> Steps:
     """The presets, and the methods under their headings."""
+    yield from move(500, 500)  # menus open at the mouse
     with here():
         bpy.ops.wm.call_panel(name="VIEW3D_PT_mobius_flow_presets", keep_open=True)
     yield from picture("panel-1-presets", differs_from="panel-1-ready")
     yield from key("ESC")
+    yield from move(500, 500)
     with here():
         bpy.ops.wm.context_menu_enum(data_path="scene.mobius_flow.method")
     yield from picture("panel-1-methods", differs_from="panel-1-ready")
