@@ -43,9 +43,21 @@ class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):  # noq
     preset_defines = ("settings = bpy.context.scene.mobius_flow",)
     preset_values = tuple(f"settings.{name}" for name in SETTINGS)
 
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add or remove; those of the extension stay, wherever it is installed."""
+        if self.remove_name and self.name in _shipped():
+            self.report({"ERROR"}, f"The preset {self.name} belongs to Möbius Flow; only your own can be removed")
+            return {"CANCELLED"}
+        return set(super().execute(context))
+
+
+def _shipped() -> list[str]:
+    """Names of the presets of the extension, as the menu shows them."""
+    return [bpy.path.display_name(path.name, title_case=False) for path in SHIPPED.glob("*.py")]
+
 
 def register() -> None:
-    """Tell Blender where the presets of the extension are; 4.2 cannot be told, see the panel."""
+    """Tell Blender where the presets of the extension are; 4.2.0 cannot be told, see the panel."""
     if hasattr(bpy.utils, "register_preset_path"):
         bpy.utils.register_preset_path(str(ROOM))
 

@@ -25,7 +25,7 @@ class VIEW3D_PT_mobius_flow_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
     preset_add_operator = CURVE_OT_mobius_flow_preset_add.bl_idname
 
     def path_menu(self, places: Sequence[str], operator: str, **more: Any) -> None:
-        """List the presets; those of the extension also where Blender (4.2) could not be told of their place."""
+        """List the presets; those of the extension also where Blender (4.2.0) could not be told of their place."""
         ours = [] if str(SHIPPED) in places else [str(SHIPPED)]
         PresetPanel.path_menu(self, [*ours, *places], operator, **more)
 

@@ -80,10 +80,16 @@ def _run_buttons(row: bpy.types.UILayout, run: Run) -> None:
     row.operator(CURVE_OT_mobius_flow_cancel.bl_idname, icon="X")
 
 
+def _state(run: Run) -> str:
+    if run.waits:
+        return "Waiting for the render"
+    return "Failed" if run.failed and run.state is State.CANCELLED else run.state.value.capitalize()
+
+
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:
     """What is known of the run that is going on, or of the last one."""
     box = layout.box().column(align=True)
-    value(box, ", ".join(run.group.names), "Waiting for the render" if run.waits else run.state.value.capitalize())
+    value(box, ", ".join(run.group.names), _state(run))
     if run.last is not None:
         value(box, "Energy", f"{run.last.energy:.4f}")
         if run.target is not None:

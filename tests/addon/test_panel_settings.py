@@ -35,9 +35,8 @@ def test_custom_leaves_all_as_it_is():
 
 def test_tooltips_say_what_a_quality_means():
     items = panel().bl_rna.properties["quality"].enum_items
-    assert {name: items[name].description for name in QUALITIES} == {
-        k: each.description for k, each in QUALITIES.items()
-    }
+    for name, quality in QUALITIES.items():
+        assert (items[name].name, items[name].description) == (quality.label, quality.description)
     assert all(items[name].description.isprintable() for name in [*QUALITIES, "CUSTOM"])
 
 

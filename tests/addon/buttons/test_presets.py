@@ -88,6 +88,18 @@ def test_a_preset_of_ones_own_keeps_every_setting(user):
     assert not path.exists()
 
 
+@pytest.mark.parametrize("name", SHIPPED)
+def test_presets_of_the_extension_stay(name):
+    with pytest.raises(RuntimeError, match=f"The preset {name} belongs to Möbius Flow; only your own can be removed"):
+        bpy.ops.curve.mobius_flow_preset_add(name=name, remove_name=True)
+    assert SHIPPED[name].exists()
+
+
+def test_a_preset_does_not_replace_one_of_the_extension(user):
+    assert bpy.ops.curve.mobius_flow_preset_add(name="Untangle") == {"CANCELLED"}
+    assert not list(user.glob("*"))
+
+
 def listed():
     """The files that the menu shows."""
     shown = []
@@ -114,7 +126,7 @@ def listed():
     return [Path(button.filepath).stem for name, button in shown if name == Menu.preset_operator]
 
 
-@pytest.mark.parametrize("told", [True, False], ids=["Blender knows the place", "Blender 4.2"])
+@pytest.mark.parametrize("told", [True, False], ids=["Blender knows the place", "it does not"])
 def test_the_menu_lists_both_kinds_once(user, told):
     bpy.ops.curve.mobius_flow_preset_add(name="My Knots")
     if not told:

@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, button, here, open_sidebar, window
+from hands import addon, button, here, key, move, open_sidebar, window
 from interruption import undo
 from scene import clear, is_, knot, look, obj, reaches, ready
 
@@ -22,17 +22,32 @@ def case() -> Steps:
     scene = window().scene
     assert scene.mobius_flow_panel.quality == "GOOD"
     yield from picture("panel-1-ready")
+    yield from menus()
     yield from running()
     yield from another()
     yield from taken_back()
     yield from refused()
 
 
+def menus() -> Steps:
+    """The presets, and the methods under their headings."""
+    yield from move(500, 500)  # menus open at the mouse
+    with here():
+        bpy.ops.wm.call_panel(name="VIEW3D_PT_mobius_flow_presets", keep_open=True)
+    yield from picture("panel-1-presets", differs_from="panel-1-ready")
+    yield from key("ESC")
+    yield from move(500, 500)
+    with here():
+        bpy.ops.wm.context_menu_enum(data_path="scene.mobius_flow.method")
+    yield from picture("panel-1-methods", differs_from="panel-1-ready")
+    yield from key("ESC")
+
+
 def running() -> Steps:
     """The plot is drawn while the curve moves, in a dark and in a light theme."""
     window().scene.mobius_flow.view_every = 1
     yield from button("curve.mobius_flow_relax")
-    yield from reaches(20)
+    yield from reaches(35)
     yield from button("curve.mobius_flow_pause")
     yield from is_("paused")
     yield from look()
@@ -102,6 +117,7 @@ def refused() -> Steps:
     yield from button("curve.mobius_flow_relax")
     yield from is_("cancelled")
     yield from picture("panel-8-refused")
+    yield from key("ESC")  # closes Blender's own message
     yield from button("curve.mobius_flow_show")
     yield from until(lambda: obj().mode == "EDIT", "Edit Mode")
     yield from picture("panel-9-shown", differs_from="panel-8-refused")
