@@ -77,7 +77,7 @@ def end_of(data: "bpy.types.Curve") -> Frame:
         return points.reshape(-1, 3)
     curves = fcurves_of(data.animation_data.action)
     last = {(curve.data_path, curve.array_index): curve.keyframe_points[-1].co[1] for curve in curves}
-    return np.array([[last[path, axis] for axis in range(3)] for path in _paths(data)], dtype=np.float32)
+    return np.array([[last[path, axis] for axis in range(3)] for path in point_paths(data)], dtype=np.float32)
 
 
 def scale_radii(data: "bpy.types.Curve", factor: float) -> None:
@@ -127,13 +127,13 @@ def _fcurves(
     write_points(obj.data, keys.keys[-1].points)
     curves = FCurves(obj.data, f"{obj.name} Relaxation")
     values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
-    for path, point in zip(_paths(obj.data), values, strict=True):
+    for path, point in zip(point_paths(obj.data), values, strict=True):
         for axis in range(3):
             curves.add(path, axis, frames, point[axis])
         yield
 
 
-def _paths(data: "bpy.types.Curve") -> Iterator[str]:
+def point_paths(data: "bpy.types.Curve") -> Iterator[str]:
     """Where the coordinates of each point are found."""
     for s, spline in enumerate(data.splines):
         yield from (f"splines[{s}].points[{p}].co" for p in range(len(spline.points)))

@@ -27,13 +27,16 @@ class KeyOptions:
     max_keys
         Wanted number of keys, see `Motion.keys`.
     fit_bevel
-        Draw the curve as the thickest tube that does not touch itself, at every key.
+        Draw curves whose tubes were fitted before as the thickest tubes that do not touch, at every key.
+    any_bevel
+        Do so with every curve that is drawn as a line or a plain round tube, also where its depth is the artist's own.
     """
 
     output: Output = Output.SHAPE_KEYS
     timing: Timing = field(default_factory=Timing)
     max_keys: int | None = None
     fit_bevel: bool = False
+    any_bevel: bool = False
 
     @property
     def animated(self) -> bool:

@@ -11,6 +11,7 @@ from ..buttons.running import (
     CURVE_OT_mobius_flow_stop,
 )
 from ..curves import neighbours
+from ..curves.units import length
 from ..live import registry
 from ..live.checks import refusal, selected_curves
 from ..live.run import Run, State
@@ -29,10 +30,7 @@ class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):  # noqa: N801 - Blender
         _buttons(layout, context)
         if run := registry.latest():
             _progress(layout, context, run)
-        elif context.active_object and context.active_object.type == "CURVE":
-            value(layout, "Tube radius", f"{context.active_object.data.bevel_depth:.4g}")
         settings_column(layout, settings, *(option.name for option in shown("basic")))
-        layout.prop(settings, "fit_bevel")
         layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
 
 
@@ -76,7 +74,7 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) 
         whom = "with itself" if len(run.group.names) == 1 else "among themselves"
         value(box, "Free of contact", whom if proved else "not proved")
     if run.report is not None and run.report.radius is not None:
-        value(box, "Tube radius", f"{run.report.radius:.4g}")
+        value(box, "Tube radius", length(context.scene, run.report.radius))
     if run.message:
         sentence(box, context, run.message, icon="ERROR" if run.failed else "INFO")
 

@@ -1,0 +1,35 @@
+"""Colours, linear RGB: one for each component, and a ramp for values."""
+
+import numpy as np
+
+from ...core.types import FloatArray
+
+# of components; after the last they begin again
+PALETTE = (
+    (0.005, 0.110, 0.220),
+    (0.620, 0.070, 0.030),
+    (0.780, 0.400, 0.030),
+    (0.060, 0.260, 0.120),
+    (0.260, 0.060, 0.280),
+)
+_RAMP = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))  # sRGB of viridis, low to high
+_EXTREMES = (2.0, 98.0)  # per cent of the values between which the ramp runs: a few corners must not flatten the rest
+
+
+def of_components(components: FloatArray) -> FloatArray:
+    """Colours of components by their numbers; (n,) to (n, 3)."""
+    return np.asarray(np.array(PALETTE)[components.astype(np.intp) % len(PALETTE)])
+
+
+def ramp(values: FloatArray) -> FloatArray:
+    """Colours from violet for low values to yellow for high ones; (n,) to (n, 3)."""
+    low, high = np.percentile(values, _EXTREMES)
+    share = ((values - low) / (high - low)).clip(0.0, 1.0) if high > low else np.zeros(len(values))
+    anchors = _linear(np.array(_RAMP) / 255.0)
+    places = np.linspace(0.0, 1.0, len(anchors))
+    return np.column_stack([np.interp(share, places, channel) for channel in anchors.T])
+
+
+def _linear(srgb: FloatArray) -> FloatArray:
+    """From the values that screens are sent to light."""
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
