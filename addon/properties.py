@@ -115,8 +115,11 @@ def settings(options: set[str]) -> dict[str, Any]:
             options=options,
         ),
         "fit_bevel": BoolProperty(
-            name="Fit Tube",
-            description="Draw the curves as the thickest round tubes that do not touch, where they have a round bevel",
+            name="Keep Tubes Fitted",
+            description=(
+                "Fit tubes again that were fitted before, at every key. A bevel of your own is not changed; "
+                "in a script, to give this asks for it to be fitted"
+            ),
             default=True,
             options=options,
         ),
@@ -206,5 +209,6 @@ def key_options(values: dict[str, Any]) -> KeyOptions:
         timing=timing,
         max_keys=values["max_keys"] or None,
         fit_bevel=values["fit_bevel"],
+        any_bevel=values["fit_bevel"] and values.get("any_bevel", False),
         keep_size=Measure[values["keep_size"]],
     )

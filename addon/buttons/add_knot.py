@@ -70,7 +70,7 @@ class CURVE_OT_mobius_flow_add_knot(bpy.types.Operator, AddObjectHelper):  # noq
         self.fit_bevel = self._fits()  # so that doing it again does the same
         if self.fit_bevel:
             self.thickness = bevel.fitting_radius(curve.with_vertices(vertices))
-        bevel.fit(data, self.thickness)
+        (bevel.fit if self.fit_bevel else bevel.draw)(data, self.thickness)
         write_points(data, vertices.astype("f4"))
         object_data_add(context, data, operator=self)
         return {"FINISHED"}

@@ -65,7 +65,8 @@ class Relaxing(LiveRelax):
         values = {name: getattr(self if given(name) else scene, name) for name in SETTINGS}
         # scripts that say how many frames an iterate takes mean that
         by_iterate = given("frames_per_iterate") and not given("timing")
-        return values | ({"timing": Pace.ITERATE.name} if by_iterate else {})
+        values |= {"timing": Pace.ITERATE.name} if by_iterate else {}
+        return values | {"any_bevel": given("fit_bevel")}  # the panel's setting asks for no bevel of the artist's own
 
     def _unasked(self, context: bpy.types.Context) -> str | None:
         return None if self.sample_splines else unsampled(selected_curves(context))

@@ -86,16 +86,19 @@ def continued(objects: Sequence["bpy.types.Object"], options: KeyOptions) -> Key
 def clear(obj: "bpy.types.Object") -> None:
     """Take a baked curve's keys away and give the curve back that was there before.
 
-    A bevel that was changed since the keys were written stays.
+    A bevel that was changed since the keys were written stays, and so do the materials that splines were given.
     """
     data = obj.data
     record = data[_RECORD]
     original, bevel_depth = Snapshot.from_values(record["original"]), record["bevel_depth"]
+    slots = [spline.material_index for spline in data.splines]
     forget(obj)
     if data.bevel_depth == bevel_depth:
         original.restore(data)
     else:
         original.restore_splines(data)
+    for spline, slot in zip(data.splines, slots, strict=True):
+        spline.material_index = slot
 
 
 def forget(obj: "bpy.types.Object") -> None:

@@ -28,13 +28,14 @@ def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
         names the spline and its object.
     """
     placements = tuple(Placement.from_matrix(obj.matrix_world) for obj in objects)
-    components = [_components(obj) for obj in objects]
+    components = [read_splines(obj) for obj in objects]
     link = Link(placements, tuple(len(each) for each in components))
     world = [placement.to_world(c) for placement, each in zip(placements, components, strict=True) for c in each]
     return Curve.from_components(world), link
 
 
-def _components(obj: "bpy.types.Object") -> list[FloatArray]:
+def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
+    """The polygons of all splines in the object's coordinates, (n, 3) each; raises as `read_link` does."""
     smooth = sampling.smooth_splines(obj.data)
     frames = sampling.sampled(obj) if smooth else [spline_points(spline) for spline in obj.data.splines]
     for k, frame in enumerate(frames, 1):
@@ -43,6 +44,11 @@ def _components(obj: "bpy.types.Object") -> list[FloatArray]:
             point = f"Point {bad[0] + 1} of spline {k} of '{obj.name}'"
             raise CurveError(f"{point} is not finite, or further away than anything; repair or delete it")
     return [frame.astype(np.float64) for frame in frames]
+
+
+def stretch(obj: "bpy.types.Object") -> float:
+    """The most that an object's coordinates are stretched on the way to the world."""
+    return float(np.linalg.norm(np.array(obj.matrix_world)[:3, :3], 2))
 
 
 def spline_points(spline: "bpy.types.Spline") -> Frame:

@@ -93,10 +93,9 @@ class Group:
         """Whether any of the objects is shown with modifiers."""
         return any(modifier.show_viewport or modifier.show_render for obj in self.objects for modifier in obj.modifiers)
 
-    @property
-    def fits_bevel(self) -> bool:
-        """Whether any of the objects is drawn as a tube that may be fitted."""
-        return any(member.fits_bevel for member in self._members)
+    def fits(self, options: KeyOptions) -> bool:
+        """Whether any of the objects is drawn as a tube that is to be fitted."""
+        return any(member.fits(options) for member in self._members)
 
     @property
     def rebakes(self) -> bool:

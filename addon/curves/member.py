@@ -32,7 +32,7 @@ class Member:
         self.name = obj.name
         self.keyed = False  # whether keys are being written, or are written
         self._stand_in = StandIn(obj, continues) if bake.is_baked(obj.data) else None
-        self.fits_bevel = bevel.can_fit(obj.data)
+        self._plain, self._fitted = bevel.can_fit(obj.data), bevel.is_fitted(obj.data)
         self._uid = obj.session_uid
         self._placement = Placement.from_matrix(obj.matrix_world)
         self._snapshot = Snapshot.of(obj.data)
@@ -66,6 +66,10 @@ class Member:
         """Whether the object is no longer where it was."""
         obj = self.object
         return obj is not None and not Placement.from_matrix(obj.matrix_world).equals(self._placement)
+
+    def fits(self, options: KeyOptions) -> bool:
+        """Whether the tube is to be fitted: it was before, or somebody asks for it."""
+        return self._plain and options.fit_bevel and (self._fitted or options.any_bevel)
 
     def make_polygons(self, original: Curve, refined: Curve) -> None:
         """Give the splines the points of the refined curve, unless they are lost; where points are is left open."""
@@ -105,7 +109,7 @@ class Member:
             self._stand_in.take_keys(obj)
             self._identify(obj.data)
         relative = None
-        if radii is not None and self.fits_bevel:
+        if radii is not None and self.fits(options):
             depth = obj.data.bevel_depth
             bevel.fit(obj.data, float(radii[-1]))
             keyframes.scale_radii(obj.data, depth / obj.data.bevel_depth)

@@ -31,6 +31,7 @@ from ..engine.placement import Frame
 from ..engine.size import Measure, Size
 from ..engine.words import named
 from . import bake, bevel
+from .exchange import stretch
 from .group import Group
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ class Report:
     certified
         Whether every motion shown was proved free of contact, of each curve with itself and of all with each other.
     radius
-        Radius of the tube if it was fitted, in the first object's units.
+        Radius of the tube in the world if it was fitted.
     modified
         Whether modifiers change what is shown: proofs are about the curves themselves.
     """
@@ -205,8 +206,8 @@ class Session:
             keys = motion.keys(proof, self._key_options.max_keys, timing.pace)
         else:
             keys = motion.result(proof)
-        fits = self._key_options.fit_bevel and self.group.fits_bevel
-        return Prepared(keys, timing.frames(motion.course(keys)), self._radii(keys) if fits else None)
+        radii = self._radii(keys) if self.group.fits(self._key_options) else None
+        return Prepared(keys, timing.frames(motion.course(keys)), radii)
 
     def _radii(self, keys: Keys) -> FloatArray:
         """Radii of the tube at the keys, in the common space; without shape keys the last one only."""
@@ -265,6 +266,6 @@ class Session:
             last_frame=float(frames[-1]),
             scene_range=bake.scene_range(group.objects),
             certified=keys.certified,
-            radius=None if prepared.radii is None else float(prepared.radii[-1]),
+            radius=None if prepared.radii is None else float(prepared.radii[-1]) * stretch(group.objects[0]),
             modified=group.modified,
         )

@@ -1,27 +1,35 @@
-"""Colours that can be read, whatever the theme."""
-
-from collections.abc import Sequence
+"""Colours, linear RGB: one for each component, and a ramp for values."""
 
 import numpy as np
 
-Colour = Sequence[float]  # red, green and blue from 0 to 1, as on the screen; more is not looked at
+from ...core.types import FloatArray
 
-_ENOUGH = 3.0  # contrast of lines, after WCAG 2.1
-
-
-def luminance(colour: Colour) -> float:
-    """Relative luminance, from 0 for black to 1 for white (WCAG 2.1)."""
-    channels = np.asarray(colour[:3], dtype=np.float64)
-    linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
-    return float(linear @ [0.2126, 0.7152, 0.0722])
-
-
-def contrast(one: Colour, other: Colour) -> float:
-    """Contrast of two colours, from 1 to 21 (WCAG 2.1)."""
-    dark, light = sorted([luminance(one), luminance(other)])
-    return (light + 0.05) / (dark + 0.05)
+# of components; after the last they begin again
+PALETTE = (
+    (0.005, 0.110, 0.220),
+    (0.620, 0.070, 0.030),
+    (0.780, 0.400, 0.030),
+    (0.060, 0.260, 0.120),
+    (0.260, 0.060, 0.280),
+)
+_RAMP = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))  # sRGB of viridis, low to high
+_EXTREMES = (2.0, 98.0)  # per cent of the values between which the ramp runs: a few corners must not flatten the rest
 
 
-def legible(wanted: Colour, ground: Colour) -> Colour:
-    """The wanted colour, or black or white if it cannot be told from the ground."""
-    return max((wanted, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), key=lambda each: min(contrast(each, ground), _ENOUGH))
+def of_components(components: FloatArray) -> FloatArray:
+    """Colours of components by their numbers; (n,) to (n, 3)."""
+    return np.asarray(np.array(PALETTE)[components.astype(np.intp) % len(PALETTE)])
+
+
+def ramp(values: FloatArray) -> FloatArray:
+    """Colours from violet for low values to yellow for high ones; (n,) to (n, 3)."""
+    low, high = np.percentile(values, _EXTREMES)
+    share = ((values - low) / (high - low)).clip(0.0, 1.0) if high > low else np.zeros(len(values))
+    anchors = linear(np.array(_RAMP) / 255.0)
+    places = np.linspace(0.0, 1.0, len(anchors))
+    return np.column_stack([np.interp(share, places, channel) for channel in anchors.T])
+
+
+def linear(srgb: FloatArray) -> FloatArray:
+    """From the values that screens are sent, sRGB from 0 to 1, to light."""
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)

@@ -28,7 +28,9 @@ class KeyOptions:
     max_keys
         Wanted number of keys, see `Motion.keys`.
     fit_bevel
-        Draw the curve as the thickest tube that does not touch itself, at every key.
+        Draw curves whose tubes were fitted before as the thickest tubes that do not touch, at every key.
+    any_bevel
+        Do so with every curve that is drawn as a line or a plain round tube, also where its depth is the artist's own.
     keep_size
         What stays as it is at the first key; where it is not the length, which the flow keeps, keys are scaled.
     """
@@ -37,6 +39,7 @@ class KeyOptions:
     timing: Timing = field(default_factory=Timing)
     max_keys: int | None = None
     fit_bevel: bool = False
+    any_bevel: bool = False
     keep_size: Measure = Measure.LENGTH
 
     @property

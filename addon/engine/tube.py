@@ -24,13 +24,17 @@ def thickest_radius(curve: Curve) -> float:
 
 def free_radius(curve: Curve, thickest: float) -> float:
     """Half the gap between strands of a curve, at most ``thickest``."""
+    return min(thickest, 0.5 * _AIR * strand_gap(curve, 2 * thickest / _AIR))
+
+
+def strand_gap(curve: Curve, widest: float) -> float:
+    """Least distance between strands of a curve, inf if it is more than ``widest``."""
     spacing = float(curve.edge_lengths.max())
-    nearest = _nearest_strands(curve, 2 * thickest / _AIR + spacing)
+    nearest = _nearest_strands(curve, widest + spacing)
     if nearest is None:
-        return thickest
+        return np.inf
     # Edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side.
-    gap = np.sqrt(max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2))
-    return min(thickest, 0.5 * _AIR * float(gap))
+    return float(np.sqrt(max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2)))
 
 
 def _nearest_strands(curve: Curve, furthest: float) -> float | None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..curves import bake, sampling
+from ..curves import bake, bevel, sampling
 from ..curves.moving import what_moves
 from . import registry
 
@@ -31,6 +31,24 @@ def refusal(context: "bpy.types.Context") -> str | None:
         return reason
     objects = selected_curves(context)
     return hindrance(objects) if objects else _no_curve(context.active_object)
+
+
+def unreadable(context: "bpy.types.Context") -> str | None:
+    """Say why other objects cannot be made of the selected curves, or return None if they can."""
+    if reason := _running():
+        return reason
+    objects = selected_curves(context)
+    return _first(objects, (_mode, _splines)) if objects else _no_curve(context.active_object)
+
+
+def unfitting(context: "bpy.types.Context") -> str | None:
+    """Say why the selected curves cannot be drawn as fitted tubes, or return None if they can."""
+    return unreadable(context) or _first(selected_curves(context), (_ownership, _bevel))
+
+
+def unpaintable(context: "bpy.types.Context") -> str | None:
+    """Say why the selected curves cannot be given materials, or return None if they can."""
+    return unreadable(context) or _first(selected_curves(context), (_ownership,))
 
 
 def hindrance(objects: Sequence["bpy.types.Object"]) -> str | None:
@@ -128,6 +146,11 @@ def _splines(obj: "bpy.types.Object") -> Iterator[str]:
                 f"Spline {k} of '{obj.name}' has fewer than {fewest} points, too few for a closed curve; "
                 "give it more, or delete it"
             )
+
+
+def _bevel(obj: "bpy.types.Object") -> Iterator[str]:
+    if not bevel.can_fit(obj.data):
+        yield f"'{obj.name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first"
 
 
 def _animation(obj: "bpy.types.Object") -> Iterator[str]:

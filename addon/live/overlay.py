@@ -9,7 +9,7 @@ import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from ...core.types import FloatArray
-from ..engine.colours import Colour, legible
+from ..engine.contrast import Colour, legible
 from ..engine.plot import dashes, plot
 from . import registry
 from .drawing import area, line, text

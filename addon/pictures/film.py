@@ -16,6 +16,7 @@ from ..engine.motion import Keys, Motion
 from ..engine.placement import Link, Placement
 from ..engine.timing import Pace, Timing
 from . import camera, stage
+from .materials import colour_components
 
 if TYPE_CHECKING:
     import bpy
@@ -97,7 +98,7 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
         write_shape_keys(obj, keys, frames, radii / radii.max())
     else:
         write_points(data, points[0])
-    stage.colour(data)
+    colour_components(data)
     shown = np.concatenate(points[:: -(-len(points) // _SHOWN)] + points[-1:]).astype(np.float64)
     ground = stage.Stage.around(shown, points[-1].astype(np.float64))
     camera.follow(scene, ground, stage.build(scene, ground), points, radii, frames)

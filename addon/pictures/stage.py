@@ -7,24 +7,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.types import FloatArray
+from .materials import material
 
 if TYPE_CHECKING:
     import bpy
 
-# One colour for each component, linear RGB; after the last they begin again.
-_COLOURS = (
-    (0.005, 0.110, 0.220),
-    (0.620, 0.070, 0.030),
-    (0.780, 0.400, 0.030),
-    (0.060, 0.260, 0.120),
-    (0.260, 0.060, 0.280),
-)
 _FLOOR_COLOUR = (0.88, 0.83, 0.74)
 _SKY_COLOUR = (0.80, 0.88, 1.0)
 _SKY_STRENGTH = 0.4
 _KEY = np.array([-1.3, 0.5, 2.7])
 _WIDTH = 60.0  # of the floor: the camera sees no end of it
-_VIEWPORT = 0.65  # exponent that makes colours as bright in Workbench as they are in Cycles' light
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,14 +65,6 @@ def build(scene: "bpy.types.Scene", stage: Stage) -> "bpy.types.Object":
     return _add_floor(scene, stage)
 
 
-def colour(data: "bpy.types.Curve") -> None:
-    """Give every spline its colour."""
-    for k in range(min(len(data.splines), len(_COLOURS))):
-        data.materials.append(_glazed(f"Glaze {k + 1}", _COLOURS[k]))
-    for k, spline in enumerate(data.splines):
-        spline.material_index = k % len(_COLOURS)
-
-
 def add(scene: "bpy.types.Scene", name: str, data: "bpy.types.ID") -> "bpy.types.Object":
     """Add an object to a scene."""
     import bpy
@@ -127,7 +111,7 @@ def _add_floor(scene: "bpy.types.Scene", stage: Stage) -> "bpy.types.Object":
     x, y = _WIDTH * stage.size * stage.axes[:2]
     data = bpy.data.meshes.new("Floor")
     data.from_pydata([p.tolist() for p in (-x - y, x - y, x + y, y - x)], [], [(0, 1, 2, 3)])
-    data.materials.append(_material("Paper", _FLOOR_COLOUR, {"Roughness": 0.9, "Specular IOR Level": 0.2}))
+    data.materials.append(material("Paper", _FLOOR_COLOUR, {"Roughness": 0.9, "Specular IOR Level": 0.2}))
     floor = add(scene, "Floor", data)
     floor.location = stage.middle
     return floor
@@ -143,22 +127,3 @@ def _add_sky(scene: "bpy.types.Scene") -> None:
     background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
     background.inputs["Color"].default_value = (*_SKY_COLOUR, 1.0)
     background.inputs["Strength"].default_value = _SKY_STRENGTH
-
-
-def _glazed(name: str, tint: tuple[float, float, float]) -> "bpy.types.Material":
-    return _material(name, tint, {"Roughness": 0.32, "Coat Weight": 0.6, "Coat Roughness": 0.08})
-
-
-def _material(name: str, tint: tuple[float, float, float], values: dict[str, float]) -> "bpy.types.Material":
-    import bpy
-
-    material = bpy.data.materials.new(name)
-    material.diffuse_color = (*np.power(tint, _VIEWPORT), 1.0)
-    material.roughness = values["Roughness"]
-    if material.node_tree is None:
-        material.use_nodes = True
-    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
-    shader.inputs["Base Color"].default_value = (*tint, 1.0)
-    for socket, value in values.items():
-        shader.inputs[socket].default_value = value
-    return material

@@ -12,6 +12,7 @@ from ..buttons.running import (
 )
 from ..buttons.showing import CURVE_OT_mobius_flow_show
 from ..curves import neighbours
+from ..curves.units import length
 from ..engine.quality import QUALITIES
 from ..live import registry
 from ..live.checks import refusal, selected_curves
@@ -36,10 +37,7 @@ class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):  # noqa: N801 - Blender
         _buttons(layout, context, run)
         if run is not None:
             _progress(layout, context, run)
-        elif context.active_object and context.active_object.type == "CURVE":
-            value(layout, "Tube radius", f"{context.active_object.data.bevel_depth:.4g}")
         _quality(layout, context.scene.mobius_flow_panel)
-        layout.prop(settings, "fit_bevel")
         layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="Add Knot", icon="ADD")
 
 
@@ -100,7 +98,7 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) 
         whom = "with itself" if len(run.group.names) == 1 else "among themselves"
         value(box, "Free of contact", whom if proved else "not proved")
     if run.report is not None and run.report.radius is not None:
-        value(box, "Tube radius", f"{run.report.radius:.4g}")
+        value(box, "Tube radius", length(context.scene, run.report.radius))
     if run.message:
         sentence(box, context, run.message, icon="ERROR" if run.failed else "INFO")
     if run.trouble and run.state.over:

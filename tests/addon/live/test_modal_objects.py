@@ -27,6 +27,7 @@ def rings():
 
 
 def test_two_objects_are_the_headless_job_too(operator, rings):
+    bpy.ops.curve.mobius_flow_fit_tube()
     bpy.ops.object.duplicate()
     copies = bpy.context.selected_objects
     for obj in copies:

@@ -1,7 +1,7 @@
 """Lines can be told from the ground that they are drawn on."""
 
 import pytest
-from mobius_flow.addon.engine.colours import contrast, legible, luminance
+from mobius_flow.addon.engine.contrast import contrast, legible, luminance
 
 BLACK, WHITE, ORANGE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (1.0, 0.63, 0.16)
 

@@ -1,0 +1,186 @@
+"""What can be made of relaxed curves: meshes of their tubes, and smooth curves."""
+
+from collections.abc import Sequence
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+
+from ...core import Curve, MobiusFlowError
+from ...core.collision import check_embedded
+from ..curves import bevel, tube_mesh
+from ..curves.exchange import stretch
+from ..curves.outputs import put_beside
+from ..curves.recorded import Recorded, in_world
+from ..curves.smooth_curve import smooth_objects
+from ..curves.units import length
+from ..engine.smooth_fit import FEWEST, SmoothFit
+from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
+from ..engine.words import named
+from ..live.checks import selected_curves, unreadable
+from ..pictures.materials import vertex_colours
+
+_PLAIN = "NONE"
+_MAX_POINTS = 10_000
+
+
+class _Output:
+    """What operators that make other objects of the selected curves have in common."""
+
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
+    __annotations__ = {
+        "hide_curve": BoolProperty(
+            name="Hide Curve",
+            description="Hide the curve, which is in the same place, in views and renders",
+            default=True,
+        ),
+    }
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether the selected curves can be read; the tooltip says why not."""
+        reason = unreadable(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return reason is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Make all of them before any is shown."""
+        context.view_layer.update()  # a script may have moved an object just before
+        objects = selected_curves(context)
+        try:
+            recorded = [Recorded.of(obj) for obj in objects]
+            link = in_world(objects, recorded, [each.points[-1] for each in recorded])
+            check_embedded(link)
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        for made, obj in zip(self.make(objects, recorded, link), objects, strict=True):
+            put_beside(made, obj, self.hide_curve)
+        return {"FINISHED"}
+
+    def make(
+        self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
+    ) -> list[bpy.types.Object]:
+        """Make an object of each, where ``link`` is the end of all in the world, and say what they are."""
+        raise NotImplementedError
+
+
+class CURVE_OT_mobius_flow_tube_mesh(_Output, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+    """Make meshes of the selected curves' tubes, with their keys as shape keys of the same vertices. \
+glTF, USD and Alembic keep motion and colors (Alembic with Color Attributes on); \
+FBX does with NLA Strips and All Actions off, one frame later"""
+
+    bl_idname = "curve.mobius_flow_tube_mesh"
+    bl_label = "Tube Mesh"
+    __annotations__ = {
+        "color": EnumProperty(
+            name="Color",
+            description="What the vertices are colored by, as the curves are at the end of their animation",
+            items=[
+                (_PLAIN, "Materials", "The curve's own materials"),
+                (COMPONENT, "Component", "A color for each closed curve"),
+                (DISTANCE, "Distance", "The distance to the nearest other strand: yellow where it is near"),
+                (ENERGY, "Energy", "The Möbius energy per length: yellow where there is much of it"),
+            ],
+            default=_PLAIN,
+        ),
+        "radius": FloatProperty(
+            name="Radius",
+            description="Radius of the tubes; 0: as they are drawn, and where nothing is drawn as thick as fits",
+            default=0.0,
+            min=0.0,
+            unit="LENGTH",
+        ),
+        "sides": IntProperty(
+            name="Sides", description="Number of vertices round the tube", default=16, min=3, soft_max=64, max=256
+        ),
+        **_Output.__annotations__,
+    }
+
+    def make(
+        self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
+    ) -> list[bpy.types.Object]:
+        """Make the meshes, with the numbers that colors may show as attributes."""
+        values, radii, first, made = vertex_values(link), self._radii(objects, recorded, link), 0, []
+        colours = None if self.color == _PLAIN else COLOURINGS[self.color](values[self.color])
+        for obj, each, own in zip(objects, recorded, radii, strict=True):
+            tube = tube_mesh.tube_object(obj, each, own, self.sides)
+            part = slice(first, first := first + each.mesh.size)
+            tube_mesh.write_values(tube.data, {name: array[part] for name, array in values.items()})
+            if colours is not None:
+                tube_mesh.write_colours(tube.data, colours[part], vertex_colours(tube_mesh.COLOUR))
+            made.append(tube)
+        self._tell(objects, recorded)
+        return made
+
+    def _radii(
+        self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
+    ) -> list[np.ndarray]:
+        """Radii at all keys, in each object's coordinates; (keys, n) each."""
+        drawn = [obj.data.bevel_depth for obj in objects]
+        wanted = self.radius or (0.0 if all(drawn) else bevel.fitting_radius(link))
+        return [
+            np.full(each.radii.shape, wanted / stretch(obj)) if self.radius or not depth else depth * each.radii
+            for obj, each, depth in zip(objects, recorded, drawn, strict=True)
+        ]
+
+    def _tell(self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded]) -> None:
+        own = [obj.name for obj in objects if obj.data.bevel_mode != "ROUND" or obj.data.taper_object]
+        if own:
+            self.report({"WARNING"}, f"The tube of {named(own)} is round: profiles and tapers are left out")
+        else:
+            keys, vertices = max(len(each.frames) for each in recorded), sum(each.mesh.size for each in recorded)
+            shapes = f" with {keys} shape keys" if keys > 1 else ""
+            self.report({"INFO"}, f"{named([obj.name for obj in objects])}: {vertices * self.sides} vertices{shapes}")
+
+
+class CURVE_OT_mobius_flow_smooth_curve(_Output, bpy.types.Operator):  # noqa: N801
+    """Make smooth splines of the selected curves as they are at the end of their animation, and say how far off they \
+are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF nothing without a bevel)"""
+
+    bl_idname = "curve.mobius_flow_smooth_curve"
+    bl_label = "Smooth Curve"
+    __annotations__ = {
+        "kind": EnumProperty(
+            name="Type",
+            description="What the splines are; both are the same curve",
+            items=[
+                ("BEZIER", "Bézier", "Points on the curve, with handles"),
+                ("NURBS", "NURBS", "Control points beside the curve"),
+            ],
+            default="BEZIER",
+        ),
+        "points": IntProperty(
+            name="Points",
+            description="Number of points of each spline; 0: as few as the eye needs",
+            default=0,
+            min=0,
+            soft_max=200,
+            max=_MAX_POINTS,
+        ),
+        **_Output.__annotations__,
+    }
+
+    def make(
+        self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
+    ) -> list[bpy.types.Object]:
+        """Make the splines of all objects together: what one comes near to may be in another."""
+        points = max(self.points, FEWEST) if self.points else None
+        made, fit = smooth_objects(objects, link, points, self.kind)
+        self._tell(objects, fit)
+        return made
+
+    def _tell(self, objects: Sequence[bpy.types.Object], fit: SmoothFit) -> None:
+        scene = bpy.context.scene
+        said = f"{named([obj.name for obj in objects])}: {sum(map(len, fit.points))} points"
+        said += f", at most {length(scene, fit.error)} off"
+        if fit.proved:
+            self.report({"INFO"}, f"{said}; the same knot, proved")
+            return
+        if np.isfinite(fit.gap):
+            said += f", where strands are only {length(scene, fit.gap)} apart"
+        self.report({"WARNING"}, f"{said}; NOT proved to be the same knot, so give it more Points")
+
+
+CLASSES = (CURVE_OT_mobius_flow_tube_mesh, CURVE_OT_mobius_flow_smooth_curve)

@@ -1,0 +1,129 @@
+"""Shapes of curve objects in time: those of their keys, or the one that they have."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core import Curve
+from ...core.curve import Mesh
+from ...core.types import FloatArray
+from ..engine.placement import Placement
+from . import bake
+from .exchange import read_splines
+from .fcurves import fcurves_of
+from .keyframes import point_paths
+
+if TYPE_CHECKING:
+    import bpy
+
+_LINEAR = "LINEAR"
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """The shapes of one curve object, straight in between, in its own coordinates.
+
+    Attributes
+    ----------
+    mesh
+        Its splines as polygons, a component each.
+    frames
+        Scene frames of the shapes, (keys,); a curve that was not baked here has one shape at frame 0.
+    points
+        Vertices, (keys, n, 3).
+    radii
+        Their radii relative to the bevel depth, (keys, n).
+    keys
+        Vertices at shape keys, which may be at other frames, or at the last frame where there are none; (shapes, n, 3).
+    """
+
+    mesh: Mesh
+    frames: FloatArray
+    points: FloatArray
+    radii: FloatArray
+    keys: FloatArray
+
+    @classmethod
+    def of(cls, obj: "bpy.types.Object") -> "Recorded":
+        """Read a curve object with closed splines; raises CurveError if they cannot be read."""
+        data = obj.data
+        if not bake.is_baked(data):
+            splines = read_splines(obj)
+            mesh = Mesh(tuple(map(len, splines)))
+            radii = [_radii(spline, len(points)) for spline, points in zip(data.splines, splines, strict=True)]
+            points = np.concatenate(splines)[None]
+            return cls(mesh, np.zeros(1), points, np.concatenate(radii)[None], points)
+        mesh = Mesh(tuple(len(spline.points) for spline in data.splines))
+        return cls(mesh, *(_from_shape_keys(data) if data.shape_keys else _from_fcurves(data)))
+
+    @property
+    def last(self) -> Curve:
+        """The last shape."""
+        return Curve(self.points[-1], self.mesh)
+
+
+def in_world(
+    objects: Sequence["bpy.types.Object"], recorded: Sequence[Recorded], shapes: Sequence[FloatArray]
+) -> Curve:
+    """Shapes of several objects as one link in world space; (n, 3) each."""
+    components = [
+        Placement.from_matrix(obj.matrix_world).to_world(points[piece])
+        for obj, each, points in zip(objects, recorded, shapes, strict=True)
+        for piece in each.mesh.slices
+    ]
+    return Curve.from_components(components)
+
+
+def _shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray]:
+    """Vertices and relative radii of all shape keys; (keys, n, 3) and (keys, n)."""
+    blocks = data.shape_keys.key_blocks
+    points = np.empty((len(blocks), 3 * len(blocks[0].data)), dtype=np.float32)
+    radii = np.empty((len(blocks), len(blocks[0].data)), dtype=np.float32)
+    for block, co, radius in zip(blocks, points, radii, strict=True):
+        block.data.foreach_get("co", co)
+        block.data.foreach_get("radius", radius)
+    return points.reshape(len(blocks), -1, 3).astype(np.float64), radii.astype(np.float64)
+
+
+def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    (curve,) = fcurves_of(data.shape_keys.animation_data.action)
+    frames = _frames([curve])
+    points, radii = _shape_keys(data)
+    place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
+    before = np.minimum(place.astype(np.intp), len(points) - 2)
+    t = place - before
+
+    def at_frames(values: FloatArray) -> FloatArray:
+        share = t.reshape(-1, *[1] * (values.ndim - 1))
+        return np.asarray((1 - share) * values[before] + share * values[before + 1])
+
+    return frames, at_frames(points), at_frames(radii), points
+
+
+def _from_fcurves(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    curves = {(each.data_path, each.array_index): each for each in fcurves_of(data.animation_data.action)}
+    frames = _frames(list(curves.values()))
+    coordinates = [curves[path, axis] for path in point_paths(data) for axis in range(3)]
+    values = np.array([[curve.evaluate(frame) for curve in coordinates] for frame in frames])
+    radii = np.concatenate([_radii(spline, len(spline.points)) for spline in data.splines])
+    points = values.reshape(len(frames), -1, 3)
+    return frames, points, np.tile(radii, (len(frames), 1)), points[-1:]
+
+
+def _frames(curves: Sequence["bpy.types.FCurve"]) -> FloatArray:
+    """Frames between which F-curves run straight: those of their keys, or all where somebody has bent them."""
+    keys = [point for curve in curves for point in curve.keyframe_points]
+    frames = np.unique([point.co[0] for point in keys])
+    if any(point.interpolation != _LINEAR for point in keys):
+        frames = np.union1d(frames[[0, -1]], np.arange(np.ceil(frames[0]), np.floor(frames[-1]) + 1))
+    return np.asarray(frames, dtype=np.float64)
+
+
+def _radii(spline: "bpy.types.Spline", size: int) -> FloatArray:
+    """Radii at the points drawn for a spline, which lie evenly between its control points."""
+    points = spline.bezier_points if spline.type == "BEZIER" else spline.points
+    values = np.empty(len(points), dtype=np.float32)
+    points.foreach_get("radius", values)
+    return np.interp(np.arange(size) * len(points) / size, np.arange(len(points)), values, period=len(points))

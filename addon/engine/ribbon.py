@@ -1,0 +1,104 @@
+"""Normals along closed polygons in motion, for tubes that neither jump nor twist more than they must.
+
+Normals are carried along the curve by parallel transport; carried once round a closed curve they come back turned by
+the holonomy, and the angle that is missing is spread evenly over the length.  In a motion that angle may grow beyond
+half a turn: the self-linking number of the framed curve is a whole number, so it cannot change without a jump, and
+whatever writhe the curve loses its framing gains as twist (Călugăreanu, White, Fuller).  The last key has the least.
+"""
+
+import numpy as np
+
+from ...core.types import FloatArray
+
+_TINY = float(np.finfo(np.float64).tiny)
+_TURNS = np.array([-1.0, 0.0, 1.0])  # more or less than at the next key
+
+
+def tangents(points: FloatArray) -> FloatArray:
+    """Unit tangents at the vertices of closed polygons, halfway between those of their edges; (..., n, 3) to same."""
+    edges = np.roll(points, -1, axis=-2) - points
+    along = unit(edges)
+    return unit(along + np.roll(along, 1, axis=-2))
+
+
+def normals(points: FloatArray) -> FloatArray:
+    """Unit normals at the vertices of one closed polygon in motion, the same turned as little as possible later.
+
+    Parameters
+    ----------
+    points
+        Vertices at every key, (keys, n, 3).
+
+    Returns
+    -------
+    array (keys, n, 3)
+    """
+    tau = tangents(points)
+    bare = _transported(tau)
+    share = _shares_of_length(points)
+    angles = -_holonomy(bare, tau)[:, None] * share
+    normal = np.empty_like(bare)
+    normal[-1] = turned(bare[-1], tau[-1], angles[-1])
+    turns = 0.0
+    for k in range(len(points) - 2, -1, -1):
+        wanted = carried(normal[k + 1], tau[k + 1], tau[k])
+        missing = signed_angle(turned(bare[k], tau[k], angles[k]), wanted, tau[k])
+        turns, offset = _closest(missing, share[k], turns)
+        normal[k] = turned(bare[k], tau[k], angles[k] + 2 * np.pi * turns * share[k] + offset)
+    return normal
+
+
+def carried(normal: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Turn normals by the least rotation that takes unit tangents ``start`` to ``end``; all of shape (..., 3)."""
+    along = _dot(normal, end) / np.maximum(1.0 + _dot(start, end), _TINY)
+    moved = normal - along[..., None] * (start + end)
+    return unit(moved - _dot(moved, end)[..., None] * end)
+
+
+def turned(normal: FloatArray, tau: FloatArray, angle: FloatArray) -> FloatArray:
+    """Turn normals about unit tangents by angles; shapes (..., 3), (..., 3), (...)."""
+    return np.asarray(np.cos(angle)[..., None] * normal + np.sin(angle)[..., None] * np.cross(tau, normal))
+
+
+def signed_angle(start: FloatArray, end: FloatArray, tau: FloatArray) -> FloatArray:
+    """Angles about unit tangents from one normal to the other, in [−π, π]; (..., 3) to (...)."""
+    return np.asarray(np.arctan2(_dot(np.cross(tau, start), end), _dot(start, end)))
+
+
+def unit(vectors: FloatArray) -> FloatArray:
+    """Vectors of length 1; (..., 3) to the same."""
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), _TINY))
+
+
+def _transported(tau: FloatArray) -> FloatArray:
+    """Normals carried along from the first vertex, each by the least rotation from tangent to tangent."""
+    bare = np.empty_like(tau)
+    axis = np.eye(3)[np.abs(tau[:, 0]).argmin(axis=-1)]  # never along the tangent
+    bare[:, 0] = unit(np.cross(tau[:, 0], axis))
+    for i in range(1, tau.shape[1]):
+        bare[:, i] = carried(bare[:, i - 1], tau[:, i - 1], tau[:, i])
+    return bare
+
+
+def _holonomy(bare: FloatArray, tau: FloatArray) -> FloatArray:
+    """Angles by which normals are turned when they come back to the first vertex; (keys,)."""
+    return signed_angle(bare[:, 0], carried(bare[:, -1], tau[:, -1], tau[:, 0]), tau[:, 0])
+
+
+def _shares_of_length(points: FloatArray) -> FloatArray:
+    """Which part of the length lies before each vertex; (keys, n, 3) to (keys, n)."""
+    lengths = np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=-1)
+    passed = np.cumsum(lengths, axis=1)
+    return np.asarray((passed - lengths) / passed[:, -1:])
+
+
+def _closest(missing: FloatArray, share: FloatArray, turns: float) -> tuple[float, float]:
+    """Whole turns over the length, and an angle for all normals, that leave least of angles that are missing; (n,)."""
+    candidates = turns + _TURNS
+    means = np.exp(1j * (missing - 2 * np.pi * candidates[:, None] * share)).mean(axis=1)
+    best = int(np.abs(means).argmax())
+    return float(candidates[best]), float(np.angle(means[best]))
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("...i,...i->...", a, b))

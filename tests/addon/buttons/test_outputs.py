@@ -1,0 +1,277 @@
+"""Tube Mesh and Smooth Curve: what is made, where it is, and what is said of it."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import (  # noqa: E402
+    add_curve,
+    add_hopf_link,
+    add_trefoil,
+    contents,
+    evaluated,
+    in_world,
+    relax,
+    stored,
+)
+from mobius_flow.addon.curves import sampling  # noqa: E402
+from mobius_flow.addon.curves.keyframes import end_of  # noqa: E402
+from mobius_flow.addon.engine.colours import PALETTE, ramp  # noqa: E402
+from mobius_flow.addon.engine.strands import strand_distances  # noqa: E402
+from mobius_flow.core import Curve  # noqa: E402
+from mobius_flow.core.energies.moebius_by_length import moebius_by_length  # noqa: E402
+from shapes import hopf_link, torus_trefoil  # noqa: E402
+
+
+def tube(**options):
+    assert bpy.ops.curve.mobius_flow_tube_mesh(**options) == {"FINISHED"}
+    return bpy.context.object
+
+
+def smooth(**options):
+    assert bpy.ops.curve.mobius_flow_smooth_curve(**options) == {"FINISHED"}
+    return bpy.context.object
+
+
+def placed(obj):
+    """Somewhere else, turned and scaled."""
+    obj.location, obj.rotation_euler, obj.scale = (1, 2, 3), (0.3, 0.2, 0.1), (2, 2, 2)
+    bpy.context.view_layer.update()
+    return obj
+
+
+def value(mesh, name):
+    array = np.empty(len(mesh.vertices), dtype=np.float32)
+    mesh.attributes[name].data.foreach_get("value", array)
+    return array
+
+
+def colours(mesh):
+    """Colours at the vertices of the tube, linear RGB; bytes of sRGB are that exact."""
+    array = np.empty((len(mesh.loops), 4), dtype=np.float32)
+    corners = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.color_attributes["colour"].data.foreach_get("color", array.ravel())
+    mesh.loops.foreach_get("vertex_index", corners)
+    found = np.empty((len(mesh.vertices), 3))
+    found[corners] = array[:, :3]
+    np.testing.assert_array_equal(found[corners], array[:, :3])
+    return found
+
+
+@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "FCURVES"])
+@pytest.mark.parametrize("place", [lambda obj: obj, placed], ids=["origin", "placed"])
+def test_it_moves_with_the_curve(place, keyframes):
+    """Rings stay round the curve's points, at keys and between them."""
+    curve = place(add_trefoil())
+    relax(max_iterations=12, keyframes=keyframes)
+    made = tube(radius=0.25, sides=8)
+    for frame in (1, 2, 4.5, 9.75, 13):
+        middles = in_world(made, evaluated(made, frame)).reshape(-1, 8, 3).mean(axis=1)
+        np.testing.assert_allclose(middles, in_world(curve, evaluated(curve, frame)), atol=2e-3)
+
+
+def test_it_is_as_thick_as_the_curve_is_drawn():
+    curve = add_trefoil(60)
+    relax(max_iterations=8, fit_bevel=True)
+    made = tube(sides=16)
+    for frame, block in enumerate(curve.data.shape_keys.key_blocks, 1):
+        rings = evaluated(made, frame).reshape(-1, 16, 3)
+        radius = np.linalg.norm(rings - rings.mean(axis=1, keepdims=True), axis=-1)
+        np.testing.assert_allclose(radius, curve.data.bevel_depth * block.data[0].radius, rtol=0.05)
+
+
+def test_a_line_is_as_thick_as_fits():
+    curve = add_trefoil()
+    made = tube(sides=16)
+    bpy.data.objects["Knot"].hide_set(False)
+    made.select_set(False)
+    curve.select_set(True)
+    bpy.ops.curve.mobius_flow_fit_tube()
+    rings = evaluated(made).reshape(-1, 16, 3)
+    radius = np.linalg.norm(rings - rings.mean(axis=1, keepdims=True), axis=-1).min()
+    assert radius == pytest.approx(curve.data.bevel_depth, rel=0.05)
+
+
+def test_points_of_a_key_are_those_of_every_key():
+    add_hopf_link(20)
+    relax(max_iterations=6, vertices=60)
+    made = tube(sides=6)
+    assert len(made.data.vertices) == 60 * 6
+    assert {len(block.data) for block in made.data.shape_keys.key_blocks} == {360}
+    assert made.data.shape_keys.use_relative
+    assert not made.data.validate()
+
+
+def test_attributes_are_of_the_end():
+    add_hopf_link(20)
+    relax(max_iterations=6, vertices=60)
+    points = end_of(bpy.context.object.data).astype(np.float64)
+    link = Curve.from_components(np.split(points, 2))
+    mesh = tube(sides=6).data
+    np.testing.assert_allclose(value(mesh, "strand_distance"), np.repeat(strand_distances(link), 6), rtol=1e-5)
+    np.testing.assert_array_equal(value(mesh, "component"), np.repeat([0, 1], 180))
+    density = moebius_by_length(link)
+    expected = np.repeat(0.5 * (density + density[link.mesh.previous]), 6)
+    np.testing.assert_allclose(value(mesh, "energy_density"), expected, rtol=1e-4)
+
+
+@pytest.mark.parametrize(("name", "sign"), [("strand_distance", -1), ("energy_density", 1)])
+def test_colours_show_attributes(name, sign):
+    add_trefoil()
+    mesh = tube(color=name).data
+    np.testing.assert_allclose(colours(mesh), ramp(sign * value(mesh, name).astype(np.float64)), atol=0.02)
+    assert [material.name for material in mesh.materials] == ["Glaze colour"]
+
+
+def test_components_of_several_objects_are_coloured_in_turn():
+    parts = hopf_link(24).components
+    for part, name in zip(parts, "AB", strict=True):
+        add_curve([part], name)
+    bpy.ops.curve.mobius_flow_tube_mesh(color="component")
+    for name, colour in zip(("A Tube", "B Tube"), PALETTE, strict=False):
+        np.testing.assert_allclose(colours(bpy.data.objects[name].data), np.tile(colour, (24 * 16, 1)), atol=0.02)
+
+
+def test_materials_of_the_curve_are_kept():
+    obj = add_hopf_link(20)
+    bpy.ops.curve.mobius_flow_color_components()
+    mesh = tube(sides=4).data
+    assert list(mesh.materials) == list(obj.data.materials)
+    assert [mesh.polygons[k].material_index for k in (0, 79, 80, 159)] == [0, 0, 1, 1]
+
+
+@pytest.mark.parametrize("make", [tube, smooth])
+def test_the_curve_stays_as_it_is(make):
+    curve = placed(add_trefoil())
+    relax(max_iterations=3)
+    curve.data.bevel_depth = 0.125
+    before = contents()["splines"]["Knot"]
+    made = make()
+    assert contents()["splines"]["Knot"] == before
+    assert made.select_get()
+    assert not curve.select_get()
+    assert (curve.hide_get(), curve.hide_render) == (True, True)
+    bpy.context.view_layer.update()
+    assert made.matrix_world == curve.matrix_world
+
+
+def test_it_has_the_curves_parent():
+    """A matrix with shear is no product of location, rotation and scale."""
+    curve, parent = placed(add_trefoil()), bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.scale, parent.location.x = (1, 2, 3), 5.0
+    curve.parent = parent
+    curve.matrix_parent_inverse.translation.y = 0.5
+    bpy.context.view_layer.update()
+    made = tube()
+    bpy.context.view_layer.update()
+    assert made.parent == parent
+    assert made.matrix_world == curve.matrix_world
+
+
+@pytest.mark.parametrize("make", [tube, smooth])
+def test_the_curve_may_stay_visible(make):
+    curve = add_trefoil()
+    make(hide_curve=False)
+    assert (curve.hide_get(), curve.hide_render) == (False, False)
+
+
+def test_it_is_in_the_curves_collections():
+    curve = add_trefoil()
+    collection = bpy.data.collections.new("Knots")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(curve)
+    bpy.context.scene.collection.objects.unlink(curve)
+    assert [each.name for each in tube().users_collection] == ["Knots"]
+
+
+def test_undo_takes_it_away():
+    add_trefoil()
+    bpy.ops.ed.undo_push(message="Trefoil")
+    bpy.ops.curve.mobius_flow_tube_mesh("EXEC_DEFAULT", True, color="component")
+    assert "Knot Tube" in bpy.data.objects
+    bpy.ops.ed.undo()
+    assert "Knot Tube" not in bpy.data.objects
+    assert not bpy.data.objects["Knot"].hide_get()
+
+
+def test_other_profiles_are_said_to_be_left_out(capfd):
+    add_trefoil().data.bevel_mode = "PROFILE"
+    tube()
+    assert "The tube of 'Knot' is round: profiles and tapers are left out" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+@pytest.mark.parametrize("place", [lambda obj: obj, placed], ids=["origin", "placed"])
+def test_smooth_splines_are_where_it_is_said(kind, place, capfd):
+    curve = place(add_trefoil(30))
+    relax(max_iterations=5, vertices=150)
+    made = smooth(kind=kind, points=20)
+    said = capfd.readouterr().out
+    assert "'Knot': 20 points" in said
+    assert "the same knot, proved" in said
+    (spline,) = made.data.splines
+    assert (spline.type, spline.use_cyclic_u) == (kind, True)
+    assert len(spline.bezier_points if kind == "BEZIER" else spline.points) == 20
+    drawn = in_world(made, np.concatenate(sampling.sampled(made)))
+    polygon = in_world(curve, end_of(curve.data))
+    distance = np.linalg.norm(drawn[:, None] - polygon, axis=-1).min(axis=1).max()
+    assert distance < 0.12 * curve.scale.x
+
+
+def test_both_kinds_are_the_same_curve():
+    curve = add_trefoil(120)
+    drawn = []
+    for kind in ("BEZIER", "NURBS"):
+        made = smooth(kind=kind, hide_curve=False)
+        (points,) = sampling.sampled(made)
+        drawn.append(points)
+        made.select_set(False)
+        curve.select_set(True)
+    a, b = drawn
+    distance = np.linalg.norm(a[:, None] - b, axis=-1).min(axis=1)
+    np.testing.assert_allclose(distance, 0, atol=1e-5)
+
+
+def test_too_few_points_are_not_proved(capfd):
+    add_trefoil(120)
+    smooth(points=4)
+    said = capfd.readouterr().out
+    assert "NOT proved to be the same knot, so give it more Points" in said
+    assert "where strands are only" in said
+
+
+def test_of_a_link_of_two_objects():
+    for part, name in zip(hopf_link(80).components, "AB", strict=True):
+        add_curve([part], name)
+    bpy.ops.curve.mobius_flow_smooth_curve()
+    assert {obj.name for obj in bpy.context.selected_objects} == {"A Smooth", "B Smooth"}
+
+
+def test_it_has_the_bevel_and_the_materials():
+    curve = add_hopf_link(60)
+    curve.data.bevel_depth, curve.data.bevel_resolution, curve.data.extrude = 0.125, 3, 0.25
+    bpy.ops.curve.mobius_flow_color_components()
+    data = smooth().data
+    assert (data.bevel_depth, data.bevel_resolution, data.extrude) == (0.125, 3, 0.25)
+    assert list(data.materials) == list(curve.data.materials)
+    assert [spline.material_index for spline in data.splines] == [0, 1]
+
+
+def test_curves_that_touch_are_refused():
+    vertices = torus_trefoil(30).vertices.copy()
+    vertices[11] = vertices[1]
+    add_curve([vertices])
+    before = contents()
+    for button in (bpy.ops.curve.mobius_flow_tube_mesh, bpy.ops.curve.mobius_flow_smooth_curve):
+        with pytest.raises(RuntimeError, match="touch or cross"):
+            button()
+    assert contents() == before
+
+
+def test_stored_points_of_a_static_curve_are_not_moved():
+    curve = add_trefoil()
+    before = stored(curve.data)
+    tube()
+    np.testing.assert_array_equal(stored(curve.data), before)

@@ -1,0 +1,119 @@
+"""Fit Tube and Color Components; what is fitted is in test_bevel."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, relax, sentence  # noqa: E402
+from mobius_flow.addon.engine.colours import PALETTE  # noqa: E402
+from shapes import hopf_link  # noqa: E402
+
+BUTTONS = ("fit_tube", "color_components", "tube_mesh", "smooth_curve")
+
+
+def press(name, **options):
+    return getattr(bpy.ops.curve, f"mobius_flow_{name}")(**options)
+
+
+def colours(obj):
+    """The colour of each spline."""
+    materials = [obj.data.materials[spline.material_index] for spline in obj.data.splines]
+    shaders = [next(n for n in each.node_tree.nodes if n.type == "BSDF_PRINCIPLED") for each in materials]
+    return [tuple(shader.inputs["Base Color"].default_value)[:3] for shader in shaders]
+
+
+def test_each_component_gets_a_colour():
+    obj = add_hopf_link()
+    obj.data.materials.append(bpy.data.materials.new("Mine"))
+    assert press("color_components") == {"FINISHED"}
+    assert obj.data.materials[0].name == "Mine", "one's own slots stay"
+    assert colours(obj) == [pytest.approx(colour) for colour in PALETTE[:2]]
+    assert press("color_components") == {"FINISHED"}
+    assert len(obj.data.materials) == 3
+
+
+def test_components_are_numbered_through_all_objects():
+    first, second = (add_curve([part], name) for part, name in zip(hopf_link(24).components, "AB", strict=True))
+    press("color_components")
+    assert colours(first) + colours(second) == [pytest.approx(colour) for colour in PALETTE[:2]]
+
+
+def test_more_components_than_colours():
+    ring = hopf_link(12).components[0]
+    obj = add_curve([ring + np.array([0, 0, 3 * k]) for k in range(7)])
+    press("color_components")
+    assert len(obj.data.materials) == len(PALETTE)
+    assert colours(obj)[5:] == colours(obj)[:2]
+
+
+def test_colours_and_keys_do_not_mind_each_other():
+    obj = add_hopf_link()
+    relax(max_iterations=3)
+    press("color_components")
+    press("fit_tube")
+    before = colours(obj)
+    relax(max_iterations=2)
+    assert colours(obj) == before
+
+
+def nothing():
+    bpy.ops.object.select_all(action="DESELECT")
+
+
+def edited():
+    add_trefoil()
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def opened():
+    add_trefoil().data.splines[0].use_cyclic_u = False
+
+
+def infinite():
+    add_trefoil().data.splines[0].points[3].co[0] = float("inf")
+
+
+@pytest.mark.parametrize("name", BUTTONS)
+@pytest.mark.parametrize(
+    ("arrange", "said"),
+    [
+        (nothing, "Select a curve object first"),
+        (edited, "'Knot' is being edited; go back to Object Mode first"),
+        (opened, "Spline 1 of 'Knot' is open; close it first"),
+    ],
+)
+def test_refusals_say_what_to_do(name, arrange, said):
+    arrange()
+    before = contents()
+    with pytest.raises(RuntimeError) as error:
+        press(name)
+    assert said in sentence(error.value)
+    assert contents() == before
+
+
+@pytest.mark.parametrize("name", [name for name in BUTTONS if name != "color_components"])
+def test_what_cannot_be_read_is_left_alone(name):
+    infinite()
+    before = contents()
+    with pytest.raises(RuntimeError, match="is not finite"):
+        press(name)
+    assert contents() == before
+
+
+@pytest.mark.parametrize("name", ["fit_tube", "color_components"])
+def test_shared_data_is_not_changed(name):
+    obj = add_trefoil()
+    twin = bpy.data.objects.new("Twin", obj.data)
+    bpy.context.scene.collection.objects.link(twin)
+    with pytest.raises(RuntimeError, match="shares its curve data"):
+        press(name)
+
+
+@pytest.mark.parametrize("name", BUTTONS)
+def test_tooltips_are_sentences(name):
+    description = getattr(bpy.ops.curve, f"mobius_flow_{name}").get_rna_type().description
+    assert 20 < len(description) < 300
+    assert "\n" not in description
+    assert not description.endswith(".")
+    assert "  " not in description

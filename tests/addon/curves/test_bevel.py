@@ -1,0 +1,141 @@
+"""An artist's bevel is changed only if somebody asks for that; a fitted one is kept fitting."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, in_world, stored  # noqa: E402
+from mobius_flow.addon.curves import bevel  # noqa: E402
+from mobius_flow.addon.engine.tube import free_radius, thickest_radius  # noqa: E402
+from mobius_flow.core import Curve  # noqa: E402
+from shapes import hopf_link, torus_trefoil  # noqa: E402
+
+SHORT = {"max_iterations": 4, "timing": "ITERATE"}
+
+
+def add_tight():
+    """A trefoil that gets more room when it is relaxed."""
+    return add_curve([torus_trefoil(30).vertices * np.array([1.0, 1.0, 0.3])])
+
+
+def relax(**options):
+    """Relax with the panel's settings, unlike the tests' usual `relax`."""
+    assert bpy.ops.curve.mobius_flow_relax(**SHORT, **options) == {"FINISHED"}
+
+
+def fit():
+    assert bpy.ops.curve.mobius_flow_fit_tube() == {"FINISHED"}
+
+
+def drawn(data):
+    return data.bevel_depth, data.bevel_resolution, data.bevel_mode, data.extrude, data.offset, data.taper_object
+
+
+def taper(data):
+    data.taper_object = bpy.data.objects.new("Taper", bpy.data.curves.new("Taper", "CURVE"))
+
+
+BEVELS = {
+    "none": lambda data: None,
+    "plain": lambda data: setattr(data, "bevel_depth", 0.125),
+    "profile": lambda data: setattr(data, "bevel_mode", "PROFILE"),
+    "extruded": lambda data: setattr(data, "extrude", 0.25),
+    "tapered": taper,
+}
+
+
+@pytest.mark.parametrize("bevelled", BEVELS.values(), ids=BEVELS)
+@pytest.mark.parametrize("keyframes", ["SHAPE_KEYS", "RESULT"])
+def test_ones_own_is_not_changed(bevelled, keyframes):
+    data = add_trefoil().data
+    bevelled(data)
+    before = drawn(data)
+    relax(keyframes=keyframes)
+    assert drawn(data) == before
+    blocks = data.shape_keys.key_blocks if data.shape_keys else []
+    assert all(point.radius == 1 for block in blocks for point in block.data)
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.125])
+def test_a_script_may_ask_for_it(depth):
+    obj = add_trefoil()
+    obj.data.bevel_depth = depth
+    relax(fit_bevel=False)
+    assert obj.data.bevel_depth == depth
+    relax(fit_bevel=True)
+    assert obj.data.bevel_depth not in (0, depth)
+
+
+def test_a_fitted_one_is_kept_fitting():
+    obj = add_tight()
+    fit()
+    fitted = obj.data.bevel_depth
+    relax()
+    assert obj.data.bevel_depth != fitted
+    again = obj.data.bevel_depth
+    relax(fit_bevel=False)
+    assert obj.data.bevel_depth == fitted, "Bake Again begins with what was there before the keys"
+    relax()
+    assert obj.data.bevel_depth == again
+    obj.data.bevel_depth = 0.0625
+    bpy.ops.curve.mobius_flow_clear()
+    relax()
+    assert obj.data.bevel_depth == 0.0625, "it is the artist's own now"
+
+
+def test_it_is_known_in_a_file_that_is_opened_again(tmp_path):
+    add_tight()
+    fit()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    data = bpy.context.object.data
+    assert bevel.is_fitted(data)
+    before = data.bevel_depth
+    relax()
+    assert data.bevel_depth != before
+
+
+def test_added_knots_are_fitted_unless_a_thickness_is_given():
+    for options, fitted in (({}, True), ({"thickness": 0.125}, False), ({"fit_bevel": False}, False)):
+        bpy.ops.curve.mobius_flow_add_knot(**options)
+        assert bevel.is_fitted(bpy.context.object.data) == fitted
+
+
+def test_it_fits_in_the_world():
+    """Two objects of different scales, as thick as half of what is between them."""
+    vertices = hopf_link(80).vertices
+    pair = [add_curve([vertices[:80]], "A"), add_curve([0.5 * vertices[80:]], "B")]
+    pair[1].scale = (2, 2, 2)
+    fit()
+    link = Curve.from_components([in_world(obj, stored(obj.data)) for obj in pair])
+    radius = free_radius(link, thickest_radius(link))
+    assert [obj.data.bevel_depth for obj in pair] == pytest.approx([radius, radius / 2], rel=1e-5)
+
+
+def test_it_fits_at_every_key():
+    obj = add_hopf_link(30)
+    relax()
+    fit()
+    radii = np.array([obj.data.bevel_depth * block.data[0].radius for block in obj.data.shape_keys.key_blocks])
+    blocks = obj.data.shape_keys.key_blocks
+    shapes = [np.array([point.co[:] for point in block.data]) for block in blocks]
+    links = [Curve.from_components(np.split(points, 2)) for points in shapes]
+    np.testing.assert_allclose(radii, [free_radius(link, thickest_radius(link)) for link in links], rtol=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+def test_smooth_splines_are_fitted_as_they_are_drawn(kind):
+    data = add_curve([hopf_link(12).components[0]], kind=kind).data
+    fit()
+    assert bevel.is_fitted(data)
+
+
+@pytest.mark.parametrize("bevelled", [BEVELS[name] for name in ("profile", "extruded", "tapered")])
+def test_other_shapes_are_refused(bevelled):
+    data = add_trefoil().data
+    bevelled(data)
+    before = drawn(data)
+    with pytest.raises(RuntimeError, match="of its own; remove them first"):
+        bpy.ops.curve.mobius_flow_fit_tube()
+    assert drawn(data) == before

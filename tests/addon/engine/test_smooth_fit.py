@@ -1,0 +1,94 @@
+"""Smooth curves through polygons: how near they come, how fast, and what is proved of them."""
+
+import numpy as np
+import pytest
+from mobius_flow.addon.engine.smooth_fit import SmoothFit, bezier_points, fitted
+from mobius_flow.addon.engine.tube import free_radius, thickest_radius
+from mobius_flow.core import Curve
+from scipy.interpolate import BSpline
+from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
+
+
+def test_bezier_points_are_those_of_the_b_spline():
+    points = np.random.default_rng(3).normal(size=(9, 3))
+    spline = BSpline(np.arange(-3, 13), np.concatenate([points, points[:3]]), 3)
+    bezier = bezier_points(np.roll(points, -1, axis=0))
+    for k, segment in enumerate(bezier):
+        np.testing.assert_allclose(segment[0], spline(k), atol=1e-12)
+        np.testing.assert_allclose(segment[-1], spline(k + 1 if k < 8 else 0), atol=1e-12)
+        np.testing.assert_allclose(3 * (segment[1] - segment[0]), spline(k, 1), atol=1e-12)
+
+
+def circle_error(points):
+    """Error of the spline of a circle, of so many vertices that the polygon's own error does not matter."""
+    return fitted(regular_polygon(20_000), points).error
+
+
+def test_errors_fall_with_the_fourth_power():
+    errors = np.array([circle_error(points) for points in (8, 16, 32)])
+    slopes = np.log2(errors[:-1] / errors[1:])
+    assert (slopes > 3.9).all()
+
+
+def brute_error(fit, samples=4000):
+    """Distance between splines and polygon, each seen from the other, by many points."""
+    t = np.arange(samples) / samples
+    worst = 0.0
+    for bezier, polygon in zip(fit.bezier, fit.curve.components, strict=True):
+        k = (t * len(bezier)).astype(int)
+        u = (t * len(bezier) - k)[:, None]
+        a, b, c, d = (bezier[k, i] for i in range(4))
+        spline = (1 - u) ** 3 * a + 3 * u * (1 - u) ** 2 * b + 3 * u**2 * (1 - u) * c + u**3 * d
+        e = np.roll(polygon, -1, axis=0) - polygon
+        s = (np.einsum("pni,ni->pn", spline[:, None] - polygon, e) / np.square(e).sum(axis=1)).clip(0, 1)
+        to_polygon = np.linalg.norm(spline[:, None] - polygon - s[..., None] * e, axis=-1).min(axis=1)
+        to_spline = np.linalg.norm(spline[:, None] - polygon, axis=-1).min(axis=0)
+        worst = max(worst, to_polygon.max(), to_spline.max())
+    return worst
+
+
+@pytest.mark.parametrize("points", [8, 16, 40])
+@pytest.mark.parametrize("curve", [torus_trefoil(120), hopf_link(60)], ids=["trefoil", "link"])
+def test_the_error_is_no_less_than_the_distance(curve, points):
+    fit = fitted(curve, points)
+    distance = brute_error(fit)
+    assert 0.9 * distance <= fit.error
+    assert fit.error <= 3 * distance
+
+
+def test_as_few_points_as_are_close():
+    for curve in (regular_polygon(100), torus_trefoil(100), torus_trefoil(800)):
+        fit = fitted(curve)
+        assert fit.proved
+        assert fit.error <= 0.05 * free_radius(curve, thickest_radius(curve))
+        assert fitted(curve, len(fit.points[0]) // 2).error > fit.error
+        assert len(fit.points[0]) <= 40
+
+
+def test_a_spline_that_cuts_through_strands_is_not_proved():
+    """Four points for a trefoil are an unknot."""
+    fit = fitted(torus_trefoil(120), 4)
+    assert not fit.proved
+    assert fit.gap < 2 * fit.error
+    assert fitted(torus_trefoil(120)).gap == np.inf
+
+
+def test_nor_is_one_that_is_moved_through_another_component():
+    fit = fitted(hopf_link(60), 12)
+    assert fit.proved
+    apart = SmoothFit(fit.curve, (fit.points[0], fit.points[1] + np.array([9.0, 0.0, 0.0])))
+    assert not apart.proved
+
+
+def test_unequal_edges_and_corners_leave_no_point_anywhere():
+    curve = lattice_knot("3_1")
+    for points in (8, 29, 60):
+        fit = fitted(curve, points)
+        assert np.abs(fit.points[0] - curve.vertices.mean(axis=0)).max() < 2 * np.ptp(curve.vertices)
+    assert fitted(curve, 60).error < fitted(curve, 8).error
+
+
+def test_the_place_does_not_matter():
+    curve = torus_trefoil(100)
+    moved = Curve(curve.vertices + 1000.0)
+    assert fitted(moved, 24).error == pytest.approx(fitted(curve, 24).error, rel=1e-6)

@@ -1,0 +1,45 @@
+"""Distances to the nearest other strand."""
+
+import numpy as np
+import pytest
+from mobius_flow.addon.engine import strands
+from mobius_flow.addon.engine.strands import strand_distances
+from mobius_flow.core import Curve
+from shapes import hopf_link, regular_polygon, torus_trefoil
+
+
+def rings(distance, n=200):
+    """Two round rings of radius 1 on one axis."""
+    ring = regular_polygon(n).vertices
+    return Curve.from_components([ring, ring + np.array([0.0, 0.0, distance])])
+
+
+def test_of_two_rings():
+    np.testing.assert_allclose(strand_distances(rings(0.25)), 0.25, rtol=1e-12)
+
+
+def test_edges_count_and_not_their_ends_only():
+    near, far = regular_polygon(200), regular_polygon(20).vertices + np.array([0.0, 0.0, 0.1])
+    curve = Curve.from_components([near.vertices, far])
+    sagitta = 1 - np.cos(np.pi / 20)
+    assert strand_distances(curve)[:200].max() <= np.hypot(0.1, sagitta) + 1e-12
+
+
+def test_converges_on_a_smooth_knot():
+    """The torus trefoil is symmetric under turns by 120°."""
+    distances = [strand_distances(torus_trefoil(n))[0] for n in (300, 600, 1200)]
+    assert abs(distances[2] - distances[1]) < 0.5 * abs(distances[1] - distances[0]) + 1e-6
+    d = strand_distances(torus_trefoil(300))
+    np.testing.assert_allclose(d, np.roll(d, 100), atol=1e-9)
+
+
+def test_a_circle_has_no_other_strand():
+    np.testing.assert_allclose(strand_distances(regular_polygon(60)), np.sqrt(8), rtol=1e-2)
+
+
+@pytest.mark.parametrize("block", [1, 1000])
+def test_blocks_do_not_matter(monkeypatch, block):
+    curve = hopf_link(40)
+    whole = strand_distances(curve)
+    monkeypatch.setattr(strands, "_BLOCK", block)
+    np.testing.assert_array_equal(strand_distances(curve), whole)
