@@ -4,6 +4,7 @@ import bpy
 from bpy.props import PointerProperty
 
 from . import buttons, sidebar
+from .buttons import gallery
 from .live import handlers
 from .properties import MobiusFlowSettings
 from .sidebar import menus
@@ -23,6 +24,7 @@ def register() -> None:
             bpy.utils.unregister_class(cls)
         raise
     bpy.types.Scene.mobius_flow = PointerProperty(type=MobiusFlowSettings)
+    bpy.types.Scene.mobius_flow_knots = PointerProperty(type=gallery.MobiusFlowKnots)
     menus.register()
     handlers.register()
 
@@ -31,6 +33,7 @@ def unregister() -> None:
     """Remove all of it; what is running ends first."""
     handlers.unregister()
     menus.unregister()
-    del bpy.types.Scene.mobius_flow
+    del bpy.types.Scene.mobius_flow_knots, bpy.types.Scene.mobius_flow
+    gallery.unregister()
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)
