@@ -1,4 +1,4 @@
-"""The sub-panel where knots are picked and drawings become knots, and the sub-menu of Add > Curve."""
+"""The panel where knots are picked and drawings become knots, and the sub-menu of Add > Curve."""
 
 import bpy
 
@@ -17,7 +17,6 @@ class VIEW3D_PT_mobius_flow_knots(InSidebar, bpy.types.Panel):  # noqa: N801
     """A gallery of knots to add, and the button for drawings."""
 
     bl_label = "Knots"
-    bl_parent_id = "VIEW3D_PT_mobius_flow"
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
 
     def fill(self, layout: bpy.types.UILayout, context: bpy.types.Context, _settings: bpy.types.PropertyGroup) -> None:

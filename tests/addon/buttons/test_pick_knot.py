@@ -100,7 +100,7 @@ def test_icons_are_drawn_once_and_when_they_are_asked_for(monkeypatch):
     icons.icon("4_1")
     icons.icon("4_1")
     assert drawn == ["4_1"]
-    preview = icons._drawn["4_1"]
+    preview = icons._drawn()["4_1"]
     assert tuple(preview.icon_size) == (32, 32)
     pixels = np.array(preview.image_pixels_float[:]).reshape(96, 96, 4)
     assert 0.1 < (pixels[..., 3] > 0).mean() < 0.6

@@ -6,9 +6,8 @@ from case import Steps, picture, until
 from hands import below, button, click, found, here, key, move, open_sidebar, region, view, window
 from scene import clear, look, obj
 
-SIXTEEN = (
-    "3_1 4_1 5_1 5_2 6_1 6_2 6_3 7_4 7_7 8_5 8_18 8_19 L2a1 L4a1 L5a1 L6a4"  # knots that everybody knows, and links
-).split()
+SIXTEEN = [f"{crossings}_{k}" for crossings, k in ((3, 1), (4, 1), (5, 1), (5, 2), (6, 1), (6, 2), (6, 3), (7, 4))]
+SIXTEEN += ["7_7", "8_5", "8_18", "8_19", "L2a1", "L4a1", "L5a1", "L6a4"]
 
 
 def case() -> Steps:
