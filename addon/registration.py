@@ -4,13 +4,13 @@ import bpy
 from bpy.props import PointerProperty
 
 from . import buttons, panel_settings, sidebar
-from .buttons import presets
+from .buttons import gallery, presets
 from .live import handlers, overlay
 from .properties import MobiusFlowSettings
 from .sidebar import menus
 
 _CLASSES = (MobiusFlowSettings, *panel_settings.CLASSES, *buttons.CLASSES, *sidebar.CLASSES)
-_PARTS = (panel_settings, presets, menus, handlers, overlay)  # what else there is to register
+_PARTS = (panel_settings, presets, gallery, menus, handlers, overlay)  # what else there is to register
 
 
 def register() -> None:

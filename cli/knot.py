@@ -5,7 +5,7 @@ from typing import Any
 
 from ..core import CurveError
 from ..core.curve.io import FORMATS
-from ..core.knots import knot, knot_names
+from ..core.knots import knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 from .streams import emit
@@ -14,6 +14,7 @@ _EPILOG = """\
 examples:
   mobius-flow knot 3_1 trefoil.txt
   mobius-flow knot "T(3,5)" - --format obj
+  mobius-flow knot 7_4 smooth.obj --smooth
   mobius-flow knot --list
 
 exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
@@ -28,6 +29,9 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     curves.add_format(parser)
     parser.add_argument(
         "--vertices", type=int, metavar="N", help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough)"
+    )
+    parser.add_argument(
+        "--smooth", action="store_true", help="the relaxed shape of a knot of the table (default: woven, to be relaxed)"
     )
     parser.add_argument("--list", action=_List, nargs=0, help="print the names, one per line, and exit")
 
@@ -44,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     """Make the knot and write it."""
     curves.format_for(options.output, options.format)
     check_place(options.output)
-    curve = knot(options.name, vertices=options.vertices)
+    curve = (smooth_knot if options.smooth else knot)(options.name, vertices=options.vertices)
     if len(curve) > (most := curves.MAX_VERTICES):
         told = f"{options.name[:60]} gets {len(curve)} vertices, and no command takes more than {most}"
         raise CurveError(f"{told}; give --vertices {most}")

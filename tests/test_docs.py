@@ -71,6 +71,13 @@ def test_the_readme_has_both_commands():
         assert re.search(rf"<!-- {marker} -->\n\n    \S", readme)
 
 
+def test_data_is_installed():
+    listed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["package-data"]
+    found = [path for room in ("core", "cli", "addon") for path in (ROOT / room).rglob("*.npz")]
+    names = [(".".join(["mobius_flow", *path.parent.relative_to(ROOT).parts]), path.name) for path in found]
+    assert sorted(names) == sorted((package, name) for package, data in listed.items() for name in data)
+
+
 def test_every_package_is_installed():
     listed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["packages"]
     rooms = [path.parent for room in ("core", "cli", "addon") for path in (ROOT / room).rglob("__init__.py")]

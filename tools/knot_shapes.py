@@ -30,6 +30,7 @@ ITERATIONS = 160  # of L-BFGS: afterwards little is seen to move
 MODES = range(1, 60)
 TOLERANCE = 0.004  # of the half-width, between relaxed and stored curve: far less than strands are apart
 VIEWS = 400
+FAVOUR = 1.1  # a little more may be hidden where a curve is seen along its flattest axis
 NEAR = 0.25  # in the picture, of the curve's radius
 
 
@@ -78,11 +79,19 @@ def facing(curve: Curve) -> Curve:
     """A curve turned so that few of its strands hide others seen from +z, wide along x, and scaled to half-width 1."""
     points = curve.vertices - curve.vertices.mean(axis=0)
     turned = min((points @ view for view in _views()), key=_clutter)
+    if _clutter(flat := points @ _principal(points)) < FAVOUR * _clutter(turned):
+        turned = flat
     _, axes = np.linalg.eigh(turned[:, :2].T @ turned[:, :2])
     plane = axes[:, ::-1] * [1.0, np.sign(np.linalg.det(axes[:, ::-1]))]
     turned[:, :2] = turned[:, :2] @ plane
     low, high = turned.min(axis=0), turned.max(axis=0)
     return curve.with_vertices((turned - 0.5 * (low + high)) / (0.5 * (high - low).max()))
+
+
+def _principal(points: FloatArray) -> FloatArray:
+    """Rotation to look along the axis in which a curve is flattest, which shows symmetries; (3, 3)."""
+    axes = np.linalg.svd(points, full_matrices=False)[2].T
+    return np.asarray(axes * [1.0, 1.0, np.linalg.det(axes)])
 
 
 def _views() -> list[FloatArray]:

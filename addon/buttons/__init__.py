@@ -1,6 +1,34 @@
 """What can be pressed: the operators, which check, act, and say what happened."""
 
-from . import add_knot, baking, outputs, presets, relaxing, running, shape, showing, tube
+from . import (
+    add_family,
+    add_knot,
+    baking,
+    draw_knot,
+    gallery,
+    outputs,
+    pick_knot,
+    presets,
+    relaxing,
+    running,
+    shape,
+    showing,
+    tube,
+)
 
-_MODULES = (relaxing, running, showing, baking, shape, add_knot, tube, outputs, presets)
+_MODULES = (
+    relaxing,
+    running,
+    showing,
+    baking,
+    shape,
+    tube,
+    outputs,
+    add_knot,
+    pick_knot,
+    add_family,
+    draw_knot,
+    gallery,
+    presets,
+)
 CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

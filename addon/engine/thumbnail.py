@@ -18,7 +18,8 @@ COLORS: Sequence[tuple[float, float, float]] = (
 
 _RADIUS, _RIM = 0.075, 0.035  # of the tube and of the dark rim that sets it off from what is behind; half-widths
 _FILL = 0.88  # of the picture's width
-_STEP = 0.7  # pixels from one ball of the tube to the next
+_STEP = 0.25  # of the radius, from one ball of the tube to the next
+_BEHIND = 2.5  # of the radius: a rim hides what is so far behind it
 _LIGHT = np.array([-0.35, 0.5, 0.79])
 _AMBIENT = 0.35
 _RIM_COLOR = 0.08
@@ -38,13 +39,15 @@ def thumbnail(curve: Curve, size: int) -> FloatArray:
     room = 1.0 + _RADIUS + _RIM
     unit = 0.5 * _FILL * size / room
     scale = unit / (0.5 * float((high - low)[:2].max()))
-    points, component = _along(curve.with_vertices((curve.vertices - 0.5 * (low + high)) * scale), _STEP)
+    points, component = _along(
+        curve.with_vertices((curve.vertices - 0.5 * (low + high)) * scale), _STEP * _RADIUS * unit
+    )
     points[:, :2] += 0.5 * size
     picture = np.zeros((size, size, 4))
     depth = np.full((size, size), -np.inf)
-    for radius, sink in (((_RADIUS + _RIM) * unit, _RIM * unit), (_RADIUS * unit, 0.0)):
+    for radius, sink in (((_RADIUS + _RIM) * unit, _BEHIND * _RADIUS * unit), (_RADIUS * unit, 0.0)):
         rows, columns, height, normal, which = _balls(points, component, radius, size)
-        seen = _topmost(rows, columns, height - 2 * sink, depth)
+        seen = _topmost(rows, columns, height - sink, depth)
         rows, columns = rows[seen], columns[seen]
         colors = np.asarray(COLORS)[which[seen] % len(COLORS)] * _light(normal[seen])[:, None]
         picture[rows, columns] = np.column_stack([colors if not sink else colors * _RIM_COLOR, np.ones(len(rows))])
@@ -83,7 +86,7 @@ def _topmost(rows: IntArray, columns: IntArray, height: FloatArray, depth: Float
     chosen = last[last >= 0]
     chosen = chosen[height[chosen] > depth[rows[chosen], columns[chosen]]]
     depth[rows[chosen], columns[chosen]] = height[chosen]
-    return chosen
+    return np.asarray(chosen)
 
 
 def _light(normal: FloatArray) -> FloatArray:

@@ -2,12 +2,12 @@
 
 import bpy
 
-from ..buttons.add_knot import CURVE_OT_mobius_flow_add_knot
+from .knots import VIEW3D_MT_mobius_flow_knots
 
 
 def add_knot(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """Offer knots in Add > Curve."""
-    menu.layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, icon="CURVE_NCIRCLE")
+    menu.layout.menu(VIEW3D_MT_mobius_flow_knots.__name__, icon="CURVE_NCIRCLE")
 
 
 def register() -> None:

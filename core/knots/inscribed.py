@@ -83,7 +83,7 @@ def equal_steps(curve: Curve) -> list[FloatArray]:
 def arc_steps(points: FloatArray) -> FloatArray:
     """Parameters of the vertices of a closed polygon that are proportional to arc length; shape (n,)."""
     arc = _arc(points)
-    return arc[:-1] / arc[-1]
+    return np.asarray(arc[:-1] / arc[-1])
 
 
 def _arc(points: FloatArray) -> FloatArray:

@@ -62,7 +62,7 @@ class Tube:
     def points(self, t: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:
         """Points in space, shape (k, 3), with these coordinates, each (k,); t is taken modulo 1."""
         center, across, up = (self._at(t, x) for x in (self._center, self._across, self._up))
-        return center + u[:, None] * across + v[:, None] * up
+        return np.asarray(center + u[:, None] * across + v[:, None] * up)
 
     def _at(self, t: FloatArray, values: FloatArray) -> FloatArray:
         place = t % 1.0 * len(values)

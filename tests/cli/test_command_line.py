@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mobius_flow.cli import main, outputs
 from mobius_flow.core import METHODS, read_curve, write_curve
-from mobius_flow.core.knots import knot, knot_names
+from mobius_flow.core.knots import knot, knot_names, smooth_knot
 from processes import finished
 from shapes import regular_polygon, torus_trefoil
 
@@ -82,6 +82,13 @@ def test_methods_are_names_and_descriptions(capsys):
 def test_knot(tmp_path):
     assert run("knot", "3_1", tmp_path / "k.vect") == 0
     assert len(read_curve(tmp_path / "k.vect")) > 10
+
+
+def test_smooth_knots(tmp_path, capsys):
+    assert run("knot", "m7_4", tmp_path / "k.vect", "--smooth", "--vertices", 150) == 0
+    np.testing.assert_allclose(read_curve(tmp_path / "k.vect").vertices, smooth_knot("m7_4", 150).vertices)
+    assert run("knot", "T(2,3)", tmp_path / "t.vect", "--smooth") == 2
+    assert "none of the table" in capsys.readouterr().err
 
 
 def test_knots_are_listed(capsys):

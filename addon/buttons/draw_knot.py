@@ -1,0 +1,144 @@
+"""The operator that lifts drawings into knots."""
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, BoolVectorProperty, FloatProperty, IntProperty
+
+from ...core import Curve, MobiusFlowError
+from ...core.types import FloatArray
+from ..curves.exchange import read_link
+from ..engine.drawing_plane import DrawingPlane
+from ..live.checks import selected_curves
+from .adding import AddsKnot
+
+_SWITCHES = 32  # Blender's longest array of switches
+
+
+class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N801
+    """Make a knot of the selected flat drawing: where strands cross, one goes over the other; the drawing stays"""
+
+    bl_idname = "curve.mobius_flow_draw_knot"
+    bl_label = "Knot from Drawing"
+
+    change: BoolVectorProperty(
+        name="Change Crossings",
+        description="Swap over and under at a crossing; they are numbered along the curve",
+        size=_SWITCHES,
+        default=(False,) * _SWITCHES,
+        options={"SKIP_SAVE"},
+    )
+    mirror: BoolProperty(name="Mirror", description="Swap over and under at all crossings", default=False)
+    height: FloatProperty(
+        name="Height",
+        description="How far strands go over and under, 1 for as far as looks right in the room there",
+        default=1.0,
+        min=0.01,
+        soft_max=3.0,
+        max=100.0,
+    )
+    number: BoolProperty(
+        name="Number Crossings", description="Mark each crossing by an empty that shows its number", default=False
+    )
+    hide_drawing: BoolProperty(name="Hide Drawing", description="Hide the curves that were drawn", default=True)
+    count: IntProperty(name="Crossings", description="Number of crossings found", options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether a drawing is selected."""
+        reason = None if context.mode == "OBJECT" else "Go back to Object Mode first"
+        if reason is None and not selected_curves(context):
+            reason = "Draw a flat closed curve and select it first"
+        if reason:
+            cls.poll_message_set(reason)
+        return reason is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Lift the drawing and add it as a new object."""
+        from ...core.knots import Drawing
+
+        drawn = selected_curves(context)
+        try:
+            self._check()
+            curve = _read(drawn)
+            plane = DrawingPlane.of(curve)
+            drawing = Drawing.of(plane.flattened(curve))
+            lifted = self._lifted(drawing)
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.count = len(drawing.crossings)
+        name, told = _words(lifted, self.count)
+        self._add(context, name, plane, drawing, lifted)
+        for obj in drawn if self.hide_drawing else ():
+            obj.hide_set(True)
+        self.report({"INFO"}, told)
+        return {"FINISHED"}
+
+    def _lifted(self, drawing: "object") -> Curve:
+        count = min(len(drawing.crossings), _SWITCHES)
+        lifted = drawing.lifted([k + 1 for k in range(count) if self.change[k]])
+        return lifted.with_vertices(lifted.vertices * [1.0, 1.0, -self.height if self.mirror else self.height])
+
+    def _add(
+        self, context: bpy.types.Context, name: str, plane: DrawingPlane, drawing: "object", lifted: Curve
+    ) -> None:
+        """Add the knot, and the numbers as its children."""
+        vertices = plane.raised(lifted.vertices)
+        middle = vertices.mean(axis=0)
+        obj = bpy.data.objects.new(name, self.curve_data(name, vertices - middle, lifted))
+        obj.location = middle
+        context.collection.objects.link(obj)
+        for other in context.selected_objects:
+            other.select_set(False)
+        obj.select_set(True)
+        context.view_layer.objects.active = obj
+        if self.number:
+            places = np.column_stack([drawing.crossings, np.zeros(len(drawing.crossings))])
+            _mark(context.collection, obj, plane.raised(places) - middle, 0.03 * float(np.ptp(vertices)))
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Show the crossings as switches, and how the knot is drawn."""
+        layout = self.layout
+        layout.label(text=f"Change Crossings (1 to {min(self.count, _SWITCHES)})")
+        grid = layout.grid_flow(row_major=True, columns=8, even_columns=True, align=True)
+        for k in range(min(self.count, _SWITCHES)):
+            grid.prop(self, "change", index=k, text=str(k + 1), toggle=True)
+        layout.use_property_split = True
+        for name in ("mirror", "height", "number", "hide_drawing", "color_components"):
+            layout.prop(self, name)
+        self.draw_tube(layout)
+
+
+def _read(objects: list[bpy.types.Object]) -> Curve:
+    """The drawing in world space; raises a CurveError if a spline is open or too short."""
+    from ...core import CurveError
+
+    for obj in objects:
+        for spline in obj.data.splines:
+            if not spline.use_cyclic_u:
+                raise CurveError(f"'{obj.name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)")
+    return read_link(objects)[0]
+
+
+def _words(curve: Curve, crossings: int) -> tuple[str, str]:
+    """A name for a drawn knot, and what can be said of it."""
+    from ...core.knots.recognition import names_alike
+
+    known = names_alike(curve, crossings) if crossings <= 10 else []
+    told = f"{crossings} crossings" if crossings != 1 else "1 crossing"
+    if known == ["0_1"]:
+        return "Drawn Unknot", f"{told}: it is not knotted"
+    if len(known) == 1:
+        return f"Drawn {known[0]}", f"{told}: {known[0]} or its mirror image, if it is prime"
+    return "Drawn Knot", f"{told}: one of {', '.join(known)}, if it is prime" if known else told
+
+
+def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: FloatArray, size: float) -> None:
+    for number, place in enumerate(places, 1):
+        empty = bpy.data.objects.new(str(number), None)
+        empty.empty_display_size, empty.show_name, empty.show_in_front = size, True, True
+        empty.parent, empty.location = parent, place
+        collection.objects.link(empty)
+
+
+CLASSES = (CURVE_OT_mobius_flow_draw_knot,)

@@ -1,0 +1,55 @@
+"""What is picked in the gallery of knots: settings of the scene."""
+
+import zlib
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, PointerProperty
+
+from ..engine.knot_list import GROUPS, group, labels
+from ..pictures import icons
+
+_items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender needs the strings to stay alive
+
+
+def _knots(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> list[tuple[str, str, str, int, int]]:
+    """The knots of the chosen group, with icons; each keeps its number in files."""
+    chosen = settings.group
+    if chosen not in _items:
+        _items[chosen] = [
+            (name, label, f"Knot {label}" if chosen != "LINKS" else f"Link {label}", icons.icon(name), _number(name))
+            for name, label in labels().items()
+            if group(name) == chosen
+        ]
+    return _items[chosen]
+
+
+def _number(name: str) -> int:
+    return zlib.crc32(name.encode()) & 0x7FFFFFFF
+
+
+class MobiusFlowKnots(bpy.types.PropertyGroup):
+    """Which knot is picked."""
+
+    group: EnumProperty(
+        name="Group",
+        description="Which knots are shown",
+        items=[(key, title, description) for key, (title, description) in GROUPS.items()],
+        default="FEW",
+    )
+    knot: EnumProperty(name="Knot", description="Knot to add", items=_knots)
+    mirror: BoolProperty(name="Mirror", description="Add the mirror image", default=False)
+
+
+def register() -> None:
+    """Give the scene the choice."""
+    bpy.types.Scene.mobius_flow_knots = PointerProperty(type=MobiusFlowKnots)
+
+
+def unregister() -> None:
+    """Take it away, and forget icons and what refers to them."""
+    del bpy.types.Scene.mobius_flow_knots
+    _items.clear()
+    icons.forget()
+
+
+CLASSES = (MobiusFlowKnots,)

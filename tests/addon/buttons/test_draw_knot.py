@@ -1,0 +1,130 @@
+"""Drawings lifted into knots."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, contents, sentence, stored  # noqa: E402
+from knot_type import UNKNOT, knot_invariants  # noqa: E402
+from mobius_flow.core import Curve  # noqa: E402
+from mobius_flow.core.collision import check_embedded  # noqa: E402
+from mobius_flow.core.knots import torus_knot  # noqa: E402
+
+
+def scribble(p=2, q=3, n=60):
+    """The points of a flat drawing of a torus knot."""
+    return torus_knot(p, q, n).vertices * [1, 1, 0]
+
+
+def lifted(**options):
+    """The object that the selected drawing becomes, and its points in world space."""
+    assert bpy.ops.curve.mobius_flow_draw_knot(**options) == {"FINISHED"}
+    obj = bpy.context.object
+    bpy.context.view_layer.update()
+    matrix = np.array(obj.matrix_world)
+    return obj, stored(obj.data).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def test_a_drawn_trefoil():
+    drawn = add_curve([scribble()])
+    before = stored(drawn.data)
+    obj, points = lifted()
+    assert obj.name == "Drawn 3_1"
+    assert knot_invariants(points).genus == 1
+    assert np.array_equal(stored(drawn.data), before)
+    assert drawn.hide_get()
+    assert (obj.select_get(), drawn.select_get()) == (True, False)
+    assert obj.data.bevel_depth > 0.02
+
+
+def test_a_crossing_is_changed_and_all_are_mirrored():
+    add_curve([scribble()])
+    change = [False] * 32
+    change[1] = True
+    obj, points = lifted(change=change, hide_drawing=False)
+    assert obj.name == "Drawn Unknot"
+    assert knot_invariants(points) == UNKNOT
+
+
+def test_the_mirror_image():
+    hands = []
+    for mirror in (False, True):
+        bpy.ops.object.select_all(action="DESELECT")
+        add_curve([scribble()])
+        hands.append(knot_invariants(lifted(mirror=mirror)[1]).tau)
+    assert hands[0] == -hands[1] != 0
+
+
+@pytest.mark.parametrize("place", [(0, 0, 5), (40, -3, 2)])
+@pytest.mark.parametrize("turn", [(0, 0, 0), (1.2, 0.4, 0.3), (np.pi, 0, 0)])
+def test_it_lies_over_the_drawing_wherever_that_is(place, turn):
+    drawn = add_curve([scribble()])
+    drawn.location, drawn.rotation_euler, drawn.scale = place, turn, (2, 2, 2)
+    bpy.context.view_layer.update()
+    _, points = lifted()
+    flat = np.linalg.solve(np.array(drawn.matrix_world), np.column_stack([points, np.ones(len(points))]).T)[:3].T
+    assert abs(flat[:, 2]).max() < 0.3
+    assert abs(flat[:, 2]).max() > 0.02
+    assert abs(flat[:, :2]).max() == pytest.approx(abs(scribble()).max(), rel=0.02)
+
+
+def test_several_curves_make_a_link():
+    circle = np.column_stack([np.cos(t := np.linspace(0, 6, 40)), np.sin(t), 0 * t])
+    first, second = add_curve([circle], "A"), add_curve([circle + np.array([1.1, 0, 0])], "B")
+    first.select_set(True)
+    obj, _ = lifted()
+    assert len(obj.data.splines) == 2
+    assert len(obj.data.materials) == 2
+    assert first.hide_get()
+    assert second.hide_get()
+
+
+def test_smooth_splines_are_drawings_too():
+    add_curve([scribble(n=24)], kind="NURBS")
+    obj, points = lifted()
+    assert obj.name == "Drawn 3_1"
+    check_embedded(Curve(points))
+
+
+def test_crossings_are_numbered():
+    add_curve([scribble()])
+    obj, _ = lifted(number=True)
+    assert sorted(child.name for child in obj.children) == ["1", "2", "3"]
+    assert all(child.show_name for child in obj.children)
+
+
+def test_a_lifted_drawing_can_be_relaxed():
+    add_curve([scribble()])
+    lifted()
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=2) == {"FINISHED"}
+
+
+def spiral():
+    points = scribble()
+    points[:, 2] = np.linspace(0, 2, len(points))
+    return points
+
+
+@pytest.mark.parametrize(
+    ("components", "options", "said"),
+    [
+        ([spiral()], {}, "not flat"),
+        ([scribble()], {"cyclic": False}, "is open"),
+        ([scribble() * [1, 0, 0]], {}, "touch without crossing"),
+        ([scribble() * 0], {}, "same"),
+        ([[(0, 0, 0), (2, 0, 0), (2, 1, 0), (1, 0, 0), (0, 1, 0)]], {}, "touch without crossing"),
+    ],
+)
+def test_what_is_no_drawing_is_refused(components, options, said):
+    add_curve(components, **options)
+    before = contents()
+    with pytest.raises(RuntimeError, match=said) as error:
+        bpy.ops.curve.mobius_flow_draw_knot()
+    assert len(sentence(error.value)) > 10
+    assert contents() == before
+
+
+def test_something_must_be_selected():
+    with pytest.raises(RuntimeError, match="select it first"):
+        bpy.ops.curve.mobius_flow_draw_knot()
