@@ -1,7 +1,7 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -139,3 +139,8 @@ class RelaxOptions:
         """Whether there are more vertices in the end where strands are near."""
         free = self.vertices is None and self.edge_lengths == "auto"
         return self.mesh in ("finer", "adaptive") or (self.mesh == "auto" and free)
+
+    @property
+    def keyed(self) -> "RelaxOptions":
+        """The same for keyframes, which belong to vertices: ``auto`` neither leaves any out nor brings them back."""
+        return replace(self, mesh="finer" if self.ends_finer else "fixed") if self.mesh == "auto" else self
