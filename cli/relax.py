@@ -85,8 +85,10 @@ def run(options: argparse.Namespace) -> int:
     wanted = relax_options.from_arguments(options)
     if output.needs_iterates:
         if wanted.mesh not in KEYED:
-            mesh = f"an {wanted.mesh} mesh"
-            raise OptionError(f"{options.output}: keyframes cannot follow {mesh}; leave --mesh out, or write a curve file")
+            raise OptionError(
+                f"{options.output}: keyframes cannot follow mesh={wanted.mesh!r}; "
+                "leave --mesh out, or write a curve file"
+            )
         wanted = wanted.keyed
     check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
     file = curves.read(options.input, options.format)

@@ -19,8 +19,10 @@ from .mesh import Mesh
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
-MAX_PER_COMPONENT = 1000  # per component, unless the curve has half as many: more are too slow to be of use
-MAX_ALTOGETHER = 5000  # unless the curve has more: dense matrices of so many rows take a minute a step
+# to begin with: where gaps ask for more, the barrier's exact energies do, and hard unknots become circles in a sixth of
+# the time; strands that are as near in the end get more then
+MAX_PER_COMPONENT = 1000  # unless the curve has half as many
+MAX_ALTOGETHER = 5000  # unless the curve has more
 COMPONENTS = 10  # that get so many each; more share what ten would have
 CLOSING_IN = 0.6  # ratio below which strands close in on each other: four times nearer to a corner its sides do
 TINY = float(np.finfo(np.float64).tiny)  # against division by 0: far from the origin sample points may coincide
@@ -66,7 +68,8 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     spacing = target_spacing(curve, Resolution())
     if vertices is not None:
         return subdivide(curve, apportion(curve.edge_lengths / spacing, vertices))
-    return subdivide(curve, affordable_pieces(curve, spacing))
+    most = min(max(2 * len(curve), MAX_PER_COMPONENT * _sharers(curve)), MAX_ALTOGETHER)
+    return subdivide(curve, affordable_pieces(curve, spacing, most))
 
 
 def subdivide(curve: Curve, pieces: IntArray) -> Curve:
@@ -165,13 +168,12 @@ def _sharers(curve: Curve) -> int:
     return min(COMPONENTS, len(curve.mesh.component_sizes))
 
 
-def affordable_pieces(curve: Curve, spacing: FloatArray) -> IntArray:
-    """Pieces per edge for the spacing wanted, or for the finest one that is not too many vertices in all.
+def affordable_pieces(curve: Curve, spacing: FloatArray, most: int) -> IntArray:
+    """Pieces per edge for the spacing wanted, or for the finest one that is at most so many vertices in all.
 
-    Where gaps are too narrow for that, the barrier's exact energies and an adaptive mesh have to do.
+    One piece each where the curve has as many already.
     """
-    most = max(len(curve), min(max(2 * len(curve), MAX_PER_COMPONENT * _sharers(curve)), MAX_ALTOGETHER))
-    floor = 0.0
+    most, floor = max(len(curve), most), 0.0
     while True:
         # a little slack, so that a curve that already has the requested spacing stays as it is
         pieces = np.maximum(1.0, np.ceil(curve.edge_lengths / np.maximum(spacing, floor) - 0.1))

@@ -81,7 +81,7 @@ def test_keyframes_follow_no_mesh_that_leaves_vertices_out(word, tmp_path, capsy
     assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), word]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
-    assert "keyframes cannot follow an adaptive mesh; leave --mesh out, or write a curve file" in said
+    assert "keyframes cannot follow mesh='adaptive'; leave --mesh out, or write a curve file" in said
 
 
 @pytest.mark.parametrize("word", ["--resolve", "--mesh=fixed", "--mesh=auto"])

@@ -75,6 +75,17 @@ def test_a_run_that_is_about_to_end_keeps_its_mesh():
         assert len(recorded(lattice_knot("3_1"), **options)[1]) == meshes
 
 
+@pytest.mark.parametrize(("finest", "meshes"), [(0, 1), (80, 2)])
+def test_there_are_never_more_than_there_is_time_for(finest, meshes, monkeypatch):
+    """What is not resolved by as many is said to be so."""
+    monkeypatch.setattr(finer_mesh, "FINEST", finest)
+    result, curves = recorded(lattice_knot("3_1"), vertices=40, mesh="finer", tolerance=1e-3)
+    assert len(curves) == meshes
+    assert len(result.curve) <= max(40, finest)
+    assert result.status is Status.CONVERGED
+    assert "nearer than this mesh resolves" in result.message
+
+
 def test_edges_per_gap():
     """Two long parallel strands 1/50 of their length apart, and the wide bends that join them."""
     curve = Curve([[0, 0, 0], [10, 0, 0], [10, 0.2, 0], [0, 0.2, 0.0]])

@@ -16,6 +16,7 @@ from ..prepare import check_refined, on_mesh
 from ..run import Run
 
 EDGES_PER_GAP = 6.0  # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
+FINEST = 10_000  # vertices, unless there are more: with the hierarchical solver a step takes a second
 MIN_ITERATIONS = 20  # that are left for the curve to get round where edges were split: corners cost energy
 
 
@@ -40,7 +41,7 @@ class FinerMesh:
 
     def _finer(self, curve: Curve) -> Change | None:
         """The same curve on a finer mesh; None if that cannot be computed with, or has too few digits."""
-        finer = subdivide(curve, affordable_pieces(curve, graded_spacing(curve, self._resolution)))
+        finer = subdivide(curve, affordable_pieces(curve, graded_spacing(curve, self._resolution), FINEST))
         if len(finer) == len(curve):
             return None
         # lengths that are kept, shorter near strands as they are, need no evening out
