@@ -16,8 +16,8 @@ from ..prepare import check_refined, on_mesh
 from ..run import Run
 
 EDGES_PER_GAP = 6.0  # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
-FINEST = 10_000  # vertices, unless there are more: with the hierarchical solver a step takes a second
-MIN_ITERATIONS = 20  # that are left for the curve to get round where edges were split: corners cost energy
+FINEST = 10_000  # vertices, unless there are more: with the hierarchical solver a step takes a second at most
+MIN_ITERATIONS = 5  # that are left: it takes two or three to get back what corners cost when their edges are split
 
 
 class FinerMesh:
