@@ -7,7 +7,13 @@ import pytest
 from processes import finished
 
 BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
-ARGUMENTS = {"collision": ["60"], "hierarchy": ["60"], "metric": ["100"], "resolution": ["3_1"], "soak": ["--flows", "2"]}
+ARGUMENTS = {
+    "collision": ["60"],
+    "hierarchy": ["60"],
+    "metric": ["100"],
+    "resolution": ["3_1"],
+    "soak": ["--flows", "2"],
+}
 
 
 def test_every_benchmark_is_tried():
