@@ -4,7 +4,6 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -23,7 +22,6 @@ from ..core import (
 from ..core.curve.io import FORMATS
 from ..core.driver import Relaxation, finish
 from ..core.errors import OptionError, OutputError, counted
-from ..core.option import declared
 from ..core.system.files import atomic_write
 from . import curves, signals
 from . import options as relax_options
@@ -35,7 +33,7 @@ from .provenance import provenance
 from .recovery import Write, kept
 
 EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1, Status.INTERRUPTED: 130}
-FIXED = "fixed"  # the mesh that keyframes can follow
+KEYED = ("auto", "fixed", "finer")  # meshes that keyframes can follow
 _DESCRIPTION = "Relax a curve: a tangled one in, one of less energy of the same knot type out."
 _EPILOG = """\
 examples:
@@ -87,13 +85,13 @@ def run(options: argparse.Namespace) -> int:
     """Relax, write every requested output, and return the exit status."""
     output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
-    moving = [option for option in declared(RelaxOptions) if not option.keyframes]
-    changed = [relax_options.flag(each) for each in moving if getattr(wanted, each.name) not in (each.default, FIXED)]
-    if output.needs_iterates and changed:
-        names = " and ".join(changed)
-        raise OptionError(f"{options.output}: keyframes need a fixed mesh; leave {names} out, or write a curve file")
     if output.needs_iterates:
-        wanted = replace(wanted, mesh=FIXED)
+        if wanted.mesh not in KEYED:
+            raise OptionError(
+                f"{options.output}: keyframes cannot follow mesh={wanted.mesh!r}; "
+                "leave --mesh out, or write a curve file"
+            )
+        wanted = wanted.keyed
     check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
     file = curves.read(options.input, options.format)
     admit(output, options.output, file.curve)

@@ -53,8 +53,8 @@ class Option:
     group
         Whether it is for everybody or for those who know the mathematics.
     keyframes
-        Whether keyframes can follow the run: they belong to points, so that no option that changes the number of
-        vertices on the way is among Blender's settings, and the command line refuses such a one for a film.
+        Whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
+        leave out vertices on the way is among Blender's settings.
     """
 
     name: str

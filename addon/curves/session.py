@@ -140,7 +140,7 @@ class Session:
         key_options.check_room(options.max_iterations)
         self.group = Group(objects, continues)
         # the keys that are there have as many points as the curves have now
-        self.options = replace(options, vertices=len(self.group.curve)) if continues else options
+        self.options = replace(options, vertices=len(self.group.curve), mesh="fixed") if continues else options
         self._key_options = key_options
         self._motion = Motion(self.group.link, self.group.stored if continues else None)
         self._size: Size | None = None
@@ -237,7 +237,7 @@ class Session:
 
     @property
     def start(self) -> Curve:
-        """The refined curve that the relaxation started from."""
+        """The curve that the relaxation started from, with as many vertices as the last iterate."""
         return self._motion.start.curve
 
     @property

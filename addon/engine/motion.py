@@ -5,13 +5,14 @@ from one key to the next: another path, which needs its own proof, in the number
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from ...core import Iterate
+from ...core import Curve, Iterate, MobiusFlowError
 from ...core.curve import Mesh
+from ...core.curve.refine import subdivide, subdivision
 from ...core.types import FloatArray
 from .placement import Frame, Link
 from .timing import Course, Pace
@@ -64,6 +65,9 @@ def frames_of(link: Link, iterate: Iterate) -> list[Frame]:
 class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
+    All have as many points as the last one: where edges are split on the way, those of earlier frames are split too,
+    at the same fractions.
+
     Parameters
     ----------
     link
@@ -81,7 +85,15 @@ class Motion:
         self._steps: list[float] = []  # sizes of the steps that led to the iterates
 
     def add(self, iterate: Iterate) -> None:
-        """Append an iterate with the legs that lead to it."""
+        """Append an iterate with the legs that lead to it.
+
+        Raises
+        ------
+        MobiusFlowError
+            If its mesh is another one than that of the last iterate, and not only by edges that are split.
+        """
+        if self._last is not None and iterate.curve.mesh != self._last.curve.mesh:
+            self._split(iterate.curve)
         frames = frames_of(self._link, iterate)
         if self._start is None and self._first is not None:
             frames = [self._first]
@@ -91,6 +103,18 @@ class Motion:
         self._keys += map(Key, times, frames)
         self._ends.append(len(self._keys) - 1)
         self._steps.append(iterate.step_size if iterate.index else 0.0)
+
+    def _split(self, finer: Curve) -> None:
+        """Split the edges of all frames as those of the last iterate are split in a finer curve."""
+        mesh, pieces = self.last.curve.mesh, subdivision(self.last.curve, finer)
+        if pieces is None:
+            raise MobiusFlowError(
+                "vertices do not stay during this run, as keyframes need it; relax with mesh='fixed' or mesh='finer'"
+            )
+        self._start = replace(self.start, curve=subdivide(self.start.curve, pieces))
+        for k, key in enumerate(self._keys):
+            points = subdivide(Curve(key.points, mesh), pieces).vertices
+            self._keys[k] = replace(key, points=points.astype(np.float32))
 
     def _leg_times(self, index: int, frames: Sequence[Frame]) -> list[float]:
         """End times of the legs, so that the fastest vertex keeps its speed from leg to leg."""

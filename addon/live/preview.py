@@ -20,8 +20,8 @@ class Preview:
         self._frame: Frame | None = None
 
     def show(self, start: Curve, frame: Frame) -> None:
-        """Move all points to an iterate, whose vertices are stored as ``frame``; ``start`` is the refined start."""
-        if self._start is None:
+        """Move all points to an iterate, whose vertices are stored as ``frame``; ``start`` is the start on its mesh."""
+        if self._start is None or self._start.mesh != start.mesh:
             self._group.make_polygons(start)
             self._start = start
         self._frame = frame

@@ -71,14 +71,9 @@ def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
     Raises
     ------
     MobiusFlowError
-        If the curve is not in the plane or in space, or its number of vertices changes.
+        If the curve is not in the plane or in space, or keyframes cannot follow its changes of mesh.
     """
     start = iterates[0].curve
-    if any(iterate.curve.mesh != start.mesh for iterate in iterates):
-        raise MobiusFlowError(
-            "the number of vertices changes during this run, which keyframes cannot follow; "
-            "relax with a fixed one (mesh='fixed')"
-        )
     check_dimension(start)
     origin = Origin.of(spatial(start.vertices))
     motion = Motion(origin.link(start.mesh))

@@ -6,6 +6,7 @@ change; equal edge lengths are left to the flow.
 """
 
 import heapq
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -18,12 +19,30 @@ from .mesh import Mesh
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
 STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
-MAX_PER_COMPONENT = 1000  # per component, unless the curve has half as many: more are too slow to be of use
-MAX_ALTOGETHER = 5000  # unless the curve has more: dense matrices of so many rows take a minute a step
+# to begin with: where gaps ask for more, the barrier's exact energies do, and hard unknots become circles in a sixth of
+# the time; strands that are as near in the end get more then
+MAX_PER_COMPONENT = 1000  # unless the curve has half as many
+MAX_ALTOGETHER = 5000  # unless the curve has more
 COMPONENTS = 10  # that get so many each; more share what ten would have
 CLOSING_IN = 0.6  # ratio below which strands close in on each other: four times nearer to a corner its sides do
 TINY = float(np.finfo(np.float64).tiny)  # against division by 0: far from the origin sample points may coincide
 SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How long edges may be.
+
+    Attributes
+    ----------
+    vertices
+        How many there would be if no strands were near; None for 200 per component.
+    edges_per_gap
+        How many edges are to fit in between near strands.
+    """
+
+    vertices: int | None = None
+    edges_per_gap: float = 1.0
 
 
 def refine(curve: Curve, vertices: int | None = None) -> Curve:
@@ -46,10 +65,11 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
         raise CurveOptionError(
             f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more"
         )
-    spacing = target_spacing(curve)
+    spacing = target_spacing(curve, Resolution())
     if vertices is not None:
         return subdivide(curve, apportion(curve.edge_lengths / spacing, vertices))
-    return subdivide(curve, _affordable_pieces(curve, spacing))
+    most = min(max(2 * len(curve), MAX_PER_COMPONENT * _sharers(curve)), MAX_ALTOGETHER)
+    return subdivide(curve, affordable_pieces(curve, spacing, most))
 
 
 def subdivide(curve: Curve, pieces: IntArray) -> Curve:
@@ -61,20 +81,34 @@ def subdivide(curve: Curve, pieces: IntArray) -> Curve:
     return Curve(vertices, Mesh(tuple(int(pieces[s].sum()) for s in curve.mesh.slices)))
 
 
-def target_spacing(curve: Curve, vertices: int | None = None) -> FloatArray:
-    """Largest edge length wanted on every edge: that of the count, or the gap to other strands; shape (n,).
+def subdivision(coarse: Curve, fine: Curve) -> IntArray | None:
+    """The pieces of which `subdivide` makes one polygon from the other; None if there are none."""
+    place = {tuple(vertex): k for k, vertex in enumerate(fine.vertices.tolist())}
+    at = [place.get(tuple(vertex), -1) for vertex in coarse.vertices.tolist()]
+    if len(coarse.mesh.component_sizes) != len(fine.mesh.component_sizes):
+        return None
+    pairs = zip(coarse.mesh.slices, fine.mesh.slices, strict=True)
+    pieces = np.concatenate([np.diff([*at[old], new.stop]) for old, new in pairs])
+    if pieces.min() < 1 or pieces.sum() != len(fine):
+        return None
+    again = subdivide(coarse, pieces)
+    return pieces if again.mesh == fine.mesh and np.array_equal(again.vertices, fine.vertices) else None
 
-    ``vertices`` is the count without gaps, by default 200 per component.  Gaps wider than that length, or than the
-    longest edge, do not matter and are not looked for.
+
+def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
+    """Largest edge length wanted on every edge: that of the count, or what gaps to other strands allow; shape (n,).
+
+    Gaps that allow edges longer than that, or than the longest there is, do not matter and are not looked for.
     """
-    base = curve.length / (vertices or DEFAULT_VERTICES * _sharers(curve))
+    base = curve.length / (resolution.vertices or DEFAULT_VERTICES * _sharers(curve))
     pieces = np.ceil(SAMPLES_PER_SPACING * curve.edge_lengths / base).astype(np.intp)
     samples = subdivide(curve, pieces)
     spacing = np.full(len(curve), base)
-    gaps = _strand_gaps(samples, min(base, float(curve.edge_lengths.max())))
-    gaps = np.maximum(gaps, np.finfo(np.float64).eps * base)  # rounded sample points may coincide
-    near = gaps < np.inf
-    np.minimum.at(spacing, np.repeat(np.arange(len(curve)), pieces)[near], gaps[near])
+    longest = min(base, float(curve.edge_lengths.max()))
+    allowed = _strand_gaps(samples, resolution.edges_per_gap * longest) / resolution.edges_per_gap
+    allowed = np.maximum(allowed, np.finfo(np.float64).eps * base)  # rounded sample points may coincide
+    near = allowed < np.inf
+    np.minimum.at(spacing, np.repeat(np.arange(len(curve)), pieces)[near], allowed[near])
     return spacing
 
 
@@ -134,13 +168,12 @@ def _sharers(curve: Curve) -> int:
     return min(COMPONENTS, len(curve.mesh.component_sizes))
 
 
-def _affordable_pieces(curve: Curve, spacing: FloatArray) -> IntArray:
-    """Pieces per edge for the spacing wanted, or for the finest one that is not too many vertices in all.
+def affordable_pieces(curve: Curve, spacing: FloatArray, most: int) -> IntArray:
+    """Pieces per edge for the spacing wanted, or for the finest one that is at most so many vertices in all.
 
-    Where gaps are too narrow for that, the barrier's exact energies and an adaptive mesh have to do.
+    One piece each where the curve has as many already.
     """
-    most = max(len(curve), min(max(2 * len(curve), MAX_PER_COMPONENT * _sharers(curve)), MAX_ALTOGETHER))
-    floor = 0.0
+    most, floor = max(len(curve), most), 0.0
     while True:
         # a little slack, so that a curve that already has the requested spacing stays as it is
         pieces = np.maximum(1.0, np.ceil(curve.edge_lengths / np.maximum(spacing, floor) - 0.1))

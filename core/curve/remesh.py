@@ -11,7 +11,7 @@ import numpy as np
 from ..types import BoolArray, FloatArray, IntArray
 from .curve import Curve
 from .mesh import Mesh
-from .refine import subdivide, target_spacing
+from .refine import Resolution, subdivide, target_spacing
 
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
 COLLAPSE = 0.5  # two edges are joined if they are shorter than this many times the spacing, each
@@ -19,9 +19,9 @@ GRADING = 1.3  # ratio of the spacings wanted on neighbouring edges, at most
 MIN_VERTICES = 16  # vertices that a component keeps, if it had as many
 
 
-def graded_spacing(curve: Curve, vertices: int | None) -> FloatArray:
+def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
     """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (n,)."""
-    spacing = target_spacing(curve, vertices)
+    spacing = target_spacing(curve, resolution)
     for part in curve.mesh.slices:
         # one sweep each way, twice round, spreads every minimum as far as it reaches
         for direction in (1, -1):
@@ -80,7 +80,7 @@ class Remeshed:
     lengths: FloatArray
 
 
-def remesh(curve: Curve, vertices: int | None, removable: IntArray, spacing: FloatArray) -> Remeshed:
+def remesh(curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray) -> Remeshed:
     """Remove the given vertices after moving them onto their chords, and split edges that are too long."""
     moved = curve.with_vertices(onto_chords(curve, removable))
     keep = np.ones(len(curve), dtype=bool)
@@ -88,7 +88,7 @@ def remesh(curve: Curve, vertices: int | None, removable: IntArray, spacing: Flo
     coarse = _without(moved, keep)
     pieces = np.where(coarse.edge_lengths > SPLIT * spacing[keep], np.ceil(coarse.edge_lengths / spacing[keep]), 1.0)
     fine = subdivide(coarse, pieces.astype(np.intp))
-    return Remeshed(moved, fine, _normalised(fine, graded_spacing(fine, vertices)))
+    return Remeshed(moved, fine, _normalised(fine, graded_spacing(fine, resolution)))
 
 
 def needs_remesh(curve: Curve, spacing: FloatArray) -> bool:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ..curve.refine import Resolution
 from ..descent import Method, NoStep, Point, Step
 from .outcome import Outcome
 
@@ -25,11 +26,11 @@ class Change:
         The curve reached, in another problem: with other constraints, or on another mesh.
     method
         What takes the steps from now on.
-    vertices
-        Number of vertices from now on where no strands are near.
+    resolution
+        How long edges may be from now on.
     """
 
     steps: tuple[Step, ...] = ()
     point: Point | None = None
     method: Method | None = None
-    vertices: int | None = None
+    resolution: Resolution | None = None

@@ -15,7 +15,7 @@ class Iterate:
     index
         0 for the (refined) start, then 1, 2, ...
     curve
-        The polygon; the iterates of a run have the same vertices unless the mesh is ``finer`` or ``adaptive``.
+        The polygon; the iterates of a run have the same vertices where the mesh is ``fixed``.
     energy
         The objective: the energy that is minimised, and the barrier.
     gradient_norm

@@ -1,7 +1,7 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -111,10 +111,10 @@ class RelaxOptions:
     mesh: str = _advanced(
         "auto",
         "Mesh",
-        "what becomes of the vertices: fixed; auto, the same, but curves of many vertices begin with fewer, which is "
-        "faster, and end with all; finer, more of them, up to 3.5 times as many, while strands end nearer than they "
+        "what becomes of the vertices: fixed; finer, in the end more of them where strands are nearer than they "
         "resolve; adaptive, edges split and collapsed on the way so that neighbours stay nearer than strands, and then "
-        "the same",
+        "the same; auto, curves of many vertices begin with fewer, which is faster, and end with all, and then finer "
+        "if neither vertices nor edge_lengths are asked for",
         choices=MESHES,
         metavar="M",
         keyframes=False,
@@ -140,5 +140,16 @@ class RelaxOptions:
             each.check(getattr(self, each.name))
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
-        if self.mesh == "adaptive" and self.edge_lengths != "auto":
-            raise OptionError("an adaptive mesh makes its own edge_lengths; leave one of the two options out")
+        if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
+            raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
+
+    @property
+    def ends_finer(self) -> bool:
+        """Whether there are more vertices in the end where strands are near."""
+        free = self.vertices is None and self.edge_lengths == "auto"
+        return self.mesh in ("finer", "adaptive") or (self.mesh == "auto" and free)
+
+    @property
+    def keyed(self) -> "RelaxOptions":
+        """The same for keyframes, which belong to vertices: ``auto`` neither leaves any out nor brings them back."""
+        return replace(self, mesh="finer" if self.ends_finer else "fixed") if self.mesh == "auto" else self

@@ -79,7 +79,6 @@ COMPOSITE = (
     "strands pull tight, and would do so without limit: the curve is composite, knotted both inside and outside the "
     "ball of radius {radius:.3g} around ({center}), and has no shape of least energy"
 )
-TIGHT = "strands pull tight, nearer than {vertices} vertices resolve"
 UNRESOLVED = (
     "strands are nearer than this mesh resolves; with more vertices or a finer mesh there is less energy to reach"
 )

@@ -9,6 +9,7 @@ from ..checks import named
 from ..collision import check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
 from ..curve import Curve, Mesh, check_is_curve, refine
+from ..curve.refine import Resolution
 from ..curve.remesh import graded_spacing
 from ..descent import METHODS, Point, Problem
 from ..energies import Objective
@@ -54,11 +55,13 @@ def prepared_start(curve: Curve, vertices: int | None, each: Sequence[RelaxOptio
         check_size(curve, options)
     check_units(curve)
     check_embedded(curve)
-    return embedded_refinement(curve, vertices)
+    refined = refine(curve, vertices)
+    check_refined(curve, refined)
+    return refined
 
 
-def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
-    """The refined curve.
+def check_refined(curve: Curve, refined: Curve) -> None:
+    """Refuse a refined curve that is not what the curve was, or that cannot be computed with.
 
     Raises
     ------
@@ -66,14 +69,12 @@ def embedded_refinement(curve: Curve, vertices: int | None) -> Curve:
         If strands are too near to compute with, or the new vertices, rounded to doubles, might not be on their edges
         for all that matters.
     """
-    refined = refine(curve, vertices)
     if len(refined) > len(curve) and not survives_rounding(refined):
         raise CurveError(
             "the curve is so far from the origin, or has strands so near to each other, that there are too few digits "
             "for vertices to be inserted; move it nearer to the origin, or its strands apart"
         )
     check_gap(refined)
-    return refined
 
 
 def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
@@ -144,7 +145,7 @@ def equal_lengths(mesh: Mesh, lengths: FloatArray) -> FloatArray:
 
 def _graded(start: Curve, vertices: int | None) -> FloatArray:
     """Lengths that follow the gaps between strands, the total of every component kept."""
-    spacing = graded_spacing(start, vertices)
+    spacing = graded_spacing(start, Resolution(vertices))
     for part in start.mesh.slices:
         spacing[part] *= start.edge_lengths[part].sum() / spacing[part].sum()
     return spacing

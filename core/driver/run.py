@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..curve import Curve
+from ..curve.refine import Resolution
 from ..descent import METHODS, NoStep, Problem, State, Step
 from ..hierarchy import SampledErrors
 from ..types import FloatArray
@@ -37,15 +38,15 @@ class Run:
         The same as users see it.
     method
         Which method takes the next step.
-    vertices
-        Number of vertices where no strands are near, None for the default.
+    resolution
+        How long edges may be, where the mesh can be changed.
     sampled_errors
         Of the hierarchical solver, when they were last looked at.
     """
 
     def __init__(self, problem: Problem, start: Curve, options: RelaxOptions) -> None:
         self.options = options
-        self.vertices = options.vertices
+        self.resolution = Resolution(options.vertices)
         self.method = METHODS[options.method]
         self.sampled_errors: SampledErrors | None = None
         self.point = problem.at_curve(start).anchored
@@ -93,7 +94,7 @@ class Run:
 
     def change(self, change: Change) -> Iterate | None:
         """Go on from a point of another problem, or by another method; a new mesh makes a new iterate."""
-        self.vertices = change.vertices or self.vertices
+        self.resolution = change.resolution or self.resolution
         if change.method is not None:
             self.method, self._memory = change.method, State()
         if change.point is None:

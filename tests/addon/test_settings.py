@@ -65,7 +65,7 @@ def test_what_changes_the_mesh_is_left_out():
 
 def test_defaults_are_the_librarys():
     options = asdict(properties.relax_options(scene_values()))
-    for name, value in asdict(RelaxOptions(mesh="fixed")).items():
+    for name, value in asdict(RelaxOptions(mesh="finer")).items():
         assert options[name] == (pytest.approx(value) if isinstance(value, float) else value)
 
 

@@ -82,18 +82,19 @@ def test_bounds_hold_before_a_file_is_read(words, said, tmp_path, capsys):
     assert said in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("word", ["--adaptive", "--resolve", "--mesh=finer"])
-def test_keyframes_follow_no_mesh_that_changes(word, tmp_path, capsys):
+@pytest.mark.parametrize("word", ["--adaptive", "--mesh=adaptive"])
+def test_keyframes_follow_no_mesh_that_leaves_vertices_out(word, tmp_path, capsys):
     pytest.importorskip("bpy")
     write_curve(tmp_path / "a.txt", torus_trefoil(60))
     assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), word]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1
-    assert "keyframes need a fixed mesh; leave --mesh out, or write a curve file" in said
+    assert "keyframes cannot follow mesh='adaptive'; leave --mesh out, or write a curve file" in said
 
 
-def test_keyframes_follow_a_fixed_mesh_that_is_asked_for(tmp_path):
+@pytest.mark.parametrize("word", ["--resolve", "--mesh=fixed", "--mesh=auto"])
+def test_keyframes_follow_meshes_whose_vertices_stay(word, tmp_path):
     pytest.importorskip("bpy")
     write_curve(tmp_path / "a.txt", torus_trefoil(60))
-    words = ["--quiet", "--mesh=fixed", "--max-iterations=1"]
+    words = ["--quiet", word, "--max-iterations=1"]
     assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), *words]) == 0

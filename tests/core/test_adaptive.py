@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Objective, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
+from mobius_flow.core.curve.refine import Resolution
 from mobius_flow.core.curve.remesh import (
     COLLAPSE,
     GRADING,
@@ -24,6 +25,8 @@ from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 
+RULE = Resolution(200)
+
 
 def near_strands(gap: float) -> Curve:
     """A long thin loop with a bulge: two strands ``gap`` apart."""
@@ -37,7 +40,7 @@ def near_strands(gap: float) -> Curve:
 
 def test_spacing_follows_gaps_and_is_graded():
     curve = near_strands(0.01)
-    spacing = graded_spacing(curve, 200)
+    spacing = graded_spacing(curve, RULE)
     middle = (curve.vertices[:, 0] > 1) & (curve.vertices[:, 0] < 3)
     assert spacing[middle].max() < 0.03
     ratios = spacing / spacing[curve.mesh.previous]
@@ -47,16 +50,16 @@ def test_spacing_follows_gaps_and_is_graded():
 
 def test_remesh_reaches_the_rule():
     curve = near_strands(0.01)
-    spacing = graded_spacing(curve, 200)
+    spacing = graded_spacing(curve, RULE)
     assert needs_remesh(curve, spacing)
-    fine = remesh(curve, 200, superfluous(curve, spacing), spacing).curve
-    assert (fine.edge_lengths <= SPLIT * 1.01 * graded_spacing(fine, 200)).all()
+    fine = remesh(curve, RULE, superfluous(curve, spacing), spacing).curve
+    assert (fine.edge_lengths <= SPLIT * 1.01 * graded_spacing(fine, RULE)).all()
     assert fine.length == pytest.approx(curve.length)
 
 
 def test_collapse_keeps_far_vertices_and_few_per_component():
     curve = regular_polygon(900)
-    spacing = graded_spacing(curve, 100)
+    spacing = graded_spacing(curve, Resolution(100))
     chosen = superfluous(curve, spacing)
     assert len(chosen) == 300
     assert (np.diff(np.concatenate([chosen, [chosen[0] + 900]])) >= 3).all()
@@ -153,6 +156,7 @@ def test_resolve_goes_on_until_strands_are_resolved():
     assert result.energies[-1] == pytest.approx(74.412, rel=6e-3)
 
 
-def test_one_rule_for_edge_lengths():
-    with pytest.raises(OptionError, match="adaptive mesh makes its own"):
-        RelaxOptions(mesh="adaptive", edge_lengths="keep")
+@pytest.mark.parametrize("mesh", ["finer", "adaptive"])
+def test_one_rule_for_edge_lengths(mesh):
+    with pytest.raises(OptionError, match=f"mesh='{mesh}' makes its own edge_lengths"):
+        RelaxOptions(mesh=mesh, edge_lengths="keep")

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...collision import survives_rounding
 from ...curve import Curve
-from ...curve.refine import apportion, subdivide
+from ...curve.refine import Resolution, apportion, subdivide
 from ...curve.remesh import graded_spacing, superfluous
 from ...curve.smooth import smoothed
 from ...descent import Leg, NoStep, Point, Step
@@ -61,16 +61,16 @@ class CoarseStart:
             return False  # lengths that are penalised would take the jump of the energy at once
         if len(curve) < MIN_VERTICES or options.max_iterations < MIN_ITERATIONS:
             return False
-        return bool(MIN_GAIN * np.sum(curve.edge_lengths / graded_spacing(curve, None)) <= len(curve))
+        return bool(MIN_GAIN * np.sum(curve.edge_lengths / graded_spacing(curve, Resolution())) <= len(curve))
 
     def _coarser(self) -> Change | None:
         """A pass that leaves out up to a third of the vertices; None if there are none to leave out, or no time."""
         if self._left < PASS + WAY_BACK:
             return None
         curve, problem = self._run.iterate.curve, self._run.problem
-        spacing = graded_spacing(curve, None)
+        spacing = graded_spacing(curve, Resolution())
         unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no component has more vertices than in the end
-        found = proved_remesh(problem, curve, None, superfluous(curve, spacing), unsplit)
+        found = proved_remesh(problem, curve, Resolution(), superfluous(curve, spacing), unsplit)
         if found is None or len(found[1].curve) >= len(curve):
             return None
         step, remeshed = found

@@ -1,4 +1,4 @@
-"""More vertices where a converged curve's strands are nearer than its mesh resolves."""
+"""Shorter edges where a converged curve's strands are nearer than its mesh resolves."""
 
 from dataclasses import replace
 
@@ -6,44 +6,52 @@ import numpy as np
 
 from ...curve import Curve
 from ...curve.distances import arc_distance_of_pairs
-from ...curve.refine import STRAND_RATIO
+from ...curve.refine import STRAND_RATIO, affordable_pieces, subdivide
+from ...curve.remesh import graded_spacing
 from ...energies.near_pairs import near_pairs
 from ...errors import MobiusFlowError
 from ..events import Change, Event
-from ..outcome import TIGHT, UNRESOLVED, Outcome, stalled
-from ..prepare import embedded_refinement, on_mesh
+from ..outcome import UNRESOLVED, Outcome
+from ..prepare import check_refined, on_mesh
 from ..run import Run
 
-FINER = 1.5  # factor of the number of vertices
-FINEST = 3.5  # factor of that number at the start from which strands count as pulling tight without limit
+EDGES_PER_GAP = 6.0  # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
+FINEST = 10_000  # vertices, unless there are more: with the hierarchical solver a step takes a second at most
+MIN_ITERATIONS = 5  # that are left: it takes two or three to get back what corners cost when their edges are split
 
 
 class FinerMesh:
-    """Go on with more vertices, or say that it would be worth it."""
+    """Split edges near other strands and go on, or say that it would be worth it."""
 
     def __init__(self, run: Run) -> None:
         self._run = run
-        self._limit = FINEST * len(run.point.vertices)
+        self._resolution = replace(run.resolution, edges_per_gap=EDGES_PER_GAP)
 
     def __call__(self, event: Event) -> Event | Change:
         """Look at converged curves."""
         curve = self._run.iterate.curve
         if not (isinstance(event, Outcome) and event.converged and _unresolved(curve)):
             return event
-        if self._run.options.mesh in ("auto", "fixed"):
-            return event.adding(UNRESOLVED)
-        finer = self._finer(curve) if len(curve) < self._limit else None
-        return finer or stalled(TIGHT.format(vertices=len(curve)))
+        return (self._finer(curve) if self._is_wanted else None) or event.adding(UNRESOLVED)
+
+    @property
+    def _is_wanted(self) -> bool:
+        options = self._run.options
+        return options.ends_finer and options.max_iterations - self._run.iterate.index >= MIN_ITERATIONS
 
     def _finer(self, curve: Curve) -> Change | None:
         """The same curve on a finer mesh; None if that cannot be computed with, or has too few digits."""
-        vertices = int(np.ceil(FINER * len(curve)))
+        finer = subdivide(curve, affordable_pieces(curve, graded_spacing(curve, self._resolution), FINEST))
+        if len(finer) == len(curve):
+            return None
+        # lengths that are kept, shorter near strands as they are, need no evening out
+        options = replace(self._run.options, vertices=None, mesh="fixed", edge_lengths="keep")
         try:
-            curve = embedded_refinement(curve, vertices)
-            point = on_mesh(self._run.problem, curve, replace(self._run.options, vertices=vertices))
+            check_refined(curve, finer)
+            point = on_mesh(self._run.problem, finer, options)
         except MobiusFlowError:
             return None
-        return Change(point=point, vertices=vertices)
+        return Change(point=point, resolution=self._resolution)
 
 
 def _unresolved(curve: Curve) -> bool:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...collision import survives_rounding
 from ...curve import Curve
+from ...curve.refine import Resolution
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
 from ...descent import Leg, Problem, Step
 from ...types import FloatArray, IntArray
@@ -47,8 +48,8 @@ class Remesh:
         stuck
             Two edges that keep each other from moving: the mesh around them is refined whether it needs it or not.
         """
-        curve, vertices = self._run.iterate.curve, self._run.vertices
-        spacing = graded_spacing(curve, vertices)
+        curve, resolution = self._run.iterate.curve, self._run.resolution
+        spacing = graded_spacing(curve, resolution)
         if stuck is not None:
             for edge in stuck:
                 near = curve.mesh.index_distance(np.full(len(curve), edge), np.arange(len(curve))) <= 2
@@ -56,7 +57,7 @@ class Remesh:
         elif not needs_remesh(curve, spacing):
             return None
         problem = self._run.problem
-        found = proved_remesh(problem, curve, vertices, superfluous(curve, spacing), spacing)
+        found = proved_remesh(problem, curve, resolution, superfluous(curve, spacing), spacing)
         if found is None:
             return None
         step, remeshed = found
@@ -66,14 +67,14 @@ class Remesh:
 
 
 def proved_remesh(
-    problem: Problem, curve: Curve, vertices: int | None, removable: IntArray, spacing: FloatArray
+    problem: Problem, curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray
 ) -> tuple[Step, Remeshed] | None:
     """The last motion on the old mesh and the change to a new one, with as many collapses as are free of contact.
 
     None if doubles do not tell the vertices apart.
     """
     while True:
-        change = remesh(curve, vertices, removable, spacing)
+        change = remesh(curve, resolution, removable, spacing)
         free = problem.free_motion(curve.vertices, change.moved.vertices)
         if free.time == 1.0 or not len(removable):
             break

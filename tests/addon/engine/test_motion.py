@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from mobius_flow.addon.engine.motion import Motion
 from mobius_flow.addon.engine.placement import Link, Placement
-from mobius_flow.core import Curve, Iterate, RelaxOptions, relax
+from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.collision import free_motion, is_free
-from shapes import regular_polygon, torus_trefoil
+from mobius_flow.core.curve.refine import subdivide, subdivision
+from shapes import lattice_knot, regular_polygon, torus_trefoil
 
 
 def at_rest(*counts):
@@ -92,6 +93,52 @@ def test_a_real_run_is_proved(limit):
     assert_proved(keys, iterates[0].curve.mesh)
     assert keys.keys[-1].time == iterates[-1].index
     np.testing.assert_array_equal(keys.keys[-1].points, iterates[-1].curve.vertices.astype(np.float32))
+
+
+@pytest.fixture(scope="module")
+def finer():
+    """A run that splits edges in the end."""
+    options = RelaxOptions(vertices=40, mesh="finer", tolerance=1e-3)
+    iterates = list(relax(lattice_knot("3_1"), options))
+    assert len(iterates[0].curve) < len(iterates[-1].curve)
+    return iterates
+
+
+@pytest.mark.parametrize("limit", [None, 6])
+def test_points_that_are_added_are_on_the_edges_of_all_keys(finer, limit):
+    turned = Placement(np.array([[0.0, -2.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.array([1.0, 2.0, 3.0]))
+    link = Link((turned,), (1,))
+    motion = Motion(link)
+    for each in finer:
+        motion.add(each)
+    keys = motion.keys(is_free, limit)
+    start, end = finer[0].curve, finer[-1].curve
+    assert {len(key.points) for key in keys.keys} == {len(end)}
+    assert_proved(keys, end.mesh)
+    change = next(k for k, each in enumerate(finer) if len(each.curve) > len(start))
+    pieces = subdivision(finer[change - 1].curve, finer[change].curve)
+    stored = link.to_stored(end.mesh, subdivide(start, pieces).vertices)
+    np.testing.assert_allclose(keys.keys[0].points, stored, rtol=0, atol=1e-6 * np.abs(stored).max())
+    assert motion.start.curve.mesh == end.mesh
+    course = motion.course(keys)
+    assert (np.diff(course.distance) >= 0).all()
+
+
+def test_splits_move_nothing(finer):
+    motion = Motion(at_rest(1))
+    for each in finer:
+        motion.add(each)
+    keys = motion.keys(is_free).keys
+    change = next(k for k, each in enumerate(finer) if len(each.curve) > 40)
+    shift = np.abs(keys[change].points - keys[change - 1].points).max()
+    assert shift < 1e-6 * np.abs(keys[change].points).max()
+
+
+def test_vertices_that_are_left_out_cannot_be_followed(finer):
+    motion = Motion(at_rest(1))
+    motion.add(finer[-1])
+    with pytest.raises(MobiusFlowError, match="vertices do not stay"):
+        motion.add(finer[0])
 
 
 def test_what_cannot_be_proved_is_counted_not_hidden():

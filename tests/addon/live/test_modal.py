@@ -15,8 +15,9 @@ from mobius_flow.addon.curves.snapshot import Snapshot  # noqa: E402
 from mobius_flow.addon.engine import worker  # noqa: E402
 from mobius_flow.addon.live import key_writer  # noqa: E402
 from mobius_flow.addon.live.run import State  # noqa: E402
+from mobius_flow.core import Curve, minimize  # noqa: E402
 from modal_operator import Operator, keys, restored  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from shapes import lattice_knot, torus_trefoil  # noqa: E402
 
 
 def test_the_same_curve_as_the_headless_job(operator):
@@ -32,6 +33,33 @@ def test_the_same_curve_as_the_headless_job(operator):
     np.testing.assert_array_equal(stored(live.data), stored(headless.data))
     assert live.data.bevel_depth == headless.data.bevel_depth > 0
     assert operator.reports[-1][0] == {"INFO"}
+
+
+def test_points_that_are_added_in_the_end_are_in_every_key(operator):
+    obj = add_curve([lattice_knot("5_1").vertices])
+    start = stored(obj.data).astype(np.float64)
+    operator.values["vertices"] = 0
+    operator.start()
+    operator.reach(1)
+    given = len(obj.data.splines[0].points)
+    assert operator.until(lambda: False) == {"FINISHED"}
+    result = minimize(Curve(start))
+    assert given < len(result.curve)
+    assert keys(obj).shape[1] == len(result.curve)
+    np.testing.assert_array_equal(stored(obj.data), result.curve.vertices.astype(np.float32))
+    assert operator.run.report.certified
+
+
+def test_esc_restores_what_has_got_more_points_meanwhile(operator):
+    obj = add_curve([lattice_knot("5_1").vertices])
+    before = Snapshot.of(obj.data)
+    operator.values |= {"vertices": 0, "tolerance": 1e-3}
+    operator.start()
+    operator.reach(1)
+    given = len(obj.data.splines[0].points)
+    operator.until(lambda: len(obj.data.splines[0].points) > given)
+    assert operator.event("ESC") == {"CANCELLED"}
+    restored(obj, before)
 
 
 @pytest.mark.parametrize("kind", ["POLY", "BEZIER", "NURBS"])
