@@ -152,7 +152,7 @@ def test_resolve_goes_on_until_strands_are_resolved():
     result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, mesh="finer"))
     assert result.status is Status.CONVERGED
     assert len(result.curve) > 60
-    assert Objective().barrier.value(result.curve) == 0
+    assert Objective().barrier.value(result.curve) == pytest.approx(0, abs=1e-4)  # where edges grow longer
     assert result.energies[-1] == pytest.approx(74.412, rel=6e-3)
 
 

@@ -16,7 +16,7 @@ from ..prepare import check_refined, on_mesh
 from ..run import Run
 
 EDGES_PER_GAP = 6.0  # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
-FINEST = 10_000  # vertices, unless there are more: with the hierarchical solver a step takes a second at most
+FINEST = 10_000  # vertices, unless there are more: what the hierarchical solver has time for
 MIN_ITERATIONS = 5  # that are left: it takes two or three to get back what corners cost when their edges are split
 
 
