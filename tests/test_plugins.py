@@ -257,7 +257,7 @@ def test_the_documents_are_out_of_date_until_they_are_rendered(copy, python):
         "docs/energies.md": "| `inverse-cube` | 1/r³ at the edges' midpoints | -1 | no |",
         "docs/methods/README.md": "| `heavy-ball` | heavy-ball | heavy ball, metric J_C |  |",
         "docs/methods/flow.md": "| `lumped` | L², lumped | Σ (ℓ_I + ℓ_J)/2 |U|², over".replace("|U|", r"\|U\|"),
-        "docs/options.md": "| `patience` | how long to wait | always | basic |",
+        "docs/options.md": "| `patience` | how long to wait | always | yes |",
     }
     for document in wanted:
         assert f"{document} is out of date; python tools/docs.py mends it" in stale

@@ -58,10 +58,10 @@ def methods() -> str:
 def options() -> str:
     """The options of a relaxation."""
     rows = [
-        (f"`{each.name}`", each.help, _default(each), each.group if each.keyframes else "none")
+        (f"`{each.name}`", each.help, _default(each), "yes" if each.keyframes else "no")
         for each in declared(RelaxOptions)
     ]
-    return _table(("option", "what it does", "default", "panel in Blender"), rows)
+    return _table(("option", "what it does", "default", "in Blender"), rows)
 
 
 def formats() -> str:

@@ -29,7 +29,7 @@ class CURVE_OT_mobius_flow_show(bpy.types.Operator):  # noqa: N801 - Blender's n
         assert run is not None, "poll looks for it"
         spots = _spots(run)
         if not spots:
-            self.report({"ERROR"}, "The curve is not in this view layer any more; make it visible first")
+            self.report({"ERROR"}, "The curve is hidden, or not in this view layer; make it visible first")
             return {"CANCELLED"}
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")

@@ -82,21 +82,29 @@ def _plot(context: bpy.types.Context, run: Run) -> None:
     """Draw the plot in the lower right corner, unless the view is too small for anything else."""
     style = _Style.of(context.preferences)
     size, padding, caption = style.scale * _SIZE, style.scale * _PADDING, style.scale * _CAPTION
-    high = np.array([_right(context), 0.0]) + style.scale * np.array([-_MARGIN, _MARGIN])
-    high[1] += size[1] + 2 * padding + caption
-    low = high - size - 2 * padding - [0.0, caption]
-    if low[0] < 0 or 2 * size[1] > context.region.height:
+    outer = size + 2 * padding + np.array([0.0, caption])
+    low = style.scale * _MARGIN * np.array([-1.0, 1.0]) + np.array([_right(context) - outer[0], 0.0])
+    if low[0] < 0 or 2 * outer[1] > context.region.height:
         return
-    area(tuple(low), tuple(high), (*style.ground[:3], _OPACITY))
-    origin = low + padding
+    area(tuple(low), tuple(low + outer), (*style.ground[:3], _OPACITY))
+    _curve(style, run, low + padding, size)
+    _caption(style, run, low + padding + np.array([0.0, size[1] + 0.5 * caption]), size[0])
+
+
+def _curve(style: _Style, run: Run, origin: FloatArray, size: FloatArray) -> None:
+    """Draw the energies, and the target below them."""
     drawn = plot(run.energies, run.target, *size)
     if run.target is not None and drawn.target is not None:
-        _target(style, run.target.label, np.array([origin[0], origin[1] + drawn.target]), size[0])
+        _target(style, run.target.label, origin + np.array([0.0, drawn.target]), size[0])
     line(origin + drawn.line, style.accent, style.scale * _LINE)
-    x, y = origin[0], high[1] - 0.8 * caption
+
+
+def _caption(style: _Style, run: Run, start: FloatArray, width: float) -> None:
+    """Write what has been reached."""
+    assert run.last is not None, "it has energies"
+    x, y = start.tolist()
     text(f"Energy {run.energies[-1]:.4f}", (x, y), style.words, style.font)
-    index = run.last.index if run.last is not None else 0
-    text(f"Iteration {index}", (x + size[0], y), style.words, style.font, share=1.0)
+    text(f"Iteration {run.last.index}", (x + width, y), style.words, style.font, share=1.0)
 
 
 def _target(style: _Style, label: str, start: FloatArray, width: float) -> None:

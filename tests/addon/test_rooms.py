@@ -15,8 +15,7 @@ FLOORS = [
     {"curves"},
     {"pictures", "properties"},
     {"live"},
-    {"panel_settings"},
-    {"buttons"},
+    {"panel_settings", "buttons"},
     {"sidebar"},
     {"registration"},
     {""},  # the package, which Blender and the command line import

@@ -103,7 +103,7 @@ def test_a_hidden_curve(operator):
     fails(operator)
     obj.hide_set(True)
     bpy.context.view_layer.objects.active = obj
-    with pytest.raises(RuntimeError, match="not in this view layer any more; make it visible first"):
+    with pytest.raises(RuntimeError, match="The curve is hidden, or not in this view layer; make it visible first"):
         bpy.ops.curve.mobius_flow_show()
 
 

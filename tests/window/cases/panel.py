@@ -47,7 +47,7 @@ def running() -> Steps:
     """The plot is drawn while the curve moves, in a dark and in a light theme."""
     window().scene.mobius_flow.view_every = 1
     yield from button("curve.mobius_flow_relax")
-    yield from reaches(35)
+    yield from reaches(15)
     yield from button("curve.mobius_flow_pause")
     yield from is_("paused")
     yield from look()
