@@ -14,6 +14,7 @@ from ..engine.rest import Rest
 from ..engine.size import Measure
 from ..engine.words import named
 from ..live.checks import edited, refusal, selected_curves, unclearable
+from ..live.modal import redraw_views
 from ..properties import SETTINGS, measure_items, relax_options
 from .baking import Rebaking
 
@@ -48,6 +49,7 @@ class CURVE_OT_mobius_flow_keep_size(bpy.types.Operator):  # noqa: N801 - Blende
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        redraw_views(context.window_manager)  # which they are not by themselves
         kept = f"{Measure[self.measure].value.lower()} of {named([obj.name for obj in objects])}"
         _tell(self, f"The {kept} stays at all {len(keys.frames)} keys", keys.unproved)
         return {"FINISHED"}
@@ -77,6 +79,7 @@ class _Turning:
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        redraw_views(context.window_manager)
         if unproved:
             _tell(self, "The curves were turned", unproved)
         return {"FINISHED"}

@@ -1,0 +1,91 @@
+"""The panel Shape by mouse clicks: a relaxed knot is balanced, kept in size, laid flat, checked; undo step by step."""
+
+import importlib
+
+import bpy
+import numpy as np
+from case import Steps, picture, until
+from hands import addon, below, button, click, here, key, open_sidebar, region, window
+from scene import clear, is_, knot, look, obj, points
+
+
+def case() -> Steps:
+    opened()
+    clear()
+    knot("5_2", vertices=280)
+    window().scene.mobius_flow.length = 100
+    yield from open_sidebar()
+    yield from look()
+    y = yield from below("curve.mobius_flow_add_knot")
+    yield from click(region("UI").x + int(0.33 * region("UI").width), y - 14)  # close Animation, to make room
+    yield from button("curve.mobius_flow_relax")
+    yield from is_("done")
+    yield from look()
+    yield from picture("shape-1-relaxed")
+    keys, unbalanced = count(), bending()
+    yield from button("curve.mobius_flow_check")
+    yield from picture("shape-2-checked")
+    assert count() == keys
+
+    yield from button("curve.mobius_flow_balance")
+    yield from until(lambda: addon("live.registry").current() is not None, "the run")
+    yield from is_("done")
+    assert count() > keys + 20
+    assert bending() < 0.8 * unbalanced
+    yield from look()
+    yield from picture("shape-3-balanced", differs_from="shape-1-relaxed")
+
+    window().scene.mobius_flow.keep_size = "BOX"
+    before = points()
+    yield from button("curve.mobius_flow_keep_size")
+    yield from until(lambda: not np.array_equal(points(), before), "the keys to be scaled")
+    yield from picture("shape-4-kept", differs_from="shape-3-balanced")
+
+    yield from button("curve.mobius_flow_lay_flat")
+    yield from until(lambda: height() < 0.9 * width(), "the knot to lie flat")
+    yield from look()
+    yield from picture("shape-5-flat", differs_from="shape-4-kept")
+    yield from key("Z", ctrl=True)
+    yield from until(lambda: tuple(obj().rotation_euler) == (0, 0, 0), "undo of Lay Flat")
+    yield from key("Z", ctrl=True)
+    yield from until(lambda: np.array_equal(points(), before), "undo of Keep Size")
+    assert addon("curves.bake").is_baked(obj().data)
+    assert not addon("curves.bake").is_edited(obj().data)
+    yield from picture("shape-6-undone")
+
+
+def opened() -> None:
+    """Let the panel be open when it is first drawn."""
+    panel = addon("sidebar.shape").VIEW3D_PT_mobius_flow_shape
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+    region("UI").tag_redraw()
+
+
+def count() -> int:
+    """Number of keys."""
+    return len(obj().data.shape_keys.key_blocks)
+
+
+def bending() -> float:
+    """That of the last key."""
+    keys = addon("curves.baked_keys").BakedKeys([obj()])
+    measure = importlib.import_module(f"{keys.mesh.__module__.rpartition('.')[0]}.bending").bending
+    return float(measure(keys.curves[-1]))
+
+
+def _extents() -> np.ndarray:
+    with here():
+        curve = addon("curves.baked_keys").BakedKeys([obj()]).curves[-1]
+    return np.ptp(curve.vertices, axis=0)
+
+
+def height() -> float:
+    """Extent upwards at the last key."""
+    return float(_extents()[2])
+
+
+def width() -> float:
+    """The lesser extent sideways."""
+    return float(_extents()[:2].min())
