@@ -62,6 +62,18 @@ class KeyWriter:
                 return None
         return self._session.report(self._prepared)
 
+    @property
+    def has_begun(self) -> bool:
+        """Whether some keys are written, and perhaps not all."""
+        return self._pieces is not None
+
+    def complete(self) -> Report:
+        """Write all that is left of keys whose writing has begun, and report."""
+        assert self._pieces is not None and self._prepared is not None, "writing has begun"
+        for _ in self._pieces:
+            pass
+        return self._session.report(self._prepared)
+
     def _prepare(self) -> None:
         with contextlib.suppress(_AbandonedError):
             self._prepared = self._session.prepare(self._prove)

@@ -5,7 +5,8 @@ shows them as they are; what they were is kept and put back unless the run is to
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from enum import Enum
 from typing import TYPE_CHECKING
 
@@ -164,13 +165,29 @@ class Run:
         """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
         if self.state.over or self.waits:
             return
-        try:
+        with self._failing():
             if reason := self.group.lost():
                 self._lose(reason)
             elif self.state is State.RUNNING:
                 self._take()
             elif self.state is State.FINISHING:
-                self._write()
+                self._write(self._keys.advance())
+
+    def complete(self) -> None:
+        """Write the rest of keys whose writing has begun: a file that is saved must not hold half of them."""
+        if self.state is not State.FINISHING or not self._keys.has_begun:
+            return
+        with self._failing():
+            if reason := self.group.lost():
+                self._lose(reason)
+            else:
+                self._write(self._keys.complete())
+
+    @contextmanager
+    def _failing(self) -> Iterator[None]:
+        """End the run if what is done in it fails."""
+        try:
+            yield
         except MobiusFlowError as error:
             self._fail(str(error))
         except MemoryError:
@@ -215,10 +232,11 @@ class Run:
             self.shown = self.last
             self._refresh.shown()
 
-    def _write(self) -> None:
-        self.report = self._keys.advance()
-        if self.report is not None:
-            self._close(State.DONE, self.report.sentence)
+    def _write(self, report: Report | None) -> None:
+        """Take in what was done, once all keys are written."""
+        self.report = report
+        if report is not None:
+            self._close(State.DONE, report.sentence)
 
     # -- ends ---------------------------------------------------------------------------------------------------
 
