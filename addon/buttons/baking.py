@@ -4,6 +4,7 @@ import bpy
 
 from ..curves import bake
 from ..live.checks import edited, refusal, selected_curves, unbaked, unclearable
+from ..live.refusal import Refusal
 from ..live.start import unseen
 from .relaxing import Relaxing
 
@@ -12,7 +13,7 @@ class _Rebaking(Relaxing):
     """What operators that relax baked curves have in common."""
 
     @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """Say why the selected curves cannot be relaxed again, or return None if they can."""
         return refusal(context) or unbaked(context)
 
@@ -42,15 +43,15 @@ class CURVE_OT_mobius_flow_clear(bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is something to clear."""
-        reason = unclearable(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return reason is None
+        refused = unclearable(context)
+        if refused:
+            cls.poll_message_set(refused.sentence)
+        return refused is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Clear all of them."""
-        if reason := unclearable(context) or edited(context):
-            self.report({"ERROR"}, reason)
+        if refused := unclearable(context) or edited(context):
+            self.report({"ERROR"}, refused.sentence)
             return {"CANCELLED"}
         for obj in selected_curves(context):
             bake.clear(obj)

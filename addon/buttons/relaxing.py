@@ -9,6 +9,7 @@ from ...core import MobiusFlowError
 from ..curves.session import Session
 from ..engine.timing import Pace
 from ..live.checks import edited, refusal, selected_curves, unsampled
+from ..live.refusal import Refusal
 from ..live.start import LiveRelax, tell
 from ..properties import SETTINGS, relax_options, settings
 
@@ -28,25 +29,25 @@ class Relaxing(LiveRelax):
     }
 
     @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """Say why the selected curves cannot be relaxed in this way, or return None if they can."""
         return refusal(context)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether the selected curves can be relaxed; the tooltip says why not."""
-        reason = cls.refusal(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return reason is None
+        refused = cls.refusal(context)
+        if refused:
+            cls.poll_message_set(refused.sentence)
+        return refused is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job."""
         context.view_layer.update()  # a script may have moved the object just before
         values = self.values(context)
         try:
-            if reason := self.refusal(context) or edited(context) or self._unasked(context):
-                raise MobiusFlowError(reason)
+            if refused := self.refusal(context) or edited(context) or self._unasked(context):
+                raise MobiusFlowError(refused.sentence)
             options, objects = self.key_options(context, values), selected_curves(context)
             report = Session(objects, relax_options(values), options, self.continues).run()
         except MobiusFlowError as error:
@@ -67,7 +68,7 @@ class Relaxing(LiveRelax):
         by_iterate = given("frames_per_iterate") and not given("timing")
         return values | ({"timing": Pace.ITERATE.name} if by_iterate else {})
 
-    def _unasked(self, context: bpy.types.Context) -> str | None:
+    def _unasked(self, context: bpy.types.Context) -> Refusal | None:
         return None if self.sample_splines else unsampled(selected_curves(context))
 
 

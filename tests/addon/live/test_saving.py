@@ -42,7 +42,7 @@ def test_keys_whose_writing_has_begun_are_all_in_the_file(operator, tmp_path):
     assert len(written["A"]) == len(written["B"]) == operator.run.report.keys
 
     reopen(tmp_path)
-    for name, points in before.items():
+    for name in before:
         obj = bpy.data.objects[name]
         np.testing.assert_array_equal(keys(obj), written[name])
         assert bake.is_baked(obj.data)
