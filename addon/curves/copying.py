@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 def still_copy(obj: "bpy.types.Object") -> "bpy.types.Object":
     """Copy a curve object as it is shown now, and select the copy in its place; the original stays as it is.
 
-    The copy has neither keys, drivers, constraints nor a parent, and none of the modifiers that may move points. What
-    these make of the points now is kept, but for geometry nodes, which make something new of them.
+    The copy has neither keys, drivers, constraints nor a parent, and none of the modifiers that may move points. The
+    points are where keys and modifiers have put them; what geometry nodes and a parent do to them is left out.
     """
     import bpy
 

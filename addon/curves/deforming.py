@@ -1,4 +1,4 @@
-"""Modifiers that move the points of a curve: what is proved of the points says nothing of what is shown then."""
+"""What moves the points of a curve after its keys have: a proof about the points says nothing of what is shown then."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -28,13 +28,16 @@ _DEFORMING = {
     "WARP",
     "WAVE",
 }
+_DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}  # types of parenting
 _MOVING_NODES = {"GeometryNodeSetPosition", "GeometryNodeSetCurveHandlePositions"}
 
 
 def what_deforms(obj: "bpy.types.Object") -> str | None:
-    """Name the first modifier that is shown and may move an object's points, or return None if none does."""
+    """Say what may move an object's points, of all that is shown, or return None if nothing does."""
+    if obj.parent and obj.parent_type in _DEFORMING_PARENTS:
+        return f"The parent of '{obj.name}'"
     shown = (each for each in obj.modifiers if each.show_viewport or each.show_render)
-    return next((each.name for each in shown if deforms(each)), None)
+    return next((f"The modifier '{each.name}' of '{obj.name}'" for each in shown if deforms(each)), None)
 
 
 def deforms(modifier: "bpy.types.Modifier") -> bool:

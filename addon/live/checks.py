@@ -179,13 +179,10 @@ def _animated(obj: "bpy.types.Object") -> str | None:
     return None
 
 
-def _modifiers(obj: "bpy.types.Object") -> Iterator[Refusal]:
-    if name := what_deforms(obj):
-        sentence = (
-            f"The modifier '{name}' of '{obj.name}' moves its points, so strands could seem to cross; "
-            "remove it, or relax a copy that has the shape shown now"
-        )
-        yield Refusal(sentence, Remedy.COPY)
+def _deformation(obj: "bpy.types.Object") -> Iterator[Refusal]:
+    if deformer := what_deforms(obj):
+        how = "remove it, or relax a copy without it"
+        yield Refusal(f"{deformer} moves its points, so that strands may be seen to cross; {how}", Remedy.COPY)
 
 
 def _transform(obj: "bpy.types.Object") -> Iterator[Refusal]:
@@ -204,4 +201,4 @@ def _place(obj: "bpy.types.Object") -> Iterator[Refusal]:
         yield Refusal(sentence, Remedy.COPY)
 
 
-_CHECKS = (_mode, _ownership, _splines, _animation, _modifiers, _transform)
+_CHECKS = (_mode, _ownership, _splines, _animation, _deformation, _transform)

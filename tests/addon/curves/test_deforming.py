@@ -162,13 +162,25 @@ def test_geometry_nodes_that_set_positions_are_refused():
     assert what_deforms(obj) is None
 
 
+def test_a_parent_that_deforms_is_refused():
+    obj = add_trefoil()
+    lattice = bpy.data.objects.new("Lattice", bpy.data.lattices.new("Lattice"))
+    bpy.context.scene.collection.objects.link(lattice)
+    obj.parent = lattice
+    assert what_deforms(obj) is None
+    obj.parent_type = "LATTICE"
+    assert "The parent of 'Knot' moves its points" in refused()
+    assert bpy.ops.curve.mobius_flow_copy() == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
+
+
 def test_what_is_shown_nowhere_is_not_refused():
     obj = add_trefoil()
     modifier = obj.modifiers.new("Wave", "WAVE")
     modifier.show_viewport = modifier.show_render = False
     assert what_deforms(obj) is None
     modifier.show_render = True
-    assert what_deforms(obj) == "Wave"
+    assert what_deforms(obj) == "The modifier 'Wave' of 'Knot'"
 
 
 def test_a_copy_has_the_deformed_shape_and_may_be_relaxed():
