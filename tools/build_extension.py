@@ -4,8 +4,7 @@
     tools/build_extension.py [--platform linux-x64] [--output dist] [--wheels DIR]
 
 Wheels are fetched by pip and never committed; only those with the hashes in tools/wheels.sha256 are used. The zip is
-made and validated by Blender's own command-line tool: that of the `bpy` module where it is installed, otherwise that
-of `blender`.
+made by Blender's own command-line tool, that of the `bpy` module or of `blender`, and validated by each that is there.
 """
 
 import argparse
@@ -49,12 +48,14 @@ def main() -> int:
 def build(platform: str, output: Path, wheels: Path) -> Path:
     """Build and validate the zip of one platform and return its path."""
     version = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))["version"]
+    tools = _tools()
     target = output / f"mobius_flow-{version}-{platform.replace('-', '_')}.zip"
     with tempfile.TemporaryDirectory() as room:
         stage = Path(room) / "mobius_flow"
         _stage(stage, platform, fetch_wheels(platform, wheels))
-        _blender("build", "--source-dir", str(stage), "--output-filepath", str(target))
-    _blender("validate", str(target))
+        _run([*tools[0], "build", "--source-dir", str(stage), "--output-filepath", str(target)])
+    for tool in tools:
+        _run([*tool, "validate", str(target)])
     return target
 
 
@@ -105,15 +106,21 @@ def _stage(stage: Path, platform: str, wheels: list[Path]) -> None:
     manifest.write_text("\n[".join(lines), encoding="utf-8")
 
 
-def _blender(*arguments: str) -> None:
-    """Run a subcommand of Blender's extension tool."""
+def _tools() -> list[list[str]]:
+    """Commands of Blender's extension tool: of the module that is installed, and of the program that is on the path."""
     spec = importlib.util.find_spec("bpy")
     places = spec.submodule_search_locations if spec else None
-    tools = [path for place in places or () for path in Path(place).glob("*/scripts/addons_core/bl_pkg/cli/*_ext.py")]
-    if not tools and not shutil.which("blender"):
+    scripts = [path for place in places or () for path in Path(place).glob("*/scripts/addons_core/bl_pkg/cli/*_ext.py")]
+    tools = [[sys.executable, str(path)] for path in scripts[:1]]
+    if shutil.which("blender"):
+        tools.append(["blender", "--command", "extension"])
+    if not tools:
         sys.exit("neither the bpy module nor blender is installed; pip install bpy")
-    command = [sys.executable, str(tools[0])] if tools else ["blender", "--command", "extension"]
-    done = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
+    return tools
+
+
+def _run(command: list[str]) -> None:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(done.stdout + done.stderr)
 

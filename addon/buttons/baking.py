@@ -4,7 +4,9 @@ import bpy
 
 from ..curves import bake
 from ..live.checks import edited, refusal, selected_curves, unbaked, unclearable
+from ..live.refusal import Refusal
 from ..live.start import unseen
+from .refusing import Refusing
 from .relaxing import Relaxing
 
 
@@ -12,7 +14,7 @@ class Rebaking(Relaxing):
     """What operators that relax baked curves have in common."""
 
     @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """Say why the selected curves cannot be relaxed again, or return None if they can."""
         return refusal(context) or unbaked(context)
 
@@ -32,29 +34,25 @@ class CURVE_OT_mobius_flow_continue(Rebaking, bpy.types.Operator):  # noqa: N801
     continues = True
 
 
-class CURVE_OT_mobius_flow_clear(bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_clear(Refusing, bpy.types.Operator):  # noqa: N801
     """Take the keys away and give the selected curves back as they were before they were baked"""
 
     bl_idname = "curve.mobius_flow_clear"
     bl_label = "Clear"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is something to clear."""
-        reason = unclearable(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return reason is None
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
+        """Baked curves are wanted."""
+        return unclearable(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def last_refusal(self, context: bpy.types.Context) -> Refusal | None:
+        """Nobody has edited their keys."""
+        return edited(context)
+
+    def act(self, context: bpy.types.Context) -> None:
         """Clear all of them."""
-        if reason := unclearable(context) or edited(context):
-            self.report({"ERROR"}, reason)
-            return {"CANCELLED"}
         for obj in selected_curves(context):
             bake.clear(obj)
-        return {"FINISHED"}
 
 
 class CURVE_OT_mobius_flow_scene_range(bpy.types.Operator):  # noqa: N801

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ...core import Curve, MobiusFlowError
+from ...core import Curve
 from ...core.collision import check_embedded
 from ..curves import bevel, tube_mesh
 from ..curves.exchange import stretch
@@ -18,16 +18,17 @@ from ..engine.smooth_fit import FEWEST, SmoothFit
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
 from ..live.checks import selected_curves, unreadable
+from ..live.refusal import Refusal
 from ..pictures.materials import vertex_colours
+from .refusing import Refusing
 
 _PLAIN = "NONE"
 _MAX_POINTS = 10_000
 
 
-class _Output:
+class _Output(Refusing):
     """What operators that make other objects of the selected curves have in common."""
 
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
     __annotations__ = {
         "hide_curve": BoolProperty(
             name="Hide Curve",
@@ -37,27 +38,18 @@ class _Output:
     }
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the selected curves can be read; the tooltip says why not."""
-        reason = unreadable(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return reason is None
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
+        """The curves must be closed and drawn."""
+        return unreadable(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         """Make all of them before any is shown."""
-        context.view_layer.update()  # a script may have moved an object just before
         objects = selected_curves(context)
-        try:
-            recorded = [Recorded.of(obj) for obj in objects]
-            link = in_world(objects, recorded, [each.points[-1] for each in recorded])
-            check_embedded(link)
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        recorded = [Recorded.of(obj) for obj in objects]
+        link = in_world(objects, recorded, [each.points[-1] for each in recorded])
+        check_embedded(link)
         for made, obj in zip(self.make(objects, recorded, link), objects, strict=True):
             put_beside(made, obj, self.hide_curve)
-        return {"FINISHED"}
 
     def make(
         self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve

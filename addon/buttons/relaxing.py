@@ -9,14 +9,15 @@ from ...core import MobiusFlowError
 from ..curves.session import Session
 from ..engine.timing import Pace
 from ..live.checks import edited, refusal, selected_curves, unsampled
+from ..live.refusal import Refusal
 from ..live.start import LiveRelax, tell
 from ..properties import SETTINGS, relax_options, settings
+from .refusing import Refusing
 
 
-class Relaxing(LiveRelax):
+class Relaxing(LiveRelax, Refusing):
     """What all operators that relax have in common: their settings, and the whole job in one call."""
 
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
     # For scripts; what is not given comes from the scene's settings, and nothing is remembered from run to run.
     __annotations__ = {
         **settings({"SKIP_SAVE", "HIDDEN"}),
@@ -28,25 +29,17 @@ class Relaxing(LiveRelax):
     }
 
     @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """Say why the selected curves cannot be relaxed in this way, or return None if they can."""
         return refusal(context)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the selected curves can be relaxed; the tooltip says why not."""
-        reason = cls.refusal(context)
-        if reason:
-            cls.poll_message_set(reason)
-        return reason is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job."""
         context.view_layer.update()  # a script may have moved the object just before
         values = self.values(context)
         try:
-            if reason := self.refusal(context) or edited(context) or self._unasked(context):
-                raise MobiusFlowError(reason)
+            if refused := self.refusal(context) or self.last_refusal(context):
+                raise MobiusFlowError(refused.sentence)
             options, objects = self.key_options(context, values), selected_curves(context)
             report = Session(objects, relax_options(values), options, self.continues).run()
         except MobiusFlowError as error:
@@ -68,8 +61,9 @@ class Relaxing(LiveRelax):
         values |= {"timing": Pace.ITERATE.name} if by_iterate else {}
         return values | {"any_bevel": given("fit_bevel")}  # the panel's setting asks for no bevel of the artist's own
 
-    def _unasked(self, context: bpy.types.Context) -> str | None:
-        return None if self.sample_splines else unsampled(selected_curves(context))
+    def last_refusal(self, context: bpy.types.Context) -> Refusal | None:
+        """Nobody has edited keys, and smooth splines may become polygons."""
+        return edited(context) or (None if self.sample_splines else unsampled(selected_curves(context)))
 
 
 class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme

@@ -122,8 +122,8 @@ class CURVE_OT_mobius_flow_recover(Listening, bpy.types.Operator):  # noqa: N801
         run = registry.latest()
         assert run is not None, "poll looks for it"
         try:
-            if reason := hindrance(run.group.objects):
-                raise MobiusFlowError(reason)
+            if refused := hindrance(run.group.objects):
+                raise MobiusFlowError(refused.sentence)
             run.recover()
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))

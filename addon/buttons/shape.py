@@ -15,16 +15,17 @@ from ..engine.size import Measure
 from ..engine.words import named
 from ..live.checks import edited, refusal, selected_curves, unclearable
 from ..live.modal import redraw_views
+from ..live.refusal import Refusal
 from ..properties import SETTINGS, measure_items, relax_options
 from .baking import Rebaking
+from .refusing import Refusing
 
 
-class CURVE_OT_mobius_flow_keep_size(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+class CURVE_OT_mobius_flow_keep_size(Refusing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
     """Scale the selected curves at each of their keys, so that their size stays while they move"""
 
     bl_idname = "curve.mobius_flow_keep_size"
     bl_label = "Keep Size"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
 
     measure: EnumProperty(name="Keep", description="What stays", items=measure_items(), default=Measure.BOX.name)
     reference: EnumProperty(
@@ -35,54 +36,37 @@ class CURVE_OT_mobius_flow_keep_size(bpy.types.Operator):  # noqa: N801 - Blende
     )
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether baked curves are selected."""
-        return _possible(cls, unclearable(context))
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
+        """Baked curves are wanted."""
+        return unclearable(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def last_refusal(self, context: bpy.types.Context) -> Refusal | None:
+        """Nobody has edited their keys."""
+        return edited(context)
+
+    def act(self, context: bpy.types.Context) -> None:
         """Scale all keys."""
-        context.view_layer.update()
         objects = selected_curves(context)
-        try:
-            _require(unclearable(context) or edited(context))
-            keys = keep_size(objects, Measure[self.measure], {"FIRST": 0, "LAST": -1}[self.reference])
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        keys = keep_size(objects, Measure[self.measure], {"FIRST": 0, "LAST": -1}[self.reference])
         redraw_views(context.window_manager)  # which they are not by themselves
         kept = f"{Measure[self.measure].value.lower()} of {named([obj.name for obj in objects])}"
         _tell(self, f"The {kept} stays at all {len(keys.frames)} keys", keys.unproved)
-        return {"FINISHED"}
 
 
-class _Turning:
+class _Turning(Refusing):
     """What operators that turn curves have in common."""
 
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
-
     @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
-        """Say why the selected curves cannot be turned, or return None if they can."""
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
+        """What cannot be relaxed cannot be turned."""
         return refusal(context)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether they can."""
-        return _possible(cls, cls.refusal(context))
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         """Turn them."""
-        context.view_layer.update()
-        try:
-            _require(self.refusal(context))
-            unproved = self.turn(context)
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        unproved = self.turn(context)
         redraw_views(context.window_manager)
         if unproved:
             _tell(self, "The curves were turned", unproved)
-        return {"FINISHED"}
 
     def turn(self, context: bpy.types.Context) -> int:
         """Turn the selected curves, and count the motions that are not proved any more."""
@@ -107,9 +91,9 @@ class CURVE_OT_mobius_flow_face_camera(_Turning, bpy.types.Operator):  # noqa: N
     bl_label = "Face Camera"
 
     @classmethod
-    def refusal(cls, context: bpy.types.Context) -> str | None:
-        """Say why they cannot be turned to the camera, or return None if they can."""
-        return refusal(context) or (None if context.scene.camera else "The scene has no camera; add one first")
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
+        """There must be a camera."""
+        return refusal(context) or (None if context.scene.camera else Refusal("The scene has no camera; add one first"))
 
     def turn(self, context: bpy.types.Context) -> int:
         """Turn them to the camera."""
@@ -128,27 +112,26 @@ class CURVE_OT_mobius_flow_balance(Rebaking, bpy.types.Operator):  # noqa: N801
         return super().values(context) | {"balance": True}
 
 
-class CURVE_OT_mobius_flow_check(bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_check(Refusing, bpy.types.Operator):  # noqa: N801
     """Tell whether the selected curves have come to rest at a minimum of the energy or at a saddle; nothing changes"""
 
     bl_idname = "curve.mobius_flow_check"
     bl_label = "Check"
+    bl_options = {"REGISTER"}  # noqa: RUF012 - read by Blender
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether baked curves are selected."""
-        return _possible(cls, Rebaking.refusal(context))
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
+        """Baked curves are wanted."""
+        return Rebaking.refusal(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def last_refusal(self, context: bpy.types.Context) -> Refusal | None:
+        """Nobody has edited their keys."""
+        return edited(context)
+
+    def act(self, context: bpy.types.Context) -> None:
         """Look at the end of the animation."""
         values = {name: getattr(context.scene.mobius_flow, name) for name in SETTINGS}
-        try:
-            _require(Rebaking.refusal(context) or edited(context))
-            self.report({"INFO"}, _rest(context, values)[1])
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+        self.report({"INFO"}, _rest(context, values)[1])
 
 
 class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: N801
@@ -186,19 +169,6 @@ def _rest(context: bpy.types.Context, values: dict[str, Any]) -> tuple[int | Non
     objects = selected_curves(context)
     rest = Rest.of(BakedKeys(objects).curves[-1], relax_options(values))
     return rest.index, f"{named([obj.name for obj in objects])}: {rest.words}"
-
-
-def _possible(operator: type, reason: str | None) -> bool:
-    """Whether an operator can run; its tooltip says why not."""
-    if reason:
-        operator.poll_message_set(reason)
-    return reason is None
-
-
-def _require(reason: str | None) -> None:
-    """Raise what is against it."""
-    if reason:
-        raise MobiusFlowError(reason)
 
 
 def _tell(operator: bpy.types.Operator, what: str, unproved: int) -> None:

@@ -102,9 +102,9 @@ def clear(obj: "bpy.types.Object") -> None:
 
 
 def forget(obj: "bpy.types.Object") -> None:
-    """Take a baked curve's keys away, and what is remembered; the curve itself is left as its last key."""
+    """Take a curve's keys away, and what is remembered if it was baked; the curve itself is left as its last key."""
     keyframes.erase(obj)
-    del obj.data[_RECORD]
+    obj.data.pop(_RECORD, None)
 
 
 def _animated(data: "bpy.types.Curve") -> "bpy.types.ID | None":

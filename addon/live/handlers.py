@@ -57,6 +57,9 @@ def _before(run: Run, others: int) -> None:
 
 @persistent  # type: ignore[untyped-decorator]
 def _save_pre(*_: Any) -> None:
+    """A file holds curves as they were or with all their keys, and nothing in between."""
+    if run := registry.current():
+        run.complete()
     if run := registry.current():
         run.preview.set_aside()
 

@@ -43,8 +43,13 @@ class KeyWriter:
         """End the thread at its next proof; harmless if there is none."""
         self._abandoned = True
 
-    def advance(self) -> Report | None:
-        """Write for a moment if the keys are ready, and report once all are written.
+    @property
+    def has_begun(self) -> bool:
+        """Whether some keys are written, and perhaps not all."""
+        return self._pieces is not None
+
+    def advance(self, seconds: float | None = None) -> Report | None:
+        """Write for so long, by default a moment, if the keys are ready, and report once all are written.
 
         Raises
         ------
@@ -56,7 +61,7 @@ class KeyWriter:
         if self._prepared is None:
             raise MobiusFlowError("The keys could not be prepared; all is as it was")
         self._pieces = self._pieces or self._session.writing(self._prepared)
-        until = time.perf_counter() + _SLICE
+        until = time.perf_counter() + (_SLICE if seconds is None else seconds)
         for _ in self._pieces:
             if time.perf_counter() >= until:
                 return None

@@ -4,8 +4,10 @@ That there is one is known here, in Python, and never in the file. The curves th
 shows them as they are; what they were is kept and put back unless the run is to be kept.
 """
 
+import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -198,13 +200,29 @@ class Run:
         """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
         if self.state.over or self.waits:
             return
-        try:
+        with self._failing():
             if reason := self.group.lost():
                 self._lose(reason)
             elif self.state is State.RUNNING:
                 self._take()
             elif self.state is State.FINISHING:
-                self._write()
+                self._write(self._keys.advance())
+
+    def complete(self) -> None:
+        """Write the rest of keys whose writing has begun: a file that is saved must not hold half of them."""
+        if self.state is not State.FINISHING or not self._keys.has_begun:
+            return
+        with self._failing():
+            if reason := self.group.lost():
+                self._lose(reason)
+            else:
+                self._write(self._keys.advance(math.inf))
+
+    @contextmanager
+    def _failing(self) -> Iterator[None]:
+        """End the run if what is done in it fails."""
+        try:
+            yield
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:
@@ -252,12 +270,13 @@ class Run:
             self.shown = self.last
             self._refresh.shown()
 
-    def _write(self) -> None:
-        self.report = self._keys.advance()
-        if self.report is not None:
+    def _write(self, report: Report | None) -> None:
+        """Take in what was done, once all keys are written."""
+        self.report = report
+        if report is not None:
             assert self.last is not None, "it was kept"
-            self.trouble = self.group.spots(self.report.outcome.place, self.last.curve)
-            self._close(State.DONE, self.report.sentence)
+            self.trouble = self.group.spots(report.outcome.place, self.last.curve)
+            self._close(State.DONE, report.sentence)
             self._leave()
 
     # -- ends ---------------------------------------------------------------------------------------------------

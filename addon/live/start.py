@@ -65,8 +65,8 @@ class LiveRelax(Listening):
     def begin(self, context: bpy.types.Context, values: dict[str, Any]) -> set[str]:
         """Start the run and its event loop."""
         try:
-            if reason := refusal(context) or edited(context):
-                raise MobiusFlowError(reason)
+            if refused := refusal(context) or edited(context):
+                raise MobiusFlowError(refused.sentence)
             options, refresh = self.key_options(context, values), Refresh(values["view_every"])
             run = Run(selected_curves(context), relax_options(values), options, self.continues, refresh)
             registry.begin(run)

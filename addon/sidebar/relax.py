@@ -20,6 +20,7 @@ from ..live.run import Run, State
 from .labels import sentence
 from .layout import InSidebar, value
 from .presets import VIEW3D_PT_mobius_flow_presets
+from .refused import refused
 
 
 class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
@@ -64,10 +65,10 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context, shown: Run 
         _run_buttons(large, run)
     if shown is not None and shown.recoverable:
         column.operator(CURVE_OT_mobius_flow_recover.bl_idname, icon="RECOVER_LAST")
-    reason = refusal(context)
-    if reason and (run is None or any(obj not in objects for obj in selected_curves(context))):
-        sentence(layout, context, reason)
-    if (run or not reason) and (unguarded := neighbours.warning(context, objects)):
+    hindered = refusal(context)
+    if hindered and (run is None or any(obj not in objects for obj in selected_curves(context))):
+        refused(column, context, hindered)
+    if (run or not hindered) and (unguarded := neighbours.warning(context, objects)):
         sentence(layout, context, unguarded, icon="ERROR")
 
 

@@ -103,6 +103,29 @@ def test_pins_are_of_one_version_for_every_platform(builder):
     assert all(sum(tag in name for tag in builder.PLATFORMS.values()) == 1 for name in builder.WHEELS)
 
 
+def test_it_is_validated_by_every_blender_that_is_there(builder, empty_wheels, tmp_path, monkeypatch):
+    said = tmp_path / "said.txt"
+    program = tmp_path / "bin" / "blender"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\necho "$@" >> "{said}"\ntest ! -e "{tmp_path}/broken"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(program.parent), prepend=os.pathsep)
+    path = builder.build(PLATFORM, tmp_path, empty_wheels)
+    assert said.read_text().split() == ["--command", "extension", "validate", str(path)]
+    (tmp_path / "broken").touch()
+    with pytest.raises(SystemExit):
+        builder.build(PLATFORM, tmp_path, empty_wheels)
+
+
+@pytest.mark.parametrize("typed", ["mobius", "relax", "knot", "untangle"])
+def test_it_is_found_among_extensions(typed):
+    """As Blender's list is filtered: by what is part of the name or of the tagline."""
+    from bl_pkg.bl_extension_ops import pkg_info_check_exclude_filter_ex
+
+    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    assert pkg_info_check_exclude_filter_ex(manifest["name"], manifest["tagline"], typed)
+
+
 def test_the_manifest_says_that_a_process_is_started():
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
     assert "Python" in manifest["permissions"]["files"]

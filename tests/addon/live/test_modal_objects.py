@@ -154,24 +154,6 @@ def test_esc_while_keys_of_the_second_object_are_written(operator, rings, monkey
     assert len(bpy.data.actions) == 0
 
 
-def test_a_file_saved_while_keys_are_written(operator, rings, tmp_path, monkeypatch):
-    monkeypatch.setattr(key_writer, "_SLICE", 0.0)
-    before = stored(rings[1].data)
-    operator.start()
-    operator.until(lambda: rings[0].data.shape_keys is not None)
-    assert rings[1].data.shape_keys is None
-    shown = [stored(obj.data) for obj in rings]
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"), copy=True)
-    for obj, points in zip(rings, shown, strict=True):
-        np.testing.assert_array_equal(stored(obj.data), points)
-    assert operator.until(lambda: False) == {"FINISHED"}
-    assert len(keys(rings[0])) == len(keys(rings[1]))
-    with bpy.data.libraries.load(str(tmp_path / "a.blend")) as (_, loaded):
-        loaded.curves = ["A", "B"]
-    np.testing.assert_array_equal(stored(loaded.curves[0]), shown[0])  # what its keys fit
-    np.testing.assert_array_equal(stored(loaded.curves[1]), before)
-
-
 def test_an_error_while_keys_are_written_loses_nothing(operator, rings, monkeypatch):
     before = [Snapshot.of(obj.data) for obj in rings]
 

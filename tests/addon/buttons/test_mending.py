@@ -1,0 +1,410 @@
+"""What is refused is mended by the button that the refusal names: in one step, on all that need it, losing nothing."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_trefoil, contents, evaluated, linked, relax, show, stored  # noqa: E402
+from mobius_flow.addon.buttons import mending  # noqa: E402
+from mobius_flow.addon.live import registry  # noqa: E402
+from mobius_flow.addon.live.checks import edited, refusal, unsampled  # noqa: E402
+from mobius_flow.addon.live.refusal import Remedy  # noqa: E402
+from modal_operator import keys  # noqa: E402
+from shapes import torus_trefoil  # noqa: E402
+
+SHAPE = torus_trefoil(12).vertices
+
+
+def call(remedy):
+    """The operator that is a remedy."""
+    return getattr(bpy.ops.curve, remedy.value.removeprefix("curve."))
+
+
+def mend(remedy):
+    """See that it is this remedy that is offered next, and take it."""
+    bpy.context.view_layer.update()
+    assert refusal(bpy.context).remedy is remedy
+    assert call(remedy)() == {"FINISHED"}
+    bpy.context.view_layer.update()
+
+
+def may_be_relaxed():
+    bpy.context.view_layer.update()
+    assert refusal(bpy.context) is None
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=1, sample_splines=True) == {"FINISHED"}
+
+
+def two(**options):
+    """Two selected curves side by side."""
+    return [add_curve([SHAPE + shift], name, **options) for name, shift in (("A", 0), ("B", 9))]
+
+
+def with_material(obj):
+    obj.data.materials.append(bpy.data.materials.new("Gold"))
+    return obj
+
+
+def test_every_remedy_has_its_button():
+    classes = {cls.bl_idname: cls for cls in mending.CLASSES}
+    assert set(classes) == {remedy.value for remedy in Remedy}
+    for remedy in Remedy:
+        assert classes[remedy.value].remedy is remedy
+        rna = call(remedy).get_rna_type()
+        assert rna.name.istitle() or rna.name in (
+            "Back to Object Mode",
+            "Make 3D",
+            "Convert to Curve",
+            "Convert to Poly",
+        )
+        assert 20 < len(rna.description) < 120
+        assert not rna.description.endswith(".")
+    assert all({"UNDO", "REGISTER"} <= cls.bl_options for cls in classes.values())
+
+
+@pytest.mark.parametrize("remedy", list(Remedy), ids=lambda remedy: remedy.name)
+def test_what_needs_nothing_is_left_alone(remedy):
+    add_trefoil()
+    if remedy is not Remedy.COPY:
+        before = contents()
+        with pytest.raises(RuntimeError, match="Nothing selected needs that"):
+            call(remedy)()
+        assert contents() == before
+
+
+@pytest.mark.parametrize("remedy", [Remedy.CLOSE, Remedy.COPY], ids=lambda remedy: remedy.name)
+def test_not_during_a_run(operator, remedy):
+    add_trefoil()
+    operator.start()
+    add_curve([SHAPE + 9], cyclic=False)
+    with pytest.raises(RuntimeError, match="is being relaxed; stop that first"):
+        call(remedy)()
+    registry.current().cancel()
+
+
+def test_open_splines_are_closed():
+    first, second = two(cyclic=False)
+    third = add_curve([SHAPE + 20], "C")
+    second.data.splines.new("NURBS").points.add(5)
+    before = [stored(obj.data) for obj in (first, second, third)]
+    mend(Remedy.CLOSE)
+    assert all(spline.use_cyclic_u for obj in (first, second) for spline in obj.data.splines)
+    for obj, points in zip((first, second, third), before, strict=True):
+        np.testing.assert_array_equal(stored(obj.data), points)
+
+
+def test_a_closed_curve_may_be_relaxed():
+    add_curve([SHAPE], cyclic=False)
+    mend(Remedy.CLOSE)
+    may_be_relaxed()
+
+
+def test_what_is_too_short_is_not_closed():
+    obj = add_curve([SHAPE, SHAPE[:2] + 9], cyclic=False)
+    bpy.context.view_layer.update()
+    assert refusal(bpy.context).remedy is Remedy.CLOSE
+    mend(Remedy.CLOSE)
+    assert obj.data.splines[0].use_cyclic_u
+    assert refusal(bpy.context).remedy is None
+    assert "fewer than 3 points" in refusal(bpy.context).sentence
+
+
+def test_flat_curves_become_curves_in_space():
+    pair = two()
+    for obj in pair:
+        obj.data.dimensions = "2D"
+    before = [stored(obj.data) for obj in pair]
+    mend(Remedy.MAKE_3D)
+    for obj, points in zip(pair, before, strict=True):
+        assert obj.data.dimensions == "3D"
+        np.testing.assert_array_equal(stored(obj.data), points)
+
+
+def test_shared_data_becomes_ones_own():
+    first, second = two()
+    other = bpy.data.objects.new("Other", with_material(first).data)
+    bpy.context.scene.collection.objects.link(other)
+    data, untouched = other.data, second.data
+    mend(Remedy.SINGLE_USER)
+    assert first.data != data == other.data
+    assert (data.name, first.data.users, second.data) == ("A", 1, untouched)
+    assert [material.name for material in first.data.materials] == ["Gold"]
+    np.testing.assert_array_equal(stored(first.data), stored(data))
+    may_be_relaxed()
+    assert other.data.shape_keys is None
+
+
+def test_of_two_that_share_one_keeps_what_they_shared():
+    first, second = two()
+    data = second.data = first.data
+    mend(Remedy.SINGLE_USER)
+    assert first.data != data == second.data
+    second.location.x = 9
+    may_be_relaxed()
+
+
+def test_baked_curves_keep_their_keys_when_they_are_parted():
+    first = relax_once()
+    other = show(bpy.data.objects.new("Other", first.data))
+    first.select_set(False)
+    written = keys(first)
+    mend(Remedy.SINGLE_USER)
+    np.testing.assert_array_equal(keys(first), written)
+    np.testing.assert_array_equal(keys(other), written)
+    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
+    assert other.data.shape_keys is None
+    np.testing.assert_array_equal(keys(first), written)
+    assert evaluated(first, 2).shape == evaluated(first, 1).shape
+
+
+def relax_once():
+    add_trefoil()
+    return relax(max_iterations=3)
+
+
+def test_edited_curves_are_left_as_they_were_edited():
+    pair = two()
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert [obj.mode for obj in pair] == ["EDIT", "EDIT"]
+    bpy.ops.curve.select_all(action="SELECT")
+    bpy.ops.transform.translate(value=(0, 0, 1))
+    mend(Remedy.OBJECT_MODE)
+    assert [obj.mode for obj in pair] == ["OBJECT", "OBJECT"]
+    np.testing.assert_allclose(stored(pair[0].data), SHAPE + np.array([0, 0, 1]), atol=1e-6)
+    may_be_relaxed()
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+def test_smooth_splines_become_what_is_drawn(kind):
+    obj = with_material(with_material(add_curve([SHAPE, SHAPE + 9], kind=kind)))
+    obj.data.splines.new("POLY").points.add(2)
+    poly = obj.data.splines[2]
+    poly.points.foreach_set("co", [20, 0, 0, 1, 21, 0, 0, 1, 20, 1, 0, 1])
+    poly.use_cyclic_u = True
+    obj.data.splines[1].material_index = 1
+    drawn = evaluated(obj)
+    assert refusal(bpy.context) is None, "relaxing asks by itself"
+    assert unsampled([obj]).remedy is Remedy.TO_POLY
+    assert bpy.ops.curve.mobius_flow_to_poly() == {"FINISHED"}
+    assert {spline.type for spline in obj.data.splines} == {"POLY"}
+    assert obj.data.splines[1].material_index == 1
+    np.testing.assert_array_equal(stored(obj.data), drawn)
+    np.testing.assert_array_equal(evaluated(obj), drawn)
+    assert unsampled([obj]) is None
+
+
+def test_what_cannot_become_a_polygon_is_said_and_the_rest_does():
+    good, bad = two(kind="BEZIER")
+    bad.data.resolution_u = 1
+    spline = bad.data.splines.new("BEZIER")
+    spline.bezier_points.add(1)
+    spline.use_cyclic_u = True
+    with pytest.raises(RuntimeError, match="Spline 2 of 'B' is drawn with only 2 points"):
+        bpy.ops.curve.mobius_flow_to_poly()
+    assert {spline.type for spline in good.data.splines} == {"POLY"}
+    assert {spline.type for spline in bad.data.splines} == {"BEZIER"}
+
+
+def wire(name, edges=True):
+    data = bpy.data.meshes.new(name)
+    n = len(SHAPE)
+    data.from_pydata(SHAPE.tolist(), [(k, (k + 1) % n) for k in range(n)] if edges else [], [])
+    return show(with_material(bpy.data.objects.new(name, data)))
+
+
+def test_meshes_become_curves_and_stay():
+    first, second = wire("First"), wire("Second")
+    second.location.x = 9
+    mend(Remedy.TO_CURVE)
+    made = bpy.context.selected_objects
+    assert [obj.type for obj in made] == ["CURVE", "CURVE"]
+    assert [obj.type for obj in (first, second)] == ["MESH", "MESH"]
+    assert bpy.context.object in made
+    assert {obj.data.materials[0].name for obj in made} == {"Gold", "Gold.001"}
+    for obj in made:
+        np.testing.assert_allclose(np.sort(stored(obj.data), axis=0), np.sort(SHAPE, axis=0), atol=1e-6)
+    may_be_relaxed()
+
+
+def test_texts_become_curves_step_by_step():
+    words = with_material(show(bpy.data.objects.new("Words", bpy.data.curves.new("Words", "FONT"))))
+    words.data.body = "O"
+    mend(Remedy.TO_CURVE)
+    assert [material.name for material in bpy.context.object.data.materials] == ["Gold"]
+    assert words.type == "FONT"
+    mend(Remedy.MAKE_3D)
+    may_be_relaxed()
+
+
+def test_no_button_for_what_has_no_lines():
+    wire("Dots", edges=False)
+    assert refusal(bpy.context).remedy is None
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.selected_objects[0].select_set(True)
+    assert refusal(bpy.context).remedy is None
+    show(bpy.data.objects.new("Axes", None))
+    assert refusal(bpy.context).remedy is None
+
+
+def test_linked_curves_become_local(tmp_path):
+    with_material(add_trefoil())
+    obj = show(linked(tmp_path / "library.blend", "objects", "Knot"))
+    mend(Remedy.MAKE_LOCAL)
+    (obj,) = bpy.context.selected_objects
+    assert (obj.library, obj.data.library, obj.name) == (None, None, "Knot")
+    assert obj.data.materials[0].library is not None, "materials stay linked"
+    may_be_relaxed()
+
+
+def test_linked_data_becomes_local(tmp_path):
+    add_trefoil()
+    data = linked(tmp_path / "library.blend", "curves", "Knot")
+    obj = show(bpy.data.objects.new("Mine", data))
+    mend(Remedy.MAKE_LOCAL)
+    assert obj.data.library is None
+    may_be_relaxed()
+
+
+def test_what_is_in_a_linked_collection_is_copied(tmp_path):
+    collection = bpy.data.collections.new("Set")
+    bpy.context.scene.collection.children.link(collection)
+    obj = add_trefoil()
+    collection.objects.link(obj)
+    bpy.context.scene.collection.objects.unlink(obj)
+    theirs = linked(tmp_path / "library.blend", "collections", "Set")
+    bpy.context.scene.collection.children.link(theirs)
+    (obj,) = theirs.objects
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    mend(Remedy.MAKE_LOCAL)
+    (mine,) = bpy.context.selected_objects
+    assert mine.library is mine.data.library is None
+    assert mine == bpy.context.object
+    assert len(theirs.objects) == 1
+    assert theirs.objects[0].library is not None
+    may_be_relaxed()
+
+
+def test_overrides_become_local(tmp_path):
+    add_trefoil()
+    theirs = show(linked(tmp_path / "library.blend", "objects", "Knot"))
+    mine = theirs.override_create(remap_local_usages=True)
+    mine.select_set(True)
+    bpy.context.view_layer.objects.active = mine
+    mend(Remedy.MAKE_LOCAL)
+    (mine,) = bpy.context.selected_objects
+    assert mine.override_library is mine.library is mine.data.library is None
+    may_be_relaxed()
+
+
+def copied():
+    """Take a still copy of what is active, which must stay as it is; the copy."""
+    bpy.context.view_layer.update()
+    original = bpy.context.object
+    before = contents()["splines"]
+    shown = evaluated(original)
+    assert bpy.ops.curve.mobius_flow_copy() == {"FINISHED"}
+    (copy,) = bpy.context.selected_objects
+    assert copy == bpy.context.object != original
+    assert {name: value for name, value in contents()["splines"].items() if name in before} == before
+    np.testing.assert_array_equal(evaluated(original), shown)
+    return copy
+
+
+def test_a_copy_has_the_shape_of_the_keys_without_them():
+    obj = with_material(add_trefoil())
+    obj.shape_key_add(name="Basis")
+    key = obj.shape_key_add(name="Mine")
+    key.data[3].co.z += 0.5
+    key.value = 0.5
+    bpy.context.view_layer.update()
+    assert refusal(bpy.context).remedy is Remedy.COPY
+    shown = evaluated(obj)
+    copy = copied()
+    assert copy.data.shape_keys is None
+    assert [block.name for block in obj.data.shape_keys.key_blocks] == ["Basis", "Mine"]
+    np.testing.assert_array_equal(stored(copy.data), shown)
+    assert copy.data.materials[0].name == "Gold"
+    may_be_relaxed()
+
+
+def test_a_copy_has_no_animation():
+    obj = add_trefoil()
+    obj.data.bevel_depth = 0.1
+    obj.data.keyframe_insert("bevel_depth", frame=1)
+    assert refusal(bpy.context).remedy is Remedy.COPY
+    copy = bpy.ops.curve.mobius_flow_copy() and bpy.context.object
+    assert copy.data.animation_data is None
+    assert copy.data.bevel_depth == pytest.approx(0.1)
+    assert obj.data.animation_data.action is not None
+    may_be_relaxed()
+
+
+def test_a_copy_has_no_drivers():
+    obj = add_trefoil()
+    obj.data.driver_add("splines[0].points[3].co", 1)
+    assert refusal(bpy.context).remedy is Remedy.COPY
+    assert copied().data.animation_data is None
+    may_be_relaxed()
+
+
+def test_keys_that_were_edited_are_copied_as_they_are():
+    obj = relax_once()
+    obj.data.shape_keys.key_blocks[0].data[7].co.x += 0.125
+    bpy.context.scene.frame_set(1)
+    bpy.context.view_layer.update()
+    assert edited(bpy.context).remedy is Remedy.COPY
+    shown = evaluated(obj)
+    copy = copied()
+    np.testing.assert_array_equal(stored(copy.data), shown)
+    assert edited(bpy.context) is None
+    may_be_relaxed()
+
+
+def test_copies_stand_still_where_their_originals_are():
+    first, second = two()
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.scale, parent.rotation_euler = (1, 2, 1), (0.3, 0, 0)
+    first.parent, first.rotation_euler = parent, (0, 0, 0.7)
+    first.keyframe_insert("location", frame=1)
+    second.constraints.new("COPY_SCALE").target = parent
+    bpy.context.view_layer.update()
+    places = {obj.name: world(obj) for obj in (first, second)}
+    mend(Remedy.COPY)
+    copies = bpy.context.selected_objects
+    assert len(copies) == 2
+    assert not {first, second} & set(copies)
+    for obj in copies:
+        assert obj.parent is None
+        assert not obj.constraints
+        assert obj.animation_data is None
+        np.testing.assert_allclose(world(obj), places[obj.name[0]], atol=1e-5)
+    assert first.parent == parent
+    assert first.animation_data is not None
+    assert len(second.constraints) == 1
+    may_be_relaxed()
+
+
+def world(obj):
+    return stored(obj.data) @ np.array(obj.matrix_world)[:3, :3].T + np.array(obj.matrix_world)[:3, 3]
+
+
+def test_only_what_needs_it_is_copied():
+    plain, keyed = two()
+    keyed.shape_key_add(name="Mine")
+    mend(Remedy.COPY)
+    assert plain.select_get()
+    assert not keyed.select_get()
+    assert len(bpy.context.selected_objects) == 2
+    may_be_relaxed()
+    assert [block.name for block in keyed.data.shape_keys.key_blocks] == ["Mine"]
+
+
+def test_a_copy_lies_in_the_collections_of_its_original():
+    collection = bpy.data.collections.new("Mine")
+    bpy.context.scene.collection.children.link(collection)
+    obj = add_trefoil()
+    collection.objects.link(obj)
+    bpy.context.scene.collection.objects.unlink(obj)
+    assert copied().users_collection == (collection,)

@@ -1,0 +1,213 @@
+"""Modifiers that move points: what is proved of the points is not what is shown, so such curves are refused."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_trefoil, contents, evaluated, sentence, stored  # noqa: E402
+from mobius_flow.addon.curves.deforming import deforms, what_deforms  # noqa: E402
+from mobius_flow.addon.curves.session import Session  # noqa: E402
+from mobius_flow.addon.engine.key_options import KeyOptions  # noqa: E402
+from mobius_flow.addon.live.checks import refusal  # noqa: E402
+from mobius_flow.addon.live.refusal import Remedy  # noqa: E402
+from mobius_flow.core import Curve, CurveError, RelaxOptions  # noqa: E402
+from mobius_flow.core.collision import check_embedded  # noqa: E402
+
+ADDING = {
+    "ARRAY",
+    "BEVEL",
+    "BUILD",
+    "DECIMATE",
+    "EDGE_SPLIT",
+    "MIRROR",
+    "MULTIRES",
+    "NODES",
+    "REMESH",
+    "SCREW",
+    "SOLIDIFY",
+    "SUBSURF",
+    "SURFACE",
+    "TRIANGULATE",
+    "WELD",
+}  # what is left of the kinds that curves can have adds to what is drawn
+
+
+def kinds():
+    """The kinds of modifiers that a curve takes."""
+    obj = add_trefoil()
+    for item in bpy.types.Modifier.bl_rna.properties["type"].enum_items:
+        try:
+            modifier = obj.modifiers.new(item.identifier, item.identifier)
+        except (RuntimeError, TypeError):  # not for curves
+            continue
+        if modifier is not None:
+            yield modifier
+            obj.modifiers.remove(modifier)
+
+
+def empty(location=(0, 0, 0)):
+    obj = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(obj)
+    obj.location = location
+    return obj
+
+
+def hook(obj, index, by):
+    """Let an empty carry a point of a curve along."""
+    modifier = obj.modifiers.new("Grab", "HOOK")
+    modifier.object = empty()
+    modifier.vertex_indices_set([index])
+    bpy.context.view_layer.update()
+    modifier.matrix_inverse = modifier.object.matrix_world.inverted()
+    modifier.object.location = by
+    bpy.context.view_layer.update()
+
+
+def pressed(obj):
+    """Press a curve flat, onto a plane."""
+    plane = bpy.data.meshes.new("Plane")
+    plane.from_pydata([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [], [(0, 1, 2, 3)])
+    modifier = obj.modifiers.new("Press", "SHRINKWRAP")
+    modifier.target = bpy.data.objects.new("Plane", plane)
+    bpy.context.scene.collection.objects.link(modifier.target)
+    modifier.wrap_method, modifier.use_project_z, modifier.use_negative_direction = "PROJECT", True, True
+    bpy.context.view_layer.update()
+
+
+def nodes(obj, *kinds):
+    """Geometry nodes, the last of which is in a group of its own."""
+    trees = [bpy.data.node_groups.new(name, "GeometryNodeTree") for name in ("Outer", "Inner")]
+    for kind in kinds:
+        trees[1].nodes.new(kind)
+    trees[0].nodes.new("GeometryNodeGroup").node_tree = trees[1]
+    modifier = obj.modifiers.new("Nodes", "NODES")
+    modifier.node_group = trees[0]
+    return modifier
+
+
+def test_a_proof_about_points_says_nothing_about_what_is_shown():
+    """Why they are refused: past the checks, what is certified is shown crossing itself at every key."""
+    obj = add_trefoil()
+    pressed(obj)
+    report = Session([obj], RelaxOptions(max_iterations=3), KeyOptions(fit_bevel=False)).run()
+    assert report.certified
+    for frame in (1, report.last_frame):
+        shown = evaluated(obj, frame).astype(float)
+        assert np.abs(shown[:, 2]).max() < 1e-6
+        with pytest.raises(CurveError, match="cross"):
+            check_embedded(Curve.from_components([shown[:, :2]]))
+
+
+def test_a_hook_holds_another_point_of_a_refined_curve():
+    """Why a hook cannot simply stay: it knows points by their numbers, and refinement counts anew."""
+    obj = add_trefoil(30)
+    hook(obj, 20, (0, 0, 5))
+    held = stored(obj.data)[20]
+    Session([obj], RelaxOptions(max_iterations=1, vertices=90), KeyOptions(fit_bevel=False)).run()
+    moved = evaluated(obj, 1) - stored_at_start(obj)
+    (lifted,) = np.flatnonzero(moved[:, 2] > 1)
+    assert np.linalg.norm(stored_at_start(obj)[lifted] - held) > 1
+
+
+def stored_at_start(obj):
+    return np.array([point.co[:] for point in obj.data.shape_keys.key_blocks[0].data])
+
+
+def test_every_kind_of_modifier_is_known():
+    """A kind that a new Blender adds has to be looked at."""
+    deforming = {modifier.type for modifier in kinds() if deforms(modifier)}
+    adding = {modifier.type for modifier in kinds() if not deforms(modifier)}
+    assert len(deforming) > 10
+    assert adding <= ADDING
+
+
+def test_whatever_is_deformed_is_refused():
+    obj = add_trefoil()
+    names = [modifier.type for modifier in kinds() if deforms(modifier)]
+    bpy.context.view_layer.objects.active = obj
+    for kind in names:
+        modifier = obj.modifiers.new("Mine", kind)
+        said = refused()
+        assert "The modifier 'Mine' of 'Knot' moves its points" in said
+        obj.modifiers.remove(modifier)
+
+
+def refused():
+    for other in bpy.context.selected_objects:
+        other.select_set(other == bpy.context.object)
+    bpy.context.view_layer.update()
+    before = contents()
+    with pytest.raises(RuntimeError) as error:
+        bpy.ops.curve.mobius_flow_relax(max_iterations=1)
+    assert contents() == before
+    assert refusal(bpy.context).remedy is Remedy.COPY
+    return sentence(error.value)
+
+
+def test_what_adds_to_the_drawing_is_not_refused():
+    obj = add_trefoil()
+    obj.modifiers.new("Array", "ARRAY")
+    obj.modifiers.new("Smooth", "SUBSURF")
+    nodes(obj, "GeometryNodeCurveToMesh", "GeometryNodeCurvePrimitiveCircle")
+    bpy.context.view_layer.update()
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
+
+
+def test_geometry_nodes_that_set_positions_are_refused():
+    obj = add_trefoil()
+    modifier = nodes(obj, "GeometryNodeCurveToMesh", "GeometryNodeSetPosition")
+    assert "'Nodes'" in refused()
+    modifier.node_group.nodes["Group"].mute = True
+    assert what_deforms(obj) is None
+
+
+def test_a_parent_that_deforms_is_refused():
+    obj = add_trefoil()
+    lattice = bpy.data.objects.new("Lattice", bpy.data.lattices.new("Lattice"))
+    bpy.context.scene.collection.objects.link(lattice)
+    obj.parent = lattice
+    assert what_deforms(obj) is None
+    obj.parent_type = "LATTICE"
+    assert "The parent of 'Knot' moves its points" in refused()
+    assert bpy.ops.curve.mobius_flow_copy() == {"FINISHED"}
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
+
+
+def test_what_is_shown_nowhere_is_not_refused():
+    obj = add_trefoil()
+    modifier = obj.modifiers.new("Wave", "WAVE")
+    modifier.show_viewport = modifier.show_render = False
+    assert what_deforms(obj) is None
+    modifier.show_render = True
+    assert what_deforms(obj) == "The modifier 'Wave' of 'Knot'"
+
+
+def test_a_copy_has_the_deformed_shape_and_may_be_relaxed():
+    obj = add_trefoil()
+    hook(obj, 3, (0, 0, 0.25))
+    bend = obj.modifiers.new("Bend", "SIMPLE_DEFORM")
+    bend.deform_method, bend.angle = "TWIST", 0.5
+    obj.modifiers.new("Array", "ARRAY").show_viewport = False
+    bpy.context.view_layer.update()
+    shown = evaluated(obj)
+    assert np.abs(shown - stored(obj.data)).max() > 0.2
+    assert bpy.ops.curve.mobius_flow_copy() == {"FINISHED"}
+    copy = bpy.context.object
+    assert [modifier.name for modifier in copy.modifiers] == ["Array"]
+    np.testing.assert_allclose(stored(copy.data), shown, atol=1e-6)
+    assert [modifier.name for modifier in obj.modifiers] == ["Grab", "Bend", "Array"]
+    assert not obj.modifiers["Bend"].use_apply_on_spline
+    np.testing.assert_array_equal(evaluated(obj), shown)
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
+
+
+def test_a_curve_that_was_deformed_after_it_was_baked_is_refused_but_cleared():
+    obj = add_trefoil()
+    before = stored(obj.data)
+    bpy.ops.curve.mobius_flow_relax(max_iterations=2)
+    obj.modifiers.new("Wave", "WAVE")
+    bpy.context.view_layer.update()
+    assert "'Wave'" in refused()
+    assert bpy.ops.curve.mobius_flow_clear() == {"FINISHED"}
+    np.testing.assert_array_equal(stored(obj.data), before)
