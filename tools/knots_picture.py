@@ -15,7 +15,7 @@ from PIL import Image
 TARGET = Path(__file__).resolve().parents[1] / "docs" / "pictures" / "knots.png"
 KNOTS = ["3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", "7_4", "7_7", "8_5", "8_18", "8_19"]
 LINKS = ["L2a1", "L4a1", "L5a1", "L6a4"]
-COLUMNS, WIDTH, HEIGHT = 8, 1120, 300
+COLUMNS, WIDTH, HEIGHT = 8, 1000, 268
 STEP = 2.3  # from one knot to the next; each is 2 wide
 THICKNESS = 0.11
 COLORS = 96  # of the file, which stays small that way
@@ -35,7 +35,7 @@ def main() -> int:
     floor = build(scene, Stage(np.eye(3), middle, 0.6 * width))
     floor.location = middle - [0.0, 0.0, 1.0]
     add_camera(scene, middle, width)
-    use_cycles(scene, WIDTH, HEIGHT, samples=48)
+    use_cycles(scene, WIDTH, HEIGHT, samples=24)
     scene.render.image_settings.color_mode = "RGB"
     scene.render.filepath = str(TARGET)
     bpy.ops.render.render(write_still=True)

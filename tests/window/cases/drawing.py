@@ -1,4 +1,4 @@
-"""A flat scribble becomes a knot, whose crossings can be changed in the panel of the last operation; undo takes it back."""
+"""A flat scribble becomes a knot whose crossings can be changed, in one step of undo."""
 
 import bpy
 import numpy as np
