@@ -12,9 +12,9 @@ def case() -> Steps:
     clear()
     add_scribble()
     alone()
-    view().spaces.active.show_region_hud = True
     yield from open_sidebar()
     with here():
+        view().spaces.active.show_region_hud = True
         bpy.ops.view3d.view_axis(type="TOP")
         bpy.ops.ed.undo_push(message="Scribble")
     yield from look()

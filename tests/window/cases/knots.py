@@ -37,7 +37,7 @@ def side_by_side() -> Steps:
         bpy.ops.view3d.view_axis(type="TOP")
         bpy.ops.view3d.view_selected()
         bpy.ops.object.select_all(action="DESELECT")
-    view().spaces.active.shading.color_type = "MATERIAL"
+        view().spaces.active.shading.color_type = "MATERIAL"
     yield from picture("knots-2-sixteen")
     clear()
     with here():
