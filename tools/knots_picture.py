@@ -18,7 +18,7 @@ LINKS = ["L2a1", "L4a1", "L5a1", "L6a4"]
 COLUMNS, WIDTH, HEIGHT = 8, 1000, 268
 STEP = 2.3  # from one knot to the next; each is 2 wide
 THICKNESS = 0.11
-COLORS = 96  # of the file, which stays small that way
+COLORS = 200  # of the file, which stays small that way
 
 
 def main() -> int:
@@ -39,7 +39,11 @@ def main() -> int:
     scene.render.image_settings.color_mode = "RGB"
     scene.render.filepath = str(TARGET)
     bpy.ops.render.render(write_still=True)
-    palette = Image.open(TARGET).convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
+    palette = (
+        Image.open(TARGET)
+        .convert("RGB")
+        .quantize(COLORS, Image.Quantize.MAXCOVERAGE, kmeans=8, dither=Image.Dither.NONE)
+    )
     palette.save(TARGET, optimize=True)
     return 0
 

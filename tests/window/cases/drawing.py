@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from cases.knots import alone
+from cases.knots import alone, together
 from hands import button, here, key, open_sidebar, view, window
 from scene import clear, look, obj
 
@@ -31,6 +31,7 @@ def case() -> Steps:
         bpy.ops.curve.mobius_flow_draw_knot(change=change, number=True)
     assert obj().name == "Drawn Unknot"
     yield from picture("drawing-3-changed", differs_from="drawing-2-knot")
+    together()
 
 
 def add_scribble() -> None:

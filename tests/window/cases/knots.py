@@ -2,7 +2,7 @@
 
 import bpy
 from case import Steps, picture, until
-from hands import addon, button, here, key, move, open_sidebar, view, window
+from hands import addon, button, here, key, move, open_sidebar, region, view, window
 from scene import clear, look, obj
 
 SIXTEEN = [f"{crossings}_{k}" for crossings, k in ((3, 1), (4, 1), (5, 1), (5, 2), (6, 1), (6, 2), (6, 3), (7, 4))]
@@ -17,6 +17,7 @@ def case() -> Steps:
     yield from side_by_side()
     yield from gallery()
     yield from search()
+    together()
 
 
 def menu() -> Steps:
@@ -50,6 +51,7 @@ def gallery() -> Steps:
     yield from open_sidebar()
     settings = window().scene.mobius_flow_knots
     settings.group, settings.knot = "LINKS", "L6a4"
+    region("UI").tag_redraw()
     yield from picture("knots-3-gallery")
     yield from button("curve.mobius_flow_pick_knot")
     yield from until(lambda: obj() is not None, "Borromean rings")
@@ -63,11 +65,22 @@ def gallery() -> Steps:
 def alone() -> None:
     """Leave the gallery alone in the sidebar, and open it, so that it is found at once."""
     knots = addon("sidebar.knots").VIEW3D_PT_mobius_flow_knots
-    for cls in reversed(addon("sidebar").CLASSES):
-        if issubclass(cls, bpy.types.Panel):
-            bpy.utils.unregister_class(cls)
+    for cls in reversed(panels()):
+        bpy.utils.unregister_class(cls)
     knots.bl_options = set()
     bpy.utils.register_class(knots)
+
+
+def together() -> None:
+    """Bring the others back: Blender unregisters all of them when it quits."""
+    bpy.utils.unregister_class(addon("sidebar.knots").VIEW3D_PT_mobius_flow_knots)
+    for cls in panels():
+        bpy.utils.register_class(cls)
+
+
+def panels() -> list[type]:
+    """The panels of the sidebar."""
+    return [cls for cls in addon("sidebar").CLASSES if issubclass(cls, bpy.types.Panel)]
 
 
 def search() -> Steps:
