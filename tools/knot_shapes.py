@@ -26,7 +26,7 @@ from scipy.spatial import cKDTree
 
 KEPT = Path(__file__).resolve().parents[1] / "build" / "knot_shapes"
 VERTICES = range(100, 400, 20)  # of closed braids: the first number that follows their strands
-ITERATIONS = 160  # of L-BFGS: afterwards little is seen to move
+ITERATIONS = 100  # of L-BFGS: afterwards little is seen to move
 MODES = range(1, 60)
 TOLERANCE = 0.004  # of the half-width, between relaxed and stored curve: far less than strands are apart
 VIEWS = 400

@@ -5,6 +5,7 @@ from bpy.props import BoolProperty, FloatProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from ...core import Curve, MobiusFlowError, OptionError
+from ...core.types import FloatArray
 from ..curves import bevel
 from ..curves.colors import color_components
 from ..curves.exchange import new_curve_data, write_points
@@ -57,7 +58,7 @@ class AddsKnot(AddObjectHelper):
         object_data_add(context, self.curve_data(name, scale * (curve.vertices - 0.5 * (low + high)), curve), self)
         return {"FINISHED"}
 
-    def curve_data(self, name: str, vertices: "object", curve: Curve) -> bpy.types.Curve:
+    def curve_data(self, name: str, vertices: FloatArray, curve: Curve) -> bpy.types.Curve:
         """Make curve data of a curve with these vertices, shape (n, 3), its tube and its colours."""
         data = new_curve_data(name, curve.mesh.component_sizes)
         self.fit_bevel = self._fits()  # so that doing it again does the same

@@ -1,8 +1,11 @@
 """The operator that lifts drawings into knots."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, BoolVectorProperty, FloatProperty, IntProperty
+from bpy_extras.object_utils import object_data_add
 
 from ...core import Curve, MobiusFlowError
 from ...core.types import FloatArray
@@ -11,7 +14,12 @@ from ..engine.drawing_plane import DrawingPlane
 from ..live.checks import selected_curves
 from .adding import AddsKnot
 
+if TYPE_CHECKING:
+    from ...core.knots import Drawing
+
 _SWITCHES = 32  # Blender's longest array of switches
+_NAMED = 10  # crossings of the largest knots that have a name
+_TELLING = 7  # crossings up to which no composite knot has the Alexander polynomial of one that is named
 
 
 class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N801
@@ -74,24 +82,19 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
         self.report({"INFO"}, told)
         return {"FINISHED"}
 
-    def _lifted(self, drawing: "object") -> Curve:
+    def _lifted(self, drawing: "Drawing") -> Curve:
         count = min(len(drawing.crossings), _SWITCHES)
         lifted = drawing.lifted([k + 1 for k in range(count) if self.change[k]])
         return lifted.with_vertices(lifted.vertices * [1.0, 1.0, -self.height if self.mirror else self.height])
 
     def _add(
-        self, context: bpy.types.Context, name: str, plane: DrawingPlane, drawing: "object", lifted: Curve
+        self, context: bpy.types.Context, name: str, plane: DrawingPlane, drawing: "Drawing", lifted: Curve
     ) -> None:
         """Add the knot, and the numbers as its children."""
         vertices = plane.raised(lifted.vertices)
         middle = vertices.mean(axis=0)
-        obj = bpy.data.objects.new(name, self.curve_data(name, vertices - middle, lifted))
-        obj.location = middle
-        context.collection.objects.link(obj)
-        for other in context.selected_objects:
-            other.select_set(False)
-        obj.select_set(True)
-        context.view_layer.objects.active = obj
+        obj = object_data_add(context, self.curve_data(name, vertices - middle, lifted))
+        obj.location, obj.rotation_euler = middle, (0.0, 0.0, 0.0)
         if self.number:
             places = np.column_stack([drawing.crossings, np.zeros(len(drawing.crossings))])
             _mark(context.collection, obj, plane.raised(places) - middle, 0.03 * float(np.ptp(vertices)))
@@ -124,13 +127,14 @@ def _words(curve: Curve, crossings: int) -> tuple[str, str]:
     """A name for a drawn knot, and what can be said of it."""
     from ...core.knots.recognition import names_alike
 
-    known = names_alike(curve, crossings) if crossings <= 10 else []
+    known = names_alike(curve, crossings) if crossings <= _NAMED else []
     told = f"{crossings} crossings" if crossings != 1 else "1 crossing"
+    hedge = ", if it is prime" if crossings > _TELLING else ""
     if known == ["0_1"]:
         return "Drawn Unknot", f"{told}: it is not knotted"
     if len(known) == 1:
-        return f"Drawn {known[0]}", f"{told}: {known[0]} or its mirror image, if it is prime"
-    return "Drawn Knot", f"{told}: one of {', '.join(known)}, if it is prime" if known else told
+        return f"Drawn {known[0]}", f"{told}: {known[0]} or its mirror image{hedge}"
+    return "Drawn Knot", f"{told}: one of {', '.join(known)}{hedge}" if known else told
 
 
 def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: FloatArray, size: float) -> None:

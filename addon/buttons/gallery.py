@@ -1,7 +1,5 @@
 """What is picked in the gallery of knots: settings of the scene."""
 
-import zlib
-
 import bpy
 from bpy.props import BoolProperty, EnumProperty, PointerProperty
 
@@ -16,15 +14,16 @@ def _knots(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> li
     chosen = settings.group
     if chosen not in _items:
         _items[chosen] = [
-            (name, label, f"Knot {label}" if chosen != "LINKS" else f"Link {label}", icons.icon(name), _number(name))
-            for name, label in labels().items()
+            (name, label, f"Knot {label}" if chosen != "LINKS" else f"Link {label}", icons.icon(name), number)
+            for number, (name, label) in enumerate(labels().items())
             if group(name) == chosen
         ]
     return _items[chosen]
 
 
-def _number(name: str) -> int:
-    return zlib.crc32(name.encode()) & 0x7FFFFFFF
+def _show_first(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Pick the first knot of another group: the one that was picked is not shown there."""
+    settings.knot = next(name for name in labels() if group(name) == settings.group)
 
 
 class MobiusFlowKnots(bpy.types.PropertyGroup):
@@ -35,6 +34,7 @@ class MobiusFlowKnots(bpy.types.PropertyGroup):
         description="Which knots are shown",
         items=[(key, title, description) for key, (title, description) in GROUPS.items()],
         default="FEW",
+        update=_show_first,
     )
     knot: EnumProperty(name="Knot", description="Knot to add", items=_knots)
     mirror: BoolProperty(name="Mirror", description="Add the mirror image", default=False)

@@ -80,6 +80,7 @@ def _drawn(data: "bpy.types.Curve") -> list[Frame]:
 
 def _strip(data: "bpy.types.Curve") -> None:
     """Leave nothing but the line itself."""
+    data.dimensions = "3D"  # flat curves would be filled
     data.bevel_mode, data.bevel_object, data.taper_object = "ROUND", None, None
     data.bevel_depth = data.extrude = data.offset = 0.0
     data.bevel_factor_start, data.bevel_factor_end = 0.0, 1.0

@@ -18,7 +18,7 @@ COLORS: Sequence[tuple[float, float, float]] = (
 
 _RADIUS, _RIM = 0.075, 0.035  # of the tube and of the dark rim that sets it off from what is behind; half-widths
 _FILL = 0.88  # of the picture's width
-_STEP = 0.25  # of the radius, from one ball of the tube to the next
+_STEP = 0.3  # of the radius, from one ball of the tube to the next
 _BEHIND = 2.5  # of the radius: a rim hides what is so far behind it
 _LIGHT = np.array([-0.35, 0.5, 0.79])
 _AMBIENT = 0.35

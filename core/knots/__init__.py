@@ -2,8 +2,8 @@
 
 from .closures import braid_closure
 from .contacts import rope, spiral
+from .drawings import Drawing
 from .lattice import lattice_closure
-from .lifting import Drawing
 from .lissajous import lissajous_knot
 from .names import UnknownKnotError, braid_word, knot, knot_names
 from .planar import diagram_knot

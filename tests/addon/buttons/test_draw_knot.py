@@ -87,6 +87,14 @@ def test_smooth_splines_are_drawings_too():
     check_embedded(Curve(points))
 
 
+def test_filled_curves_are_drawings_too():
+    """Blender's 2D curves are filled, and drawn as faces."""
+    obj = add_curve([scribble(n=12)], kind="NURBS")
+    obj.data.dimensions = "2D"
+    assert lifted()[0].name == "Drawn 3_1"
+    assert obj.data.dimensions == "2D"
+
+
 def test_crossings_are_numbered():
     add_curve([scribble()])
     obj, _ = lifted(number=True)

@@ -71,9 +71,11 @@ def test_what_is_none_is_refused(options):
 
 def test_the_gallery_has_every_knot_in_one_group():
     settings = bpy.context.scene.mobius_flow_knots
+    assert settings.knot == "0_1"
     shown = []
     for group in GROUPS:
         settings.group = group
+        assert gallery.group(settings.knot) == group
         names = [item[0] for item in gallery._knots(settings, bpy.context)]
         assert 5 < len(names) < 90
         shown += names

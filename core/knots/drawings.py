@@ -1,0 +1,183 @@
+"""Knots from drawings: closed curves in the plane whose crossings are found and lifted into space.
+
+The lifted curve lies straight above the drawing, so it meets itself nowhere but where the drawing crosses, and there
+the two strands have different heights: it is embedded, and has the drawn crossings, by construction.
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..collision import check_embedded
+from ..curve import Curve
+from ..curve.distances import arc_distance_of_pairs
+from ..curve.refine import subdivide
+from ..errors import CurveError, Place
+from ..types import BoolArray, FloatArray, IntArray
+from .crossings import plane_crossings
+from .lifting import lifted
+
+MAX_POINTS = 20_000  # of a drawing: seconds to compare all its edges
+_CLEAR = 1e-3  # of the drawing's size: nearer crossings, or strands so near that do not cross, are unclear
+_FLATTEST = 20.0  # lengths of that distance that strands which cross may stay so near, away from the crossing
+_JITTER = 1e-9  # of the size, by which points are moved so that no strand runs exactly through a vertex of another
+_LIFT = 0.3  # height of strands above and below the plane, of the distance to the next crossing
+_HIGHEST = 0.08  # of the drawing's size
+_NEAREST = 1e-4  # of the size: vertices nearer than that to a crossing give way to it
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """Closed curves in the plane that cross themselves and each other clearly, two strands at a time.
+
+    Attributes
+    ----------
+    curve
+        The drawing, of dimension 2.
+    crossings
+        Places of the crossings, in the order in which they are come to; shape (c, 2).
+    passes
+        Edge and fraction of it, as one number, of the first and the second pass of each crossing; shape (c, 2).
+    first_over
+        Whether the first pass is the upper one if the curve goes over and under by turns, over to begin with;
+        shape (c,).
+    """
+
+    curve: Curve
+    crossings: FloatArray
+    passes: FloatArray
+    first_over: BoolArray
+
+    @classmethod
+    def of(cls, curve: Curve) -> "Drawing":
+        """Find the crossings of closed polygons in the plane.
+
+        Raises
+        ------
+        CurveError
+            If strands touch without crossing, or more than two meet; the message and its vertex say where.
+        """
+        if curve.dimension != 2:
+            raise CurveError(f"the drawing has dimension {curve.dimension}; it must lie in the plane")
+        if len(curve) > MAX_POINTS:
+            raise CurveError(f"the drawing has {len(curve)} points; at most {MAX_POINTS} are allowed")
+        if not _size(curve):
+            raise CurveError("all points of the drawing are the same; draw a closed curve")
+        generic = _jittered(curve)
+        found = plane_crossings(generic.mesh, generic.vertices)
+        passes = np.stack([edge + at for edge, at in found.ends], axis=1)
+        passes = passes[np.argsort(passes[:, 0])]
+        edge = passes[:, 0].astype(np.intp)
+        points = generic.vertices[edge] + (passes[:, 0] - edge)[:, None] * generic.edge_vectors[edge]
+        _check_clear(generic, points, edge)
+        return cls(generic, points, passes, _upper(generic, passes))
+
+    def lifted(self, changed: Collection[int] = ()) -> Curve:
+        """Lift the strands at crossings: over and under by turns, but for crossings that are changed.
+
+        Parameters
+        ----------
+        changed
+            Numbers of crossings, from 1 on, where the other strand is the upper one.
+
+        Raises
+        ------
+        CurveError
+            If there is no crossing of such a number.
+        """
+        count = len(self.crossings)
+        for number in changed:
+            if not 1 <= number <= count:
+                raise CurveError(f"there is no crossing {number}; the drawing has {count}, counted from 1")
+        over = self.first_over.copy()
+        over[[number - 1 for number in changed]] ^= True
+        heights = self._heights() * np.where(over, 1.0, -1.0)
+        at, lift = self.passes.ravel(), np.stack([heights, -heights], axis=1).ravel()
+        order = np.argsort(at)
+        parts, nearest = [], _NEAREST * _size(self.curve)
+        for part in self.curve.mesh.slices:
+            mine = order[(at[order] >= part.start) & (at[order] < part.stop)]
+            parts.append(lifted(self.curve.vertices[part], at[mine] - part.start, lift[mine], nearest))
+        curve = Curve.from_components(parts)
+        check_embedded(curve)
+        return curve
+
+    def _heights(self) -> FloatArray:
+        """Height of the strands at each crossing above and below the plane; shape (c,)."""
+        highest = np.full(len(self.crossings), _HIGHEST * _size(self.curve))
+        if len(highest) < 2:
+            return highest
+        nearest = cKDTree(self.crossings).query(self.crossings, k=2)[0][:, 1]
+        return np.minimum(highest, _LIFT * nearest)
+
+
+def _size(curve: Curve) -> float:
+    return float(np.ptp(curve.vertices, axis=0).max())
+
+
+def _jittered(curve: Curve) -> Curve:
+    noise = np.random.default_rng(20213).uniform(-1.0, 1.0, curve.vertices.shape)
+    return curve.with_vertices(curve.vertices + _JITTER * _size(curve) * noise)
+
+
+def _check_clear(curve: Curve, crossings: FloatArray, edge: IntArray) -> None:
+    """Refuse crossings that are hardly apart, and strands that are hardly apart without crossing there."""
+    clear = _CLEAR * _size(curve)
+    tree = cKDTree(crossings) if len(crossings) else None
+    if tree is not None and (pairs := tree.query_pairs(clear, output_type="ndarray")).size:
+        raise _unclear(crossings[pairs[0, 0]], int(edge[pairs[0, 0]]))
+    dense, source = _samples(curve, clear)
+    i, j = cKDTree(dense.vertices).query_pairs(clear, output_type="ndarray").T
+    apart = arc_distance_of_pairs(dense, i, j) > _FLATTEST * clear
+    i = i[apart]
+    if tree is not None and i.size:
+        i = i[tree.query(dense.vertices[i])[0] > _FLATTEST * clear]
+    if i.size:
+        raise _unclear(dense.vertices[i[0]], int(source[i[0]]))
+
+
+def _samples(curve: Curve, spacing: float) -> tuple[Curve, IntArray]:
+    """The polygon with edges no longer than ``spacing``, and the edge that each of its points is on."""
+    pieces = np.ceil(curve.edge_lengths / spacing).astype(np.intp).clip(1)
+    return subdivide(curve, pieces), np.repeat(np.arange(len(curve)), pieces)
+
+
+def _unclear(point: FloatArray, vertex: int) -> CurveError:
+    place = ", ".join(f"{x:.4g}" for x in point)
+    return CurveError(
+        f"near ({place}) strands touch without crossing clearly, or more than two meet; move one of them away",
+        Place((vertex,), tuple(map(float, point))),
+    )
+
+
+def _upper(curve: Curve, passes: FloatArray) -> BoolArray:
+    """Whether first passes are upper ones where strands go over and under by turns; shape (c,).
+
+    The plane is coloured like a chessboard; a strand goes over where it has come with a white field on its left. At a
+    crossing this holds for one strand of the two, and along the curve for every other pass, in links too.
+    """
+    upper = np.zeros(passes.shape, dtype=bool)
+    at = passes.ravel()
+    for part in curve.mesh.slices:
+        mine = np.flatnonzero((at >= part.start) & (at < part.stop))
+        if mine.size:
+            mine = mine[np.argsort(at[mine])]
+            start = part.start + 0.5 * min(float(at[mine[0]]) - part.start, 1.0)
+            upper.ravel()[mine] = (np.arange(len(mine)) + _fields_on_the_left(curve, start)) % 2 == 0
+    return np.asarray(upper[:, 0] == upper[:1, 0])  # the first crossing's first pass is an upper one
+
+
+def _fields_on_the_left(curve: Curve, at: float) -> int:
+    """Number of times that a ray from a place on the curve to its left meets the curve again."""
+    edge = int(at)
+    vector = curve.edge_vectors[edge]
+    origin = curve.vertices[edge] + (at - edge) * vector
+    along = (curve.vertices - origin) @ vector
+    left = (curve.vertices - origin) @ np.array([-vector[1], vector[0]])
+    heads = curve.mesh.heads
+    cut = (along > 0) != (along[heads] > 0)
+    cut[edge] = False
+    fraction = along[cut] / (along[cut] - along[heads][cut])
+    return int(np.count_nonzero(left[cut] + fraction * (left[heads][cut] - left[cut]) > 0))
