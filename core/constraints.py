@@ -66,7 +66,8 @@ class Constraints:
 
 def weighted_barycenter(curve: Curve, parts: Parts | None = None) -> FloatArray:
     """Σ ℓ_I (P(I↑) + P(I↓))/2, for each of p parts; shape (p·m,)."""
-    return np.concatenate([(curve.edge_lengths * own) @ curve.midpoints for own in _memberships(curve.mesh, parts)])
+    moments = np.ascontiguousarray((curve.edge_lengths[:, None] * curve.midpoints).T)  # so that sums are pairwise ones
+    return np.concatenate([np.sum(moments * own, axis=1) for own in _memberships(curve.mesh, parts)])
 
 
 def _memberships(mesh: Mesh, parts: Parts | None) -> Iterator[FloatArray]:

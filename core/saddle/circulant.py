@@ -12,9 +12,7 @@ from ..curve import Mesh
 from ..types import FloatArray
 from .fourier import ComponentTransform
 from .krylov import LinearMap
-from .symbol import Parameter
-
-LEAST = 1e-6  # of the largest value: of doubled edges alone the nearest circulant matrix is singular
+from .symbol import LEAST, Parameter
 
 
 class Circulants:

@@ -11,6 +11,7 @@ from ..types import FloatArray
 from .krylov import LinearMap
 
 FREQUENCIES = 12  # at which waves are tried, spread evenly on a logarithmic scale; more do not save an iteration
+LEAST = 1e-6  # modulated value, relative to the largest one: where edges double back it may be 0
 
 Symbol = Callable[[FloatArray], FloatArray]
 """A positive function of frequencies."""
@@ -105,4 +106,5 @@ def modulated(symbol: Symbol, tau: FloatArray, lengths: FloatArray) -> Symbol:
     nearest = np.searchsorted(ends[:-1], spacing * (np.arange(count) + 0.5))
     frequencies = 2.0 * np.pi / ends[-1] * np.arange(count // 2 + 1)
     values = rfft(autocorrelation(tau[nearest]) * irfft(symbol(frequencies), count)).real
+    values = np.maximum(values, LEAST * values.max())
     return lambda f: np.where(f < frequencies[-1], np.interp(f, frequencies, values), symbol(f))
