@@ -19,7 +19,7 @@ from .descent.step import leg
 from .driver import RelaxOptions
 from .driver.prepare import prepared_start, start_problem
 from .driver.run import Run
-from .driver.solver import Solver
+from .driver.solver import Solver, max_vertices
 from .energies.near_pairs import near_pairs
 from .errors import OptionError
 from .knots import torus_knot
@@ -130,7 +130,7 @@ def fixed_mesh(sizes: Sequence[int], options: RelaxOptions) -> RelaxOptions:
         raise OptionError(f"sizes has {twice} twice; give every number of vertices once")
     if options.vertices is not None or options.mesh not in ("auto", "fixed"):
         raise OptionError("the speed is that of fixed meshes; give sizes in place of vertices or another mesh")
-    most = Solver(options, max(sizes)).max_vertices
+    most = max_vertices(options)
     if max(sizes) > most:
         raise OptionError(f"sizes has {max(sizes)!s:.40}; {options.method} has room and time for {most} vertices")
     return replace(options, mesh="fixed")
@@ -159,8 +159,8 @@ def exponents(rows: Sequence[Row]) -> dict[str, float]:
 
 
 def _row(curve: Curve, options: RelaxOptions) -> Row:
-    hierarchical = Solver(options, len(curve)).hierarchical
     run = _started(curve, options)
+    hierarchical = Solver.of_problem(options, run.problem).hierarchical
     start, step = run.point, run.step()
     if isinstance(step, NoStep):
         raise OptionError(f"method {options.method} has no step to measure: {step.reason}")

@@ -17,7 +17,7 @@ from ..errors import CurveError, OptionError
 from ..types import FloatArray
 from ..units import Units, check_units
 from .options import RelaxOptions
-from .solver import Solver
+from .solver import Solver, max_vertices
 
 EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
 
@@ -30,7 +30,7 @@ def check_size(curve: Curve, options: RelaxOptions) -> None:
     CurveError, OptionError
         If the curve has too many vertices, or too many are asked for.
     """
-    most, method = Solver(options, max(len(curve), options.vertices or 0)).max_vertices, options.method
+    most, method = max_vertices(options), options.method
     if options.vertices is not None and options.vertices > most:
         raise OptionError(f"vertices is {options.vertices!s:.40}; {method} has room and time for {most}")
     if len(curve) > most:
@@ -92,7 +92,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
     constraints = Constraints(_target_lengths(start, options, units.scale), weighted_barycenter(start))
-    solver = Solver(options, len(curve))
+    solver = Solver.for_curve(options, curve)
     objective = Objective.of(solver.energy)
     second_order = method.rule.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:

@@ -68,7 +68,7 @@ class Run:
         """The present method's next step, ending at a point of the present problem."""
         point = self.point
         if self.method.name != self.options.method:
-            metric = Solver(self.options, len(point.vertices)).of_metric(self.method.metric)
+            metric = Solver.of_problem(self.options, self.problem).of_metric(self.method.metric)
             point = point.within(replace(self.problem, metric=metric))
         try:
             step, self._memory = self.method.rule.step(point, self._memory)

@@ -1,41 +1,57 @@
 """Dense or hierarchical: how sums over all pairs of edges are made, and what is solved with them."""
 
+from functools import lru_cache
+
 from ..checks import named
-from ..descent import METHODS, Method
+from ..curve import Curve
+from ..descent import METHODS, Method, Problem
 from ..energies import ENERGIES, Energy, MoebiusEnergy
 from ..errors import OptionError
 from ..hierarchy import HierarchicalMoebiusEnergy, compressed
+from ..hierarchy.inner_product import block_count
 from ..hierarchy.metric import MAX_VERTICES
 from ..metrics import METRICS, Metric
 from ..quadrature import Rule
 from ..saddle.iterative import Tolerances
 from .options import RelaxOptions
 
-# vertices: on smooth curves hierarchical steps are faster from 1,100 on, on some tangles only from 3,500
-DENSE_UP_TO = 2500
+# vertices up to which dense iterations are faster on any curve, and from which on hierarchical ones are
+DENSE_UP_TO, HIERARCHICAL_FROM = 1000, 5000
+# Between these it is what is counted: all n² pairs of edges, or the blocks of the inner product.  Of these there are as
+# many as conjugate gradients have work with, for they are many where strands are near and iterations are too.
+PAIRS_PER_BLOCK = 1700  # that take as long as one of them, by `bench speed` on knots and tangles
 
 
 class Solver:
-    """The energy and the metrics of a relaxation of a curve with so many vertices.
+    """The energy and the metrics of a relaxation.
 
-    Attributes
+    Parameters
     ----------
+    options
+        What is asked for.
     hierarchical
         Whether distant pairs of edges count cluster by cluster.
-
-    Raises
-    ------
-    OptionError
-        If an option names something unknown, or does not go together with the solver that is asked for.
     """
 
-    def __init__(self, options: RelaxOptions, vertices: int) -> None:
-        self._options, self._method = options, named(METHODS, "method", options.method)
-        obstacle = None if options.solver == "dense" else self._obstacle()
-        if obstacle is not None and options.solver == "hierarchical":
-            raise OptionError(f"{obstacle}; solver={options.solver!r} does without: leave it out")
-        wanted = options.solver == "hierarchical" or vertices > DENSE_UP_TO
-        self.hierarchical = options.solver != "dense" and obstacle is None and wanted
+    def __init__(self, options: RelaxOptions, hierarchical: bool) -> None:
+        self._options, self.hierarchical = options, hierarchical
+        self._method = named(METHODS, "method", options.method)
+
+    @classmethod
+    def for_curve(cls, options: RelaxOptions, curve: Curve) -> "Solver":
+        """That with which a curve is relaxed: the one asked for, or the faster one.
+
+        Raises
+        ------
+        OptionError
+            If an option names something unknown, or does not go together with the solver that is asked for.
+        """
+        return cls(options, _may_be_hierarchical(options) and (options.solver == "hierarchical" or _pays(curve)))
+
+    @classmethod
+    def of_problem(cls, options: RelaxOptions, problem: Problem) -> "Solver":
+        """That with which a problem is solved already."""
+        return cls(options, isinstance(problem.objective.energy, HierarchicalMoebiusEnergy))
 
     @property
     def energy(self) -> Energy:
@@ -64,26 +80,44 @@ class Solver:
         metric = metric.with_rule(_energy(self._options).rule if points is None else Rule.gauss(points))
         return compressed(metric, Tolerances.of_norms(self._options.accuracy)) if self.hierarchical else metric
 
-    @property
-    def max_vertices(self) -> int:
-        """Number of vertices for which there is room and time."""
-        if self.hierarchical:
-            return MAX_VERTICES
-        metrics = (_metric(self._method, self._options), *self._method.rule.other_metrics)
-        return min(metric.most_vertices for metric in metrics)
 
-    def _obstacle(self) -> str | None:
-        """What needs dense matrices."""
-        options, rule = self._options, self._method.rule
-        if rule.second_order or options.stability or options.escape_saddles:
-            return f"{self._method.name} with these options needs a second derivative"
-        if rule.other_metrics:
-            return f"{self._method.name} needs a sum of metrics"
-        if not isinstance(_energy(options), MoebiusEnergy):
-            return f"energy {_energy(options).name!r} needs all pairs of edges one by one"
-        if options.quadrature_points not in (None, 1):
-            return f"{options.quadrature_points} Gauss points need all pairs of edges one by one"
-        return None
+def max_vertices(options: RelaxOptions) -> int:
+    """Number of vertices for which there is room and time; raises as `Solver.for_curve` does."""
+    if _may_be_hierarchical(options):
+        return MAX_VERTICES
+    method = named(METHODS, "method", options.method)
+    metrics = (_metric(method, options), *method.rule.other_metrics)
+    return min(metric.most_vertices for metric in metrics)
+
+
+def _may_be_hierarchical(options: RelaxOptions) -> bool:
+    obstacle = None if options.solver == "dense" else _obstacle(options, named(METHODS, "method", options.method))
+    if obstacle is not None and options.solver == "hierarchical":
+        raise OptionError(f"{obstacle}; solver={options.solver!r} does without: leave it out")
+    return options.solver != "dense" and obstacle is None
+
+
+@lru_cache(maxsize=1)
+def _pays(curve: Curve) -> bool:
+    """Whether hierarchical iterations are likely to be faster, from what they count: the same on all machines."""
+    n = len(curve)
+    if not DENSE_UP_TO < n <= HIERARCHICAL_FROM:
+        return n > HIERARCHICAL_FROM
+    return PAIRS_PER_BLOCK * block_count(curve) < n * n
+
+
+def _obstacle(options: RelaxOptions, method: Method) -> str | None:
+    """What needs dense matrices."""
+    rule = method.rule
+    if rule.second_order or options.stability or options.escape_saddles:
+        return f"{method.name} with these options needs a second derivative"
+    if rule.other_metrics:
+        return f"{method.name} needs a sum of metrics"
+    if not isinstance(_energy(options), MoebiusEnergy):
+        return f"energy {_energy(options).name!r} needs all pairs of edges one by one"
+    if options.quadrature_points not in (None, 1):
+        return f"{options.quadrature_points} Gauss points need all pairs of edges one by one"
+    return None
 
 
 def _energy(options: RelaxOptions) -> Energy:

@@ -30,7 +30,7 @@ from .running_sum import RunningSum
 
 SEPARATION = 0.5  # θ of the block list
 LEAF = 4
-EVEN_RATIO = 10.0  # of the longest edge of a component to its shortest, up to which Fourier transforms are faster
+EVEN_RATIO = 20.0  # of the longest edge of a component to its shortest, up to which Fourier transforms are faster
 SOLVED = 1e-10  # relative error of A⁻¹ f
 MAX_ITERATIONS = 1000
 
@@ -127,6 +127,11 @@ def moebius_inner_product(curve: Curve, tolerances: Tolerances | None = None) ->
         forms.of_components(near.density, far.density),
         tolerances or Tolerances(),
     )
+
+
+def block_count(curve: Curve) -> int:
+    """Number of blocks of these inner products."""
+    return len(BlockList.of(curve, SEPARATION, LEAF).first)
 
 
 def fractional_inner_product(curve: Curve, tolerances: Tolerances | None = None) -> CompressedInnerProduct:

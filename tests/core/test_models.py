@@ -6,10 +6,11 @@ from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.constraints import ConstraintDerivative
 from mobius_flow.core.curve import refine
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
-from mobius_flow.core.knots import hard_unknot, lattice_closure, unknot_word
+from mobius_flow.core.knots import hard_unknot, knot, lattice_closure, unknot_word
 from mobius_flow.core.metrics import MoebiusMetric
 from mobius_flow.core.saddle.circulant import Circulants
 from mobius_flow.core.saddle.fourier import ComponentTransform
+from mobius_flow.core.saddle.krylov import conjugate_gradients, relative
 from mobius_flow.core.saddle.resolvent import Resolvents
 from mobius_flow.core.saddle.symbol import Parameter
 from scipy.linalg import circulant, eigvalsh
@@ -129,3 +130,22 @@ def test_many_components_move_as_they_should() -> None:
     eigenvalues = eigvalsh(coupling, restricted)
     assert eigenvalues[0] > 0.5
     assert eigenvalues[-1] < 1.01
+
+
+@pytest.mark.parametrize(
+    ("curve", "transforms"), [(refine(knot("ochiai-3"), 1000), True), (graded_trefoil(1000, 20.0), False)]
+)
+def test_transforms_are_taken_up_to_the_ratio_where_they_take_longer(curve: Curve, transforms: bool) -> None:
+    """On a tangle whose edges differ by 12:1 either model takes a hundred iterations, resolvents three times longer."""
+    inner, expected = moebius_inner_product(curve), Circulants if transforms else Resolvents
+    products = 0
+
+    def apply(u: np.ndarray) -> np.ndarray:
+        nonlocal products
+        products += 1
+        return inner.apply(u)
+
+    assert isinstance(inner.model._fine, expected)
+    load = np.sin(3.0 * curve.vertices) * curve.edge_lengths[:, None]
+    conjugate_gradients(apply, inner.model.solve, load, relative(1e-2), 500)
+    assert products < (100 if transforms else 15)

@@ -1,10 +1,14 @@
 """The options solver and accuracy: what they promise, and what they do not go together with."""
 
 import pytest
-from mobius_flow.core import Iterate, Objective, OptionError, RelaxOptions, relax
+from mobius_flow.core import Curve, Iterate, Objective, OptionError, RelaxOptions, relax
+from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
+from mobius_flow.core.driver.solver import DENSE_UP_TO, HIERARCHICAL_FROM, Solver
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
+from mobius_flow.core.knots import knot
+from mobius_flow.core.speed import bent_trefoil
 from shapes import torus_trefoil
 
 
@@ -44,3 +48,46 @@ def test_a_search_compares_energies_by_the_block_list_of_its_start() -> None:
     trial = run.problem.at(run.point.vertices * [1.0, 1.0, 0.95])
     afresh = Objective.of(HierarchicalMoebiusEnergy()).value(trial.curve)
     assert 0.0 < abs(trial.energy - afresh) < 1e-6 * afresh
+
+
+def is_hierarchical(curve: Curve, **options: object) -> bool:
+    """By what a problem is solved that starts from a curve."""
+    wanted = RelaxOptions(**options)  # type: ignore[arg-type]
+    problem = start_problem(curve, wanted)
+    chosen = isinstance(problem.objective.energy, HierarchicalMoebiusEnergy)
+    assert Solver.of_problem(wanted, problem).hierarchical == chosen
+    return chosen
+
+
+@pytest.mark.parametrize(
+    ("name", "vertices", "faster"),
+    [
+        ("bent", 1300, False),
+        ("bent", 2000, True),
+        ("8_19", 2000, False),
+        ("8_19", 3000, True),
+        ("ochiai-1", 2400, False),
+        ("ochiai-1", 3500, True),
+        ("freedman-he-wang", 2368, False),
+        ("freedman-he-wang", 3500, False),
+    ],
+)
+def test_the_solver_is_the_one_that_was_measured_to_be_faster(name: str, vertices: int, faster: bool) -> None:
+    """Processor seconds of dense iterations against hierarchical ones; the curve decides, not only its size."""
+    curve = bent_trefoil(vertices) if name == "bent" else refine(knot(name), vertices)
+    assert len(curve) == vertices
+    assert is_hierarchical(curve) is faster
+    assert not is_hierarchical(curve, solver="dense")
+    assert is_hierarchical(curve, solver="hierarchical")
+    assert not is_hierarchical(curve, method="trust-region")
+
+
+def test_small_and_large_curves_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    def counted(curve: Curve) -> int:
+        raise AssertionError("blocks are counted")
+
+    monkeypatch.setattr("mobius_flow.core.driver.solver.block_count", counted)
+    assert not is_hierarchical(torus_trefoil(DENSE_UP_TO))
+    assert is_hierarchical(torus_trefoil(HIERARCHICAL_FROM + 1))
+    with pytest.raises(AssertionError):
+        is_hierarchical(torus_trefoil(DENSE_UP_TO + 1))

@@ -38,5 +38,5 @@ class Fallback:
     def _may_help(self) -> bool:
         run = self._run
         count = len(run.point.vertices)
-        fits = count <= Solver(run.options, count).of_metric(HELPER.metric).most_vertices
+        fits = count <= Solver.of_problem(run.options, run.problem).of_metric(HELPER.metric).most_vertices
         return fits and run.problem.geometry.prescribes and self._asked_for is not HELPER
