@@ -14,6 +14,7 @@ from ..curves.outputs import put_beside
 from ..curves.recorded import Recorded, in_world
 from ..curves.smooth_curve import smooth_objects
 from ..curves.units import length
+from ..engine.in_between import places_between
 from ..engine.smooth_fit import FEWEST, SmoothFit
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
@@ -49,7 +50,7 @@ class _Output:
         context.view_layer.update()  # a script may have moved an object just before
         objects = selected_curves(context)
         try:
-            recorded = [Recorded.of(obj) for obj in objects]
+            recorded = [self.read(obj) for obj in objects]
             link = in_world(objects, recorded, [each.points[-1] for each in recorded])
             check_embedded(link)
         except MobiusFlowError as error:
@@ -58,6 +59,10 @@ class _Output:
         for made, obj in zip(self.make(objects, recorded, link), objects, strict=True):
             put_beside(made, obj, self.hide_curve)
         return {"FINISHED"}
+
+    def read(self, obj: bpy.types.Object) -> Recorded:
+        """Read the shapes of a curve."""
+        return Recorded.of(obj)
 
     def make(
         self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
@@ -97,6 +102,11 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         ),
         **_Output.__annotations__,
     }
+
+    def read(self, obj: bpy.types.Object) -> Recorded:
+        """Read the shapes of a curve, more of them where it turns far from key to key."""
+        recorded = Recorded.of(obj)
+        return recorded.at(places_between(recorded.points, recorded.mesh))
 
     def make(
         self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
