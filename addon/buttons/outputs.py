@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ...core import Curve, MobiusFlowError
+from ...core import Curve, MobiusFlowError, OptionError
 from ...core.collision import check_embedded
 from ..curves import bevel, tube_mesh
 from ..curves.exchange import stretch
@@ -23,6 +23,7 @@ from ..pictures.materials import vertex_colours
 
 _PLAIN = "NONE"
 _MAX_POINTS = 10_000
+_MAX_RADIUS = 1e30  # Blender computes with squares of such numbers
 
 
 class _Output:
@@ -50,6 +51,7 @@ class _Output:
         context.view_layer.update()  # a script may have moved an object just before
         objects = selected_curves(context)
         try:
+            self.check_values()
             recorded = [self.read(obj) for obj in objects]
             link = in_world(objects, recorded, [each.points[-1] for each in recorded])
             check_embedded(link)
@@ -59,6 +61,9 @@ class _Output:
         for made, obj in zip(self.make(objects, recorded, link), objects, strict=True):
             put_beside(made, obj, self.hide_curve)
         return {"FINISHED"}
+
+    def check_values(self) -> None:
+        """Raise an OptionError for what Blender lets through but is no number."""
 
     def read(self, obj: bpy.types.Object) -> Recorded:
         """Read the shapes of a curve."""
@@ -102,6 +107,11 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         ),
         **_Output.__annotations__,
     }
+
+    def check_values(self) -> None:
+        """Check the radius."""
+        if not self.radius <= _MAX_RADIUS:
+            raise OptionError(f"Radius is {self.radius:g}; it must be a number up to {_MAX_RADIUS:g}")
 
     def read(self, obj: bpy.types.Object) -> Recorded:
         """Read the shapes of a curve, more of them where it turns far from key to key."""

@@ -101,6 +101,14 @@ def colours(mesh):
     return found[:, :3]
 
 
+@pytest.mark.parametrize("suffix", EXPORTERS)
+def test_usd_alone_keeps_attributes(suffix, moving, tmp_path):
+    expected = {"component", "strand_distance", "energy_density"}
+    assert expected < set(bpy.context.object.data.attributes.keys())
+    (tube,) = through(suffix, tmp_path)
+    assert expected & set(tube.data.attributes.keys()) == (expected if suffix == "usdc" else set())
+
+
 def test_fbx_as_it_is_set_by_default_has_no_motion(moving, tmp_path):
     """The tooltip says what to turn off."""
     name, options, importer, how = EXPORTERS["fbx"]

@@ -259,6 +259,15 @@ def test_it_has_the_bevel_and_the_materials():
     assert [spline.material_index for spline in data.splines] == [0, 1]
 
 
+@pytest.mark.parametrize("radius", [float("nan"), float("inf")])
+def test_a_radius_is_a_number(radius):
+    add_trefoil()
+    before = contents()
+    with pytest.raises(RuntimeError, match=r"Radius is .*; it must be a number up to 1e"):
+        bpy.ops.curve.mobius_flow_tube_mesh(radius=radius)
+    assert contents() == before
+
+
 def test_curves_that_touch_are_refused():
     vertices = torus_trefoil(30).vertices.copy()
     vertices[11] = vertices[1]
