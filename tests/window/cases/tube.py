@@ -2,7 +2,7 @@
 
 import bpy
 from case import Steps, picture, until
-from hands import below, button, click, here, key, region, view, window
+from hands import below, button, click, here, key, move, region, view, window
 from scene import is_, look, obj, ready
 
 
@@ -24,6 +24,7 @@ def case() -> Steps:
     yield from until(lambda: len(obj().data.materials) == 2, "two materials")
     view().spaces.active.shading.type = "MATERIAL"
     yield from look()
+    yield from rest()
     yield from picture("tube-2-fitted-and-colored")
 
     curve = obj().name
@@ -37,6 +38,7 @@ def case() -> Steps:
     with here():
         bpy.ops.curve.mobius_flow_tube_mesh("INVOKE_DEFAULT", True, color="strand_distance")
     yield from look()
+    yield from rest()
     yield from picture("tube-4-distance", differs_from="tube-3-mesh")
     yield from key("Z", ctrl=True)
     yield from until(lambda: obj() and obj().type == "CURVE", "undo again")
@@ -44,7 +46,16 @@ def case() -> Steps:
     yield from button("curve.mobius_flow_smooth_curve")
     yield from until(lambda: obj().name == f"{curve} Smooth", "the smooth curve")
     assert {spline.type for spline in obj().data.splines} == {"BEZIER"}
+    yield from rest()
     yield from picture("tube-5-smooth")
+
+
+def rest() -> Steps:
+    """Take the mouse away from the buttons, and let shaders be compiled."""
+    main = region("WINDOW")
+    yield from move(main.x + main.width // 2, main.y + 40)
+    for _ in range(150):
+        yield
 
 
 def opened() -> Steps:
