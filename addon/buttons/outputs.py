@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ...core import Curve
+from ...core import Curve, OptionError
 from ...core.collision import check_embedded
 from ..curves import bevel, tube_mesh
 from ..curves.exchange import stretch
@@ -14,6 +14,7 @@ from ..curves.outputs import put_beside
 from ..curves.recorded import Recorded, in_world
 from ..curves.smooth_curve import smooth_objects
 from ..curves.units import length
+from ..engine.in_between import places_between
 from ..engine.smooth_fit import FEWEST, SmoothFit
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
@@ -24,6 +25,7 @@ from .refusing import Refusing
 
 _PLAIN = "NONE"
 _MAX_POINTS = 10_000
+_MAX_RADIUS = 1e30  # Blender computes with squares of such numbers
 
 
 class _Output(Refusing):
@@ -45,11 +47,19 @@ class _Output(Refusing):
     def act(self, context: bpy.types.Context) -> None:
         """Make all of them before any is shown."""
         objects = selected_curves(context)
-        recorded = [Recorded.of(obj) for obj in objects]
+        self.check_values()
+        recorded = [self.read(obj) for obj in objects]
         link = in_world(objects, recorded, [each.points[-1] for each in recorded])
         check_embedded(link)
         for made, obj in zip(self.make(objects, recorded, link), objects, strict=True):
             put_beside(made, obj, self.hide_curve)
+
+    def check_values(self) -> None:
+        """Raise an OptionError for what Blender lets through but is no number."""
+
+    def read(self, obj: bpy.types.Object) -> Recorded:
+        """Read the shapes of a curve."""
+        return Recorded.of(obj)
 
     def make(
         self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
@@ -89,6 +99,16 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         ),
         **_Output.__annotations__,
     }
+
+    def check_values(self) -> None:
+        """Check the radius."""
+        if not self.radius <= _MAX_RADIUS:
+            raise OptionError(f"Radius is {self.radius:g}; it must be a number up to {_MAX_RADIUS:g}")
+
+    def read(self, obj: bpy.types.Object) -> Recorded:
+        """Read the shapes of a curve, more of them where it turns far from key to key."""
+        recorded = Recorded.of(obj)
+        return recorded.at(places_between(recorded.points, recorded.mesh))
 
     def make(
         self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve

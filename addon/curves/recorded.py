@@ -1,7 +1,7 @@
 """Shapes of curve objects in time: those of their keys, or the one that they have."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from ...core import Curve
 from ...core.curve import Mesh
 from ...core.types import FloatArray
+from ..engine.in_between import interpolated
 from ..engine.placement import Placement
 from . import bake
 from .exchange import read_splines
@@ -58,10 +59,10 @@ class Recorded:
         mesh = Mesh(tuple(len(spline.points) for spline in data.splines))
         return cls(mesh, *(_from_shape_keys(data) if data.shape_keys else _from_fcurves(data)))
 
-    @property
-    def last(self) -> Curve:
-        """The last shape."""
-        return Curve(self.points[-1], self.mesh)
+    def at(self, places: FloatArray) -> "Recorded":
+        """The shapes at places among the keys, see `interpolated`."""
+        frames, points, radii = (interpolated(array, places) for array in (self.frames, self.points, self.radii))
+        return replace(self, frames=frames, points=points, radii=radii)
 
 
 def in_world(
@@ -92,14 +93,7 @@ def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, F
     frames = _frames([curve])
     points, radii = _shape_keys(data)
     place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
-    before = np.minimum(place.astype(np.intp), len(points) - 2)
-    t = place - before
-
-    def at_frames(values: FloatArray) -> FloatArray:
-        share = t.reshape(-1, *[1] * (values.ndim - 1))
-        return np.asarray((1 - share) * values[before] + share * values[before + 1])
-
-    return frames, at_frames(points), at_frames(radii), points
+    return frames, interpolated(points, place), interpolated(radii, place), points
 
 
 def _from_fcurves(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

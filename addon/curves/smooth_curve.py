@@ -9,6 +9,7 @@ import numpy as np
 from ...core import Curve
 from ..engine.placement import Frame, Placement
 from ..engine.smooth_fit import SmoothFit, bezier_points, fitted
+from . import bevel
 from .outputs import object_like
 
 if TYPE_CHECKING:
@@ -55,6 +56,8 @@ def _object(obj: "bpy.types.Object", control: Sequence[Frame], kind: str) -> "bp
     data.dimensions, data.resolution_u = "3D", _RESOLUTION
     for name in _LOOKS:
         setattr(data, name, getattr(obj.data, name))
+    if bevel.is_fitted(obj.data):
+        bevel.fit(data, data.bevel_depth)
     for material in obj.data.materials:
         data.materials.append(material)
     for points, old in zip(control, obj.data.splines, strict=True):

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy")
+pytestmark = pytest.mark.filterwarnings("ignore:Setting the shape:DeprecationWarning")  # Blender's own FBX
 
 from blender_scenes import add_trefoil, evaluated, in_world, relax  # noqa: E402
 from scipy.spatial import cKDTree  # noqa: E402
 
-FRAMES = (1, 4, 7.5, 20)
+FRAMES = (1, 4, 8, 20)
 LATER = {"fbx": 1}  # frames by which Blender's FBX files come late
 MOTION_SETTINGS = {"bake_anim_use_nla_strips": False, "bake_anim_use_all_actions": False}
 
@@ -98,6 +99,14 @@ def colours(mesh):
         at_vertices[corners] = found
         found = at_vertices
     return found[:, :3]
+
+
+@pytest.mark.parametrize("suffix", EXPORTERS)
+def test_usd_alone_keeps_attributes(suffix, moving, tmp_path):
+    expected = {"component", "strand_distance", "energy_density"}
+    assert expected < set(bpy.context.object.data.attributes.keys())
+    (tube,) = through(suffix, tmp_path)
+    assert expected & set(tube.data.attributes.keys()) == (expected if suffix == "usdc" else set())
 
 
 def test_fbx_as_it_is_set_by_default_has_no_motion(moving, tmp_path):

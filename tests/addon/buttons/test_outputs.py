@@ -15,7 +15,7 @@ from blender_scenes import (  # noqa: E402
     relax,
     stored,
 )
-from mobius_flow.addon.curves import sampling  # noqa: E402
+from mobius_flow.addon.curves import bevel, sampling  # noqa: E402
 from mobius_flow.addon.curves.keyframes import end_of  # noqa: E402
 from mobius_flow.addon.engine.colours import PALETTE, ramp  # noqa: E402
 from mobius_flow.addon.engine.strands import strand_distances  # noqa: E402
@@ -257,6 +257,22 @@ def test_it_has_the_bevel_and_the_materials():
     assert (data.bevel_depth, data.bevel_resolution, data.extrude) == (0.125, 3, 0.25)
     assert list(data.materials) == list(curve.data.materials)
     assert [spline.material_index for spline in data.splines] == [0, 1]
+    assert not bevel.is_fitted(data)
+
+
+def test_it_is_fitted_if_the_curve_is():
+    add_trefoil()
+    bpy.ops.curve.mobius_flow_fit_tube()
+    assert bevel.is_fitted(smooth().data)
+
+
+@pytest.mark.parametrize("radius", [float("nan"), float("inf")])
+def test_a_radius_is_a_number(radius):
+    add_trefoil()
+    before = contents()
+    with pytest.raises(RuntimeError, match=r"Radius is .*; it must be a number up to 1e"):
+        bpy.ops.curve.mobius_flow_tube_mesh(radius=radius)
+    assert contents() == before
 
 
 def test_curves_that_touch_are_refused():
