@@ -8,7 +8,7 @@ from scene import points, reaches, ready, run
 
 
 def case() -> Steps:
-    yield from ready()
+    yield from ready(vertices=1200)  # it takes longer than opening and closing windows
     before = points()
     yield from relax()
     second = opened()
