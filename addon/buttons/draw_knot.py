@@ -47,7 +47,9 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
     number: BoolProperty(
         name="Number Crossings", description="Mark each crossing by an empty that shows its number", default=False
     )
-    hide_drawing: BoolProperty(name="Hide Drawing", description="Hide the curves that were drawn", default=True)
+    hide_drawing: BoolProperty(
+        name="Hide Drawing", description="Hide the curves that were drawn, in renders too", default=True
+    )
     count: IntProperty(name="Crossings", description="Number of crossings found", options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
@@ -79,6 +81,7 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
         self._add(context, name, plane, drawing, lifted)
         for obj in drawn if self.hide_drawing else ():
             obj.hide_set(True)
+            obj.hide_render = True
         self.report({"INFO"}, told)
         return {"FINISHED"}
 

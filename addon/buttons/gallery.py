@@ -6,6 +6,8 @@ from bpy.props import BoolProperty, EnumProperty, PointerProperty
 from ..engine.knot_list import GROUPS, group, labels
 from ..pictures import icons
 
+_TREFOIL = list(labels()).index("3_1")  # where items are made by a function, the default is a number
+
 _items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender needs the strings to stay alive
 
 
@@ -36,7 +38,7 @@ class MobiusFlowKnots(bpy.types.PropertyGroup):
         default="FEW",
         update=_show_first,
     )
-    knot: EnumProperty(name="Knot", description="Knot to add", items=_knots)
+    knot: EnumProperty(name="Knot", description="Knot to add", items=_knots, default=_TREFOIL)
     mirror: BoolProperty(name="Mirror", description="Add the mirror image", default=False)
 
 

@@ -34,6 +34,7 @@ def test_a_drawn_trefoil():
     assert knot_invariants(points).genus == 1
     assert np.array_equal(stored(drawn.data), before)
     assert drawn.hide_get()
+    assert drawn.hide_render
     assert (obj.select_get(), drawn.select_get()) == (True, False)
     assert obj.data.bevel_depth > 0.02
 

@@ -71,7 +71,7 @@ def test_what_is_none_is_refused(options):
 
 def test_the_gallery_has_every_knot_in_one_group():
     settings = bpy.context.scene.mobius_flow_knots
-    assert settings.knot == "0_1"
+    assert settings.knot == "3_1"
     shown = []
     for group in GROUPS:
         settings.group = group
