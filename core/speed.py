@@ -130,7 +130,7 @@ def fixed_mesh(sizes: Sequence[int], options: RelaxOptions) -> RelaxOptions:
         raise OptionError(f"sizes has {twice} twice; give every number of vertices once")
     if options.vertices is not None or options.mesh not in ("auto", "fixed"):
         raise OptionError("the speed is that of fixed meshes; give sizes in place of vertices or another mesh")
-    most = max_vertices(options)
+    most = max_vertices(options, max(sizes))
     if max(sizes) > most:
         raise OptionError(f"sizes has {max(sizes)!s:.40}; {options.method} has room and time for {most} vertices")
     return replace(options, mesh="fixed")

@@ -30,7 +30,7 @@ def check_size(curve: Curve, options: RelaxOptions) -> None:
     CurveError, OptionError
         If the curve has too many vertices, or too many are asked for.
     """
-    most, method = max_vertices(options), options.method
+    most, method = max_vertices(options, max(len(curve), options.vertices or 0)), options.method
     if options.vertices is not None and options.vertices > most:
         raise OptionError(f"vertices is {options.vertices!s:.40}; {method} has room and time for {most}")
     if len(curve) > most:

@@ -81,9 +81,9 @@ class Solver:
         return compressed(metric, Tolerances.of_norms(self._options.accuracy)) if self.hierarchical else metric
 
 
-def max_vertices(options: RelaxOptions) -> int:
-    """Number of vertices for which there is room and time; raises as `Solver.for_curve` does."""
-    if _may_be_hierarchical(options):
+def max_vertices(options: RelaxOptions, wanted: int) -> int:
+    """Number of vertices for which there is room and time, if so many are wanted; raises as `Solver.for_curve` does."""
+    if _may_be_hierarchical(options) and (options.solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
         return MAX_VERTICES
     method = named(METHODS, "method", options.method)
     metrics = (_metric(method, options), *method.rule.other_metrics)

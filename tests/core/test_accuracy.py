@@ -104,3 +104,13 @@ def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -
     short(1700, max_iterations=31, mesh="auto", tolerance=1e-2)
     assert len(looked_at) >= 3
     assert looked_at[0] < looked_at[-1] == looked_at[-2] == 1700
+
+
+def test_the_last_line_says_the_error_of_an_energy_that_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None:
+    from mobius_flow.cli.relax import _summary
+
+    assert "±" not in _summary(short(300))
+    monkeypatch.setattr("mobius_flow.core.hierarchy.reported.EXACT_UP_TO", 200)
+    result = short(300)
+    assert f" ± {result.final_energy * result.final_energy_error:.1g}, certified" in _summary(result)
+    assert result.report()["final_energy_error"] == result.final_energy_error > 0.0
