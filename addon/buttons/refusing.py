@@ -5,6 +5,7 @@ from collections.abc import Callable
 import bpy
 
 from ...core import MobiusFlowError
+from ..live.modal import redraw_views
 from ..live.refusal import Refusal
 
 
@@ -42,6 +43,7 @@ class Refusing:
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        redraw_views(context.window_manager)  # which they are not by themselves where keys were changed
         return {"FINISHED"}
 
     def act(self, context: bpy.types.Context) -> None:

@@ -1,24 +1,18 @@
-"""What can be done with the shape of a relaxed curve: its size, its attitude, its balance; minimum or saddle."""
-
-from contextlib import suppress
-from typing import Any
+"""The size of baked curves while they move, and how they lie."""
 
 import bpy
 from bpy.props import EnumProperty
 
-from ...core import MobiusFlowError
-from ..curves.baked_keys import BakedKeys
 from ..curves.resized import keep_size
 from ..curves.turned import face_camera, lay_flat
-from ..engine.rest import Rest
 from ..engine.size import Measure
 from ..engine.words import named
 from ..live.checks import edited, refusal, selected_curves, unclearable
-from ..live.modal import redraw_views
 from ..live.refusal import Refusal
-from ..properties import SETTINGS, measure_items, relax_options
-from .baking import Rebaking
+from ..properties import measure_items
 from .refusing import Refusing
+
+_KEYS = {"FIRST": 0, "LAST": -1}
 
 
 class CURVE_OT_mobius_flow_keep_size(Refusing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
@@ -46,11 +40,10 @@ class CURVE_OT_mobius_flow_keep_size(Refusing, bpy.types.Operator):  # noqa: N80
 
     def act(self, context: bpy.types.Context) -> None:
         """Scale all keys."""
-        objects = selected_curves(context)
-        keys = keep_size(objects, Measure[self.measure], {"FIRST": 0, "LAST": -1}[self.reference])
-        redraw_views(context.window_manager)  # which they are not by themselves
-        kept = f"{Measure[self.measure].value.lower()} of {named([obj.name for obj in objects])}"
-        _tell(self, f"The {kept} stays at all {len(keys.frames)} keys", keys.unproved)
+        objects, measure = selected_curves(context), Measure[self.measure]
+        keys = keep_size(objects, measure, _KEYS[self.reference])
+        kept = f"The {measure.value.lower()} of {named([obj.name for obj in objects])}"
+        _tell(self, f"{kept} stays at all {len(keys.frames)} keys", keys.unproved)
 
 
 class _Turning(Refusing):
@@ -63,9 +56,7 @@ class _Turning(Refusing):
 
     def act(self, context: bpy.types.Context) -> None:
         """Turn them."""
-        unproved = self.turn(context)
-        redraw_views(context.window_manager)
-        if unproved:
+        if unproved := self.turn(context):
             _tell(self, "The curves were turned", unproved)
 
     def turn(self, context: bpy.types.Context) -> int:
@@ -100,77 +91,6 @@ class CURVE_OT_mobius_flow_face_camera(_Turning, bpy.types.Operator):  # noqa: N
         return face_camera(selected_curves(context), context.scene.camera)
 
 
-class CURVE_OT_mobius_flow_balance(Rebaking, bpy.types.Operator):  # noqa: N801
-    """Go on to the shape of the same energy that bends least for its length; new keys follow the old ones"""
-
-    bl_idname = "curve.mobius_flow_balance"
-    bl_label = "Balance"
-    continues = True
-
-    def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        """The settings, with balance."""
-        return super().values(context) | {"balance": True}
-
-
-class CURVE_OT_mobius_flow_check(Refusing, bpy.types.Operator):  # noqa: N801
-    """Tell whether the selected curves have come to rest at a minimum of the energy or at a saddle; nothing changes"""
-
-    bl_idname = "curve.mobius_flow_check"
-    bl_label = "Check"
-    bl_options = {"REGISTER"}  # noqa: RUF012 - read by Blender
-
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
-        """Baked curves are wanted."""
-        return Rebaking.refusal(context)
-
-    def last_refusal(self, context: bpy.types.Context) -> Refusal | None:
-        """Nobody has edited their keys."""
-        return edited(context)
-
-    def act(self, context: bpy.types.Context) -> None:
-        """Look at the end of the animation."""
-        values = {name: getattr(context.scene.mobius_flow, name) for name in SETTINGS}
-        self.report({"INFO"}, _rest(context, values)[1])
-
-
-class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: N801
-    """Go on downhill where the selected curves rest on a saddle of the energy; new keys follow the old ones"""
-
-    bl_idname = "curve.mobius_flow_leave_saddle"
-    bl_label = "Leave Saddle"
-    continues = True
-
-    def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        """The settings, with the way off saddles."""
-        return super().values(context) | {"escape_saddles": True}
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Do the whole job, if there is anything to leave."""
-        return {"CANCELLED"} if self._rests(context) else super().execute(context)
-
-    def begin(self, context: bpy.types.Context, values: dict[str, Any]) -> set[str]:
-        """Start the run, if there is anything to leave."""
-        return {"CANCELLED"} if self._rests(context) else super().begin(context, values)
-
-    def _rests(self, context: bpy.types.Context) -> bool:
-        """Say so if the curves are at a minimum already; what else is wrong the relaxation tells."""
-        with suppress(MobiusFlowError):
-            index, words = _rest(context, self.values(context))
-            if index == 0:
-                self.report({"INFO"}, words)
-                return True
-        return False
-
-
-def _rest(context: bpy.types.Context, values: dict[str, Any]) -> tuple[int | None, str]:
-    """Number of ways down from where the selected curves rest, and a sentence; raises MobiusFlowError."""
-    context.view_layer.update()
-    objects = selected_curves(context)
-    rest = Rest.of(BakedKeys(objects).curves[-1], relax_options(values))
-    return rest.index, f"{named([obj.name for obj in objects])}: {rest.words}"
-
-
 def _tell(operator: bpy.types.Operator, what: str, unproved: int) -> None:
     """Say what was done, and whether the animation is proved still."""
     if unproved:
@@ -179,11 +99,4 @@ def _tell(operator: bpy.types.Operator, what: str, unproved: int) -> None:
         operator.report({"INFO"}, f"{what}, proved free of contact")
 
 
-CLASSES = (
-    CURVE_OT_mobius_flow_keep_size,
-    CURVE_OT_mobius_flow_lay_flat,
-    CURVE_OT_mobius_flow_face_camera,
-    CURVE_OT_mobius_flow_balance,
-    CURVE_OT_mobius_flow_check,
-    CURVE_OT_mobius_flow_leave_saddle,
-)
+CLASSES = (CURVE_OT_mobius_flow_keep_size, CURVE_OT_mobius_flow_lay_flat, CURVE_OT_mobius_flow_face_camera)

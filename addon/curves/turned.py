@@ -45,18 +45,23 @@ def face_camera(objects: Sequence["bpy.types.Object"], camera: "bpy.types.Object
 
 def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
     turn = Turn.onto(_shape(objects), wanted)
-    mover = next(((obj, mover) for obj in objects if (mover := what_moves(obj))), None)
-    if mover is None:
-        _turn_objects(objects, turn)
-    elif len(objects) == 1 and bake.is_baked(objects[0].data):
-        keys = BakedKeys(objects)
-        keys.rewrite([turn.of(curve) for curve in keys.curves])
-    else:
-        obj, what = mover
-        raise MobiusFlowError(f"'{obj.name}' is moved by {what}; remove that, or bake it and turn it alone")
-    baked = all(bake.is_baked(obj.data) for obj in objects)
+    moved = next((obj for obj in objects if what_moves(obj)), None)
+    if moved is not None:
+        return _turn_keys(objects, turn, f"'{moved.name}' is moved by {what_moves(moved)}")
+    _turn_objects(objects, turn)
     # a single object goes wherever it likes; places of several against each other are rounded anew
-    return BakedKeys(objects).unproved if baked and (mover or len(objects) > 1) else 0
+    proved = len(objects) > 1 and all(bake.is_baked(obj.data) for obj in objects)
+    return BakedKeys(objects).unproved if proved else 0
+
+
+def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: str) -> int:
+    if len(objects) > 1 or not bake.is_baked(objects[0].data):
+        raise MobiusFlowError(f"{why}; remove that, or bake it and turn it alone")
+    if bake.is_edited(objects[0].data):
+        raise MobiusFlowError(f"{why}, and its keys were edited; undo one or the other")
+    keys = BakedKeys(objects)
+    keys.rewrite([turn.of(curve) for curve in keys.curves])
+    return keys.unproved
 
 
 def _shape(objects: Sequence["bpy.types.Object"]) -> Curve:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import bpy
 
-from ..buttons import baking, mending, relaxing, shape, tube
+from ..buttons import baking, mending, relaxing, resting, shape, tube
 from .knots import VIEW3D_MT_mobius_flow_knots
 
 
@@ -16,7 +16,7 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):  # noqa: N801 - Blender's naming sc
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Offer it all; what does not apply is grey, and its tooltip says why."""
-        for group in (relaxing, baking, shape, tube, mending):
+        for group in (relaxing, baking, shape, resting, tube, mending):
             for cls in group.CLASSES:
                 self.layout.operator(cls.bl_idname)
             self.layout.separator()

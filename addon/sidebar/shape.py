@@ -2,13 +2,15 @@
 
 import bpy
 
-from ..buttons.shape import (
+from ..buttons.resting import (
     CURVE_OT_mobius_flow_balance,
     CURVE_OT_mobius_flow_check,
+    CURVE_OT_mobius_flow_leave_saddle,
+)
+from ..buttons.shape import (
     CURVE_OT_mobius_flow_face_camera,
     CURVE_OT_mobius_flow_keep_size,
     CURVE_OT_mobius_flow_lay_flat,
-    CURVE_OT_mobius_flow_leave_saddle,
 )
 from ..engine.size import Measure
 from .layout import InSidebar, settings_column

@@ -79,9 +79,9 @@ def way_to_balance(point: Point) -> tuple[Step, ...]:
     for q in _least(images, point.curve.dimension):
         image = images.at(q)
         if bending(image) > enough:
-            break
+            continue
         problem = _problem_of(point.problem, image)
-        for end in (q, -q):  # the same map, with the pole coming from the one side or the other
+        for end in (q, -q):  # the same map, the pole having come from the one side or from the other
             if way := _way(point, images, end, problem):
                 return way
     return ()

@@ -118,6 +118,13 @@ def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch: pytest.Mon
     np.testing.assert_array_equal(asked[::2], -np.array(asked[1::2]))
 
 
+def test_images_that_bend_more_than_their_vertices_promised_are_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    start = point(unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2))
+    found = balance._least(MoebiusImages(start.curve, start.curve.edge_lengths), 3)
+    monkeypatch.setattr(balance, "_least", lambda *_: [np.array([0.6, 0.8, 0.0, 0.0]), *found])
+    assert bending(way_to_balance(start)[-1].point.curve) < 0.96 * bending(start.curve)
+
+
 def test_lengths_of_links_follow_their_images() -> None:
     """Components shrink and grow in a Möbius image: the targets are what they have there, and as even as before."""
     start = point(unbalanced(dual_circles(80), 0.3, 0.4, 0.0))

@@ -20,7 +20,7 @@ from blender_scenes import (  # noqa: E402
     show,
     stored,
 )
-from mobius_flow.addon.buttons import shape as buttons  # noqa: E402
+from mobius_flow.addon.buttons.acting import Acting  # noqa: E402
 from mobius_flow.addon.curves import bake, baked_keys  # noqa: E402
 from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
 from mobius_flow.addon.engine.size import Measure  # noqa: E402
@@ -105,7 +105,7 @@ def test_scaled_keys_are_proved_as_they_are_stored(keyframes):
 def test_motions_that_cannot_be_proved_are_told_of(monkeypatch):
     obj, told = baked(), []
     monkeypatch.setattr(baked_keys, "is_free", lambda *_: False)
-    monkeypatch.setattr(buttons, "_tell", lambda _, what, unproved: told.append((what, unproved)))
+    monkeypatch.setattr(Acting, "tell", lambda _, what, unproved: told.append((what, unproved)))
     assert OPS.mobius_flow_keep_size(measure="BOX") == {"FINISHED"}
     count = len(obj.data.shape_keys.key_blocks)
     assert told == [(f"The bounding box of 'Knot' stays at all {count} keys", count - 1)]
@@ -118,9 +118,9 @@ class Teller:
 
 def test_words_about_proofs():
     teller = Teller()
-    buttons._tell(teller, "It stays", 0)
+    Acting.tell(teller, "It stays", 0)
     assert teller.words == ({"INFO"}, "It stays, proved free of contact")
-    buttons._tell(teller, "It stays", 2)
+    Acting.tell(teller, "It stays", 2)
     assert teller.words == ({"WARNING"}, "It stays; 2 motions between keys are NOT proved free of contact")
 
 
@@ -273,6 +273,19 @@ def test_keys_are_turned_where_the_object_is_animated(keyframes):
     assert BakedKeys([obj]).unproved == 0
 
 
+def test_edited_keys_are_not_turned_but_their_object_is():
+    add_curve([torus_trefoil(40).vertices[:, [2, 0, 1]]])
+    obj = relax(max_iterations=3)
+    obj.data.shape_keys.key_blocks[1].data[0].co.x += 0.01
+    assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+    keyed_rotation(obj)
+    before = BakedKeys([obj]).frames
+    with pytest.raises(RuntimeError, match="is moved by animation, and its keys were edited; undo one or the other"):
+        OPS.mobius_flow_lay_flat()
+    np.testing.assert_array_equal(BakedKeys([obj]).frames, before)
+    assert bake.is_edited(obj.data)
+
+
 def test_an_animated_curve_without_keys_is_refused():
     obj = add_trefoil()
     keyed_rotation(obj)
@@ -362,10 +375,12 @@ def test_a_saddle_is_told_and_left():
     before = contents()
     assert OPS.mobius_flow_check() == {"FINISHED"}
     assert contents() == before
-    energy = len(BakedKeys([obj]).frames)
+    there = len(BakedKeys([obj]).frames)
     assert OPS.mobius_flow_leave_saddle(fit_bevel=False) == {"FINISHED"}
-    assert len(BakedKeys([obj]).frames) > energy + 5
+    assert len(BakedKeys([obj]).frames) > there + 5
+    before = contents()
     assert OPS.mobius_flow_leave_saddle() == {"CANCELLED"}, "it is a minimum now"
+    assert contents() == before
 
 
 @pytest.mark.parametrize("name", ["balance", "check", "leave_saddle"])
