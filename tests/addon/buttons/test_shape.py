@@ -20,7 +20,7 @@ from blender_scenes import (  # noqa: E402
     show,
     stored,
 )
-from mobius_flow.addon.buttons.acting import Acting  # noqa: E402
+from mobius_flow.addon.buttons import shape  # noqa: E402
 from mobius_flow.addon.curves import bake, baked_keys  # noqa: E402
 from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
 from mobius_flow.addon.engine.size import Measure  # noqa: E402
@@ -105,7 +105,7 @@ def test_scaled_keys_are_proved_as_they_are_stored(keyframes):
 def test_motions_that_cannot_be_proved_are_told_of(monkeypatch):
     obj, told = baked(), []
     monkeypatch.setattr(baked_keys, "is_free", lambda *_: False)
-    monkeypatch.setattr(Acting, "tell", lambda _, what, unproved: told.append((what, unproved)))
+    monkeypatch.setattr(shape, "_tell", lambda _, what, unproved: told.append((what, unproved)))
     assert OPS.mobius_flow_keep_size(measure="BOX") == {"FINISHED"}
     count = len(obj.data.shape_keys.key_blocks)
     assert told == [(f"The bounding box of 'Knot' stays at all {count} keys", count - 1)]
@@ -118,9 +118,9 @@ class Teller:
 
 def test_words_about_proofs():
     teller = Teller()
-    Acting.tell(teller, "It stays", 0)
+    shape._tell(teller, "It stays", 0)
     assert teller.words == ({"INFO"}, "It stays, proved free of contact")
-    Acting.tell(teller, "It stays", 2)
+    shape._tell(teller, "It stays", 2)
     assert teller.words == ({"WARNING"}, "It stays; 2 motions between keys are NOT proved free of contact")
 
 
