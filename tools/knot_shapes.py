@@ -19,7 +19,7 @@ from mobius_flow.core import Curve, CurveError, Mesh, RelaxOptions, minimize
 from mobius_flow.core.knots import KNOTS, knot
 from mobius_flow.core.knots.alexander import signature
 from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic
-from mobius_flow.core.knots.shapes import FILE, Shape, shapes, store
+from mobius_flow.core.knots.shapes import FILE, Shape, rounded, shapes, smooth_knot, store
 from mobius_flow.core.types import ComplexArray, FloatArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
@@ -28,7 +28,7 @@ KEPT = Path(__file__).resolve().parents[1] / "build" / "knot_shapes"
 VERTICES = range(100, 400, 20)  # of closed braids: the first number that follows their strands
 ITERATIONS = 100  # of L-BFGS: afterwards little is seen to move
 MODES = range(1, 60)
-TOLERANCE = 0.004  # of the half-width, between relaxed and stored curve: far less than strands are apart
+TOLERANCES = (0.004, 0.002, 0.001)  # of the half-width, between relaxed and stored curve
 VIEWS = 400
 FAVOUR = 1.1  # a little more may be hidden where a curve is seen along its flattest axis
 NEAR = 0.25  # in the picture, of the curve's radius
@@ -45,8 +45,9 @@ def main() -> int:
         print(name, [len(c) - 1 for c in made[name].coefficients], flush=True)
     store({name: made[name] for name in KNOTS if name in made})
     shapes.cache_clear()
-    for name in chosen:  # as they are read back
-        check(name, facing(relaxed(name)), shapes()[name])
+    for name in chosen:
+        if signature(smooth_knot(name)) != signature(knot(name)):
+            sys.exit(f"{name}: the stored shape has another signature")
     return 0
 
 
@@ -114,12 +115,16 @@ def _clutter(points: FloatArray) -> int:
 
 
 def shape(name: str) -> Shape:
-    """Fit a knot's shape with as few modes as stay close to it."""
+    """Fit a knot's shape with as few modes as stay close to it and are proved to keep its type."""
     curve = facing(relaxed(name))
-    return Shape(tuple(_fitted(part) for part in curve.components))
+    for tolerance in TOLERANCES:
+        fitted = rounded(Shape(tuple(_fitted(part, tolerance) for part in curve.components)))
+        if is_proved(curve, fitted):
+            return fitted
+    sys.exit(f"{name}: the motion from the relaxed curve to no stored shape is proved free of contact")
 
 
-def _fitted(points: FloatArray) -> ComplexArray:
+def _fitted(points: FloatArray, tolerance: float) -> ComplexArray:
     """Fourier coefficients (modes + 1, 3) of a closed polygon's spline by arc length."""
     spline = CubicSpline(np.append(arc_steps(points), 1.0), np.concatenate([points, points[:1]]), bc_type="periodic")
     samples = spline(np.arange(1024) / 1024)
@@ -128,19 +133,15 @@ def _fitted(points: FloatArray) -> ComplexArray:
     for modes in MODES:
         kept = np.where(np.arange(len(spectrum))[:, None] <= modes, spectrum, 0.0)
         kept[0] *= 2
-        if np.abs(np.fft.irfft(kept * 512, axis=0) - samples).max() < TOLERANCE:
+        if np.abs(np.fft.irfft(kept * 512, axis=0) - samples).max() < tolerance:
             break
     return np.asarray(spectrum[: modes + 1])
 
 
-def check(name: str, curve: Curve, stored: Shape) -> None:
-    """End with an error unless the polygon inscribed in a stored shape is proved to have the relaxed one's type."""
-    polygon = stored.polygon(stored.sizes)
-    steps = [arc_steps(part) for part in curve.components]
-    if not is_isotopic(curve, steps, polygon, equal_steps(polygon)):
-        sys.exit(f"{name}: the motion from the relaxed curve to the stored shape is not proved free of contact")
-    if signature(polygon) != signature(knot(name)):
-        sys.exit(f"{name}: the stored shape has another signature")
+def is_proved(curve: Curve, fitted: Shape) -> bool:
+    """Whether the motion from a relaxed polygon to the one inscribed in a shape is proved free of contact."""
+    polygon = fitted.polygon(fitted.sizes)
+    return is_isotopic(curve, [arc_steps(part) for part in curve.components], polygon, equal_steps(polygon))
 
 
 if __name__ == "__main__":

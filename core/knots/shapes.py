@@ -93,8 +93,13 @@ def shapes() -> Mapping[str, Shape]:
     )
 
 
+def rounded(shape: Shape) -> Shape:
+    """A shape as it is stored: coefficients are multiples of the quantum."""
+    return Shape(tuple(QUANTUM * (np.round(c / QUANTUM)) for c in shape.coefficients))
+
+
 def store(given: Mapping[str, Shape], path: Path = FILE) -> None:
-    """Write shapes, whose coefficients are rounded to multiples of the quantum."""
+    """Write shapes, rounded."""
     parts = [c for shape in given.values() for c in shape.coefficients]
     values = np.concatenate(parts)
     np.savez_compressed(
