@@ -9,6 +9,7 @@ from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame, Placement
 from . import bake, bevel, keyframes
+from .deforming import what_deforms
 from .exchange import write_points
 from .snapshot import Snapshot, shape
 from .stand_in import StandIn, found
@@ -98,7 +99,10 @@ class Member:
             return f"'{self.name}' is being edited"
         if shape(data) != self._shape:
             return f"Points of '{self.name}' were added or removed"
-        return f"'{self.name}' was given shape keys" if self._foreign_keys(data) else None
+        if self._foreign_keys(data):
+            return f"'{self.name}' was given shape keys"
+        deformer = what_deforms(obj)
+        return f"{deformer} moves its points" if deformer else None
 
     def writing(self, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
         """Write keys in short pieces; ``radii`` are those of the tube in the object's units, (keys,)."""

@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import bpy
 
-from ..buttons import baking, mending, relaxing, resting, shape, tube
+from ..buttons import baking, mending, resting, shape, tube
+from ..buttons.relaxing import CURVE_OT_mobius_flow_relax
 from .knots import VIEW3D_MT_mobius_flow_knots
 
 
@@ -16,10 +17,12 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):  # noqa: N801 - Blender's naming sc
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Offer it all; what does not apply is grey, and its tooltip says why."""
-        for group in (relaxing, baking, shape, resting, tube, mending):
+        # Operator Search lists this first for who types no ö
+        self.layout.operator(CURVE_OT_mobius_flow_relax.bl_idname, text="Relax by Mobius Energy", icon="PLAY")
+        for group in (baking, shape, resting, tube, mending):
+            self.layout.separator()
             for cls in group.CLASSES:
                 self.layout.operator(cls.bl_idname)
-            self.layout.separator()
 
 
 def add_knot(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:

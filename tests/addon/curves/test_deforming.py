@@ -6,6 +6,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil, contents, evaluated, sentence, stored  # noqa: E402
+from mobius_flow.addon.curves import member  # noqa: E402
 from mobius_flow.addon.curves.deforming import deforms, what_deforms  # noqa: E402
 from mobius_flow.addon.curves.session import Session  # noqa: E402
 from mobius_flow.addon.engine.key_options import KeyOptions  # noqa: E402
@@ -86,6 +87,13 @@ def nodes(obj, *kinds):
     return modifier
 
 
+@pytest.fixture
+def unchecked(monkeypatch):
+    """Let deformed curves be relaxed."""
+    monkeypatch.setattr(member, "what_deforms", lambda obj: None)
+
+
+@pytest.mark.usefixtures("unchecked")
 def test_a_proof_about_points_says_nothing_about_what_is_shown():
     """Why they are refused: past the checks, what is certified is shown crossing itself at every key."""
     obj = add_trefoil()
@@ -99,6 +107,7 @@ def test_a_proof_about_points_says_nothing_about_what_is_shown():
             check_embedded(Curve.from_components([shown[:, :2]]))
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_a_hook_holds_another_point_of_a_refined_curve():
     """Why a hook cannot simply stay: it knows points by their numbers, and refinement counts anew."""
     obj = add_trefoil(30)
@@ -152,6 +161,20 @@ def test_what_adds_to_the_drawing_is_not_refused():
     nodes(obj, "GeometryNodeCurveToMesh", "GeometryNodeCurvePrimitiveCircle")
     bpy.context.view_layer.update()
     assert bpy.ops.curve.mobius_flow_relax(max_iterations=1) == {"FINISHED"}
+
+
+def test_a_run_ends_when_its_curve_is_deformed(operator):
+    obj = add_trefoil()
+    before = stored(obj.data)
+    operator.start()
+    operator.reach(1)
+    obj.modifiers.new("Wave", "WAVE")
+    assert operator.event() == {"CANCELLED"}
+    assert operator.reports[-1][1].startswith(
+        "The modifier 'Wave' of 'Knot' moves its points; the relaxation has ended"
+    )
+    np.testing.assert_array_equal(stored(obj.data), before)
+    assert len(obj.modifiers) == 1
 
 
 def test_geometry_nodes_that_set_positions_are_refused():

@@ -1,0 +1,43 @@
+"""Curves that are refused, and what takes that out of the way."""
+
+import bpy
+from blender_scenes import add_curve, add_trefoil, relax
+from mobius_flow.addon.live.checks import refusal
+from mobius_flow.addon.live.refusal import Remedy
+from shapes import torus_trefoil
+
+SHAPE = torus_trefoil(12).vertices
+
+
+def call(remedy: Remedy) -> object:
+    """The operator that is a remedy."""
+    return getattr(bpy.ops.curve, remedy.value.removeprefix("curve."))
+
+
+def mend(remedy: Remedy) -> None:
+    """See that it is this remedy that is offered next, and take it."""
+    bpy.context.view_layer.update()
+    assert refusal(bpy.context).remedy is remedy
+    assert call(remedy)() == {"FINISHED"}
+    bpy.context.view_layer.update()
+
+
+def may_be_relaxed() -> None:
+    bpy.context.view_layer.update()
+    assert refusal(bpy.context) is None
+    assert bpy.ops.curve.mobius_flow_relax(max_iterations=1, sample_splines=True) == {"FINISHED"}
+
+
+def two(**options: object) -> list[bpy.types.Object]:
+    """Two selected curves side by side."""
+    return [add_curve([SHAPE + shift], name, **options) for name, shift in (("A", 0), ("B", 9))]
+
+
+def with_material(obj: bpy.types.Object) -> bpy.types.Object:
+    obj.data.materials.append(bpy.data.materials.new("Gold"))
+    return obj
+
+
+def relax_once() -> bpy.types.Object:
+    add_trefoil()
+    return relax(max_iterations=3)
