@@ -22,7 +22,7 @@ def case() -> Steps:
     fitted = obj().data.bevel_depth
     yield from button("curve.mobius_flow_color_components")
     yield from until(lambda: len(obj().data.materials) == 2, "two materials")
-    view().spaces.active.shading.type = "MATERIAL"
+    view().spaces.active.shading.color_type = "MATERIAL"  # rendered previews take minutes without a graphics card
     yield from look()
     yield from rest()
     yield from picture("tube-2-fitted-and-colored")
@@ -37,6 +37,7 @@ def case() -> Steps:
     assert obj().data.bevel_depth == fitted
     with here():
         bpy.ops.curve.mobius_flow_tube_mesh("INVOKE_DEFAULT", True, color="strand_distance")
+    view().spaces.active.shading.color_type = "VERTEX"
     yield from look()
     yield from rest()
     yield from picture("tube-4-distance", differs_from="tube-3-mesh")
@@ -51,11 +52,9 @@ def case() -> Steps:
 
 
 def rest() -> Steps:
-    """Take the mouse away from the buttons, and let shaders be compiled."""
+    """Take the mouse away from the buttons, whose tooltips cover others."""
     main = region("WINDOW")
     yield from move(main.x + main.width // 2, main.y + 40)
-    for _ in range(150):
-        yield
 
 
 def opened() -> Steps:
