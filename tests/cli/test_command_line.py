@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mobius_flow.cli import main, outputs
 from mobius_flow.core import METHODS, read_curve, write_curve
+from mobius_flow.core.descent import Method
 from mobius_flow.core.knots import knot, knot_names, smooth_knot
 from processes import finished
 from shapes import regular_polygon, torus_trefoil
@@ -76,7 +77,15 @@ def test_methods_are_names_and_descriptions(capsys):
     assert run("methods") == 0
     lines = [line.split("\t") for line in capsys.readouterr().out.splitlines()]
     assert [name for name, _ in lines] == list(METHODS)
-    assert all(description for _, description in lines)
+    for name, words in lines:
+        assert words == METHODS[name].sentence
+        assert words.startswith(f"{METHODS[name].label}: ")
+    assert [METHODS[name].comparison for name, _ in lines] == sorted(METHODS[name].comparison for name, _ in lines)
+
+
+def test_a_method_without_a_label_is_called_by_its_name():
+    bare = Method("bare", "nothing but what it is", METHODS["cg"].rule)
+    assert (bare.label, bare.sentence, bare.comparison) == ("bare", "nothing but what it is", False)
 
 
 def test_knot(tmp_path):
