@@ -5,8 +5,8 @@
 
 Each knot is relaxed from its closed braid on the tangent-point energy, turned so that it faces +z with little hidden,
 and fitted by Fourier series. What is not proved is an error: that the relaxation kept the type, and that the straight
-motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Relaxations take seconds each,
-together a quarter of an hour; they are kept in build/knot_shapes, and those that are there are not done again.
+motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Relaxations take ten minutes
+of processor time in all; they are kept in build/knot_shapes, and those that are there are not done again.
 """
 
 import argparse

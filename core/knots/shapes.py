@@ -95,7 +95,7 @@ def shapes() -> Mapping[str, Shape]:
 
 def rounded(shape: Shape) -> Shape:
     """A shape as it is stored: coefficients are multiples of the quantum."""
-    return Shape(tuple(QUANTUM * (np.round(c / QUANTUM)) for c in shape.coefficients))
+    return Shape(tuple(QUANTUM * np.round(c / QUANTUM) for c in shape.coefficients))
 
 
 def store(given: Mapping[str, Shape], path: Path = FILE) -> None:

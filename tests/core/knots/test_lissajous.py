@@ -20,7 +20,7 @@ def test_small_ones(frequencies: tuple[int, int, int], phases: tuple[float, floa
 
 
 def test_it_fills_its_box_and_is_embedded() -> None:
-    curve = lissajous_knot((5, 7, 8), (0.4, 1.1))
+    curve = lissajous_knot((3, 5, 7), (0.3, 0.15))
     check_embedded(curve)
     assert np.ptp(curve.vertices, axis=0) == pytest.approx(2.0, abs=0.01)
 
