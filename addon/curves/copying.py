@@ -8,6 +8,7 @@ from .snapshot import Snapshot
 
 if TYPE_CHECKING:
     import bpy
+    import mathutils
 
 
 def still_copy(obj: "bpy.types.Object") -> "bpy.types.Object":
@@ -25,10 +26,9 @@ def still_copy(obj: "bpy.types.Object") -> "bpy.types.Object":
     copy.data = obj.data.copy()
     _strip(copy)
     shown.restore_splines(copy.data)
-    copy.matrix_world = world
     bpy.context.view_layer.update()
-    if copy.matrix_world != world:  # shear, which comes from parents and no object has by itself, goes into the points
-        copy.data.transform(copy.matrix_world.inverted_safe() @ world)
+    if copy.matrix_world != world:  # what was taken away held it there
+        _put(copy, world)
     return copy
 
 
@@ -45,6 +45,15 @@ def select_instead(obj: "bpy.types.Object", copy: "bpy.types.Object") -> None:
     copy.select_set(True)
     if was_active:
         view_layer.objects.active = copy
+
+
+def _put(obj: "bpy.types.Object", world: "mathutils.Matrix") -> None:
+    """Put an object somewhere; shear, which no object has by itself, goes into its points."""
+    import bpy
+
+    obj.matrix_world = world
+    bpy.context.view_layer.update()
+    obj.data.transform(obj.matrix_world.inverted_safe() @ world)
 
 
 def _shown(obj: "bpy.types.Object") -> Snapshot:

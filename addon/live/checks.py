@@ -113,8 +113,9 @@ def running() -> Refusal | None:
 
 
 def convertible(context: "bpy.types.Context") -> list["bpy.types.Object"]:
-    """The selected objects that lines can be made of: texts, and meshes of edges alone."""
-    return [obj for obj in context.selected_objects if obj.type == "FONT" or _is_wire(obj)]
+    """The selected objects of this file that lines can be made of: texts, and meshes of edges alone."""
+    own = (obj for obj in context.selected_objects if not (obj.library or obj.override_library))
+    return [obj for obj in own if obj.type == "FONT" or _is_wire(obj)]
 
 
 def _is_wire(obj: "bpy.types.Object") -> bool:

@@ -200,6 +200,12 @@ def test_texts_become_curves_step_by_step():
     may_be_relaxed()
 
 
+def test_no_button_for_meshes_of_other_files(tmp_path):
+    wire("Theirs")
+    show(linked(tmp_path / "library.blend", "objects", "Theirs"))
+    assert refusal(bpy.context).remedy is None
+
+
 def test_no_button_for_what_has_no_lines():
     wire("Dots", edges=False)
     assert refusal(bpy.context).remedy is None

@@ -42,6 +42,14 @@ def test_a_copy_has_the_shape_of_the_keys_without_them():
     may_be_relaxed()
 
 
+def test_a_turned_curve_keeps_its_points_bit_for_bit():
+    obj = add_trefoil()
+    obj.rotation_euler, obj.scale, obj.location = (0.3, 0.2, 0.1), (1.1, 2, 0.7), (3, 2, 1)
+    copy = copied()
+    np.testing.assert_array_equal(stored(copy.data), stored(obj.data))
+    assert copy.matrix_world == obj.matrix_world
+
+
 def test_a_copy_has_no_animation():
     obj = add_trefoil()
     obj.data.bevel_depth = 0.1
