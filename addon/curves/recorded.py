@@ -88,7 +88,7 @@ def _shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray]:
 
 
 def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    (curve,) = fcurves_of(data.shape_keys.animation_data.action)
+    (curve,) = fcurves_of(data.shape_keys)
     frames = _frames([curve])
     points, radii = _shape_keys(data)
     place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
@@ -103,7 +103,7 @@ def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, F
 
 
 def _from_fcurves(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    curves = {(each.data_path, each.array_index): each for each in fcurves_of(data.animation_data.action)}
+    curves = {(each.data_path, each.array_index): each for each in fcurves_of(data)}
     frames = _frames(list(curves.values()))
     coordinates = [curves[path, axis] for path in point_paths(data) for axis in range(3)]
     values = np.array([[curve.evaluate(frame) for curve in coordinates] for frame in frames])
