@@ -7,8 +7,9 @@ from pathlib import Path
 import bpy
 import mobius_flow
 import numpy as np
+from mobius_flow.addon.pictures.materials import colour_components
 from mobius_flow.addon.pictures.rendering import use_cycles
-from mobius_flow.addon.pictures.stage import Stage, build, colour, place
+from mobius_flow.addon.pictures.stage import Stage, add_sky, build, place
 from mobius_flow.core.types import FloatArray
 from PIL import Image
 
@@ -28,12 +29,14 @@ def main() -> int:
     for k, name in enumerate(KNOTS + LINKS):
         at = (STEP * (k % COLUMNS), -STEP * (k // COLUMNS), 0.0)
         bpy.ops.curve.mobius_flow_pick_knot(knot=name, thickness=THICKNESS, location=at, color_components=False)
-        colour(bpy.context.object.data)
+        colour_components(bpy.context.object.data)
     scene = bpy.context.scene
     width, height = STEP * COLUMNS, STEP * (len(KNOTS + LINKS) // COLUMNS)
     middle = np.array([0.5 * (width - STEP), -0.5 * (height - STEP), 0.0])
-    floor = build(scene, Stage(np.eye(3), middle, 0.6 * width))
+    floor = build(scene.collection, Stage(np.eye(3), middle, 0.6 * width))
     floor.location = middle - [0.0, 0.0, 1.0]
+    scene.world = bpy.data.worlds.new("World")
+    add_sky(scene.world)
     add_camera(scene, middle, width)
     use_cycles(scene, WIDTH, HEIGHT, samples=24)
     scene.render.image_settings.color_mode = "RGB"

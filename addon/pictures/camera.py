@@ -23,35 +23,37 @@ _LIFT = 1.02  # of the tube's radius: how far the lowest point stays above the f
 
 
 def follow(
-    scene: "bpy.types.Scene",
+    collection: "bpy.types.Collection",
+    size: tuple[int, int],
     stage: Stage,
     floor: "bpy.types.Object",
-    points: Sequence[Frame],
+    points: "Sequence[Frame | FloatArray]",
     radii: FloatArray,
     frames: FloatArray,
-) -> None:
+) -> "bpy.types.Object":
     """Add a camera that sees the whole tube in every frame, and keep the floor just below it.
 
     Parameters
     ----------
-    scene, stage
-        Where the curve is shown.
-    floor
-        The floor, at the height of the stage's middle.
+    collection, size
+        Where the camera belongs, and the width and height of its pictures, in any unit.
+    stage, floor
+        Where the curve is shown; the floor is at the height of the stage's middle.
     points, radii, frames
         Vertices, (n, 3), radius of the tube and scene frame of every key.
     """
     axes = _view_axes(stage)
-    camera = _camera(scene, stage, axes)
+    camera = _camera(collection, stage, axes)
     every = np.arange(np.floor(frames[0]), np.ceil(frames[-1]) + 1)
     seen = [(p - stage.middle) @ axes.T for p in points]
-    eyes = _eyes(seen, radii, _slopes(scene) / _MARGIN, frames, every)
+    eyes = _eyes(seen, radii, _slopes(size) / _MARGIN, frames, every)
     heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - _LIFT * radii
     lows = -_calm(-np.interp(every, frames, heights))
     _move(camera, stage.middle + eyes @ axes, every)
     _move(floor, stage.middle + lows[:, None] * stage.axes[2], every)
     distances = eyes[:, 2]
     camera.data.clip_start, camera.data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
+    return camera
 
 
 def _view_axes(stage: Stage) -> FloatArray:
@@ -60,21 +62,19 @@ def _view_axes(stage: Stage) -> FloatArray:
     return np.array([stage.axes[0], np.cross(backward, stage.axes[0]), backward])
 
 
-def _camera(scene: "bpy.types.Scene", stage: Stage, axes: FloatArray) -> "bpy.types.Object":
+def _camera(collection: "bpy.types.Collection", stage: Stage, axes: FloatArray) -> "bpy.types.Object":
     import bpy
 
     data = bpy.data.cameras.new("Camera")
     data.lens, data.sensor_width = _LENS, _SENSOR
-    camera = add(scene, "Camera", data)
+    camera = add(collection, "Camera", data)
     place(camera, stage.middle + axes[2], stage.middle, stage.axes[2])
-    scene.camera = camera
     return camera
 
 
-def _slopes(scene: "bpy.types.Scene") -> FloatArray:
+def _slopes(size: tuple[int, int]) -> FloatArray:
     """Tangents of half the horizontal and vertical angle of view."""
-    size = np.array([scene.render.resolution_x, scene.render.resolution_y], dtype=np.float64)
-    return np.asarray(0.5 * _SENSOR / _LENS * size / size.max())
+    return np.asarray(0.5 * _SENSOR / _LENS * np.array(size) / max(size))
 
 
 def _eyes(

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     import bpy
 
 _BEVEL_RESOLUTION = 7
-_SHOWN = 40  # keys looked at when the camera is placed
 _MIN_FRAMES = 120  # frames of a keyframed relaxation, if its iterates can be spread over them
 _FRAMES_PER_KEY = 6
 _FILM = (60, 96)  # frames of a film in motion
@@ -84,6 +83,8 @@ def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
 
 def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh, origin: Origin | None = None) -> None:
     """Put a keyed curve on a stage, by default near the scene's origin, and fit the scene's frames to it."""
+    import bpy
+
     points = [key.points for key in keys.keys]
     radii = tube.animated_radii(mesh, points, frames)
     data = new_curve_data("Curve", mesh.component_sizes)
@@ -94,9 +95,13 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
     else:
         write_points(data, points[0])
     colour_components(data)
-    shown = np.concatenate(points[:: -(-len(points) // _SHOWN)] + points[-1:]).astype(np.float64)
-    ground = stage.Stage.around(shown, points[-1].astype(np.float64))
-    camera.follow(scene, ground, stage.build(scene, ground), points, radii, frames)
+    ground = stage.Stage.around(points, stage.flat_axes(points[-1].astype(np.float64)))
+    size = scene.render.resolution_x, scene.render.resolution_y
+    floor = stage.build(scene.collection, ground)
+    scene.camera = camera.follow(scene.collection, size, ground, floor, points, radii, frames)
+    scene.world = scene.world or bpy.data.worlds.new("World")
+    stage.add_sky(scene.world)
+    stage.light_workbench(scene, stage.towards_key(ground))
     if origin is not None:
         _put(scene, origin)
     scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
@@ -118,7 +123,7 @@ def _put(scene: "bpy.types.Scene", origin: Origin) -> None:
     if origin.scale == 1.0 and not origin.location.any():
         return
     objects = list(scene.objects)
-    root = stage.add(scene, "Stage", None)
+    root = stage.add(scene.collection, "Stage", None)
     root.location, root.scale = origin.location, 3 * [origin.scale]
     for obj in objects:
         obj.parent = root

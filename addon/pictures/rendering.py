@@ -27,13 +27,18 @@ bpy.ops.render.render(write_still=True)
 
 
 def use_cycles(scene: "bpy.types.Scene", width: int, height: int, samples: int, draft: bool = False) -> None:
-    """Set a scene up for Cycles, which unlike the other engines needs no graphics driver.
+    """Set a scene up for films by Cycles, which unlike the other engines needs no graphics driver."""
+    look_fine(scene, samples, draft)
+    _set_size(scene, width, height)
 
-    A draft has softer shadows: it is denoised from its colours alone, which takes a third of the time.
+
+def look_fine(scene: "bpy.types.Scene", samples: int, draft: bool = False) -> None:
+    """Let a scene be rendered by Cycles, with soft shadows.
+
+    A draft has softer ones: it is denoised from its colours alone, which takes a third of the time.
     """
     cycles = scene.cycles
     scene.render.engine = "CYCLES"
-    _set_size(scene, width, height)
     scene.view_settings.view_transform = "AgX"
     scene.view_settings.look = "AgX - Medium High Contrast"
     cycles.samples = samples
@@ -45,15 +50,21 @@ def use_cycles(scene: "bpy.types.Scene", width: int, height: int, samples: int, 
 
 
 def use_workbench(scene: "bpy.types.Scene", width: int, height: int) -> None:
-    """Set a scene up for Workbench: plain shading, but many frames in little time, also without a graphics card.
+    """Set a scene up for films by Workbench, also without a graphics card.
 
     Edges are left jagged. To render four times the pixels and average them looks as smooth as Workbench's own
     antialiasing and takes half as long without a graphics card, since everything is drawn once only.
     """
-    scene.render.engine = "BLENDER_WORKBENCH"
+    look_plain(scene)
     _set_size(scene, width, height)
-    scene.view_settings.view_transform = "Standard"
     scene.display.render_aa = "OFF"
+
+
+def look_plain(scene: "bpy.types.Scene") -> None:
+    """Let a scene be drawn by Workbench: plain shading, but many frames in little time."""
+    scene.render.engine = "BLENDER_WORKBENCH"
+    scene.view_settings.view_transform = "Standard"
+    scene.display.render_aa = "8"
     shading = scene.display.shading
     shading.light, shading.studio_light, shading.color_type = "STUDIO", "outdoor.sl", "MATERIAL"
     shading.show_shadows, shading.shadow_intensity = True, 0.2

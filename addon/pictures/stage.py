@@ -1,5 +1,6 @@
 """A scene to show a curve in: camera, lights, floor and materials."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from .materials import material
 if TYPE_CHECKING:
     import bpy
 
+KEY_LIGHT = "Key"
 _FLOOR_COLOUR = (0.88, 0.83, 0.74)
 _SKY_COLOUR = (0.80, 0.88, 1.0)
 _SKY_STRENGTH = 0.4
@@ -38,12 +40,13 @@ class Stage:
     size: float
 
     @classmethod
-    def around(cls, shown: FloatArray, final: FloatArray) -> "Stage":
-        """Lay the final curve flat, and take in everything shown; both of shape (n, 3)."""
-        axes = flat_axes(final)
-        along = shown @ axes.T
-        middle = 0.5 * (along.min(axis=0) + along.max(axis=0))
-        return cls(axes, middle @ axes, float(np.linalg.norm(along - middle, axis=1).max()))
+    def around(cls, shown: Sequence[npt.NDArray[np.floating]], axes: FloatArray) -> "Stage":
+        """Take in everything shown, arrays of shape (n, 3), along the given axes."""
+        along = [points @ axes.T for points in shown]
+        low = np.min([each.min(axis=0) for each in along], axis=0)
+        middle = 0.5 * (low + np.max([each.max(axis=0) for each in along], axis=0))
+        size = max(float(np.linalg.norm(each - middle, axis=1).max()) for each in along)
+        return cls(axes, middle @ axes, size)
 
 
 def flat_axes(points: FloatArray) -> FloatArray:
@@ -55,22 +58,37 @@ def flat_axes(points: FloatArray) -> FloatArray:
     return np.asarray(axes)
 
 
-def build(scene: "bpy.types.Scene", stage: Stage) -> "bpy.types.Object":
-    """Add lights, a floor and a sky to a scene; return the floor, which is at the height of the middle."""
-    _add_light(scene, stage, "Key", _KEY, 1.5, 60.0, (1.0, 0.93, 0.84))
-    _add_light(scene, stage, "Rim", (1.9, 1.9, 1.5), 0.8, 16.0, (0.80, 0.90, 1.0))
-    x, y, z = _KEY @ stage.axes / np.linalg.norm(_KEY)
-    scene.display.light_direction = (x, z, -y)  # Workbench knows no lights; its second axis is the world's up
-    _add_sky(scene)
-    return _add_floor(scene, stage)
+def level_axes(points: FloatArray) -> FloatArray:
+    """Axes of which the third is the world's up, and the first where points reach furthest sideways; rows."""
+    _, _, across = np.linalg.svd((points - points.mean(axis=0))[:, :2], full_matrices=False)
+    x, y = across[0] * np.sign(across[0][np.abs(across[0]).argmax()])
+    return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
 
 
-def add(scene: "bpy.types.Scene", name: str, data: "bpy.types.ID") -> "bpy.types.Object":
-    """Add an object to a scene."""
+def build(collection: "bpy.types.Collection", stage: Stage) -> "bpy.types.Object":
+    """Add lights and a floor to a collection; return the floor, which is at the height of the middle."""
+    _add_light(collection, stage, KEY_LIGHT, _KEY, 1.5, 60.0, (1.0, 0.93, 0.84))
+    _add_light(collection, stage, "Rim", (1.9, 1.9, 1.5), 0.8, 16.0, (0.80, 0.90, 1.0))
+    return _add_floor(collection, stage)
+
+
+def light_workbench(scene: "bpy.types.Scene", direction: npt.ArrayLike) -> None:
+    """Let Workbench, which knows no lights, have its light from a direction of the world, (3,)."""
+    x, y, z = np.asarray(direction) / np.linalg.norm(direction)
+    scene.display.light_direction = (x, z, -y)  # its second axis is the world's up
+
+
+def towards_key(stage: Stage) -> FloatArray:
+    """Direction of the key light from the middle of a stage, (3,)."""
+    return np.asarray(_KEY @ stage.axes)
+
+
+def add(collection: "bpy.types.Collection", name: str, data: "bpy.types.ID") -> "bpy.types.Object":
+    """Add an object to a collection."""
     import bpy
 
     obj = bpy.data.objects.new(name, data)
-    scene.collection.objects.link(obj)
+    collection.objects.link(obj)
     return obj
 
 
@@ -86,7 +104,7 @@ def place(obj: "bpy.types.Object", at: FloatArray, towards: FloatArray, up: Floa
 
 
 def _add_light(
-    scene: "bpy.types.Scene",
+    collection: "bpy.types.Collection",
     stage: Stage,
     name: str,
     at: npt.ArrayLike,
@@ -102,26 +120,23 @@ def _add_light(
     data.energy = strength * stage.size**2
     data.color = tint
     at = stage.middle + stage.size * (np.asarray(at) @ stage.axes)
-    place(add(scene, name, data), at, stage.middle, stage.axes[2])
+    place(add(collection, name, data), at, stage.middle, stage.axes[2])
 
 
-def _add_floor(scene: "bpy.types.Scene", stage: Stage) -> "bpy.types.Object":
+def _add_floor(collection: "bpy.types.Collection", stage: Stage) -> "bpy.types.Object":
     import bpy
 
     x, y = _WIDTH * stage.size * stage.axes[:2]
     data = bpy.data.meshes.new("Floor")
     data.from_pydata([p.tolist() for p in (-x - y, x - y, x + y, y - x)], [], [(0, 1, 2, 3)])
     data.materials.append(material("Paper", _FLOOR_COLOUR, {"Roughness": 0.9, "Specular IOR Level": 0.2}))
-    floor = add(scene, "Floor", data)
+    floor = add(collection, "Floor", data)
     floor.location = stage.middle
     return floor
 
 
-def _add_sky(scene: "bpy.types.Scene") -> None:
-    import bpy
-
-    world = scene.world or bpy.data.worlds.new("World")
-    scene.world = world
+def add_sky(world: "bpy.types.World") -> None:
+    """Light the world as an overcast sky does."""
     if world.node_tree is None:  # from Blender 5.0 on there is one from the start, and the switch is deprecated
         world.use_nodes = True
     background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
