@@ -60,9 +60,9 @@ class Run:
         return self.point.problem
 
     @property
-    def at_limit(self) -> bool:
-        """Whether there are to be no more iterations."""
-        return self.iterate.index >= self.options.max_iterations
+    def iterations_left(self) -> int:
+        """How many more iterations there may be."""
+        return self.options.max_iterations - self.iterate.index
 
     def step(self) -> Step | NoStep:
         """The present method's next step, ending at a point of the present problem."""
@@ -89,8 +89,7 @@ class Run:
 
     def allows(self, change: Change) -> bool:
         """Whether a change is within the limit: a step is an iteration, and so is another mesh."""
-        iterations = len(change.steps) + self._remeshes(change)
-        return self.iterate.index + iterations <= self.options.max_iterations
+        return len(change.steps) + self._remeshes(change) <= self.iterations_left
 
     def change(self, change: Change) -> Iterate | None:
         """Go on from a point of another problem, or by another method; a new mesh makes a new iterate."""

@@ -15,7 +15,7 @@ def termination(run: Run) -> Outcome | None:
         norm = run.point.with_own_metric().gradient_norm
         if norm <= bound:
             return converged(norm, bound)
-    return at_limit(run) if run.at_limit else None
+    return at_limit(run) if run.iterations_left <= 0 else None
 
 
 def at_limit(run: Run) -> Outcome:

@@ -93,7 +93,8 @@ class Armijo:
         """
         longest = self.first.growth * last
         speed = float(np.max(np.abs(direction)))
-        return LEAST / speed if longest * speed < LEAST and not on_target(point) else longest
+        crawls = speed > 0.0 and longest * speed < LEAST
+        return LEAST / speed if crawls and not on_target(point) else longest
 
     def _shorter(self, point: Point, rejected: Rejected, slope: float) -> float:
         """Factor for the next trial."""

@@ -28,4 +28,4 @@ class Balance:
         if not steps:
             return event.adding(IS_BALANCED)
         self._before = bending(run.iterate.curve)
-        return Change(steps, method=run.method)  # which remembers nothing of the curve before
+        return Change(steps[: run.iterations_left], method=run.method)  # which remembers nothing of the curve before

@@ -44,14 +44,9 @@ class CoarseStart:
         if isinstance(event, Start):
             return (self._coarser() if self._wanted else self._smoother()) or event
         self._wanted = False
-        if self._coarse is not None and (isinstance(event, Outcome | NoStep) or self._left <= WAY_BACK):
+        if self._coarse is not None and (isinstance(event, Outcome | NoStep) or self._run.iterations_left <= WAY_BACK):
             return self._finest() or event
         return event
-
-    @property
-    def _left(self) -> int:
-        """Iterations that are left."""
-        return self._run.options.max_iterations - self._run.iterate.index
 
     def _is_wanted(self) -> bool:
         options, curve = self._run.options, self._run.iterate.curve
@@ -65,7 +60,7 @@ class CoarseStart:
 
     def _coarser(self) -> Change | None:
         """A pass that leaves out up to a third of the vertices; None if there are none to leave out, or no time."""
-        if self._left < PASS + WAY_BACK:
+        if self._run.iterations_left < PASS + WAY_BACK:
             return None
         curve, problem = self._run.iterate.curve, self._run.problem
         spacing = graded_spacing(curve, Resolution())

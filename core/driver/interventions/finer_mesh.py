@@ -36,8 +36,7 @@ class FinerMesh:
 
     @property
     def _is_wanted(self) -> bool:
-        options = self._run.options
-        return options.ends_finer and options.max_iterations - self._run.iterate.index >= MIN_ITERATIONS
+        return self._run.options.ends_finer and self._run.iterations_left >= MIN_ITERATIONS
 
     def _finer(self, curve: Curve) -> Change | None:
         """The same curve on a finer mesh; None if that cannot be computed with, or has too few digits."""

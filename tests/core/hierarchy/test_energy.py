@@ -207,7 +207,7 @@ def test_reported_energies_are_exact_unless_their_error_is_told(monkeypatch: pyt
     curve = torus_trefoil(700)
     exact = MoebiusEnergy().value(curve)
     assert moebius_energy(curve) == (exact, 0.0)
-    monkeypatch.setattr("mobius_flow.core.hierarchy.energy.EXACT_UP_TO", len(curve) - 1)
+    monkeypatch.setattr("mobius_flow.core.hierarchy.reported.EXACT_UP_TO", len(curve) - 1)
     value, error = moebius_energy(curve)
     assert 0.0 < abs(value / exact - 1.0) <= error
 

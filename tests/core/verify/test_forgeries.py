@@ -18,7 +18,7 @@ Arrays = dict[str, np.ndarray]
 def genuine() -> Arrays:
     """A knot on a mesh that changes."""
     trajectory = Trajectory()
-    for iterate in relax(knot("4_1"), RelaxOptions(max_iterations=11, mesh="adaptive", vertices=75)):
+    for iterate in relax(knot("4_1"), RelaxOptions(max_iterations=14, mesh="adaptive", vertices=75)):
         trajectory.add(iterate)
     arrays = trajectory.arrays()
     return {name: np.array(array) for name, array in arrays.items() if name.startswith(("stage", "component"))}
