@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..buttons.baking import CURVE_OT_mobius_flow_scene_range
 from ..buttons.film import (
     CURVE_OT_mobius_flow_remove_stage,
     CURVE_OT_mobius_flow_render_film,
@@ -35,6 +36,7 @@ class VIEW3D_PT_mobius_flow_film(InSidebar, bpy.types.Panel):  # noqa: N801
         column = layout.column(align=True)
         column.prop(scene, "frame_start", text="Frame Start")
         column.prop(scene, "frame_end", text="End")
+        column.operator(CURVE_OT_mobius_flow_scene_range.bl_idname, icon="PREVIEW_RANGE")
         settings_column(layout, scene.mobius_flow_film, "look", "filepath")
         layout.operator(CURVE_OT_mobius_flow_render_film.bl_idname, icon="RENDER_ANIMATION")
 

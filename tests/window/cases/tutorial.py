@@ -11,7 +11,7 @@ FOLDER = Path(bpy.app.tempdir)
 
 
 def case() -> Steps:
-    open_panels("animation", "film")
+    open_panels("film")
     yield from added()
     yield from relaxed()
     yield from staged()
@@ -26,6 +26,7 @@ def added() -> Steps:
     with here():
         bpy.ops.ed.undo_push(message="Emptied")
         bpy.ops.curve.mobius_flow_add_knot(knot="thistlethwaite")
+        bpy.ops.curve.mobius_flow_color_components()
         bpy.ops.ed.undo_push(message="Knot added")
     yield from open_sidebar()
     yield from look()
@@ -57,8 +58,6 @@ def staged() -> Steps:
     yield from until(stage, "the stage again")
     window().scene.frame_set(1)
     yield from key("NUMPAD_0")
-    with here():
-        bpy.context.space_data.shading.type = "SOLID"
     yield from picture("tutorial-4-staged", differs_from="tutorial-3-relaxed")
 
 
