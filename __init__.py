@@ -1,8 +1,10 @@
 """Möbius Flow: relax and untangle knotted curves without ever letting them pass through themselves.
 
 The same tree is a Blender extension and a Python package. Nothing is imported here before Blender
-asks for it, so the library works where there is no Blender.
+asks for it, so the library works where there is no Blender. Scripts in Blender find `Relaxation` here.
 """
+
+from typing import Any
 
 __version__ = "0.1.0"
 
@@ -19,3 +21,12 @@ def unregister() -> None:
     from . import addon
 
     addon.unregister()
+
+
+def __getattr__(name: str) -> Any:
+    """Import what scripts use when they ask for it."""
+    if name != "Relaxation":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from .addon.scripting import Relaxation
+
+    return Relaxation

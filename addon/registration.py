@@ -3,14 +3,14 @@
 import bpy
 from bpy.props import PointerProperty
 
-from . import buttons, panel_settings, sidebar
+from . import buttons, film_settings, panel_settings, sidebar
 from .buttons import gallery, presets
 from .live import handlers, overlay
 from .properties import MobiusFlowSettings
 from .sidebar import menus
 
-_CLASSES = (MobiusFlowSettings, *panel_settings.CLASSES, *buttons.CLASSES, *sidebar.CLASSES)
-_PARTS = (panel_settings, presets, gallery, menus, handlers, overlay)  # what else there is to register
+_CLASSES = (MobiusFlowSettings, *panel_settings.CLASSES, *film_settings.CLASSES, *buttons.CLASSES, *sidebar.CLASSES)
+_PARTS = (panel_settings, film_settings, presets, gallery, menus, handlers, overlay)  # what else there is to register
 
 
 def register() -> None:

@@ -3,9 +3,10 @@
 import bpy
 
 from ..curves import bake
-from ..live.checks import edited, refusal, selected_curves, unbaked, unclearable
+from ..live.checks import refusal, selected_curves, unbaked, unclearable
 from ..live.refusal import Refusal
 from ..live.start import unseen
+from ..scripting import Relaxation
 from .refusing import Refusing
 from .relaxing import Relaxing
 
@@ -45,14 +46,9 @@ class CURVE_OT_mobius_flow_clear(Refusing, bpy.types.Operator):  # noqa: N801
         """Baked curves are wanted."""
         return unclearable(context)
 
-    def last_refusal(self, context: bpy.types.Context) -> Refusal | None:
-        """Nobody has edited their keys."""
-        return edited(context)
-
     def act(self, context: bpy.types.Context) -> None:
         """Clear all of them."""
-        for obj in selected_curves(context):
-            bake.clear(obj)
+        Relaxation(*selected_curves(context)).clear()
 
 
 class CURVE_OT_mobius_flow_scene_range(bpy.types.Operator):  # noqa: N801

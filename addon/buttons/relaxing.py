@@ -6,12 +6,12 @@ import bpy
 from bpy.props import BoolProperty
 
 from ...core import MobiusFlowError
-from ..curves.session import Session
-from ..engine.timing import Pace
-from ..live.checks import edited, refusal, selected_curves, unsampled
+from ..live.checks import refusal, selected_curves
 from ..live.refusal import Refusal
 from ..live.start import LiveRelax, tell
-from ..properties import SETTINGS, relax_options, settings
+from ..properties import SETTINGS, settings
+from ..scripting import Relaxation
+from ..scripting.settings import implied
 from .refusing import Refusing
 
 
@@ -38,10 +38,10 @@ class Relaxing(LiveRelax, Refusing):
         context.view_layer.update()  # a script may have moved the object just before
         values = self.values(context)
         try:
-            if refused := self.refusal(context) or self.last_refusal(context):
+            if refused := self.refusal(context):
                 raise MobiusFlowError(refused.sentence)
-            options, objects = self.key_options(context, values), selected_curves(context)
-            report = Session(objects, relax_options(values), options, self.continues).run()
+            relaxation = Relaxation(*selected_curves(context), sample_splines=self.sample_splines)
+            report = (relaxation.relax_further if self.continues else relaxation.relax)(**values)
         except MobiusFlowError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -56,14 +56,7 @@ class Relaxing(LiveRelax, Refusing):
         scene = context.scene.mobius_flow
         given = self.properties.is_property_set
         values = {name: getattr(self if given(name) else scene, name) for name in SETTINGS}
-        # scripts that say how many frames an iterate takes mean that
-        by_iterate = given("frames_per_iterate") and not given("timing")
-        values |= {"timing": Pace.ITERATE.name} if by_iterate else {}
-        return values | {"any_bevel": given("fit_bevel")}  # the panel's setting asks for no bevel of the artist's own
-
-    def last_refusal(self, context: bpy.types.Context) -> Refusal | None:
-        """Nobody has edited keys, and smooth splines may become polygons."""
-        return edited(context) or (None if self.sample_splines else unsampled(selected_curves(context)))
+        return values | implied([name for name in SETTINGS if given(name)])
 
 
 class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme

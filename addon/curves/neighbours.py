@@ -11,6 +11,7 @@ from ..engine.words import named
 if TYPE_CHECKING:
     import bpy
 
+STAGE = "mobius_flow_stage"  # custom property of what only surrounds curves, to be seen with them
 _SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}
 _MARGIN = 0.1  # of the diagonal of the curves' box
 
@@ -36,7 +37,7 @@ def _near(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -
     margin = _MARGIN * np.linalg.norm(highest - lowest)
     overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
     candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
-    return [obj for obj in candidates if obj.type in _SOLID and obj.visible_get()]
+    return [obj for obj in candidates if obj.type in _SOLID and STAGE not in obj and obj.visible_get()]
 
 
 def _boxes(objects: "bpy.types.bpy_prop_collection") -> tuple[FloatArray, FloatArray]:

@@ -40,7 +40,12 @@ def unreadable(context: "bpy.types.Context") -> Refusal | None:
     if refused := running():
         return refused
     objects = selected_curves(context)
-    return _first(objects, (_mode, _splines)) if objects else _no_curve(context)
+    return undrawn(objects) if objects else _no_curve(context)
+
+
+def undrawn(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
+    """Say which of some curve objects is being edited, or has splines that are not closed; None if there is none."""
+    return running() or _first(objects, (_mode, _splines))
 
 
 def unfitting(context: "bpy.types.Context") -> Refusal | None:
@@ -73,14 +78,23 @@ def _checks(objects: Sequence["bpy.types.Object"]) -> Sequence[_Check]:
 
 def unbaked(context: "bpy.types.Context") -> Refusal | None:
     """Say which of the selected curves was not baked, or return None if all were."""
-    objects = selected_curves(context)
-    bare = next((obj for obj in objects if not bake.is_baked(obj.data)), None)
-    return Refusal(f"'{bare.name}' has no keys of Möbius Flow; press Relax first") if bare is not None else None
+    return bare(selected_curves(context))
+
+
+def bare(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
+    """Say which of some curve objects was not baked, or return None if all were."""
+    found = next((obj for obj in objects if not bake.is_baked(obj.data)), None)
+    return Refusal(f"'{found.name}' has no keys of Möbius Flow; press Relax first") if found is not None else None
 
 
 def edited(context: "bpy.types.Context") -> Refusal | None:
     """Say which of the selected curves has keys that somebody has edited, or return None; not for every redraw."""
-    for obj in selected_curves(context):
+    return edited_by_hand(selected_curves(context))
+
+
+def edited_by_hand(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
+    """Say which of some curve objects has keys that somebody has edited, or return None; not for every redraw."""
+    for obj in objects:
         if bake.is_baked(obj.data) and bake.is_edited(obj.data):
             sentence = f"Keys of '{obj.name}' were edited; undo that, or remove the keys to relax the curve as it is"
             return Refusal(sentence, Remedy.COPY)
@@ -92,9 +106,12 @@ def unclearable(context: "bpy.types.Context") -> Refusal | None:
     if refused := running():
         return refused
     objects = selected_curves(context)
-    if not objects:
-        return _no_curve(context)
-    return unbaked(context) or _first(objects, (_mode, _ownership))
+    return locked(objects) if objects else _no_curve(context)
+
+
+def locked(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
+    """Say why curve objects cannot be given back as they were before they were baked, or return None."""
+    return running() or bare(objects) or _first(objects, (_mode, _ownership))
 
 
 def _first(objects: Sequence["bpy.types.Object"], checks: Sequence[_Check]) -> Refusal | None:

@@ -24,7 +24,7 @@ _LIFT = 1.02  # of the tube's radius: how far the lowest point stays above the f
 
 def follow(
     collection: "bpy.types.Collection",
-    size: tuple[int, int],
+    size: tuple[float, float],
     stage: Stage,
     floor: "bpy.types.Object",
     points: "Sequence[Frame | FloatArray]",
@@ -72,7 +72,7 @@ def _camera(collection: "bpy.types.Collection", stage: Stage, axes: FloatArray) 
     return camera
 
 
-def _slopes(size: tuple[int, int]) -> FloatArray:
+def _slopes(size: tuple[float, float]) -> FloatArray:
     """Tangents of half the horizontal and vertical angle of view."""
     return np.asarray(0.5 * _SENSOR / _LENS * np.array(size) / max(size))
 

@@ -93,17 +93,17 @@ def _encode(scene: "bpy.types.Scene", pictures: Sequence[Path], path: Path) -> N
         reel.view_settings.view_transform = "Standard"  # the pictures have their colours
         reel.frame_start, reel.frame_end = 1, len(pictures)
         _splice(reel, pictures)
-        _use_h264(reel)
+        use_h264(reel)
         reel.render.filepath, reel.render.use_file_extension = str(path), False
         with rendering.quiet():
             bpy.ops.render.render(animation=True, scene=reel.name)
     finally:
         bpy.data.scenes.remove(reel)
-    if _length(path) != len(pictures):
+    if length_of(path) != len(pictures):
         raise OSError(rendering.NOT_WHOLE)
 
 
-def _length(path: Path) -> int:
+def length_of(path: Path) -> int:
     """Count a film's frames; Blender does not notice when it cannot write all of them."""
     import bpy
 
@@ -126,7 +126,8 @@ def _splice(reel: "bpy.types.Scene", pictures: Sequence[Path]) -> None:
     strip.transform.filter = "BOX"
 
 
-def _use_h264(reel: "bpy.types.Scene") -> None:
+def use_h264(reel: "bpy.types.Scene") -> None:
+    """Let a scene's animation be written as an MP4 that plays everywhere, without sound."""
     settings, video = reel.render.image_settings, reel.render.ffmpeg
     if hasattr(settings, "media_type"):  # Blender 5.0 and later
         settings.media_type = "VIDEO"

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.types import FloatArray
+from ..engine.placement import Frame
 from .materials import material
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class Stage:
     size: float
 
     @classmethod
-    def around(cls, shown: Sequence[npt.NDArray[np.floating]], axes: FloatArray) -> "Stage":
+    def around(cls, shown: Sequence[Frame | FloatArray], axes: FloatArray) -> "Stage":
         """Take in everything shown, arrays of shape (n, 3), along the given axes."""
         along = [points @ axes.T for points in shown]
         low = np.min([each.min(axis=0) for each in along], axis=0)

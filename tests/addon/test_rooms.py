@@ -15,7 +15,8 @@ FLOORS = [
     {"curves"},
     {"pictures", "properties"},
     {"live"},
-    {"panel_settings", "buttons"},
+    {"scripting"},
+    {"panel_settings", "film_settings", "buttons"},
     {"sidebar"},
     {"registration"},
     {""},  # the package, which Blender and the command line import

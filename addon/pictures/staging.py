@@ -1,0 +1,142 @@
+"""A stage in an artist's scene: in a collection of its own, replaced when it is set up anew, gone without a trace.
+
+What belongs to it is marked. A scene's own camera and world stay in the file while the stage's are used instead: its
+collection holds on to them, and gives them back.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..curves.neighbours import STAGE
+from ..curves.world_motion import WorldMotion
+from . import camera, stage
+
+if TYPE_CHECKING:
+    import bpy
+
+_NAME = "Stage"
+_CAMERA, _WORLD = "mobius_flow_camera", "mobius_flow_world"  # of its collection: what the scene had before
+
+
+def set_up(
+    scene: "bpy.types.Scene",
+    objects: Sequence["bpy.types.Object"],
+    use_camera: bool = True,
+    use_world: bool = True,
+) -> "bpy.types.Collection":
+    """Put a camera, lights and a floor around curve objects for as long as they move; a stage there was is replaced.
+
+    Parameters
+    ----------
+    scene
+        Where the objects are; the camera's pictures have the shape of its renders.
+    objects
+        Curve objects with closed splines, their transforms evaluated.
+    use_camera, use_world
+        Whether the scene is rendered by the stage's camera and under its sky, instead of those that it has.
+
+    Raises
+    ------
+    CurveError
+        If splines cannot be read; nothing has changed then.
+    """
+    motion = WorldMotion.of(scene, objects)
+    strike(scene)
+    collection = _collection(scene)
+    ground = stage.Stage.around(motion.points, stage.level_axes(motion.points[-1]))
+    floor = stage.build(collection, ground)
+    floor.hide_select = True  # it is in the way of every click
+    eye = camera.follow(collection, _shape(scene), ground, floor, motion.points, motion.radii, motion.frames)
+    for obj in collection.objects:
+        obj[STAGE] = True
+    if use_camera:
+        collection[_CAMERA], scene.camera = scene.camera, eye
+    if use_world:
+        collection[_WORLD], scene.world = scene.world, _sky()
+    return collection
+
+
+def strike(scene: "bpy.types.Scene") -> None:
+    """Take a scene's stage away, if it has one; what somebody else put into its collection stays."""
+    collection = own_stage(scene)
+    if collection is None:
+        return
+    if scene.camera is not None and STAGE in scene.camera:
+        scene.camera = collection.get(_CAMERA)
+    if scene.world is not None and STAGE in scene.world:
+        sky, scene.world = scene.world, collection.get(_WORLD)
+        _remove(sky)
+    for obj in [each for each in collection.objects if STAGE in each]:
+        _remove_object(obj)
+    for name in (STAGE, _CAMERA, _WORLD):
+        collection.pop(name, None)
+    if not collection.all_objects:
+        _remove(collection)
+
+
+def own_stage(scene: "bpy.types.Scene") -> "bpy.types.Collection | None":
+    """The collection of a scene's stage, if there is one."""
+    return next((each for each in scene.collection.children_recursive if STAGE in each), None)
+
+
+def key_direction(scene: "bpy.types.Scene") -> "Sequence[float] | None":
+    """Where the key light of a scene's stage shines from, if there is one; a direction of the world."""
+    collection = own_stage(scene)
+    lights = [obj for obj in collection.objects if obj.type == "LIGHT" and STAGE in obj] if collection else []
+    return tuple(lights[0].matrix_world.col[2][:3]) if lights else None
+
+
+def fits(scene: "bpy.types.Scene") -> bool:
+    """Whether a scene renders pictures of the shape that its stage's camera was made for, if it has one."""
+    collection = own_stage(scene)
+    if collection is None or scene.camera is None or STAGE not in scene.camera:
+        return True
+    return bool(np.isclose(collection[STAGE], _aspect(scene)))
+
+
+def _collection(scene: "bpy.types.Scene") -> "bpy.types.Collection":
+    import bpy
+
+    collection = bpy.data.collections.new(_NAME)
+    scene.collection.children.link(collection)
+    collection[STAGE] = _aspect(scene)
+    return collection
+
+
+def _sky() -> "bpy.types.World":
+    import bpy
+
+    world = bpy.data.worlds.new(_NAME)
+    world[STAGE] = True
+    stage.add_sky(world)
+    return world
+
+
+def _shape(scene: "bpy.types.Scene") -> tuple[float, float]:
+    """Width and height of a scene's pictures."""
+    render = scene.render
+    return render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
+
+
+def _aspect(scene: "bpy.types.Scene") -> float:
+    width, height = _shape(scene)
+    return width / height
+
+
+def _remove_object(obj: "bpy.types.Object") -> None:
+    """Remove an object with all that nothing else uses: its data, their materials, its motion."""
+    data, animation = obj.data, obj.animation_data
+    materials = list(getattr(data, "materials", ()))
+    action = animation.action if animation is not None else None
+    _remove(obj)
+    for block in (data, *materials, action):
+        if block is not None and not block.users:
+            _remove(block)
+
+
+def _remove(block: "bpy.types.ID") -> None:
+    import bpy
+
+    bpy.data.batch_remove([block])

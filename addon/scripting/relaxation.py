@@ -1,0 +1,158 @@
+"""Relaxations for scripts: what the buttons do, with values in place of a selection and errors in place of reports.
+
+In Blender, where the extension is installed::
+
+    from bl_ext.user_default.mobius_flow import Relaxation
+
+and with the Python package beside `bpy`::
+
+    from mobius_flow import Relaxation
+"""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...core import Curve, MobiusFlowError
+from ..curves import bake
+from ..curves.baked_keys import BakedKeys
+from ..curves.session import Report, Session
+from ..live import checks
+from ..live.refusal import Refusal
+from ..pictures import staging
+from ..pictures.filming import Filming
+from ..properties import key_options, relax_options
+from .settings import complete
+
+if TYPE_CHECKING:
+    import bpy
+
+
+class Relaxation:
+    """Curve objects that are relaxed together, never through themselves or each other.
+
+    Nothing of the scene's settings or of the selection is looked at. Every method does its whole job before it returns,
+    or leaves all as it was and raises an error.
+
+    Parameters
+    ----------
+    objects
+        Curve objects of closed splines in Object Mode.
+    sample_splines
+        Whether Bézier and NURBS splines may become the polygons that are drawn for them.
+
+    Raises
+    ------
+    MobiusFlowError
+        If an object is no curve.
+
+    Examples
+    --------
+    Relax the active object in 300 iterations at most, and film it:
+
+    >>> relaxation = Relaxation(bpy.context.object)  # doctest: +SKIP
+    >>> report = relaxation.relax(max_iterations=300, length=120)  # doctest: +SKIP
+    >>> print(report.sentence)  # doctest: +SKIP
+    >>> relaxation.set_up_stage()  # doctest: +SKIP
+    >>> relaxation.film("/tmp/film.mp4", look="QUICK")  # doctest: +SKIP
+    """
+
+    def __init__(self, *objects: "bpy.types.Object", sample_splines: bool = False) -> None:
+        if not objects:
+            raise MobiusFlowError("give at least one curve object")
+        for obj in objects:
+            if obj.type != "CURVE":
+                raise MobiusFlowError(f"'{obj.name}' is not a curve object")
+        self.objects = objects
+        self.sample_splines = sample_splines
+
+    def relax(self, **settings: Any) -> Report:
+        """Relax from how the curves are, or were before they were baked, and keep the motion as keyframes.
+
+        Parameters
+        ----------
+        **settings
+            Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out.
+
+        Returns
+        -------
+        Report
+            What was done; its ``sentence`` says so, and ``certified`` whether all of it was proved.
+
+        Raises
+        ------
+        MobiusFlowError
+            If the curves cannot be relaxed or a setting is wrong; the message says why and what helps.
+        """
+        return self._run(settings, continues=False)
+
+    def relax_further(self, **settings: Any) -> Report:
+        """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
+
+        With ``balance=True`` or ``escape_saddles=True`` this is what the buttons *Balance* and *Leave Saddle* do.
+        """
+        return self._run(settings, continues=True)
+
+    def clear(self) -> None:
+        """Take the keys away, and give the curves back as they were before; raises MobiusFlowError as `relax`."""
+        self._allow(checks.locked(self.objects) or checks.edited_by_hand(self.objects))
+        for obj in self.objects:
+            bake.clear(obj)
+
+    @property
+    def curves(self) -> list[Curve]:
+        """The link in the world at each key, the last of them being the result.
+
+        Raises
+        ------
+        MobiusFlowError
+            If a curve has no keys of a relaxation, or not as many as the others.
+        """
+        self._allow(checks.bare(self.objects))
+        return BakedKeys(self.objects).curves
+
+    def set_up_stage(self, use_camera: bool = True, use_world: bool = True) -> "bpy.types.Collection":
+        """Put a camera, lights and a floor around the curves for as long as they move; see `staging.set_up`.
+
+        The scene is the open one. Raises MobiusFlowError if splines are open or cannot be read.
+        """
+        import bpy
+
+        self._evaluate()
+        self._allow(checks.undrawn(self.objects))
+        return staging.set_up(bpy.context.scene, self.objects, use_camera, use_world)
+
+    def film(self, path: str | os.PathLike[str], look: str = "SCENE", overwrite: bool = False) -> Path:
+        """Render the frames that the open scene plays to an MP4, whole or not at all, and return where it is.
+
+        Raises MobiusFlowError if it cannot be made or is there already; see `Filming`.
+        """
+        import bpy
+
+        self._allow(checks.running())
+        filming = Filming(bpy.context.scene, os.fspath(path), look, overwrite)
+        filming.render()
+        return filming.path
+
+    def _run(self, settings: Mapping[str, Any], continues: bool) -> Report:
+        values = complete(settings)
+        self._evaluate()
+        unbaked = checks.bare(self.objects) if continues else None
+        smooth = None if self.sample_splines else checks.unsampled(self.objects)
+        hindered = checks.running() or checks.hindrance(self.objects) or unbaked
+        self._allow(hindered or checks.edited_by_hand(self.objects) or smooth)
+        options = key_options(values)
+        options = bake.continued(self.objects, options) if continues else options
+        return Session(self.objects, relax_options(values), options, continues).run()
+
+    @staticmethod
+    def _evaluate() -> None:
+        """Let Blender know where objects are that a script has just moved."""
+        import bpy
+
+        bpy.context.view_layer.update()
+
+    def _allow(self, refused: Refusal | None) -> None:
+        if refused is not None:
+            raise MobiusFlowError(refused.sentence)

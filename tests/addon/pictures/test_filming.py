@@ -1,0 +1,133 @@
+"""Films of a scene: whole or not at all, and the scene is not touched."""
+
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from mobius_flow.addon.pictures import filming, rendering  # noqa: E402
+from mobius_flow.addon.pictures.filming import Filming  # noqa: E402
+from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
+from mobius_flow.addon.pictures.movie import length_of  # noqa: E402
+from mobius_flow.core import MobiusFlowError  # noqa: E402
+
+
+@pytest.fixture
+def scene():
+    """Three frames of nothing, fast to render."""
+    scene = bpy.context.scene
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    scene.collection.objects.link(scene.camera)
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False
+    scene.render.resolution_x, scene.render.resolution_y = 64, 36
+    scene.frame_start, scene.frame_end = 5, 7
+    scene.frame_set(6)
+    return scene
+
+
+def settings(scene):
+    render = scene.render
+    return (
+        [render.engine, render.filepath, render.image_settings.file_format, render.use_file_extension],
+        [scene.view_settings.view_transform, scene.display.render_aa, scene.frame_current, scene.cycles.samples],
+    )
+
+
+def test_a_film_has_every_frame_and_leaves_the_scene_alone(scene, tmp_path):
+    before = settings(scene)
+    film = Filming(scene, str(tmp_path / "film"))
+    film.render()
+    assert film.path == tmp_path / "film.mp4"
+    assert film.frames == length_of(film.path) == 3
+    assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
+    assert settings(scene) == before
+    assert list(bpy.data.scenes) == [scene]
+
+
+def test_steps_of_frames_count(scene, tmp_path):
+    scene.frame_step = 2
+    film = Filming(scene, str(tmp_path / "film.mp4"))
+    film.render()
+    assert film.frames == length_of(film.path) == 2
+
+
+@pytest.mark.parametrize("look", LOOKS)
+def test_looks_are_of_the_copy(scene, tmp_path, look):
+    before = settings(scene)
+    film = Filming(scene, str(tmp_path / "film.mp4"), look)
+    (copy,) = [each for each in bpy.data.scenes if each != scene]
+    wanted = {"SCENE": "CYCLES", "QUICK": "BLENDER_WORKBENCH", "FINE": "CYCLES"}
+    assert copy.render.engine == wanted[look]
+    assert copy.cycles.samples == (1 if look != "FINE" else 32)
+    assert settings(scene) == before
+    assert not film.finish()
+    assert list(bpy.data.scenes) == [scene]
+
+
+def test_half_a_film_is_none(scene, tmp_path, monkeypatch):
+    monkeypatch.setattr(filming, "length_of", lambda _path: 2)
+    (tmp_path / "film.mp4").write_bytes(b"old")
+    with pytest.raises(MobiusFlowError, match="to its end"):
+        Filming(scene, str(tmp_path / "film.mp4"), overwrite=True).render()
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"]
+    assert list(bpy.data.scenes) == [scene]
+
+
+def test_a_copy_that_was_saved_meanwhile_is_swept_away(scene, tmp_path):
+    Filming(scene, str(tmp_path / "film.mp4"))
+    film = Filming(scene, str(tmp_path / "film.mp4"))
+    assert len(bpy.data.scenes) == 2
+    film.finish()
+    assert list(bpy.data.scenes) == [scene]
+
+
+def no_camera(scene):
+    scene.camera = None
+
+
+def odd(scene):
+    scene.render.resolution_x = 63
+
+
+@pytest.mark.parametrize(
+    ("change", "name", "said"),
+    [
+        (no_camera, "film.mp4", "no camera; press Set Up Stage"),
+        (odd, "film.mp4", "63 × 36 pixels"),
+        (None, "there.mp4", "is there already"),
+        (None, "nowhere/film.mp4", "is no directory"),
+        (None, "film.avi", r"does not end in \.mp4"),
+        (None, "", "is a directory"),
+    ],
+)
+def test_what_would_go_wrong_is_said_first(scene, tmp_path, change, name, said):
+    (tmp_path / "there.mp4").touch()
+    if change is not None:
+        change(scene)
+    with pytest.raises(MobiusFlowError, match=said) as error:
+        Filming(scene, f"{tmp_path}/{name}")
+    assert "\n" not in str(error.value)
+    assert list(bpy.data.scenes) == [scene]
+    assert [path.name for path in tmp_path.iterdir()] == ["there.mp4"]
+
+
+def test_beside_a_file_that_was_never_saved(scene):
+    with pytest.raises(MobiusFlowError, match="Save your file first"):
+        Filming(scene, "//film.mp4")
+    with pytest.raises(MobiusFlowError, match="no name"):
+        Filming(scene, " ")
+
+
+def test_beside_the_file(scene, tmp_path):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
+    assert filming.target("//film") == tmp_path / "film.mp4"
+
+
+def test_an_unknown_look(scene, tmp_path):
+    with pytest.raises(MobiusFlowError, match="did you mean QUICK"):
+        Filming(scene, str(tmp_path / "film.mp4"), "quick")
+
+
+@pytest.mark.skipif(not rendering.workbench_works(), reason="Workbench needs a graphics driver")
+def test_a_quick_film(scene, tmp_path):
+    Filming(scene, str(tmp_path / "film.mp4"), "QUICK").render()

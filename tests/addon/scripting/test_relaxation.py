@@ -1,0 +1,139 @@
+"""Relaxations from scripts: no selection, no scene's settings, errors in place of reports."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+import mobius_flow  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, contents, relax, stored  # noqa: E402
+from mobius_flow import Relaxation  # noqa: E402
+from mobius_flow.addon.curves import bake  # noqa: E402
+from mobius_flow.addon.pictures import staging  # noqa: E402
+from mobius_flow.addon.properties import SETTINGS  # noqa: E402
+from mobius_flow.addon.scripting.settings import complete  # noqa: E402
+from mobius_flow.core import MobiusFlowError, OptionError  # noqa: E402
+
+SHORT = {"max_iterations": 5, "vertices": 100, "length": 10}
+
+
+def nothing_selected():
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = None
+
+
+def test_a_script_and_the_button_do_the_same():
+    by_script = add_trefoil()
+    nothing_selected()
+    report = Relaxation(by_script).relax(**SHORT)
+    assert report.certified
+    assert report.keys == 6
+    assert not bpy.context.selected_objects
+    by_button = add_trefoil()
+    relax(**{"timing": "EVEN"} | SHORT)
+    np.testing.assert_array_equal(stored(by_script.data), stored(by_button.data))
+    assert bake.scene_range([by_script]) == bake.scene_range([by_button]) == (1, 10)
+
+
+def test_the_scenes_settings_are_not_looked_at():
+    bpy.context.scene.mobius_flow.max_iterations = 1
+    bpy.context.scene.mobius_flow.length = 77
+    obj = add_trefoil()
+    Relaxation(obj).relax(max_iterations=3)
+    assert len(obj.data.shape_keys.key_blocks) == 4
+    assert bake.scene_range([obj]) == (1, 250)
+
+
+def test_defaults_are_those_of_a_new_scene():
+    fresh = bpy.context.scene.mobius_flow
+    values = complete({})
+    assert {name: values[name] for name in SETTINGS} == pytest.approx({name: getattr(fresh, name) for name in SETTINGS})
+
+
+def test_again_further_and_clear():
+    obj = add_trefoil()
+    before = stored(obj.data)
+    relaxation = Relaxation(obj)
+    relaxation.relax(**SHORT)
+    relaxation.relax(**SHORT)
+    assert len(relaxation.curves) == 6
+    report = relaxation.relax_further(**SHORT)
+    assert report.continues
+    assert report.last_frame == 20
+    assert len(relaxation.curves) == 5 + report.keys
+    relaxation.clear()
+    np.testing.assert_array_equal(stored(obj.data), before)
+    with pytest.raises(MobiusFlowError, match="has no keys"):
+        _ = relaxation.curves
+
+
+def test_several_objects_are_one_link():
+    one, other = add_curve([_ring(0)]), add_curve([_ring(1)])
+    report = Relaxation(one, other).relax(**SHORT)
+    assert report.names == (one.name, other.name)
+    assert len(Relaxation(one, other).curves[-1].mesh.component_sizes) == 2
+
+
+def _ring(k):
+    """One of two linked circles; (24, 3)."""
+    t = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    circle = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
+    return circle if k == 0 else circle[:, [0, 2, 1]] + [1, 0, 0]
+
+
+def test_smooth_splines_only_if_agreed():
+    t = np.linspace(0, 2 * np.pi, 8, endpoint=False)
+    obj = add_curve([np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)], kind="NURBS")
+    with pytest.raises(MobiusFlowError, match="NURBS"):
+        Relaxation(obj).relax(**SHORT)
+    Relaxation(obj, sample_splines=True).relax(**SHORT)
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"max_iteration": 3}, "did you mean max_iterations"),
+        ({"length": "long"}, "length is 'long'; it must be a whole number"),
+        ({"length": 1}, "Length is 1"),
+        ({"timing": "EVNE"}, "did you mean EVEN"),
+        ({"method": "lbgfs"}, "did you mean lbfgs"),
+        ({"keyframes": 3}, "must be a name"),
+        ({"tolerance": float("nan")}, "tolerance"),
+        ({"fit_bevel": "yes"}, "True or False"),
+    ],
+)
+def test_settings_that_are_none(settings, said):
+    obj = add_trefoil()
+    before = contents()
+    with pytest.raises(OptionError, match=said) as error:
+        Relaxation(obj).relax(**settings)
+    assert "\n" not in str(error.value)
+    assert contents() == before
+    assert not bake.is_baked(obj.data)
+
+
+def test_what_cannot_be_relaxed():
+    with pytest.raises(MobiusFlowError, match="at least one"):
+        Relaxation()
+    with pytest.raises(MobiusFlowError, match="'Eye' is not a curve"):
+        Relaxation(bpy.data.objects.new("Eye", bpy.data.cameras.new("Eye")))
+    obj = add_trefoil()
+    with pytest.raises(MobiusFlowError, match="has no keys"):
+        Relaxation(obj).relax_further()
+    with pytest.raises(MobiusFlowError, match="has no keys"):
+        Relaxation(obj).clear()
+    obj.data.splines[0].use_cyclic_u = False
+    with pytest.raises(MobiusFlowError, match="is open"):
+        Relaxation(obj).relax()
+
+
+def test_a_stage():
+    obj, scene = add_trefoil(), bpy.context.scene
+    collection = Relaxation(obj).set_up_stage(use_world=False)
+    assert collection == staging.own_stage(scene)
+    assert scene.world is None
+
+
+def test_the_package_has_nothing_else_to_import():
+    with pytest.raises(AttributeError, match="Relaxations"):
+        _ = mobius_flow.Relaxations
