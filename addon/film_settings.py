@@ -5,6 +5,9 @@ from bpy.props import EnumProperty, PointerProperty, StringProperty
 
 from .pictures.looks import LOOKS
 
+# since 5.0 Blender marks relative paths as wrong where a property does not say that it knows them
+_RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
+
 
 class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
     """Where the film goes, and what it looks like."""
@@ -15,6 +18,7 @@ class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
             description="Where the film goes, an MP4; // is the directory of the open file",
             default="//film.mp4",
             subtype="FILE_PATH",
+            options=_RELATIVE,
         ),
         "look": EnumProperty(
             name="Look",

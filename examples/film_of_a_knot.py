@@ -17,9 +17,9 @@ except ImportError:
 
 
 def film(path: Path, length: int = 96, size: tuple[int, int] = (640, 360), look: str = "QUICK") -> Path:
-    """Film the knot 5_2 on its way to its least energy, in so many frames."""
+    """Film Thistlethwaite's unknot on its way to the circle, in so many frames."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.curve.mobius_flow_add_knot(knot="5_2")  # as it is woven
+    bpy.ops.curve.mobius_flow_add_knot(knot="thistlethwaite")
     relaxation = Relaxation(bpy.context.object)
     report = relaxation.relax(length=length, hold_end=length // 8, fit_bevel=True)
     print(report.sentence)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import bpy
 from case import Steps, picture, until
-from hands import addon, button, here, key, open_panels, open_sidebar, window
+from hands import addon, button, click, here, key, move, open_panels, open_sidebar, window
 from scene import clear, is_, look, obj, reaches
 
 FOLDER = Path(bpy.app.tempdir)
@@ -37,10 +37,13 @@ def added() -> Steps:
 def relaxed() -> Steps:
     """The knot moves, and the scene plays it."""
     settings = window().scene.mobius_flow
-    settings.length, settings.hold_end = 60, 8
+    settings.length, settings.hold_end, settings.view_every = 60, 8, 1
     yield from button("curve.mobius_flow_relax")
-    yield from reaches(12)
+    yield from reaches(25)
+    yield from button("curve.mobius_flow_pause")
+    yield from is_("paused")
     yield from picture("tutorial-2-relaxing", differs_from="tutorial-1-added")
+    yield from button("curve.mobius_flow_pause")
     yield from is_("done")
     yield from button("curve.mobius_flow_scene_range")
     yield from until(lambda: window().scene.frame_end == 60, "the range")
@@ -69,6 +72,8 @@ def filmed() -> Steps:
     yield from button("curve.mobius_flow_render_film")
     yield from until(rendering, "the render to start")
     assert window_scene() == scene.name
+    for _ in range(60):  # until there are frames to be seen
+        yield
     yield from picture("tutorial-5-rendering")
     yield from until(lambda: film().exists() and not rendering(), "the film", 200)
     yield from until(lambda: len(bpy.data.scenes) == 1, "the copy to be gone")
@@ -79,7 +84,7 @@ def filmed() -> Steps:
 
 
 def stopped() -> Steps:
-    """A film that is there is overwritten only if that is wanted; Esc leaves it."""
+    """A film that is there is overwritten only if that is wanted; a render that is stopped leaves it."""
     made = film().read_bytes()
     yield from button("curve.mobius_flow_render_film")
     yield from until(lambda: True, "the question")
@@ -92,8 +97,9 @@ def stopped() -> Steps:
         assert bpy.ops.curve.mobius_flow_render_film("INVOKE_DEFAULT", overwrite=True) == {"RUNNING_MODAL"}
     yield from until(rendering, "the render to start again")
     assert not bpy.ops.curve.mobius_flow_render_film.poll()
-    yield from key("ESC")
-    yield from until(lambda: not rendering() and len(bpy.data.scenes) == 1, "Esc to end the render", 120)
+    yield from picture("tutorial-7-stopping")
+    yield from stop()
+    yield from until(lambda: len(bpy.data.scenes) == 1, "the copy to be gone")
     assert film().read_bytes() == made
     assert [path.name for path in FOLDER.glob("*.mp4")] == ["film.mp4"]
     assert not list(FOLDER.glob(".*.mp4"))
@@ -112,6 +118,16 @@ def taken_away() -> Steps:
 def stage() -> object:
     """The stage's collection, if there is one."""
     return addon("pictures.staging").own_stage(window().scene)
+
+
+def stop() -> Steps:
+    """Click on the × beside the progress in the status bar: a simulated Esc does not reach Blender's renders."""
+    for x in range(860, 940, 8):
+        for _ in range(8):  # a button notices the mouse when it has been drawn
+            yield from move(x, 12)
+        if rendering():
+            yield from click(x, 12)
+    yield from until(lambda: not rendering(), "the render to be stopped")
 
 
 def rendering() -> bool:
