@@ -11,11 +11,10 @@ of processor time in all; they are kept in build/knot_shapes, and those that are
 
 import argparse
 import sys
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-from mobius_flow.core import Curve, CurveError, Mesh, RelaxOptions, minimize
+from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
 from mobius_flow.core.knots import KNOTS, knot
 from mobius_flow.core.knots.alexander import signature
 from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic
@@ -25,7 +24,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 KEPT = Path(__file__).resolve().parents[1] / "build" / "knot_shapes"
-VERTICES = range(100, 400, 20)  # of closed braids: the first number that follows their strands
+VERTICES = 160  # at least: where edges are longer than strands are apart, sums over edges miss a strand between two
 ITERATIONS = 100  # of L-BFGS: afterwards little is seen to move
 MODES = range(1, 60)
 TOLERANCES = (0.004, 0.002, 0.001)  # of the half-width, between relaxed and stored curve
@@ -55,7 +54,7 @@ def relaxed(name: str) -> Curve:
     """The relaxed polygon of a knot; the motion there from its closed braid is proved free of contact."""
     path = KEPT / f"{name}.npz"
     if not path.exists():
-        start = _start(name)
+        start = max(knot(name), knot(name, VERTICES), key=len)
         options = RelaxOptions(
             energy="tangent-point", vertices=len(start), max_iterations=ITERATIONS, tolerance=1e-3, mesh="fixed"
         )
@@ -66,14 +65,6 @@ def relaxed(name: str) -> Curve:
         np.savez(path, vertices=result.curve.vertices, sizes=result.curve.mesh.component_sizes)
     with np.load(path) as kept:
         return Curve(kept["vertices"], Mesh(tuple(map(int, kept["sizes"]))))
-
-
-def _start(name: str) -> Curve:
-    """A knot's closed braid with few vertices, on which relaxations are quick."""
-    for vertices in VERTICES:
-        with suppress(CurveError):
-            return knot(name, vertices)
-    return knot(name)
 
 
 def facing(curve: Curve) -> Curve:

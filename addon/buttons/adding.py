@@ -7,8 +7,8 @@ from bpy_extras.object_utils import AddObjectHelper, object_data_add
 from ...core import Curve, MobiusFlowError, OptionError
 from ...core.types import FloatArray
 from ..curves import bevel
-from ..curves.colors import color_components
 from ..curves.exchange import new_curve_data, write_points
+from ..pictures.materials import colour_components
 
 _MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
 
@@ -67,7 +67,7 @@ class AddsKnot(AddObjectHelper):
         (bevel.fit if self.fit_bevel else bevel.draw)(data, self.thickness)
         write_points(data, vertices.astype("f4"))
         if self.color_components and len(curve.mesh.component_sizes) > 1:
-            color_components(data)
+            colour_components(data)
         return data
 
     def _check(self) -> None:

@@ -12,6 +12,7 @@ PALETTE = (
     (0.060, 0.260, 0.120),
     (0.260, 0.060, 0.280),
 )
+_FLAT = 0.65  # exponent that makes colours as bright without a sky as they are in Cycles' light
 _RAMP = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))  # sRGB of viridis, low to high
 _EXTREMES = (2.0, 98.0)  # per cent of the values between which the ramp runs: a few corners must not flatten the rest
 
@@ -33,3 +34,13 @@ def ramp(values: FloatArray) -> FloatArray:
 def linear(srgb: FloatArray) -> FloatArray:
     """From the values that screens are sent, sRGB from 0 to 1, to light."""
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def on_screen(light: FloatArray) -> FloatArray:
+    """From light to the values that screens are sent; the inverse of :func:`linear`."""
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+def flatly_lit(tint: FloatArray) -> FloatArray:
+    """A material's colour for where its light is plain: in Workbench, and in small pictures."""
+    return np.asarray(tint**_FLAT)

@@ -1,21 +1,12 @@
 """Small pictures of knots, drawn with NumPy alone: tubes under a light, seen from +z."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ...core import Curve
 from ...core.types import FloatArray, IntArray
+from .colours import PALETTE, flatly_lit, on_screen
 
-COLORS: Sequence[tuple[float, float, float]] = (
-    (0.93, 0.55, 0.20),
-    (0.28, 0.56, 0.86),
-    (0.42, 0.70, 0.35),
-    (0.75, 0.42, 0.72),
-    (0.85, 0.75, 0.30),
-)
-"""Colours of components, by turns; sRGB."""
-
+_TINTS = on_screen(flatly_lit(np.array(PALETTE)))
 _RADIUS, _RIM = 0.075, 0.035  # of the tube and of the dark rim that sets it off from what is behind; half-widths
 _FILL = 0.88  # of the picture's width
 _STEP = 0.3  # of the radius, from one ball of the tube to the next
@@ -49,7 +40,7 @@ def thumbnail(curve: Curve, size: int) -> FloatArray:
         rows, columns, height, normal, which = _balls(points, component, radius, size)
         seen = _topmost(rows, columns, height - sink, depth)
         rows, columns = rows[seen], columns[seen]
-        colors = np.asarray(COLORS)[which[seen] % len(COLORS)] * _light(normal[seen])[:, None]
+        colors = _TINTS[which[seen] % len(_TINTS)] * _light(normal[seen])[:, None]
         picture[rows, columns] = np.column_stack([colors if not sink else colors * _RIM_COLOR, np.ones(len(rows))])
     return picture
 

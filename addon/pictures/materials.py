@@ -4,13 +4,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..engine.colours import PALETTE
+from ..engine.colours import PALETTE, flatly_lit
 
 if TYPE_CHECKING:
     import bpy
 
 _GLAZE = {"Roughness": 0.32, "Coat Weight": 0.6, "Coat Roughness": 0.08}
-_VIEWPORT = 0.65  # exponent that makes colours as bright in Workbench as they are in Cycles' light
 
 
 def colour_components(data: "bpy.types.Curve", first: int = 0) -> None:
@@ -51,7 +50,7 @@ def material(name: str, tint: tuple[float, float, float], values: dict[str, floa
     import bpy
 
     made = bpy.data.materials.new(name)
-    made.diffuse_color = (*np.power(tint, _VIEWPORT), 1.0)
+    made.diffuse_color = (*flatly_lit(np.array(tint)), 1.0)
     made.roughness = values["Roughness"]
     if made.node_tree is None:  # from Blender 5.0 on there is one from the start, and the switch is deprecated
         made.use_nodes = True

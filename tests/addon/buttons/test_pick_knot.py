@@ -47,6 +47,8 @@ def test_components_of_links_have_their_own_materials():
     assert [spline.material_index for spline in one.data.splines] == [0, 1, 2]
     assert [m.name for m in two.data.materials] == [m.name for m in one.data.materials][:2]
     assert len({tuple(material.diffuse_color) for material in one.data.materials}) == 3
+    bpy.ops.curve.mobius_flow_color_components()
+    assert len(two.data.materials) == 2, "the button's materials are the same"
     assert not picked(knot="hopf", color_components=False).data.materials
     assert not picked(knot="3_1").data.materials
 
