@@ -43,6 +43,7 @@ def relaxed() -> Steps:
     yield from reaches(25)
     yield from button("curve.mobius_flow_pause")
     yield from is_("paused")
+    yield from look()
     yield from picture("tutorial-2-relaxing", differs_from="tutorial-1-added")
     yield from button("curve.mobius_flow_pause")
     yield from is_("done")
@@ -73,7 +74,7 @@ def filmed() -> Steps:
     yield from button("curve.mobius_flow_render_film")
     yield from until(rendering, "the render to start")
     assert window_scene() == scene.name
-    for _ in range(60):  # until there are frames to be seen
+    for _ in range(12):  # until there are frames to be seen
         yield
     yield from picture("tutorial-5-rendering")
     yield from until(lambda: film().exists() and not rendering(), "the film", 200)
@@ -115,7 +116,8 @@ def interrupted() -> Steps:
 
 def taken_away() -> Steps:
     """Nothing is left of the stage, and the knot is as it was."""
-    yield from button("curve.mobius_flow_remove_stage")
+    with here():
+        bpy.ops.curve.mobius_flow_remove_stage("INVOKE_DEFAULT", True)
     yield from until(lambda: not stage(), "the stage to be gone")
     assert list(window().scene.objects) == [obj()]
     assert addon("curves.bake").is_baked(obj().data)
