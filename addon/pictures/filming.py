@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import bpy
 
 SUFFIX = ".mp4"
-_MARK = "mobius_flow_film"  # custom property of the copies
+_MARK = "mobius_flow_copy"  # custom property of the copies; before Blender 5 settings of scenes are such, too
 
 
 class Filming:

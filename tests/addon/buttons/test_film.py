@@ -1,12 +1,16 @@
 """Buttons of the panel Film."""
 
+from types import SimpleNamespace
+
 import pytest
 
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil, contents, sentence  # noqa: E402
+from mobius_flow.addon.buttons import film as buttons  # noqa: E402
 from mobius_flow.addon.buttons.film import CURVE_OT_mobius_flow_render_film, CURVE_OT_mobius_flow_set_up_stage  # noqa: E402
 from mobius_flow.addon.pictures import staging  # noqa: E402
+from mobius_flow.addon.pictures.filming import Filming  # noqa: E402
 from mobius_flow.addon.pictures.movie import length_of  # noqa: E402
 
 OPS = bpy.ops.curve
@@ -78,3 +82,57 @@ def test_what_is_wanted_first(scene):
         OPS.mobius_flow_set_up_stage()
     assert "Select a curve object first" in sentence(error.value)
     assert contents() == before
+
+
+class Waiting:
+    """A double of Render Film whose render has begun; Blender starts none without a window."""
+
+    modal = CURVE_OT_mobius_flow_render_film.modal
+    cancel = CURVE_OT_mobius_flow_render_film.cancel
+    _end = CURVE_OT_mobius_flow_render_film._end
+
+    def __init__(self, scene, path):
+        self.filming, self.timer, self.reports = Filming(scene, str(path)), object(), []
+        self.removed = []
+        self.context = SimpleNamespace(window_manager=SimpleNamespace(event_timer_remove=self.removed.append))
+
+    def report(self, kind, message):
+        self.reports.append((kind, message))
+
+    def event(self, kind="TIMER"):
+        return self.modal(self.context, SimpleNamespace(type=kind))
+
+    def render(self):
+        """What Blender does meanwhile."""
+        bpy.ops.render.render(animation=True, scene=self.filming._copy)
+
+
+def test_in_a_window_it_waits_for_the_end(scene, tmp_path, monkeypatch):
+    OPS.mobius_flow_set_up_stage()
+    waiting = Waiting(scene, tmp_path / "film.mp4")
+    with monkeypatch.context() as patch:
+        patch.setattr(buttons, "is_rendering", lambda: True)
+        assert waiting.event() == waiting.event("MOUSEMOVE") == {"PASS_THROUGH"}
+    waiting.render()
+    assert waiting.event("MOUSEMOVE") == {"PASS_THROUGH"}
+    assert waiting.event() == {"FINISHED"}
+    assert waiting.reports == [({"INFO"}, f"A film of 2 frames: {tmp_path / 'film.mp4'}")]
+    assert waiting.removed == [waiting.timer]
+    assert length_of(tmp_path / "film.mp4") == 2
+    assert list(bpy.data.scenes) == [scene]
+
+
+@pytest.mark.parametrize("how", ["event", "cancel"])
+def test_a_render_that_was_stopped_leaves_no_file(scene, tmp_path, how):
+    OPS.mobius_flow_set_up_stage()
+    waiting = Waiting(scene, tmp_path / "film.mp4")
+    bpy.data.scenes[waiting.filming._copy].frame_end = 1  # the first frame was done
+    waiting.render()
+    if how == "event":
+        assert waiting.event() == {"CANCELLED"}
+        assert waiting.reports == [({"WARNING"}, "The film was not rendered to its end; no file was written")]
+    else:
+        waiting.cancel(waiting.context)
+    assert waiting.removed == [waiting.timer]
+    assert list(tmp_path.iterdir()) == []
+    assert list(bpy.data.scenes) == [scene]

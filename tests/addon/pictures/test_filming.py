@@ -111,6 +111,11 @@ def test_what_would_go_wrong_is_said_first(scene, tmp_path, change, name, said):
     assert [path.name for path in tmp_path.iterdir()] == ["there.mp4"]
 
 
+def test_no_setting_of_a_scene_is_taken_for_the_mark(scene):
+    """Before Blender 5 custom properties and those of extensions have one and the same place."""
+    assert not hasattr(bpy.types.Scene, filming._MARK)
+
+
 def test_beside_a_file_that_was_never_saved(scene):
     with pytest.raises(MobiusFlowError, match="Save your file first"):
         Filming(scene, "//film.mp4")

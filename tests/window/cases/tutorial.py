@@ -4,7 +4,7 @@ from pathlib import Path
 
 import bpy
 from case import Steps, picture, until
-from hands import addon, button, click, here, key, move, open_panels, open_sidebar, window
+from hands import addon, button, here, key, open_panels, open_sidebar, window
 from scene import clear, is_, look, obj, reaches
 
 FOLDER = Path(bpy.app.tempdir)
@@ -16,8 +16,9 @@ def case() -> Steps:
     yield from relaxed()
     yield from staged()
     yield from filmed()
-    yield from stopped()
+    yield from asked()
     yield from taken_away()
+    yield from interrupted()
 
 
 def added() -> Steps:
@@ -42,6 +43,7 @@ def relaxed() -> Steps:
     yield from reaches(25)
     yield from button("curve.mobius_flow_pause")
     yield from is_("paused")
+    yield from look()
     yield from picture("tutorial-2-relaxing", differs_from="tutorial-1-added")
     yield from button("curve.mobius_flow_pause")
     yield from is_("done")
@@ -72,7 +74,7 @@ def filmed() -> Steps:
     yield from button("curve.mobius_flow_render_film")
     yield from until(rendering, "the render to start")
     assert window_scene() == scene.name
-    for _ in range(60):  # until there are frames to be seen
+    for _ in range(12):  # until there are frames to be seen
         yield
     yield from picture("tutorial-5-rendering")
     yield from until(lambda: film().exists() and not rendering(), "the film", 200)
@@ -83,31 +85,39 @@ def filmed() -> Steps:
     yield from picture("tutorial-6-filmed")
 
 
-def stopped() -> Steps:
-    """A film that is there is overwritten only if that is wanted; a render that is stopped leaves it."""
-    made = film().read_bytes()
+def asked() -> Steps:
+    """A film that is there is overwritten only if that is wanted."""
     yield from button("curve.mobius_flow_render_film")
-    yield from until(lambda: True, "the question")
     yield from picture("tutorial-7-question", differs_from="tutorial-6-filmed")
     assert not rendering()
     yield from key("ESC")
-    window().scene.mobius_flow_film.look = "FINE"  # slow enough to be stopped
+
+
+def interrupted() -> Steps:
+    """A file that is loaded ends the render, and the film that was there stays; simulated keys do not stop renders."""
+    made = film().read_bytes()
+    with here():
+        bpy.ops.curve.mobius_flow_set_up_stage()
+    bpy.ops.wm.save_mainfile()
+    window().scene.mobius_flow_film.look = "FINE"  # slow enough
     bpy.context.preferences.view.render_display_type = "NONE"
     with here():
         assert bpy.ops.curve.mobius_flow_render_film("INVOKE_DEFAULT", overwrite=True) == {"RUNNING_MODAL"}
     yield from until(rendering, "the render to start again")
     assert not bpy.ops.curve.mobius_flow_render_film.poll()
-    yield from picture("tutorial-7-stopping")
-    yield from stop()
-    yield from until(lambda: len(bpy.data.scenes) == 1, "the copy to be gone")
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+    yield from until(lambda: not rendering(), "the render to end")
     assert film().read_bytes() == made
     assert [path.name for path in FOLDER.glob("*.mp4")] == ["film.mp4"]
     assert not list(FOLDER.glob(".*.mp4"))
+    assert len(bpy.data.scenes) == 1
+    yield from picture("tutorial-9-loaded")
 
 
 def taken_away() -> Steps:
     """Nothing is left of the stage, and the knot is as it was."""
-    yield from button("curve.mobius_flow_remove_stage")
+    with here():
+        bpy.ops.curve.mobius_flow_remove_stage("INVOKE_DEFAULT", True)
     yield from until(lambda: not stage(), "the stage to be gone")
     assert list(window().scene.objects) == [obj()]
     assert addon("curves.bake").is_baked(obj().data)
@@ -118,16 +128,6 @@ def taken_away() -> Steps:
 def stage() -> object:
     """The stage's collection, if there is one."""
     return addon("pictures.staging").own_stage(window().scene)
-
-
-def stop() -> Steps:
-    """Click on the × beside the progress in the status bar: a simulated Esc does not reach Blender's renders."""
-    for x in range(860, 940, 8):
-        for _ in range(8):  # a button notices the mouse when it has been drawn
-            yield from move(x, 12)
-        if rendering():
-            yield from click(x, 12)
-    yield from until(lambda: not rendering(), "the render to be stopped")
 
 
 def rendering() -> bool:
