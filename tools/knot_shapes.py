@@ -5,7 +5,8 @@
 
 Each knot is relaxed from its closed braid on the tangent-point energy, turned so that it faces +z with little hidden,
 and fitted by Fourier series. What is not proved is an error: that the relaxation kept the type, and that the straight
-motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Relaxations take ten minutes
+motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. So are strands nearer than edges
+are long: the polygon does not resolve them, and its energy is not the curve's. Relaxations take ten minutes
 of processor time in all; they are kept in build/knot_shapes, and those that are there are not done again.
 """
 
@@ -17,14 +18,14 @@ import numpy as np
 from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
 from mobius_flow.core.knots import KNOTS, knot
 from mobius_flow.core.knots.alexander import signature
-from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic
+from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic, strand_gap
 from mobius_flow.core.knots.shapes import FILE, Shape, rounded, shapes, smooth_knot, store
 from mobius_flow.core.types import ComplexArray, FloatArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 KEPT = Path(__file__).resolve().parents[1] / "build" / "knot_shapes"
-VERTICES = 160  # at least: where edges are longer than strands are apart, sums over edges miss a strand between two
+VERTICES = 160  # at least: sums over edges longer than strands are apart have false minima, with strands in contact
 ITERATIONS = 100  # of L-BFGS: afterwards little is seen to move
 MODES = range(1, 60)
 TOLERANCES = (0.004, 0.002, 0.001)  # of the half-width, between relaxed and stored curve
@@ -61,6 +62,8 @@ def relaxed(name: str) -> Curve:
         result = minimize(start, options)
         if not result.certified:
             sys.exit(f"{name}: the relaxation is not certified")
+        if strand_gap(result.curve) < result.curve.edge_lengths.max():
+            sys.exit(f"{name}: strands are nearer than edges are long; relax on more vertices")
         path.parent.mkdir(parents=True, exist_ok=True)
         np.savez(path, vertices=result.curve.vertices, sizes=result.curve.mesh.component_sizes)
     with np.load(path) as kept:

@@ -57,8 +57,8 @@ def test_shapes_are_flat_and_fill_their_room(name: str) -> None:
     assert widths[2] <= max(widths[:2]) + 0.02
     for part in curve.components:
         lengths = np.linalg.norm(np.diff(part, axis=0, append=part[:1]), axis=1)
-        assert lengths.max() < 6 * lengths.min()
-    assert strand_distance(curve, apart=8) > 0
+        assert lengths.max() < 1.5 * lengths.min()
+    assert strand_distance(curve, apart=8) > 0.12
 
 
 def test_other_spellings_and_mirror_images() -> None:
