@@ -13,6 +13,8 @@ from .clusters import ClusterTree
 
 ClusterPairs = tuple[IntArray, IntArray]
 
+MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are faster than near ones in a list
+
 
 @dataclass(frozen=True, eq=False)
 class BlockList:
@@ -71,6 +73,11 @@ class BlockList:
         first, second = ((self.tree.stop - self.tree.start)[side] for side in self.leaves)
         count = float(np.where(self.leaves[0] == self.leaves[1], 0.5, 1.0) @ (first * second))
         return count / (0.5 * self.tree.mesh.size**2)
+
+    @property
+    def mostly_near(self) -> bool:
+        """Whether all pairs are summed, one by one, because that is faster than the near ones from a list."""
+        return self.near_share > MOSTLY_NEAR
 
     def near_pairs(self, without: EdgePairIndices | None = None) -> EdgePairIndices:
         """The near pairs but for some that are left out.

@@ -25,7 +25,6 @@ MAX_ORDER = 8  # each two orders make errors some forty times smaller, and half 
 THETA = 0.19  # with that order errors below 10⁻⁶ of a knot's energy, of 10⁻⁵ of the derivative in J_C's dual norm
 LEAF = 16  # edges; halving ends at 8 to 16 of them, with which the near field takes no longer than the far one
 KEPT = 0.2  # separation up to which a list is as good as a new one
-MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are faster than near ones in a list
 OUTDATED = 1.0 / 3.0  # less separated blocks make a new list; up to 1/3 all replaced pairs are near pairs
 
 
@@ -95,7 +94,7 @@ class HierarchicalMoebiusEnergy:
     def value(self, curve: Curve) -> float:
         """Energy E of the curve."""
         blocks = self.block_list(curve)
-        if blocks.near_share > MOSTLY_NEAR:
+        if blocks.mostly_near:
             return self.exact.value(curve)
         near, far = self._fields(blocks, _unit_sized(curve)[0])
         return energy_of_pairs(curve, near.value() + far.value())
@@ -103,7 +102,7 @@ class HierarchicalMoebiusEnergy:
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
         blocks = self.block_list(curve)
-        if blocks.near_share > MOSTLY_NEAR:
+        if blocks.mostly_near:
             return self.exact.value_and_derivative(curve)
         unit, exponent = _unit_sized(curve)
         near, far = self._fields(blocks, unit)
@@ -114,7 +113,7 @@ class HierarchicalMoebiusEnergy:
     def row_energies(self, curve: Curve) -> FloatArray:
         """What `MoebiusEnergy.row_energies` gives for all edges; shape (n,)."""
         blocks = self.block_list(curve)
-        if blocks.near_share > MOSTLY_NEAR:
+        if blocks.mostly_near:
             return self.exact.row_energies(curve, np.arange(len(curve)))
         near, far = self._fields(blocks, _unit_sized(curve)[0])
         return _value_and_sums(near, far)[1].row_energies(near.edges.vectors)

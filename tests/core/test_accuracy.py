@@ -32,8 +32,9 @@ def test_errors_are_in_outcome_and_report() -> None:
     assert ";" not in result.message
 
 
-def test_dense_sums_have_no_errors() -> None:
-    result = short(200, solver="dense")
+@pytest.mark.parametrize("solver", ["dense", "hierarchical"])  # with so few vertices most pairs are near
+def test_sums_of_all_pairs_have_no_errors(solver: str) -> None:
+    result = short(200, solver=solver)
     assert result.outcome.sampled_errors is None
     assert result.report()["sampled_errors"] is None
 
@@ -101,8 +102,11 @@ def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -
         return original(energy, curve, *rest)
 
     monkeypatch.setattr(check_accuracy.SampledErrors, "at", at)
+    short(1700)
+    assert looked_at == [1700, 1700]
+    looked_at.clear()
     short(1700, max_iterations=31, mesh="auto", tolerance=1e-2)
-    assert looked_at[0] < looked_at[-1] == 1700
+    assert looked_at == [1700], "it ends where it has all vertices again; the coarse mesh is too small for errors"
 
 
 def test_the_last_line_says_the_error_of_an_energy_that_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None:

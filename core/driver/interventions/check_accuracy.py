@@ -27,6 +27,9 @@ class CheckAccuracy:
         if not isinstance(energy, HierarchicalMoebiusEnergy) or not (ends or problem.mesh is not self._seen):
             return event
         self._seen = problem.mesh
+        self._run.sampled_errors = None
+        if energy.block_list(self._run.point.curve).mostly_near:
+            return event
         accurate = self._tightened(energy)
         if accurate is energy:
             return event

@@ -39,7 +39,7 @@ CURVES = {
 @pytest.fixture(autouse=True)
 def lists(monkeypatch: pytest.MonkeyPatch) -> None:
     """Near pairs are listed even where, as on curves as small as these, they are most of all."""
-    monkeypatch.setattr("mobius_flow.core.hierarchy.energy.MOSTLY_NEAR", 1.0)
+    monkeypatch.setattr("mobius_flow.core.hierarchy.blocks.MOSTLY_NEAR", 1.0)
 
 
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
