@@ -5,9 +5,9 @@
 
 Each knot is relaxed from its closed braid on the tangent-point energy, turned so that it faces +z with little hidden,
 and fitted by Fourier series. What is not proved is an error: that the relaxation kept the type, and that the straight
-motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. So are strands nearer than edges
-are long: the polygon does not resolve them, and its energy is not the curve's. Relaxations take ten minutes
-of processor time in all; they are kept in build/knot_shapes, and those that are there are not done again.
+motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Strands nearer than edges are
+long are an error too: the polygon does not resolve them, and its energy is not the curve's. Relaxations take eleven
+minutes of processor time in all; they are kept in build/knot_shapes, and those that are there are not done again.
 """
 
 import argparse

@@ -25,7 +25,7 @@ def integers(text: str) -> tuple[int, ...]:
 
 def test_every_name_of_the_table_has_a_shape() -> None:
     assert list(shapes()) == list(KNOTS)
-    assert FILE.stat().st_size < 80_000
+    assert FILE.stat().st_size < 60_000
 
 
 @pytest.mark.parametrize("name", KNOWN)
