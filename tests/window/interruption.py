@@ -6,16 +6,15 @@ from pathlib import Path
 import bpy
 import numpy as np
 from case import Steps, until
-from hands import here, window
-from scene import points, reaches, run, state
+from hands import here
+from scene import endless, points, reaches, run, state
 
 MOVED = 2  # iterates
 
 
 def relax() -> Steps:
     """Start a run that is not over by itself, with an undo step to come back to; wait until the curve has moved."""
-    settings = window().scene.mobius_flow
-    settings.method, settings.tolerance, settings.max_iterations = "flow-l2", 1e-9, 1_000_000
+    endless()
     with here():
         bpy.ops.ed.undo_push(message="Before")
         assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT") == {"RUNNING_MODAL"}

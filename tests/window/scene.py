@@ -37,6 +37,12 @@ def look() -> Steps:
     yield
 
 
+def endless() -> None:
+    """Let runs not be over by themselves, however slowly Blender draws."""
+    settings = window().scene.mobius_flow
+    settings.method, settings.tolerance, settings.max_iterations = "flow-l2", 1e-9, 1_000_000
+
+
 def obj() -> bpy.types.Object:
     """The knot; found anew every time, as undo makes it anew."""
     return window().view_layer.objects.active

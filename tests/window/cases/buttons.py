@@ -3,11 +3,12 @@
 import numpy as np
 from case import Steps, picture, until
 from hands import button, key
-from scene import is_, iterate, look, obj, points, reaches, ready, run, state
+from scene import endless, is_, iterate, look, obj, points, reaches, ready, run, state
 
 
 def case() -> Steps:
-    yield from ready(vertices=1200)  # it takes longer than finding the buttons
+    yield from ready()
+    endless()
     before = points()
     yield from picture("buttons-1-ready")
     yield from button("curve.mobius_flow_relax")

@@ -42,7 +42,7 @@ def case() -> Steps:
     yield from baked()
     yield from relax()
     bpy.ops.wm.read_homefile(app_template="")
-    yield from over("a new file")
+    yield from over("a new file", "none")
     yield from picture("rebaking-2-new-file")
 
 
