@@ -6,6 +6,7 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..live.refusal import Refusal
+from ..translations import rpt_, tip_
 
 
 class Refusing:
@@ -29,7 +30,7 @@ class Refusing:
         """Whether it can be used; the tooltip says why not."""
         refused = cls.refusal(context)
         if refused:
-            cls.poll_message_set(refused.sentence)
+            cls.poll_message_set(tip_(refused.sentence))
         return refused is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -40,7 +41,7 @@ class Refusing:
                 raise MobiusFlowError(refused.sentence)
             self.act(context)
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 

@@ -12,6 +12,7 @@ from ..live.checks import edited, refusal, selected_curves, unsampled
 from ..live.refusal import Refusal
 from ..live.start import LiveRelax, tell
 from ..properties import SETTINGS, relax_options, settings
+from ..translations import rpt_
 from .refusing import Refusing
 
 
@@ -43,10 +44,11 @@ class Relaxing(LiveRelax, Refusing):
             options, objects = self.key_options(context, values), selected_curves(context)
             report = Session(objects, relax_options(values), options, self.continues).run()
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         except MemoryError:
-            self.report({"ERROR"}, "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations")
+            sentence = "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations"
+            self.report({"ERROR"}, rpt_(sentence))
             return {"CANCELLED"}
         tell(self, context.scene, report)
         return {"FINISHED"}

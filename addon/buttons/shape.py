@@ -10,6 +10,7 @@ from ...core import MobiusFlowError
 from ..curves.baked_keys import BakedKeys
 from ..curves.resized import keep_size
 from ..curves.turned import face_camera, lay_flat
+from ..engine.phrase import Phrase
 from ..engine.rest import Rest
 from ..engine.size import Measure
 from ..engine.words import named
@@ -17,8 +18,15 @@ from ..live.checks import edited, refusal, selected_curves, unclearable
 from ..live.modal import redraw_views
 from ..live.refusal import Refusal
 from ..properties import SETTINGS, measure_items, relax_options
+from ..translations import rpt_
 from .baking import Rebaking
 from .refusing import Refusing
+
+_KEPT = {
+    Measure.LENGTH: Phrase("The length"),
+    Measure.BOX: Phrase("The bounding box"),
+    Measure.RADIUS: Phrase("The radius"),
+}
 
 
 class CURVE_OT_mobius_flow_keep_size(Refusing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
@@ -49,8 +57,10 @@ class CURVE_OT_mobius_flow_keep_size(Refusing, bpy.types.Operator):  # noqa: N80
         objects = selected_curves(context)
         keys = keep_size(objects, Measure[self.measure], {"FIRST": 0, "LAST": -1}[self.reference])
         redraw_views(context.window_manager)  # which they are not by themselves
-        kept = f"{Measure[self.measure].value.lower()} of {named([obj.name for obj in objects])}"
-        _tell(self, f"The {kept} stays at all {len(keys.frames)} keys", keys.unproved)
+        kept = "{measure} of {names} stays at all {count} keys"
+        names = named([obj.name for obj in objects])
+        said = Phrase(kept, measure=_KEPT[Measure[self.measure]], names=names, count=len(keys.frames))
+        _tell(self, said, keys.unproved)
 
 
 class _Turning(Refusing):
@@ -66,7 +76,7 @@ class _Turning(Refusing):
         unproved = self.turn(context)
         redraw_views(context.window_manager)
         if unproved:
-            _tell(self, "The curves were turned", unproved)
+            _tell(self, Phrase("The curves were turned"), unproved)
 
     def turn(self, context: bpy.types.Context) -> int:
         """Turn the selected curves, and count the motions that are not proved any more."""
@@ -93,7 +103,8 @@ class CURVE_OT_mobius_flow_face_camera(_Turning, bpy.types.Operator):  # noqa: N
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """There must be a camera."""
-        return refusal(context) or (None if context.scene.camera else Refusal("The scene has no camera; add one first"))
+        missing = None if context.scene.camera else Refusal(Phrase("The scene has no camera; add one first"))
+        return refusal(context) or missing
 
     def turn(self, context: bpy.types.Context) -> int:
         """Turn them to the camera."""
@@ -131,7 +142,7 @@ class CURVE_OT_mobius_flow_check(Refusing, bpy.types.Operator):  # noqa: N801
     def act(self, context: bpy.types.Context) -> None:
         """Look at the end of the animation."""
         values = {name: getattr(context.scene.mobius_flow, name) for name in SETTINGS}
-        self.report({"INFO"}, _rest(context, values)[1])
+        self.report({"INFO"}, rpt_(_rest(context, values)[1]))
 
 
 class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: N801
@@ -158,25 +169,26 @@ class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: 
         with suppress(MobiusFlowError):
             index, words = _rest(context, self.values(context))
             if index == 0:
-                self.report({"INFO"}, words)
+                self.report({"INFO"}, rpt_(words))
                 return True
         return False
 
 
-def _rest(context: bpy.types.Context, values: dict[str, Any]) -> tuple[int | None, str]:
+def _rest(context: bpy.types.Context, values: dict[str, Any]) -> tuple[int | None, Phrase]:
     """Number of ways down from where the selected curves rest, and a sentence; raises MobiusFlowError."""
     context.view_layer.update()
     objects = selected_curves(context)
     rest = Rest.of(BakedKeys(objects).curves[-1], relax_options(values))
-    return rest.index, f"{named([obj.name for obj in objects])}: {rest.words}"
+    return rest.index, Phrase("{names}: {rest}", names=named([obj.name for obj in objects]), rest=rest.words)
 
 
-def _tell(operator: bpy.types.Operator, what: str, unproved: int) -> None:
+def _tell(operator: bpy.types.Operator, what: Phrase, unproved: int) -> None:
     """Say what was done, and whether the animation is proved still."""
     if unproved:
-        operator.report({"WARNING"}, f"{what}; {unproved} motions between keys are NOT proved free of contact")
+        sentence = "{done}; {count} motions between keys are NOT proved free of contact"
+        operator.report({"WARNING"}, rpt_(sentence, done=what, count=unproved))
     else:
-        operator.report({"INFO"}, f"{what}, proved free of contact")
+        operator.report({"INFO"}, rpt_("{done}, proved free of contact", done=what))
 
 
 CLASSES = (

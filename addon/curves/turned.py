@@ -7,6 +7,7 @@ import numpy as np
 
 from ...core import Curve, MobiusFlowError
 from ...core.types import FloatArray
+from ..engine.phrase import Phrase
 from ..engine.turning import Turn, orthonormal
 from . import bake
 from .baked_keys import BakedKeys
@@ -53,7 +54,9 @@ def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
         keys.rewrite([turn.of(curve) for curve in keys.curves])
     else:
         obj, what = mover
-        raise MobiusFlowError(f"'{obj.name}' is moved by {what}; remove that, or bake it and turn it alone")
+        raise MobiusFlowError(
+            Phrase("'{name}' is moved by {mover}; remove that, or bake it and turn it alone", name=obj.name, mover=what)
+        )
     baked = all(bake.is_baked(obj.data) for obj in objects)
     # a single object goes wherever it likes; places of several against each other are rounded anew
     return BakedKeys(objects).unproved if baked and (mover or len(objects) > 1) else 0
