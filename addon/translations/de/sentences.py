@@ -52,7 +52,7 @@ _REFUSALS = {
         "{deformer} verschiebt die Punkte, sodass sich Stränge sichtbar kreuzen können; "
         "entfernen oder eine Kopie ohne das entspannen"
     ),
-    "{names} is being relaxed; stop that first": "{names} wird gerade entspannt; das zuerst beenden",
+    "{names} is being relaxed; stop that first": "{names}: Entspannung läuft; diese zuerst beenden",
     "{names} were not baked together; select one of them at a time": (
         "{names} wurden nicht zusammen gebacken; immer nur eine Kurve auswählen"
     ),
@@ -165,7 +165,7 @@ _ERRORS = {
         "{name} enthält eine Zahl über {most}, zu groß für die Arbeit im Fenster; kleinere wählen"
     ),
     "{names} changed since the relaxation ended; relax anew": (
-        "{names} wurde seit dem Ende der Entspannung verändert; neu entspannen"
+        "{names}: seit dem Ende der Entspannung verändert; neu entspannen"
     ),
 }
 
