@@ -25,6 +25,7 @@ from ...core import (
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.types import FloatArray
+from ..engine.glossary import as_phrase
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
 from ..engine.phrase import Phrase
@@ -80,7 +81,7 @@ class Report:
         """The same in words."""
         told: dict[str, Any] = {
             "names": named(self.names),
-            "outcome": self.outcome.message.rstrip("."),
+            "outcome": self.outcome.message,
             "proof": self._proof,
         }
         if self.keys == 1:
@@ -199,7 +200,7 @@ class Session:
 
     def end(self, outcome: Outcome) -> None:
         """Take in how the relaxation ended."""
-        self.outcome = replace(outcome, message=self.group.told(outcome.message))
+        self.outcome = replace(outcome, message=as_phrase(self.group.told(outcome.message).rstrip(".")))
 
     def take(self, iterate: Iterate) -> None:
         """Take in an iterate."""
