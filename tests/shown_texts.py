@@ -12,11 +12,13 @@ _MARKS = {
     "Phrase": 0,
     "iface_": 0,
     "rpt_": 0,
+    "sentence": 2,
     "tip_": 0,
     "value": 1,
 }  # what is called with a text, and as which argument
 _SAYS = {"report": 2, "poll_message_set": 1, "Refusal": 1}  # what must be told marked texts, by its arguments
-_DRAWS = {"label", "menu", "operator", "prop", "prop_enum"}  # what Blender draws, with ``text``
+_DRAWS = {"invoke_confirm", "label", "menu", "operator", "prop", "prop_enum"}  # what Blender draws
+_WORDS = {"message", "text", "title"}  # what it is told to draw, by these names
 
 
 def labels():
@@ -73,7 +75,7 @@ def _marked(tree):
     for call in _calls(tree):
         name = _name(call)
         given = call.args[_MARKS[name] :][:1] if name in _MARKS else []
-        given += [each.value for each in call.keywords if each.arg == "text" and name in _DRAWS]
+        given += [each.value for each in call.keywords if each.arg in _WORDS and name in _DRAWS]
         for text in given:
             yield from _texts(text, constants)
 
@@ -122,7 +124,7 @@ def _has_words(part):
 def _shown(call):
     name = _name(call)
     said = call.args[-1:] if _SAYS.get(name) == len(call.args) else []
-    drawn = [each.value for each in call.keywords if each.arg == "text"] if name in _DRAWS else []
+    drawn = [each.value for each in call.keywords if each.arg in _WORDS] if name in _DRAWS else []
     return said + drawn + (call.args[_MARKS[name] :] if name in _MARKS else [])
 
 

@@ -11,8 +11,10 @@ bpy = pytest.importorskip("bpy")
 
 import shown_texts  # noqa: E402
 from mobius_flow.addon import registration, translations  # noqa: E402
+from mobius_flow.addon.curves.turned import lay_flat  # noqa: E402
 from mobius_flow.addon.engine.phrase import Phrase  # noqa: E402
 from mobius_flow.addon.engine.words import named  # noqa: E402
+from mobius_flow.addon.pictures.filming import target  # noqa: E402
 from mobius_flow.core import MobiusFlowError  # noqa: E402
 
 LANGUAGES = translations.LANGUAGES
@@ -74,6 +76,8 @@ def test_nothing_is_shown_as_it_is(path):
         "Refusal('No')",
         "Phrase(f'{name} is closed')",
         "layout.label(text=f'Add {name}')",
+        "sentence(layout, context, f'{name} is open')",
+        "manager.invoke_confirm(self, event, message=f'{name} is there already')",
     ],
 )
 def test_what_is_not_marked_is_found(tmp_path, line):
@@ -133,6 +137,23 @@ def test_a_refusal_in_german():
 
     said = refusal(bpy.context).sentence.said(german)
     assert said.startswith("Spline 1 von '{Knot}' ist offen; zuerst schließen")
+
+
+def test_what_cannot_be_turned_in_german():
+    bpy.ops.curve.mobius_flow_add_knot(knot="3_1")
+    curve = bpy.context.active_object
+    curve.name = "Knot"
+    curve.constraints.new("LIMIT_LOCATION")
+    with pytest.raises(MobiusFlowError) as caught:
+        lay_flat([curve])
+    said = str(caught.value).said(german)
+    assert said == "'Knot' wird bewegt (Beschränkung); das entfernen oder die Kurve backen und einzeln drehen"
+
+
+def test_what_is_no_film_in_german(tmp_path):
+    with pytest.raises(MobiusFlowError) as caught:
+        target(str(tmp_path))
+    assert str(caught.value).said(german) == f"{tmp_path} ist ein Verzeichnis; eine Datei darin angeben"
 
 
 def test_names_are_joined_in_german():

@@ -3,9 +3,12 @@
 A vertex is a Punkt here, as in Blender's own table; the other word for it, Knoten, is wanted for knots.
 """
 
+from . import film
+
 _UNCHANGED = (
     "Animation",
     "Bézier",
+    "Film",
     "Lissajous",
     "Möbius Flow",
     "NURBS",
@@ -194,4 +197,4 @@ _BUTTONS = {
     "Use Preset": "Voreinstellung verwenden",
 }
 
-LABELS = {text: text for text in _UNCHANGED} | _KNOTS | _METHODS | _OPTIONS | _BUTTONS
+LABELS = {text: text for text in _UNCHANGED} | _KNOTS | _METHODS | _OPTIONS | _BUTTONS | film.LABELS

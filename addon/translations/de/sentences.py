@@ -1,5 +1,7 @@
 """Sentences and labels that are filled in when they are shown; fields in braces stay as they are."""
 
+from . import film
+
 _REFUSALS = {
     "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first": (
         "'{name}' hat Profil, Verjüngung, Extrusion, Versatz oder Punktradien; diese zuerst entfernen"
@@ -31,9 +33,7 @@ _REFUSALS = {
         "'{name}' wird bewegt ({mover}), aber gemeinsam entspannte Kurven müssen an ihrem Ort bleiben; "
         "das entfernen oder jede Kurve einzeln entspannen"
     ),
-    "'{name}' is moved by {mover}; remove that, or bake it and turn it alone": (
-        "'{name}' wird bewegt ({mover}); das entfernen oder die Kurve backen und einzeln drehen"
-    ),
+    "'{name}' is moved by {mover}": "'{name}' wird bewegt ({mover})",
     "'{name}' is of type {type}; select a curve object, or convert it with Object > Convert > Curve": (
         "'{name}' ist vom Typ {type}; ein Kurvenobjekt auswählen oder mit Objekt > Konvertieren > Kurve umwandeln"
     ),
@@ -103,6 +103,12 @@ _REFUSALS = {
     "its parent": "Elternteil",
     "physics": "Physik",
     "{mover} of its parent": "{mover} des Elternteils",
+    "{why}, and its keys were edited; undo one or the other": (
+        "{why}, und die Schlüssel wurden bearbeitet; eines von beiden rückgängig machen"
+    ),
+    "{why}; remove that, or bake it and turn it alone": (
+        "{why}; das entfernen oder die Kurve backen und einzeln drehen"
+    ),
 }
 
 _ERRORS = {
@@ -214,6 +220,7 @@ _RUN = {
     "starting": "beginnt",
     "stopped after {count} iterations": "nach {count} Iterationen beendet",
     "with itself": "mit sich selbst",
+    "{deformer} moves its points": "{deformer} verschiebt die Punkte",
     "{ended}, {more}": "{ended}, {more}",
     "{names}: proving and writing keys   |   Esc: put all back": (
         "{names}: Schlüssel werden bewiesen und geschrieben   |   Esc: alles zurücksetzen"
@@ -306,6 +313,7 @@ _SIDEBAR = {
         "Nur ausgewählte Kurven werden auseinandergehalten, {names} in der Nähe nicht"
     ),
     "Quality: Custom, see Expert": "Qualität: benutzerdefiniert, siehe Experten",
+    "Relax by Mobius Energy": "Nach Mobius-Energie entspannen",
     "Relax {count} Curves Together": "{count} Kurven gemeinsam entspannen",
     "Search...": "Suchen...",
     "{count} crossings": "{count} Kreuzungen",
@@ -320,4 +328,4 @@ _SIDEBAR = {
     "{radius} (your own)": "{radius} (eigener)",
 }
 
-SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR
+SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES
