@@ -3,19 +3,21 @@
 import bpy
 from bpy.props import PointerProperty
 
-from . import buttons, film_settings, panel_settings, sidebar
+from . import buttons, film_settings, panel_settings, sidebar, translations
 from .buttons import gallery, presets
 from .live import handlers, overlay
 from .properties import MobiusFlowSettings
 from .sidebar import menus
 
 _CLASSES = (MobiusFlowSettings, *panel_settings.CLASSES, *film_settings.CLASSES, *buttons.CLASSES, *sidebar.CLASSES)
-_PARTS = (panel_settings, film_settings, presets, gallery, menus, handlers, overlay)  # what else there is to register
+# what else there is to register
+_PARTS = (translations, panel_settings, film_settings, presets, gallery, menus, handlers, overlay)
 
 
 def register() -> None:
     """Add the classes, the settings and the menu entry; an error leaves nothing half done."""
     done = []
+    translations.mark(_CLASSES)
     try:
         for cls in _CLASSES:
             bpy.utils.register_class(cls)

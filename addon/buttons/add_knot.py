@@ -6,6 +6,7 @@ import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
 from ...core import Curve, OptionError
+from ..engine.phrase import Phrase
 from .adding import AddsKnot
 
 _MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
@@ -49,7 +50,11 @@ def check_numbers(name: str) -> None:
     for number in re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))):
         if int(number) > _MAX_TURNS:
             raise OptionError(
-                f"{name[:60]} has a number beyond {_MAX_TURNS}, which is too much for a window; use smaller ones"
+                Phrase(
+                    "{name} has a number beyond {most}, which is too much for a window; use smaller ones",
+                    name=name[:60],
+                    most=_MAX_TURNS,
+                )
             )
 
 

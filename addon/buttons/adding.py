@@ -8,9 +8,18 @@ from ...core import Curve, MobiusFlowError, OptionError
 from ...core.types import FloatArray
 from ..curves import bevel
 from ..curves.exchange import new_curve_data, write_points
+from ..engine.phrase import Phrase
 from ..pictures.materials import colour_components
+from ..translations import rpt_, tip_
 
 _MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
+
+
+def check_length(label: Phrase, value: float) -> None:
+    """Raise an OptionError for what Blender lets through but is no number."""
+    if not value <= _MAX_NUMBER:
+        sentence = "{label} is {value:g}; it must be a number up to {most:g}"
+        raise OptionError(Phrase(sentence, label=label, value=value, most=_MAX_NUMBER))
 
 
 class AddsKnot(AddObjectHelper):
@@ -38,7 +47,7 @@ class AddsKnot(AddObjectHelper):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether an object can be added."""
-        cls.poll_message_set("Go back to Object Mode first")
+        cls.poll_message_set(tip_("Go back to Object Mode first"))
         return context.mode == "OBJECT"
 
     def make(self) -> tuple[str, Curve]:
@@ -51,7 +60,7 @@ class AddsKnot(AddObjectHelper):
             self._check()
             name, curve = self.make()
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         low, high = curve.vertices.min(axis=0), curve.vertices.max(axis=0)
         scale = 2 * self.size / (high - low).max()
@@ -72,9 +81,8 @@ class AddsKnot(AddObjectHelper):
 
     def _check(self) -> None:
         """Raise an OptionError for what is not a number."""
-        for label, value in (("Size", self.size), ("Thickness", self.thickness)):
-            if not value <= _MAX_NUMBER:
-                raise OptionError(f"{label} is {value:g}; it must be a number up to {_MAX_NUMBER:g}")
+        check_length(Phrase("Size"), self.size)
+        check_length(Phrase("Thickness"), self.thickness)
 
     def _fits(self) -> bool:
         given = self.properties.is_property_set

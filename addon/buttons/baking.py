@@ -7,6 +7,7 @@ from ..live.checks import refusal, selected_curves, unbaked, unclearable
 from ..live.refusal import Refusal
 from ..live.start import unseen
 from ..scripting import Relaxation
+from ..translations import rpt_, tip_
 from .refusing import Refusing
 from .relaxing import Relaxing
 
@@ -61,7 +62,7 @@ class CURVE_OT_mobius_flow_scene_range(bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether a baked curve is selected."""
-        cls.poll_message_set("Select a curve that was baked first")
+        cls.poll_message_set(tip_("Select a curve that was baked first"))
         return bake.scene_range(selected_curves(context)) is not None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -69,7 +70,7 @@ class CURVE_OT_mobius_flow_scene_range(bpy.types.Operator):  # noqa: N801
         scene, animation = context.scene, bake.scene_range(selected_curves(context))
         scene.frame_start, scene.frame_end = animation
         if hidden := unseen(scene, animation):
-            self.report({"WARNING"}, hidden)
+            self.report({"WARNING"}, rpt_(hidden))
         return {"FINISHED"}
 
 

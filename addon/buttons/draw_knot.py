@@ -11,7 +11,9 @@ from ...core import Curve, MobiusFlowError
 from ...core.types import FloatArray
 from ..curves.exchange import read_link
 from ..engine.drawing_plane import DrawingPlane
+from ..engine.phrase import Phrase
 from ..live.checks import selected_curves
+from ..translations import iface_, rpt_, tip_
 from .adding import AddsKnot
 
 if TYPE_CHECKING:
@@ -55,11 +57,11 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether a drawing is selected."""
-        reason = None if context.mode == "OBJECT" else "Go back to Object Mode first"
+        reason = None if context.mode == "OBJECT" else Phrase("Go back to Object Mode first")
         if reason is None and not selected_curves(context):
-            reason = "Draw a flat closed curve and select it first"
+            reason = Phrase("Draw a flat closed curve and select it first")
         if reason:
-            cls.poll_message_set(reason)
+            cls.poll_message_set(tip_(reason))
         return reason is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -74,7 +76,7 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
             drawing = Drawing.of(plane.flattened(curve))
             lifted = self._lifted(drawing)
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         self.count = len(drawing.crossings)
         name, told = _words(lifted, self.count)
@@ -82,7 +84,7 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
         for obj in drawn if self.hide_drawing else ():
             obj.hide_set(True)
             obj.hide_render = True
-        self.report({"INFO"}, told)
+        self.report({"INFO"}, rpt_(told))
         return {"FINISHED"}
 
     def _lifted(self, drawing: "Drawing") -> Curve:
@@ -105,7 +107,7 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
     def draw(self, _context: bpy.types.Context) -> None:
         """Show the crossings as switches, and how the knot is drawn."""
         layout = self.layout
-        layout.label(text=f"Change Crossings (1 to {min(self.count, _SWITCHES)})")
+        layout.label(text=iface_("Change Crossings (1 to {count})", count=min(self.count, _SWITCHES)))
         grid = layout.grid_flow(row_major=True, columns=8, even_columns=True, align=True)
         for k in range(min(self.count, _SWITCHES)):
             grid.prop(self, "change", index=k, text=str(k + 1), toggle=True)
@@ -122,22 +124,26 @@ def _read(objects: list[bpy.types.Object]) -> Curve:
     for obj in objects:
         for spline in obj.data.splines:
             if not spline.use_cyclic_u:
-                raise CurveError(f"'{obj.name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)")
+                sentence = "'{name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)"
+                raise CurveError(Phrase(sentence, name=obj.name))
     return read_link(objects)[0]
 
 
-def _words(curve: Curve, crossings: int) -> tuple[str, str]:
+def _words(curve: Curve, crossings: int) -> tuple[str, Phrase]:
     """A name for a drawn knot, and what can be said of it."""
     from ...core.knots.recognition import names_alike
 
     known = names_alike(curve, crossings) if crossings <= _NAMED else []
-    told = f"{crossings} crossings" if crossings != 1 else "1 crossing"
-    hedge = ", if it is prime" if crossings > _TELLING else ""
+    told = Phrase("{count} crossings", count=crossings) if crossings != 1 else Phrase("1 crossing")
     if known == ["0_1"]:
-        return "Drawn Unknot", f"{told}: it is not knotted"
+        return "Drawn Unknot", Phrase("{crossings}: it is not knotted", crossings=told)
+    if not known:
+        return "Drawn Knot", told
+    name, what = "Drawn Knot", "{crossings}: one of {knots}"
     if len(known) == 1:
-        return f"Drawn {known[0]}", f"{told}: {known[0]} or its mirror image{hedge}"
-    return "Drawn Knot", f"{told}: one of {', '.join(known)}{hedge}" if known else told
+        name, what = f"Drawn {known[0]}", "{crossings}: {knots} or its mirror image"
+    knots = Phrase(what, crossings=told, knots=", ".join(known))
+    return name, Phrase("{knots}, if it is prime", knots=knots) if crossings > _TELLING else knots
 
 
 def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: FloatArray, size: float) -> None:

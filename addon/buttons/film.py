@@ -7,6 +7,7 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from ...core import MobiusFlowError
 from ..curves.world_motion import drawn_radius
+from ..engine.phrase import Phrase
 from ..engine.words import named
 from ..live.checks import running, selected_curves, unreadable
 from ..live.refusal import Refusal
@@ -14,6 +15,7 @@ from ..pictures import staging
 from ..pictures.filming import Filming, is_rendering, target
 from ..pictures.looks import LOOKS
 from ..scripting import Relaxation
+from ..translations import iface_, rpt_
 from .refusing import Refusing
 
 _INTERVAL = 0.2  # seconds between looks at whether a render is over
@@ -44,7 +46,8 @@ Your own lights stay; your camera and your world come back with Remove Stage"""
         Relaxation(*objects).set_up_stage(self.use_camera, self.use_world)
         thin = [obj.name for obj in objects if not obj.hide_render and not drawn_radius(obj)]
         if thin:
-            self.report({"WARNING"}, f"Renders do not show {named(thin)}, as there is no tube: press Fit Tube")
+            sentence = "Renders do not show {names}, as there is no tube: press Fit Tube"
+            self.report({"WARNING"}, rpt_(sentence, names=named(thin)))
 
 
 class CURVE_OT_mobius_flow_remove_stage(Refusing, bpy.types.Operator):  # noqa: N801
@@ -56,7 +59,9 @@ class CURVE_OT_mobius_flow_remove_stage(Refusing, bpy.types.Operator):  # noqa: 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """There must be one."""
-        return None if staging.own_stage(context.scene) else Refusal("The scene has no stage; press Set Up Stage first")
+        if staging.own_stage(context.scene):
+            return None
+        return Refusal(Phrase("The scene has no stage; press Set Up Stage first"))
 
     def act(self, context: bpy.types.Context) -> None:
         """Take it away."""
@@ -103,15 +108,16 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Refusing, bpy.types.Operator):  
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """There must be a camera, and nothing else going on."""
         if is_rendering():
-            return Refusal("Blender is rendering; wait until it is done, or stop it with Esc")
-        camera = context.scene.camera
-        return running() or (None if camera else Refusal("The scene has no camera; press Set Up Stage first"))
+            return Refusal(Phrase("Blender is rendering; wait until it is done, or stop it with Esc"))
+        if context.scene.camera is None:
+            return running() or Refusal(Phrase("The scene has no camera; press Set Up Stage first"))
+        return running()
 
     def act(self, context: bpy.types.Context) -> None:
         """Render it in this call."""
         filming = Filming(context.scene, *self.wanted(context), self.overwrite)
         filming.render()
-        self.report({"INFO"}, _made(filming))
+        self.report({"INFO"}, rpt_(_made(filming)))
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Render it while Blender stays usable; ask first if there is such a file."""
@@ -125,7 +131,7 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Refusing, bpy.types.Operator):  
             self.filming = Filming(context.scene, path, look, self.overwrite)
             self.filming.start()
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         self.timer = context.window_manager.event_timer_add(_INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
@@ -136,9 +142,9 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Refusing, bpy.types.Operator):  
         if event.type != "TIMER" or is_rendering():
             return {"PASS_THROUGH"}
         if not self._end(context):
-            self.report({"WARNING"}, "The film was not rendered to its end; no file was written")
+            self.report({"WARNING"}, rpt_("The film was not rendered to its end; no file was written"))
             return {"CANCELLED"}
-        self.report({"INFO"}, _made(self.filming))
+        self.report({"INFO"}, rpt_(_made(self.filming)))
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -159,9 +165,10 @@ class CURVE_OT_mobius_flow_replace_film(_OfFilm, bpy.types.Operator):  # noqa: N
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask."""
-        name = target(self.wanted(context)[0]).name
-        ask = context.window_manager.invoke_confirm
-        return set(ask(self, event, title="Overwrite the film?", message=f"{name} is there already", icon="WARNING"))
+        message = iface_("{name} is there already", name=target(self.wanted(context)[0]).name)
+        title = iface_("Overwrite the film?")
+        manager = context.window_manager
+        return set(manager.invoke_confirm(self, event, title=title, message=message, icon="WARNING"))
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
         """Render with the answer."""
@@ -169,8 +176,8 @@ class CURVE_OT_mobius_flow_replace_film(_OfFilm, bpy.types.Operator):  # noqa: N
         return {"FINISHED"}
 
 
-def _made(filming: Filming) -> str:
-    return f"A film of {filming.frames} frames: {filming.path}"
+def _made(filming: Filming) -> Phrase:
+    return Phrase("A film of {count} frames: {path}", count=filming.frames, path=filming.path)
 
 
 CLASSES = (

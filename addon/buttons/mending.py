@@ -6,8 +6,10 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..curves import copying, mending
+from ..engine.phrase import Phrase
 from ..live.checks import convertible, needing, running, selected_curves
 from ..live.refusal import Remedy
+from ..translations import rpt_, tip_
 
 
 class _Mending:
@@ -20,7 +22,7 @@ class _Mending:
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is something to mend, and nothing is being relaxed."""
         refused = running()
-        cls.poll_message_set(refused.sentence if refused else "Nothing selected needs that")
+        cls.poll_message_set(tip_(refused.sentence if refused else Phrase("Nothing selected needs that")))
         return refused is None and any(cls.concerned(context))
 
     @classmethod
@@ -37,7 +39,7 @@ class _Mending:
         try:
             self.mend(obj)
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return False
         return True
 

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ...core import Curve, OptionError
+from ...core import Curve
 from ...core.collision import check_embedded
 from ..curves import bevel, tube_mesh
 from ..curves.exchange import stretch
@@ -15,17 +15,19 @@ from ..curves.recorded import Recorded, in_world
 from ..curves.smooth_curve import smooth_objects
 from ..curves.units import length
 from ..engine.in_between import places_between
+from ..engine.phrase import Phrase
 from ..engine.smooth_fit import FEWEST, SmoothFit
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
 from ..live.checks import selected_curves, unreadable
 from ..live.refusal import Refusal
 from ..pictures.materials import vertex_colours
+from ..translations import rpt_
+from .adding import check_length
 from .refusing import Refusing
 
 _PLAIN = "NONE"
 _MAX_POINTS = 10_000
-_MAX_RADIUS = 1e30  # Blender computes with squares of such numbers
 
 
 class _Output(Refusing):
@@ -102,8 +104,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
 
     def check_values(self) -> None:
         """Check the radius."""
-        if not self.radius <= _MAX_RADIUS:
-            raise OptionError(f"Radius is {self.radius:g}; it must be a number up to {_MAX_RADIUS:g}")
+        check_length(Phrase("Radius"), self.radius)
 
     def read(self, obj: bpy.types.Object) -> Recorded:
         """Read the shapes of a curve, more of them where it turns far from key to key."""
@@ -140,11 +141,13 @@ FBX does with NLA Strips and All Actions off, one frame later"""
     def _tell(self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded]) -> None:
         own = [obj.name for obj in objects if obj.data.bevel_mode != "ROUND" or obj.data.taper_object]
         if own:
-            self.report({"WARNING"}, f"The tube of {named(own)} is round: profiles and tapers are left out")
+            sentence = "The tube of {names} is round: profiles and tapers are left out"
+            self.report({"WARNING"}, rpt_(sentence, names=named(own)))
         else:
             keys, vertices = max(len(each.frames) for each in recorded), sum(each.mesh.size for each in recorded)
-            shapes = f" with {keys} shape keys" if keys > 1 else ""
-            self.report({"INFO"}, f"{named([obj.name for obj in objects])}: {vertices * self.sides} vertices{shapes}")
+            made = {"names": named([obj.name for obj in objects]), "count": vertices * self.sides, "keys": keys}
+            several = "{names}: {count} vertices with {keys} shape keys"
+            self.report({"INFO"}, rpt_(several if keys > 1 else "{names}: {count} vertices", **made))
 
 
 class CURVE_OT_mobius_flow_smooth_curve(_Output, bpy.types.Operator):  # noqa: N801
@@ -185,14 +188,19 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
 
     def _tell(self, objects: Sequence[bpy.types.Object], fit: SmoothFit) -> None:
         scene = bpy.context.scene
-        said = f"{named([obj.name for obj in objects])}: {sum(map(len, fit.points))} points"
-        said += f", at most {length(scene, fit.error)} off"
+        said = Phrase(
+            "{names}: {count} points, at most {error} off",
+            names=named([obj.name for obj in objects]),
+            count=sum(map(len, fit.points)),
+            error=length(scene, fit.error),
+        )
         if fit.proved:
-            self.report({"INFO"}, f"{said}; the same knot, proved")
+            self.report({"INFO"}, rpt_("{made}; the same knot, proved", made=said))
             return
         if np.isfinite(fit.gap):
-            said += f", where strands are only {length(scene, fit.gap)} apart"
-        self.report({"WARNING"}, f"{said}; NOT proved to be the same knot, so give it more Points")
+            gap = length(scene, fit.gap)
+            said = Phrase("{made}, where strands are only {gap} apart", made=said, gap=gap)
+        self.report({"WARNING"}, rpt_("{made}; NOT proved to be the same knot, so give it more Points", made=said))
 
 
 CLASSES = (CURVE_OT_mobius_flow_tube_mesh, CURVE_OT_mobius_flow_smooth_curve)

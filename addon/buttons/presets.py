@@ -7,11 +7,14 @@ from bl_operators.presets import AddPresetBase
 from bpy.props import StringProperty
 
 from ..properties import SETTINGS, shown
+from ..translations import rpt_
 
 PANEL = "VIEW3D_PT_mobius_flow_presets"
 SUBDIRECTORY = "mobius_flow"
 ROOM = Path(__file__).parents[1]  # Blender looks for presets in its "presets"
 SHIPPED = ROOM / "presets" / SUBDIRECTORY
+_GONE = "There is no preset {name} any more; choose another one"
+_OURS = "The preset {name} belongs to Möbius Flow; only your own can be removed"
 
 
 class CURVE_OT_mobius_flow_preset(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
@@ -26,7 +29,7 @@ class CURVE_OT_mobius_flow_preset(bpy.types.Operator):  # noqa: N801 - Blender's
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Run the preset; how a motion is kept is changed only by presets that say so."""
         if not Path(self.filepath).is_file():
-            self.report({"ERROR"}, f"There is no preset {Path(self.filepath).name} any more; choose another one")
+            self.report({"ERROR"}, rpt_(_GONE, name=Path(self.filepath).name))
             return {"CANCELLED"}
         for option in shown():
             context.scene.mobius_flow.property_unset(option.name)
@@ -46,7 +49,7 @@ class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):  # noq
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add or remove; those of the extension stay, wherever it is installed."""
         if self.remove_name and self.name in _shipped():
-            self.report({"ERROR"}, f"The preset {self.name} belongs to Möbius Flow; only your own can be removed")
+            self.report({"ERROR"}, rpt_(_OURS, name=self.name))
             return {"CANCELLED"}
         return set(super().execute(context))
 

@@ -7,6 +7,7 @@ import bpy
 from ...core import MobiusFlowError
 from ..live.modal import redraw_views
 from ..live.refusal import Refusal
+from ..translations import rpt_, tip_
 
 
 class Refusing:
@@ -30,7 +31,7 @@ class Refusing:
         """Whether it can be used; the tooltip says why not."""
         refused = cls.refusal(context)
         if refused:
-            cls.poll_message_set(refused.sentence)
+            cls.poll_message_set(tip_(refused.sentence))
         return refused is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -41,7 +42,7 @@ class Refusing:
                 raise MobiusFlowError(refused.sentence)
             self.act(context)
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         redraw_views(context.window_manager)  # which they are not by themselves where keys were changed
         return {"FINISHED"}

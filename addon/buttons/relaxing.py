@@ -12,6 +12,7 @@ from ..live.start import LiveRelax, tell
 from ..properties import SETTINGS, settings
 from ..scripting import Relaxation
 from ..scripting.settings import implied
+from ..translations import rpt_
 from .refusing import Refusing
 
 
@@ -43,10 +44,11 @@ class Relaxing(LiveRelax, Refusing):
             relaxation = Relaxation(*selected_curves(context), sample_splines=self.sample_splines)
             report = (relaxation.relax_further if self.continues else relaxation.relax)(**values)
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         except MemoryError:
-            self.report({"ERROR"}, "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations")
+            sentence = "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations"
+            self.report({"ERROR"}, rpt_(sentence))
             return {"CANCELLED"}
         tell(self, context.scene, report)
         return {"FINISHED"}

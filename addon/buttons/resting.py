@@ -7,11 +7,13 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..curves.baked_keys import BakedKeys
+from ..engine.phrase import Phrase
 from ..engine.rest import Rest
 from ..engine.words import named
 from ..live.checks import edited, selected_curves
 from ..live.refusal import Refusal
 from ..properties import SETTINGS, relax_options
+from ..translations import rpt_
 from .baking import Rebaking
 from .refusing import Refusing
 
@@ -47,7 +49,7 @@ class CURVE_OT_mobius_flow_check(Refusing, bpy.types.Operator):  # noqa: N801
     def act(self, context: bpy.types.Context) -> None:
         """Look at the end of the animation."""
         values = {name: getattr(context.scene.mobius_flow, name) for name in SETTINGS}
-        self.report({"INFO"}, _told(context, _rest(context, values)))
+        self.report({"INFO"}, rpt_(_told(context, _rest(context, values))))
 
 
 class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: N801
@@ -74,7 +76,7 @@ class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: 
         with suppress(MobiusFlowError):
             rest = _rest(context, self.values(context))
             if rest.index == 0:
-                self.report({"INFO"}, _told(context, rest))
+                self.report({"INFO"}, rpt_(_told(context, rest)))
                 return True
         return False
 
@@ -85,8 +87,9 @@ def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
     return Rest.of(BakedKeys(selected_curves(context)).curves[-1], relax_options(values))
 
 
-def _told(context: bpy.types.Context, rest: Rest) -> str:
-    return f"{named([obj.name for obj in selected_curves(context)])}: {rest.words}"
+def _told(context: bpy.types.Context, rest: Rest) -> Phrase:
+    names = named([obj.name for obj in selected_curves(context)])
+    return Phrase("{names}: {rest}", names=names, rest=rest.words)
 
 
 CLASSES = (CURVE_OT_mobius_flow_balance, CURVE_OT_mobius_flow_check, CURVE_OT_mobius_flow_leave_saddle)

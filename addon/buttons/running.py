@@ -7,13 +7,16 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..curves import sampling
+from ..engine.phrase import Phrase
 from ..live import registry
 from ..live.checks import hindrance, selected_curves
 from ..live.modal import redraw_views
 from ..live.run import Run, State
 from ..live.start import Listening, tell_end
+from ..translations import iface_, rpt_, tip_
 
-_NOTHING = "Nothing is being relaxed"
+_NOTHING = Phrase("Nothing is being relaxed")
+_WRITING = Phrase("The relaxation is over; its keys are being written")
 _PATIENCE = 0.005  # seconds between looks at whether the keys are ready
 
 
@@ -27,7 +30,7 @@ class _RunButton:
         """Whether there is a run that still computes."""
         run = registry.current()
         busy = run is not None and run.state is State.FINISHING
-        cls.poll_message_set("The relaxation is over; its keys are being written" if busy else _NOTHING)
+        cls.poll_message_set(tip_(_WRITING if busy else _NOTHING))
         return run is not None and not busy
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -74,7 +77,7 @@ class CURVE_OT_mobius_flow_cancel(bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, _context: bpy.types.Context) -> bool:
         """Whether there is a run, even one whose keys are being written."""
-        cls.poll_message_set(_NOTHING)
+        cls.poll_message_set(tip_(_NOTHING))
         return registry.current() is not None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -97,7 +100,7 @@ class CURVE_OT_mobius_flow_recover(Listening, bpy.types.Operator):  # noqa: N801
     def poll(cls, _context: bpy.types.Context) -> bool:
         """Whether there is something to recover."""
         run = registry.latest()
-        cls.poll_message_set("No relaxation was cancelled")
+        cls.poll_message_set(tip_("No relaxation was cancelled"))
         return run is not None and run.recoverable
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -126,7 +129,7 @@ class CURVE_OT_mobius_flow_recover(Listening, bpy.types.Operator):  # noqa: N801
                 raise MobiusFlowError(refused.sentence)
             run.recover()
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return None
         return run
 
@@ -143,15 +146,15 @@ class CURVE_OT_mobius_flow_sample(bpy.types.Operator):  # noqa: N801
         try:
             self.questions = sampling.questions(selected_curves(context))
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         return set(context.window_manager.invoke_props_dialog(self, width=420))
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Show the questions."""
         for question in self.questions:
-            self.layout.label(text=question, icon="QUESTION")
-        self.layout.label(text="For more or fewer points change the curve's Resolution Preview U.")
+            self.layout.label(text=iface_(question), icon="QUESTION")
+        self.layout.label(text=iface_("For more or fewer points change the curve's Resolution Preview U."))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Relax with the answer."""

@@ -5,14 +5,21 @@ from bpy.props import EnumProperty
 
 from ..curves.resized import keep_size
 from ..curves.turned import face_camera, lay_flat
+from ..engine.phrase import Phrase
 from ..engine.size import Measure
 from ..engine.words import named
 from ..live.checks import edited, refusal, selected_curves, unclearable
 from ..live.refusal import Refusal
 from ..properties import measure_items
+from ..translations import rpt_
 from .refusing import Refusing
 
 _KEYS = {"FIRST": 0, "LAST": -1}
+_KEPT = {
+    Measure.LENGTH: Phrase("The length"),
+    Measure.BOX: Phrase("The bounding box"),
+    Measure.RADIUS: Phrase("The radius"),
+}
 
 
 class CURVE_OT_mobius_flow_keep_size(Refusing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
@@ -42,8 +49,9 @@ class CURVE_OT_mobius_flow_keep_size(Refusing, bpy.types.Operator):  # noqa: N80
         """Scale all keys."""
         objects, measure = selected_curves(context), Measure[self.measure]
         keys = keep_size(objects, measure, _KEYS[self.reference])
-        kept = f"The {measure.value.lower()} of {named([obj.name for obj in objects])}"
-        _tell(self, f"{kept} stays at all {len(keys.frames)} keys", keys.unproved)
+        kept = "{measure} of {names} stays at all {count} keys"
+        names = named([obj.name for obj in objects])
+        _tell(self, Phrase(kept, measure=_KEPT[measure], names=names, count=len(keys.frames)), keys.unproved)
 
 
 class _Turning(Refusing):
@@ -57,7 +65,7 @@ class _Turning(Refusing):
     def act(self, context: bpy.types.Context) -> None:
         """Turn them."""
         if unproved := self.turn(context):
-            _tell(self, "The curves were turned", unproved)
+            _tell(self, Phrase("The curves were turned"), unproved)
 
     def turn(self, context: bpy.types.Context) -> int:
         """Turn the selected curves, and count the motions that are not proved any more."""
@@ -84,19 +92,21 @@ class CURVE_OT_mobius_flow_face_camera(_Turning, bpy.types.Operator):  # noqa: N
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """There must be a camera."""
-        return refusal(context) or (None if context.scene.camera else Refusal("The scene has no camera; add one first"))
+        missing = None if context.scene.camera else Refusal(Phrase("The scene has no camera; add one first"))
+        return refusal(context) or missing
 
     def turn(self, context: bpy.types.Context) -> int:
         """Turn them to the camera."""
         return face_camera(selected_curves(context), context.scene.camera)
 
 
-def _tell(operator: bpy.types.Operator, what: str, unproved: int) -> None:
+def _tell(operator: bpy.types.Operator, what: Phrase, unproved: int) -> None:
     """Say what was done, and whether the animation is proved still."""
     if unproved:
-        operator.report({"WARNING"}, f"{what}; {unproved} motions between keys are NOT proved free of contact")
+        sentence = "{done}; {count} motions between keys are NOT proved free of contact"
+        operator.report({"WARNING"}, rpt_(sentence, done=what, count=unproved))
     else:
-        operator.report({"INFO"}, f"{what}, proved free of contact")
+        operator.report({"INFO"}, rpt_("{done}, proved free of contact", done=what))
 
 
 CLASSES = (CURVE_OT_mobius_flow_keep_size, CURVE_OT_mobius_flow_lay_flat, CURVE_OT_mobius_flow_face_camera)

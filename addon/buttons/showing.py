@@ -7,6 +7,7 @@ from ..curves.snapshot import control_points
 from ..engine.spots import Spot, at
 from ..live import registry
 from ..live.run import Run
+from ..translations import rpt_, tip_
 
 
 class CURVE_OT_mobius_flow_show(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
@@ -19,7 +20,7 @@ class CURVE_OT_mobius_flow_show(bpy.types.Operator):  # noqa: N801 - Blender's n
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is something to show."""
-        cls.poll_message_set("Nothing is the matter at any place of this curve")
+        cls.poll_message_set(tip_("Nothing is the matter at any place of this curve"))
         run = registry.shown(context.active_object)
         return run is not None and run.state.over and bool(run.trouble)
 
@@ -29,7 +30,8 @@ class CURVE_OT_mobius_flow_show(bpy.types.Operator):  # noqa: N801 - Blender's n
         assert run is not None, "poll looks for it"
         spots = _spots(run)
         if not spots:
-            self.report({"ERROR"}, "The curve is hidden, or not in this view layer; make it visible first")
+            sentence = "The curve is hidden, or not in this view layer; make it visible first"
+            self.report({"ERROR"}, rpt_(sentence))
             return {"CANCELLED"}
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")

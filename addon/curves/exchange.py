@@ -7,6 +7,7 @@ import numpy as np
 
 from ...core import Curve, CurveError
 from ...core.types import FloatArray
+from ..engine.phrase import Phrase
 from ..engine.placement import Frame, Link, Placement
 from . import sampling
 
@@ -41,8 +42,15 @@ def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
     for k, frame in enumerate(frames, 1):
         bad = np.flatnonzero(~(np.abs(frame) < _FAR).all(axis=1))
         if bad.size:
-            point = f"Point {bad[0] + 1} of spline {k} of '{obj.name}'"
-            raise CurveError(f"{point} is not finite, or further away than anything; repair or delete it")
+            raise CurveError(
+                Phrase(
+                    "Point {point} of spline {spline} of '{name}' is not finite, or further away than anything; "
+                    "repair or delete it",
+                    point=bad[0] + 1,
+                    spline=k,
+                    name=obj.name,
+                )
+            )
     return [frame.astype(np.float64) for frame in frames]
 
 

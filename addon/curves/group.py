@@ -13,6 +13,7 @@ from ...core.types import FloatArray
 from ..engine.glossary import in_blenders_words, spline_names
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
+from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from ..engine.spots import Spot, spots
 from ..engine.words import named
@@ -112,12 +113,12 @@ class Group:
             and all(one.equals(another) for one, another in pairs)
         )
 
-    def lost(self) -> str | None:
+    def lost(self) -> Phrase | None:
         """Say what somebody did to one of the objects that makes going on impossible."""
         reason = next((reason for member in self._members if (reason := member.lost())), None)
         if reason is None and len(self._members) > 1:  # what is proved of a single one holds wherever it goes
             moved = next((member for member in self._members if member.moved), None)
-            reason = f"'{moved.name}' was moved against the others" if moved else None
+            reason = Phrase("'{name}' was moved against the others", name=moved.name) if moved else None
         return reason
 
     @property

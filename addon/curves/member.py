@@ -7,6 +7,7 @@ from ...core import Curve
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
+from ..engine.phrase import Phrase
 from ..engine.placement import Frame, Placement
 from . import bake, bevel, keyframes
 from .deforming import what_deforms
@@ -87,22 +88,22 @@ class Member:
         if not self.lost():
             write_points(self.data, points)
 
-    def lost(self) -> str | None:
+    def lost(self) -> Phrase | None:
         """Say what somebody did to the curve that makes going on impossible."""
         obj, data = self.object, self.data
         if obj is None or data is None or not obj.users_scene:
-            return f"'{self.name}' was deleted"
+            return Phrase("'{name}' was deleted", name=self.name)
         self.name, self._data_name = obj.name, data.name
         if obj.data != data:
-            return f"'{self.name}' was given other curve data"
+            return Phrase("'{name}' was given other curve data", name=self.name)
         if obj.mode != "OBJECT":
-            return f"'{self.name}' is being edited"
+            return Phrase("'{name}' is being edited", name=self.name)
         if shape(data) != self._shape:
-            return f"Points of '{self.name}' were added or removed"
+            return Phrase("Points of '{name}' were added or removed", name=self.name)
         if self._foreign_keys(data):
-            return f"'{self.name}' was given shape keys"
+            return Phrase("'{name}' was given shape keys", name=self.name)
         deformer = what_deforms(obj)
-        return f"{deformer} moves its points" if deformer else None
+        return Phrase("{deformer} moves its points", deformer=deformer) if deformer else None
 
     def writing(self, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
         """Write keys in short pieces; ``radii`` are those of the tube in the object's units, (keys,)."""

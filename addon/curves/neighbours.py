@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core.types import FloatArray
+from ..engine.phrase import Phrase
 from ..engine.words import named
 
 if TYPE_CHECKING:
@@ -16,13 +17,15 @@ _SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}
 _MARGIN = 0.1  # of the diagonal of the curves' box
 
 
-def warning(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> str | None:
+def warning(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> Phrase | None:
     """Name what is visible near curve objects and not one of them, or return None; cheap enough for every redraw."""
     near = _near(context, objects)
     if not near:
         return None
-    verb = "are" if len(near) > 1 else "is"
-    return f"Only selected curves are kept apart; {named([obj.name for obj in near])} nearby {verb} not"
+    names = named([obj.name for obj in near])
+    if len(near) > 1:
+        return Phrase("Only selected curves are kept apart; {names} nearby are not", names=names)
+    return Phrase("Only selected curves are kept apart; {names} nearby is not", names=names)
 
 
 def _near(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> list["bpy.types.Object"]:

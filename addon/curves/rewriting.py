@@ -7,6 +7,7 @@ import numpy as np
 
 from ...core import MobiusFlowError
 from ...core.types import FloatArray
+from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from . import bake
 from .exchange import write_points
@@ -29,7 +30,7 @@ def keyed_points(data: "bpy.types.Curve") -> list[Frame]:
         return [_points_of(block) for block in data.shape_keys.key_blocks]
     columns = [_keys_of(curve)[:, 1] for curve in _coordinates(data)]
     if len({len(column) for column in columns}) > 1:
-        raise MobiusFlowError(f"Keys of '{data.name}' were edited; undo that, or Bake Again")
+        raise MobiusFlowError(Phrase("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
     return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core import CurveError
+from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 
 if TYPE_CHECKING:
@@ -30,16 +31,22 @@ def questions(objects: Sequence["bpy.types.Object"]) -> list[str]:
     smooth = [obj for obj in objects if smooth_splines(obj.data)]
     lines = [_question(obj) for obj in smooth[:_MAX_QUESTIONS]]
     more = len(smooth) - len(lines)
-    return [*lines, f"{more} more objects have smooth splines too"] if more else lines
+    return [*lines, Phrase("{count} more objects have smooth splines too", count=more)] if more else lines
 
 
 def _question(obj: "bpy.types.Object") -> str:
     smooth = smooth_splines(obj.data)
-    kinds = " and ".join(sorted({kind(spline) for spline in smooth}))
+    kinds = sorted({kind(spline) for spline in smooth})
     points = sum(len(points) for points, spline in zip(sampled(obj), obj.data.splines, strict=True) if spline in smooth)
     if len(smooth) == 1:
-        return f"'{obj.name}' has a {kinds} spline; it becomes a polygon of {points} points"
-    return f"'{obj.name}' has {len(smooth)} {kinds} splines; they become polygons of {points} points in all"
+        one = "'{name}' has a {kind} spline; it becomes a polygon of {points} points"
+        return Phrase(one, name=obj.name, kind=kinds[0], points=points)
+    several = "'{name}' has {count} {kinds} splines; they become polygons of {points} points in all"
+    return Phrase(several, name=obj.name, count=len(smooth), kinds=_joined(kinds), points=points)
+
+
+def _joined(kinds: Sequence[str]) -> str:
+    return Phrase("{names} and {last}", names=kinds[0], last=kinds[1]) if len(kinds) > 1 else kinds[0]
 
 
 def sampled(obj: "bpy.types.Object") -> list[Frame]:
@@ -53,13 +60,21 @@ def sampled(obj: "bpy.types.Object") -> list[Frame]:
     loops = _drawn(obj.data)
     if len(loops) != len(obj.data.splines):
         raise CurveError(
-            f"'{obj.name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first"
+            Phrase(
+                "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first",
+                name=obj.name,
+            )
         )
     for k, loop in enumerate(loops, 1):
         if len(loop) < 3:
             raise CurveError(
-                f"Spline {k} of '{obj.name}' is drawn with only {len(loop)} points; "
-                "raise its Resolution U, or give it more points"
+                Phrase(
+                    "Spline {number} of '{name}' is drawn with only {count} points; "
+                    "raise its Resolution U, or give it more points",
+                    number=k,
+                    name=obj.name,
+                    count=len(loop),
+                )
             )
     return loops
 

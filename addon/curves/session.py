@@ -6,7 +6,7 @@ What it knows lives here and never in the file.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,8 +25,10 @@ from ...core import (
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.types import FloatArray
+from ..engine.glossary import as_phrase
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
+from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from ..engine.size import Measure, Size
 from ..engine.words import named
@@ -75,15 +77,28 @@ class Report:
     modified: bool
 
     @property
-    def sentence(self) -> str:
+    def sentence(self) -> Phrase:
         """The same in words."""
+        told: dict[str, Any] = {
+            "names": named(self.names),
+            "outcome": self.outcome.message,
+            "proof": self._proof,
+        }
+        if self.keys == 1:
+            return Phrase("{names} {outcome}; {proof}", **told)
+        told |= {"count": self.keys - self.continues, "frame": self.last_frame}
+        if self.continues:
+            return Phrase("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **told)
+        return Phrase("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **told)
+
+    @property
+    def _proof(self) -> Phrase:
+        if not self.certified:
+            return Phrase("NOT proved free of contact everywhere")
         # nothing but the curves that were relaxed is looked at
-        whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
-        whom += ", before modifiers" if self.modified else ""
-        proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
-        keys = f"{self.keys - 1} new keys" if self.continues else f"{self.keys} keys"
-        animation = f"{keys} up to frame {self.last_frame:g}, " if self.keys > 1 else ""
-        return f"{named(self.names)} {self.outcome.message.rstrip('.')}; {animation}{proof}"
+        alone = Phrase("proved free of contact with itself")
+        whom = alone if len(self.names) == 1 else Phrase("proved free of contact with themselves and each other")
+        return Phrase("{proof}, before modifiers", proof=whom) if self.modified else whom
 
     @property
     def clean(self) -> bool:
@@ -157,7 +172,7 @@ class Session:
         try:
             prepared = self._relaxed()
             if reason := self.group.lost():
-                raise MobiusFlowError(f"{reason} during the relaxation; nothing was written")
+                raise MobiusFlowError(Phrase("{reason} during the relaxation; nothing was written", reason=reason))
             for _ in self.writing(prepared):
                 pass
         except BaseException:
@@ -185,7 +200,7 @@ class Session:
 
     def end(self, outcome: Outcome) -> None:
         """Take in how the relaxation ended."""
-        self.outcome = replace(outcome, message=self.group.told(outcome.message))
+        self.outcome = replace(outcome, message=as_phrase(self.group.told(outcome.message).rstrip(".")))
 
     def take(self, iterate: Iterate) -> None:
         """Take in an iterate."""
@@ -225,7 +240,7 @@ class Session:
         MobiusFlowError
             If they are not.
         """
-        changed = f"{self.group.title} changed since the relaxation ended; relax anew"
+        changed = Phrase("{names} changed since the relaxation ended; relax anew", names=self.group.title)
         objects = self.group.objects
         if len(objects) < len(self.group.names):
             raise MobiusFlowError(changed)

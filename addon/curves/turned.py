@@ -7,6 +7,7 @@ import numpy as np
 
 from ...core import Curve, MobiusFlowError
 from ...core.types import FloatArray
+from ..engine.phrase import Phrase
 from ..engine.turning import Turn, orthonormal
 from . import bake
 from .baked_keys import BakedKeys
@@ -47,18 +48,19 @@ def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
     turn = Turn.onto(_shape(objects), wanted)
     moved = next((obj for obj in objects if what_moves(obj)), None)
     if moved is not None:
-        return _turn_keys(objects, turn, f"'{moved.name}' is moved by {what_moves(moved)}")
+        why = Phrase("'{name}' is moved by {mover}", name=moved.name, mover=what_moves(moved))
+        return _turn_keys(objects, turn, why)
     _turn_objects(objects, turn)
     # a single object goes wherever it likes; places of several against each other are rounded anew
     proved = len(objects) > 1 and all(bake.is_baked(obj.data) for obj in objects)
     return BakedKeys(objects).unproved if proved else 0
 
 
-def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: str) -> int:
+def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: Phrase) -> int:
     if len(objects) > 1 or not bake.is_baked(objects[0].data):
-        raise MobiusFlowError(f"{why}; remove that, or bake it and turn it alone")
+        raise MobiusFlowError(Phrase("{why}; remove that, or bake it and turn it alone", why=why))
     if bake.is_edited(objects[0].data):
-        raise MobiusFlowError(f"{why}, and its keys were edited; undo one or the other")
+        raise MobiusFlowError(Phrase("{why}, and its keys were edited; undo one or the other", why=why))
     keys = BakedKeys(objects)
     keys.rewrite([turn.of(curve) for curve in keys.curves])
     return keys.unproved

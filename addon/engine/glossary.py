@@ -2,6 +2,9 @@
 
 import re
 from collections.abc import Sequence
+from string import Formatter
+
+from .phrase import Phrase
 
 _WORDS = {
     "component": "spline",
@@ -13,6 +16,12 @@ _WORDS = {
 }
 _TERM = re.compile(rf"\bcomponent (\d+)\b|\b({'|'.join(_WORDS)})\b")
 
+_ENDS = (  # how most relaxations end, see `core.driver.outcome`
+    Phrase("converged: projected gradient {norm} ≤ {bound}"),
+    Phrase("stopped after {count} iterations, as asked for"),
+    Phrase("stopped after 1 iteration, as asked for"),
+)
+
 
 def in_blenders_words(sentence: str, splines: Sequence[str]) -> str:
     """Say the same to somebody who sees curve objects; ``splines`` are the names of the components in turn."""
@@ -22,3 +31,18 @@ def in_blenders_words(sentence: str, splines: Sequence[str]) -> str:
 def spline_names(objects: Sequence[str], counts: Sequence[int]) -> list[str]:
     """Names of all splines of some objects, of which each has so many."""
     return [f"spline {k} of '{name}'" for name, count in zip(objects, counts, strict=True) for k in range(1, count + 1)]
+
+
+def as_phrase(sentence: str) -> str:
+    """The core's sentence about how a relaxation ended as a phrase, if it is one that can be translated."""
+    for end in _ENDS:
+        if match := _pattern(end).fullmatch(sentence):
+            return Phrase(end.template, **match.groupdict())
+    return sentence
+
+
+def _pattern(template: str) -> re.Pattern[str]:
+    pieces = Formatter().parse(template)
+    return re.compile(
+        "".join(re.escape(text) + (f"(?P<{field}>[^;]+)" if field else "") for text, field, _, _ in pieces)
+    )

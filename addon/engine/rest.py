@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from ...core import Curve, CurveError, RelaxOptions, Status, minimize
+from .phrase import Phrase
 
 MAX_POINTS = 1500  # a dense eigenvalue problem: some fifteen seconds
 _ITERATIONS = 100  # that lead from points rounded to Blender's numbers back to a critical point
@@ -33,15 +34,22 @@ class Rest:
             If the curve has too many points, or the options leave no way to tell.
         """
         if len(curve) > MAX_POINTS:
-            raise CurveError(f"The curves have {len(curve)} points; minimum or saddle is told up to {MAX_POINTS}")
+            raise CurveError(
+                Phrase(
+                    "The curves have {count} points; minimum or saddle is told up to {most}",
+                    count=len(curve),
+                    most=MAX_POINTS,
+                )
+            )
         options = replace(options, vertices=len(curve), max_iterations=_ITERATIONS)
         result = minimize(curve, replace(options, stability=True, escape_saddles=False, balance=False))
         index = result.outcome.negative_eigenvalues
         if result.status is Status.ITERATION_LIMIT:
-            return cls(None, "not at rest yet; press Continue first")
+            return cls(None, Phrase("not at rest yet; press Continue first"))
         if index is None:
             return cls(None, result.message)
         if not index:
-            return cls(0, "at a minimum, no small motion lowers the energy")
-        ways = "one way leads" if index == 1 else f"{index} independent ways lead"
-        return cls(index, f"at a saddle, {ways} down; press Leave Saddle")
+            return cls(0, Phrase("at a minimum, no small motion lowers the energy"))
+        if index == 1:
+            return cls(1, Phrase("at a saddle, one way leads down; press Leave Saddle"))
+        return cls(index, Phrase("at a saddle, {count} independent ways lead down; press Leave Saddle", count=index))

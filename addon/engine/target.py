@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from ...core import Curve, RelaxOptions
 from ...core.knots.alexander import TRIVIAL, signature
+from .phrase import Phrase
 
 CIRCLE = 4.0  # Möbius energy of the round circle, the least of any closed curve: Freedman, He and Wang (1994)
 _MOST = 2000  # vertices of a curve whose type is looked at: a tenth of a second
@@ -14,7 +15,7 @@ class Target:
     """A least energy, and what has it."""
 
     energy: float
-    label: str
+    label: Phrase
 
 
 def target_of(curve: Curve, options: RelaxOptions) -> Target | None:
@@ -27,6 +28,6 @@ def target_of(curve: Curve, options: RelaxOptions) -> Target | None:
         return None
     components = len(curve.mesh.component_sizes)
     if components > 1:
-        return Target(CIRCLE * components, f"floor = {CIRCLE * components:g}")
+        return Target(CIRCLE * components, Phrase("floor = {energy:g}", energy=CIRCLE * components))
     knotted = len(curve) <= _MOST and signature(curve).alexander != (TRIVIAL,)
-    return None if knotted else Target(CIRCLE, f"circle = {CIRCLE:g}")
+    return None if knotted else Target(CIRCLE, Phrase("circle = {energy:g}", energy=CIRCLE))

@@ -11,9 +11,12 @@ import numpy as np
 
 from ...core import OptionError
 from ...core.types import FloatArray
+from .phrase import Phrase
 
 LAST_FRAME = 1_048_574  # of any scene; up to it, 32-bit numbers tell a sixteenth of a frame apart
 FRAMES_PER_ITERATE = (0.1, 10_000.0)
+_BY_ITERATE = Phrase("Start Frame, Frames/Iterate or Max Iterations")  # what the last frame depends on
+_BY_LENGTH = Phrase("Start Frame or Length")
 _EVENNESS = 0.85  # share of distance in an even motion; the rest leaves the last, small steps some frames too
 
 
@@ -113,16 +116,34 @@ class Timing:
 
     def __post_init__(self) -> None:
         if not abs(self.start_frame) <= LAST_FRAME:  # not a number is refused too
-            raise OptionError(f"Start Frame is {self.start_frame:.12g}; it must be from {-LAST_FRAME} to {LAST_FRAME}")
+            raise OptionError(
+                Phrase(
+                    "Start Frame is {frame:.12g}; it must be from {first} to {last}",
+                    frame=self.start_frame,
+                    first=-LAST_FRAME,
+                    last=LAST_FRAME,
+                )
+            )
         low, high = FRAMES_PER_ITERATE
         if not low <= self.frames_per_iterate <= high:
-            raise OptionError(f"Frames/Iterate is {self.frames_per_iterate:g}; it must be from {low:g} to {high:g}")
+            raise OptionError(
+                Phrase(
+                    "Frames/Iterate is {value:g}; it must be from {low:g} to {high:g}",
+                    value=self.frames_per_iterate,
+                    low=low,
+                    high=high,
+                )
+            )
         if min(self.hold_start, self.hold_end) < 0:
-            raise OptionError("Hold at Start and Hold at End must be 0 frames or more")
+            raise OptionError(Phrase("Hold at Start and Hold at End must be 0 frames or more"))
         if self.pace is not Pace.ITERATE and self.length < 2 + self.hold_start + self.hold_end:
             raise OptionError(
-                f"Length is {self.length} frames, which leaves none to move in; "
-                f"it must be at least {2 + self.hold_start + self.hold_end}, or the holds shorter"
+                Phrase(
+                    "Length is {length} frames, which leaves none to move in; "
+                    "it must be at least {least}, or the holds shorter",
+                    length=self.length,
+                    least=2 + self.hold_start + self.hold_end,
+                )
             )
 
     def check_room(self, iterations: int) -> None:
@@ -130,11 +151,14 @@ class Timing:
         _, end = self._motion(iterations)
         last = end + self.hold_end
         if last > LAST_FRAME:
-            by_iterate = self.pace is Pace.ITERATE
-            smaller = "Start Frame, Frames/Iterate or Max Iterations" if by_iterate else "Start Frame or Length"
             raise OptionError(
-                f"The animation would go on to frame {last:.0f}, but Blender's last is {LAST_FRAME}; "
-                f"give a smaller {smaller}"
+                Phrase(
+                    "The animation would go on to frame {frame:.0f}, but Blender's last is {last}; "
+                    "give a smaller {what}",
+                    frame=last,
+                    last=LAST_FRAME,
+                    what=_BY_ITERATE if self.pace is Pace.ITERATE else _BY_LENGTH,
+                )
             )
 
     def frames(self, course: Course) -> FloatArray:

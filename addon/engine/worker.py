@@ -20,6 +20,7 @@ from ...core.curve import Mesh
 from ...core.types import FloatArray
 from . import wire
 from .job import messages
+from .phrase import Phrase
 from .placement import Link
 
 _AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the worker waits too: that is how it pauses
@@ -63,7 +64,7 @@ class Worker:
         except queue.Empty:
             return None
         if message is None:
-            raise WorkerError("The computation ended unexpectedly; perhaps memory ran out")
+            raise WorkerError(Phrase("The computation ended unexpectedly; perhaps memory ran out"))
         if "error" in message[0]:
             raise wire.unpack_error(message)
         if "outcome" in message[0]:

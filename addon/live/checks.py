@@ -8,6 +8,7 @@ import numpy as np
 from ..curves import bake, bevel, sampling
 from ..curves.deforming import what_deforms
 from ..curves.moving import what_moves
+from ..engine.phrase import Phrase
 from . import registry
 from .refusal import Refusal, Remedy
 
@@ -84,7 +85,9 @@ def unbaked(context: "bpy.types.Context") -> Refusal | None:
 def bare(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
     """Say which of some curve objects was not baked, or return None if all were."""
     found = next((obj for obj in objects if not bake.is_baked(obj.data)), None)
-    return Refusal(f"'{found.name}' has no keys of Möbius Flow; press Relax first") if found is not None else None
+    if found is None:
+        return None
+    return Refusal(Phrase("'{name}' has no keys of Möbius Flow; press Relax first", name=found.name))
 
 
 def edited(context: "bpy.types.Context") -> Refusal | None:
@@ -96,8 +99,8 @@ def edited_by_hand(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
     """Say which of some curve objects has keys that somebody has edited, or return None; not for every redraw."""
     for obj in objects:
         if bake.is_baked(obj.data) and bake.is_edited(obj.data):
-            sentence = f"Keys of '{obj.name}' were edited; undo that, or remove the keys to relax the curve as it is"
-            return Refusal(sentence, Remedy.COPY)
+            sentence = "Keys of '{name}' were edited; undo that, or remove the keys to relax the curve as it is"
+            return Refusal(Phrase(sentence, name=obj.name), Remedy.COPY)
     return None
 
 
@@ -126,7 +129,7 @@ def unsampled(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
 def running() -> Refusal | None:
     """Say that a relaxation is going on, or return None if there is none."""
     run = registry.current()
-    return Refusal(f"{run.name} is being relaxed; stop that first") if run else None
+    return Refusal(Phrase("{names} is being relaxed; stop that first", names=run.name)) if run else None
 
 
 def convertible(context: "bpy.types.Context") -> list["bpy.types.Object"]:
@@ -143,65 +146,74 @@ def _no_curve(context: "bpy.types.Context") -> Refusal:
     """Say what is wrong with the active object where no curve is selected; hiding deselects."""
     obj = context.active_object
     if obj is not None and obj.type == "CURVE" and not obj.visible_get():
-        return Refusal(f"'{obj.name}' is hidden; show it first")
+        return Refusal(Phrase("'{name}' is hidden; show it first", name=obj.name))
     if obj is None or obj.type == "CURVE" or not obj.select_get():
-        return Refusal("Select a curve object first")
+        return Refusal(Phrase("Select a curve object first"))
     kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
-    sentence = f"'{obj.name}' is of type {kind}; select a curve object, or convert it with Object > Convert > Curve"
-    return Refusal(sentence, Remedy.TO_CURVE if obj.mode == "OBJECT" and convertible(context) else None)
+    sentence = "'{name}' is of type {type}; select a curve object, or convert it with Object > Convert > Curve"
+    return Refusal(
+        Phrase(sentence, name=obj.name, type=kind),
+        Remedy.TO_CURVE if obj.mode == "OBJECT" and convertible(context) else None,
+    )
 
 
 def _mode(obj: "bpy.types.Object") -> Iterator[Refusal]:
     if obj.mode != "OBJECT":
-        yield Refusal(f"'{obj.name}' is being edited; go back to Object Mode first", Remedy.OBJECT_MODE)
+        sentence = Phrase("'{name}' is being edited; go back to Object Mode first", name=obj.name)
+        yield Refusal(sentence, Remedy.OBJECT_MODE)
 
 
 def _ownership(obj: "bpy.types.Object") -> Iterator[Refusal]:
-    data, how = obj.data, "make it local first (Object > Relations > Make Local)"
+    data = obj.data
     if obj.library or data.library:
-        yield Refusal(f"'{obj.name}' is linked from another file; {how}", Remedy.MAKE_LOCAL)
+        sentence = "'{name}' is linked from another file; make it local first (Object > Relations > Make Local)"
+        yield Refusal(Phrase(sentence, name=obj.name), Remedy.MAKE_LOCAL)
     elif obj.override_library or data.override_library:
-        yield Refusal(f"'{obj.name}' is a library override; {how}", Remedy.MAKE_LOCAL)
+        sentence = "'{name}' is a library override; make it local first (Object > Relations > Make Local)"
+        yield Refusal(Phrase(sentence, name=obj.name), Remedy.MAKE_LOCAL)
     elif data.users - data.use_fake_user > 1:
         sentence = (
-            f"'{obj.name}' shares its curve data '{data.name}' with other objects; make it single-user first "
+            "'{name}' shares its curve data '{data}' with other objects; make it single-user first "
             "(Object > Relations > Make Single User)"
         )
-        yield Refusal(sentence, Remedy.SINGLE_USER)
+        yield Refusal(Phrase(sentence, name=obj.name, data=data.name), Remedy.SINGLE_USER)
 
 
 def _splines(obj: "bpy.types.Object") -> Iterator[Refusal]:
     data = obj.data
     if data.dimensions != "3D":
-        yield Refusal(f"'{obj.name}' is a 2D curve; set its Shape to 3D first (Object Data properties)", Remedy.MAKE_3D)
+        sentence = "'{name}' is a 2D curve; set its Shape to 3D first (Object Data properties)"
+        yield Refusal(Phrase(sentence, name=obj.name), Remedy.MAKE_3D)
     if not data.splines:
-        yield Refusal(f"'{obj.name}' has no splines; give it at least one closed poly spline")
+        yield Refusal(Phrase("'{name}' has no splines; give it at least one closed poly spline", name=obj.name))
     for k, spline in enumerate(data.splines, 1):
         fewest = 2 if spline.type == "BEZIER" else 3
         count = len(spline.bezier_points if spline.type == "BEZIER" else spline.points)
-        name = f"Spline {k} of '{obj.name}'"
         if count < fewest:
-            yield Refusal(
-                f"{name} has fewer than {fewest} points, too few for a closed curve; give it more, or delete it"
+            sentence = (
+                "Spline {number} of '{name}' has fewer than {fewest} points, too few for a closed curve; "
+                "give it more, or delete it"
             )
+            yield Refusal(Phrase(sentence, number=k, name=obj.name, fewest=fewest))
         elif not spline.use_cyclic_u:
-            yield Refusal(f"{name} is open; close it first (Edit Mode, Curve > Toggle Cyclic)", Remedy.CLOSE)
+            sentence = "Spline {number} of '{name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)"
+            yield Refusal(Phrase(sentence, number=k, name=obj.name), Remedy.CLOSE)
 
 
 def _bevel(obj: "bpy.types.Object") -> Iterator[Refusal]:
     if not bevel.can_fit(obj.data):
-        what = "a profile, taper, extrusion, offset or point radii of its own"
-        yield Refusal(f"'{obj.name}' has {what}; remove them first")
+        sentence = "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first"
+        yield Refusal(Phrase(sentence, name=obj.name))
 
 
 def _smooth(obj: "bpy.types.Object") -> Iterator[Refusal]:
     for k, spline in enumerate(obj.data.splines, 1):
         if spline.type != "POLY":
             sentence = (
-                f"Spline {k} of '{obj.name}' is a {sampling.kind(spline)} spline; convert it to Poly first "
+                "Spline {number} of '{name}' is a {kind} spline; convert it to Poly first "
                 "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines"
             )
-            yield Refusal(sentence, Remedy.TO_POLY)
+            yield Refusal(Phrase(sentence, number=k, name=obj.name, kind=sampling.kind(spline)), Remedy.TO_POLY)
 
 
 def _animation(obj: "bpy.types.Object") -> Iterator[Refusal]:
@@ -209,38 +221,42 @@ def _animation(obj: "bpy.types.Object") -> Iterator[Refusal]:
         yield Refusal(sentence, Remedy.COPY)
 
 
-def _animated(obj: "bpy.types.Object") -> str | None:
+def _animated(obj: "bpy.types.Object") -> Phrase | None:
     data = obj.data
     animation = data.animation_data
     if data.shape_keys:
-        return f"'{obj.name}' has shape keys; remove them or relax a copy without them"
+        return Phrase("'{name}' has shape keys; remove them or relax a copy without them", name=obj.name)
     if animation and (animation.action or animation.nla_tracks):
-        return f"The curve data of '{obj.name}' is animated; remove the animation or relax a copy without it"
+        sentence = "The curve data of '{name}' is animated; remove the animation or relax a copy without it"
+        return Phrase(sentence, name=obj.name)
     if animation and any(driver.data_path.startswith("splines") for driver in animation.drivers):
-        return f"Points of '{obj.name}' are driven; remove the drivers or relax a copy without them"
+        return Phrase("Points of '{name}' are driven; remove the drivers or relax a copy without them", name=obj.name)
     return None
 
 
 def _deformation(obj: "bpy.types.Object") -> Iterator[Refusal]:
     if deformer := what_deforms(obj):
-        how = "remove it, or relax a copy without it"
-        yield Refusal(f"{deformer} moves its points, so that strands may be seen to cross; {how}", Remedy.COPY)
+        sentence = (
+            "{deformer} moves its points, so that strands may be seen to cross; remove it, or relax a copy without it"
+        )
+        yield Refusal(Phrase(sentence, deformer=deformer), Remedy.COPY)
 
 
 def _transform(obj: "bpy.types.Object") -> Iterator[Refusal]:
     matrix = np.array(obj.matrix_world, dtype=np.float64)
     scales = np.linalg.svd(matrix[:3, :3], compute_uv=False) if np.isfinite(matrix).all() else np.zeros(3)
     if not scales[2] > _FLATTEST * scales[0]:
-        yield Refusal(f"'{obj.name}' is scaled to nothing in some direction; give it a scale other than 0")
+        sentence = "'{name}' is scaled to nothing in some direction; give it a scale other than 0"
+        yield Refusal(Phrase(sentence, name=obj.name))
 
 
 def _place(obj: "bpy.types.Object") -> Iterator[Refusal]:
     if mover := what_moves(obj):
         sentence = (
-            f"'{obj.name}' is moved by {mover}, and curves relaxed together must keep their places; "
+            "'{name}' is moved by {mover}, and curves relaxed together must keep their places; "
             "remove that, or relax each curve alone"
         )
-        yield Refusal(sentence, Remedy.COPY)
+        yield Refusal(Phrase(sentence, name=obj.name, mover=mover), Remedy.COPY)
 
 
 _CHECKS = (_mode, _ownership, _splines, _animation, _deformation, _transform)

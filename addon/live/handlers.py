@@ -5,6 +5,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
+from ..engine.phrase import Phrase
 from . import registry
 from .modal import clear_status
 from .run import Run
@@ -13,7 +14,7 @@ from .run import Run
 @persistent  # type: ignore[untyped-decorator]
 def _load_pre(*_: Any) -> None:
     if run := registry.current():
-        run.cancel(f"A file was loaded; the relaxation of {run.name} has ended")
+        run.cancel(Phrase("A file was loaded; the relaxation of {names} has ended", names=run.name))
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -52,7 +53,7 @@ def _before(run: Run, others: int) -> None:
     if others and run.endures:
         run.preview.set_aside()
     else:
-        run.cancel(f"Undone; the relaxation of {run.name} has ended")
+        run.cancel(Phrase("Undone; the relaxation of {names} has ended", names=run.name))
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -92,7 +93,7 @@ def register() -> None:
 def unregister() -> None:
     """End what is running, and listen no more."""
     if run := registry.current():
-        run.cancel("Möbius Flow was disabled; all is as it was")
+        run.cancel(Phrase("Möbius Flow was disabled; all is as it was"))
     registry.forget()
     if bpy.app.timers.is_registered(clear_status):
         bpy.app.timers.unregister(clear_status)

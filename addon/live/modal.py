@@ -2,6 +2,8 @@
 
 import bpy
 
+from ..engine.phrase import Phrase
+from ..translations import iface_
 from .run import Run, State
 
 _INTERVAL = 1 / 60  # seconds
@@ -71,7 +73,7 @@ class Loop:
     def abandon(self) -> None:
         """Blender is closing the window of the run, or its file."""
         self._abandoned = True
-        self.run.cancel("The window was closed; all is as it was")
+        self.run.cancel(Phrase("The window was closed; all is as it was"))
 
     def _show(self, context: bpy.types.Context) -> None:
         self._shown = self._seen()
@@ -91,12 +93,15 @@ def clear_status() -> None:
 def status_line(run: Run) -> str:
     """What the status bar says."""
     if run.waits:
-        return f"{run.name}: waiting for the render"
+        return iface_("{names}: waiting for the render", names=run.name)
     if run.state is State.FINISHING:
-        return f"{run.name}: proving and writing keys   |   Esc: put all back"
-    where = f"iterate {run.last.index}, energy {run.last.energy:.4f}" if run.last else "starting"
-    paused = "paused at " if run.state is State.PAUSED else ""
-    return f"{run.name}: {paused}{where}   |   Enter: keep this shape   |   Esc: put all back"
+        return iface_("{names}: proving and writing keys   |   Esc: put all back", names=run.name)
+    where = Phrase("starting")
+    if run.last is not None:
+        where = Phrase("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
+    if run.state is State.PAUSED:
+        where = Phrase("paused at {where}", where=where)
+    return iface_("{names}: {where}   |   Enter: keep this shape   |   Esc: put all back", names=run.name, where=where)
 
 
 def redraw_views(manager: bpy.types.WindowManager) -> None:

@@ -11,6 +11,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from ...core.types import FloatArray
 from ..engine.contrast import Colour, legible
 from ..engine.plot import dashes, plot
+from ..translations import iface_
 from . import registry
 from .drawing import area, line, text
 from .run import Run
@@ -95,7 +96,7 @@ def _curve(style: _Style, run: Run, origin: FloatArray, size: FloatArray) -> Non
     """Draw the energies, and the target below them."""
     drawn = plot(run.energies, run.target, *size)
     if run.target is not None and drawn.target is not None:
-        _target(style, run.target.label, origin + np.array([0.0, drawn.target]), size[0])
+        _target(style, iface_(run.target.label), origin + np.array([0.0, drawn.target]), size[0])
     line(origin + drawn.line, style.accent, style.scale * _LINE)
 
 
@@ -103,8 +104,8 @@ def _caption(style: _Style, run: Run, start: FloatArray, width: float) -> None:
     """Write what has been reached."""
     assert run.last is not None, "it has energies"
     x, y = start.tolist()
-    text(f"Energy {run.energies[-1]:.4f}", (x, y), style.words, style.font)
-    text(f"Iteration {run.last.index}", (x + width, y), style.words, style.font, share=1.0)
+    text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), style.words, style.font)
+    text(iface_("Iteration {index}", index=run.last.index), (x + width, y), style.words, style.font, share=1.0)
 
 
 def _target(style: _Style, label: str, start: FloatArray, width: float) -> None:

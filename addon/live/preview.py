@@ -2,6 +2,7 @@
 
 from ...core import Curve
 from ..curves.group import Group
+from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 
 
@@ -38,8 +39,10 @@ class Preview:
             self._group.make_polygons(self._start)
             self._group.show(self._start.mesh, self._frame)
 
-    def put_back(self) -> str:
-        """Put back for good what is left of the curves; say how much that is, as the end of a sentence."""
+    def put_back(self) -> Phrase | None:
+        """Put back for good what is left of the curves; say how much that is, if there is more to say."""
         if self._group.restore():
-            return ", and every curve is as it was"
-        return ", and the others are as they were" if len(self._group.names) > 1 else ""
+            return Phrase("and every curve is as it was")
+        if len(self._group.names) > 1:
+            return Phrase("and the others are as they were")
+        return None

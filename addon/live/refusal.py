@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from ..engine.phrase import Phrase
+
 
 class Remedy(Enum):
     """What mends something that is refused; the values are operators of `buttons.mending`."""
@@ -29,5 +31,5 @@ class Refusal:
         What does so by itself, if anything can.
     """
 
-    sentence: str
+    sentence: Phrase
     remedy: Remedy | None = None

@@ -18,6 +18,7 @@ from ..curves.group import Group
 from ..curves.imprint import Imprint
 from ..curves.session import Report, Session
 from ..engine.key_options import KeyOptions
+from ..engine.phrase import Phrase
 from ..engine.spots import Spot
 from ..engine.target import Target, target_of
 from ..engine.worker import Worker, WorkerError
@@ -29,6 +30,7 @@ from .refresh import Refresh
 if TYPE_CHECKING:
     import bpy
 
+_CANCELLED = Phrase("Cancelled; all is as it was")
 _SLICE = 0.02  # seconds of taking in iterates at a time
 
 
@@ -158,17 +160,17 @@ class Run:
         if self.state not in (State.RUNNING, State.PAUSED):
             return
         if self.last is None:
-            self.cancel("Stopped before anything had moved")
+            self.cancel(Phrase("Stopped before anything had moved"))
             return
         self._show()
         if self._session.outcome is None:
-            reason = reason or f"stopped after {self.last.index} iterations"
+            reason = reason or Phrase("stopped after {count} iterations", count=self.last.index)
             self._session.outcome = Outcome(Status.INTERRUPTED, reason)
         self.state = State.FINISHING
         self._worker.close()
         self._keys.start()
 
-    def cancel(self, message: str = "Cancelled; all is as it was") -> None:
+    def cancel(self, message: str = _CANCELLED) -> None:
         """Put the curve back as it was."""
         if not self.state.over:
             self._close(State.CANCELLED, message)
@@ -226,9 +228,9 @@ class Run:
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:
-            self._fail("Memory ran out; all is as it was")
+            self._fail(Phrase("Memory ran out; all is as it was"))
         except Exception:
-            self._fail("Something went wrong; all is as it was")
+            self._fail(Phrase("Something went wrong; all is as it was"))
             raise
 
     def _take(self) -> None:
@@ -286,10 +288,12 @@ class Run:
         self.trouble = self.group.spots(place, self.group.curve)
         self.cancel(message)
 
-    def _lose(self, reason: str) -> None:
+    def _lose(self, reason: Phrase) -> None:
         """End because of what somebody did to an object; what else there is is put back."""
-        self._close(State.LOST, f"{reason}; the relaxation has ended")
-        self.message += self.preview.put_back()
+        ended = Phrase("{reason}; the relaxation has ended", reason=reason)
+        self._close(State.LOST, ended)
+        if more := self.preview.put_back():
+            self.message = Phrase("{ended}, {more}", ended=ended, more=more)
         self._leave()
 
     def _leave(self) -> None:

@@ -8,7 +8,9 @@ from ...core import MobiusFlowError
 from ..curves import bake
 from ..curves.session import Report
 from ..engine.key_options import KeyOptions
+from ..engine.phrase import Phrase
 from ..properties import key_options, relax_options
+from ..translations import rpt_
 from . import registry
 from .checks import edited, refusal, selected_curves, unsampled
 from .modal import Loop
@@ -71,7 +73,7 @@ class LiveRelax(Listening):
             run = Run(selected_curves(context), relax_options(values), options, self.continues, refresh)
             registry.begin(run)
         except MobiusFlowError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, rpt_(str(error)))
             return {"CANCELLED"}
         return self.listen(context, run)
 
@@ -89,24 +91,30 @@ def tell_end(operator: Any, scene: bpy.types.Scene, run: Run) -> None:
             scene.frame_set(whole, subframe=run.report.last_frame - whole)
         tell(operator, scene, run.report, failed=run.failed)
     else:
-        operator.report({"ERROR"} if run.failed else {"INFO"}, run.message)
+        operator.report({"ERROR"} if run.failed else {"INFO"}, rpt_(run.message))
 
 
 def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = False) -> None:
     """Say what was done, and whether the scene shows all of it."""
     hidden = unseen(scene, report.scene_range)
     clean = report.clean and not failed and hidden is None
-    more = f". {hidden}" if hidden else ""
-    operator.report({"INFO"} if clean else {"WARNING"}, report.sentence + more)
+    sentence = Phrase("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
+    operator.report({"INFO"} if clean else {"WARNING"}, rpt_(sentence))
 
 
-def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> str | None:
+def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Phrase | None:
     """Say that a scene does not play all frames of an animation, and what helps, or return None if it does."""
     if animation is None or (scene.frame_start <= animation[0] and animation[1] <= scene.frame_end):
         return None
     first, last = animation
-    helps = "press Set Scene Range to see all of it"
+    helps = Phrase("press Set Scene Range to see all of it")
     if first < scene.bl_rna.properties["frame_start"].hard_min:
-        helps = "no scene plays negative frames, so bake again with a later Start Frame"
-    played = f"{scene.frame_start} to {scene.frame_end}"
-    return f"The scene plays frames {played} only, the animation has {first} to {last}: {helps}"
+        helps = Phrase("no scene plays negative frames, so bake again with a later Start Frame")
+    return Phrase(
+        "The scene plays frames {start} to {end} only, the animation has {first} to {last}: {helps}",
+        start=scene.frame_start,
+        end=scene.frame_end,
+        first=first,
+        last=last,
+        helps=helps,
+    )

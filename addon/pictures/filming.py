@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ...core import MobiusFlowError
 from ...core.errors import OutputError, choice
+from ..engine.phrase import Phrase
 from .looks import LOOKS
 from .movie import length_of, use_h264
 from .rendering import quiet
@@ -80,7 +81,9 @@ class Filming:
         finally:
             whole = self.finish()
         if not whole:
-            raise MobiusFlowError(f"{self.path}: Blender did not render the film to its end; is the disk full?")
+            raise MobiusFlowError(
+                Phrase("{path}: Blender did not render the film to its end; is the disk full?", path=self.path)
+            )
 
     def start(self) -> None:
         """Begin to render in Blender's own window, and return at once; `finish` is to be called when `over`."""
@@ -122,14 +125,16 @@ def target(path: str) -> Path:
     import bpy
 
     if not path.strip():
-        raise MobiusFlowError("The film has no name; give it a file")
+        raise MobiusFlowError(Phrase("The film has no name; give it a file"))
     if path.startswith("//") and not bpy.data.filepath:
-        raise MobiusFlowError("Save your file first, since the film is to lie beside it, or choose another place")
+        sentence = "Save your file first, since the film is to lie beside it, or choose another place"
+        raise MobiusFlowError(Phrase(sentence))
     found = Path(bpy.path.abspath(path)).absolute()
     if found.is_dir():
-        raise MobiusFlowError(f"{found} is a directory; name a file in it")
+        raise MobiusFlowError(Phrase("{path} is a directory; name a file in it", path=found))
     if found.suffix and found.suffix.lower() != SUFFIX:
-        raise MobiusFlowError(f"{found.name} does not end in {SUFFIX}, as films do here; give it another name")
+        sentence = "{name} does not end in {suffix}, as films do here; give it another name"
+        raise MobiusFlowError(Phrase(sentence, name=found.name, suffix=SUFFIX))
     return found if found.suffix else found.with_suffix(SUFFIX)
 
 
@@ -145,17 +150,19 @@ def _check(scene: "bpy.types.Scene", path: Path, overwrite: bool) -> None:
     render = scene.render
     sides = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]
     if is_rendering():
-        raise MobiusFlowError("Blender is rendering; wait until it is done, or stop it with Esc")
+        raise MobiusFlowError(Phrase("Blender is rendering; wait until it is done, or stop it with Esc"))
     if scene.camera is None:
-        raise MobiusFlowError("The scene has no camera; press Set Up Stage first, or add one")
+        raise MobiusFlowError(Phrase("The scene has no camera; press Set Up Stage first, or add one"))
     if any(side % 2 for side in sides):
-        raise MobiusFlowError(f"Frames are {sides[0]} × {sides[1]} pixels, but films want even numbers of them")
+        sentence = "Frames are {width} × {height} pixels, but films want even numbers of them"
+        raise MobiusFlowError(Phrase(sentence, width=sides[0], height=sides[1]))
     if path.exists() and not overwrite:
-        raise MobiusFlowError(f"{path} is there already; give the film another name, or let it be overwritten")
+        sentence = "{path} is there already; give the film another name, or let it be overwritten"
+        raise MobiusFlowError(Phrase(sentence, path=path))
     if not path.parent.is_dir():
-        raise MobiusFlowError(f"{path.parent} is no directory; choose another place for the film")
+        raise MobiusFlowError(Phrase("{path} is no directory; choose another place for the film", path=path.parent))
     if not os.access(path if path.exists() else path.parent, os.W_OK):
-        raise MobiusFlowError(f"{path} cannot be written; choose another place for the film")
+        raise MobiusFlowError(Phrase("{path} cannot be written; choose another place for the film", path=path))
 
 
 def _sweep() -> None:

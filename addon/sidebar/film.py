@@ -9,6 +9,7 @@ from ..buttons.film import (
     CURVE_OT_mobius_flow_set_up_stage,
 )
 from ..pictures import staging
+from ..translations import iface_
 from .labels import sentence
 from .layout import InSidebar, settings_column
 
@@ -30,12 +31,12 @@ class VIEW3D_PT_mobius_flow_film(InSidebar, bpy.types.Panel):  # noqa: N801
         if not staging.fits(scene):
             sentence(layout, context, "The picture has another shape than the stage's camera; press Set Up Stage again")
         column = layout.column(align=True)
-        column.prop(scene.render, "resolution_x", text="Resolution X")
+        column.prop(scene.render, "resolution_x", text=iface_("Resolution X"))
         column.prop(scene.render, "resolution_y", text="Y")
         column.prop(scene.render, "resolution_percentage", text="%")
         column = layout.column(align=True)
-        column.prop(scene, "frame_start", text="Frame Start")
-        column.prop(scene, "frame_end", text="End")
+        column.prop(scene, "frame_start", text=iface_("Frame Start"))
+        column.prop(scene, "frame_end", text=iface_("End"))
         column.operator(CURVE_OT_mobius_flow_scene_range.bl_idname, icon="PREVIEW_RANGE")
         settings_column(layout, scene.mobius_flow_film, "look", "filepath")
         layout.operator(CURVE_OT_mobius_flow_render_film.bl_idname, icon="RENDER_ANIMATION")

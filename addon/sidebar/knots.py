@@ -7,7 +7,9 @@ from ..buttons.add_knot import CURVE_OT_mobius_flow_add_knot
 from ..buttons.draw_knot import CURVE_OT_mobius_flow_draw_knot
 from ..buttons.pick_knot import CURVE_OT_mobius_flow_pick_knot
 from ..engine.knot_list import COMMON, labels
+from ..engine.phrase import Phrase
 from ..pictures import icons
+from ..translations import iface_
 from .layout import InSidebar
 
 _FAMILIES = ("TORUS", "BRAID", "LISSAJOUS", "CABLE", "DOUBLE")
@@ -26,7 +28,8 @@ class VIEW3D_PT_mobius_flow_knots(InSidebar, bpy.types.Panel):  # noqa: N801
         layout.template_icon_view(picked, "knot", show_labels=True, scale=7.0, scale_popup=4.0)
         row = layout.row(align=True)
         label = labels().get(picked.knot)
-        button = row.operator(CURVE_OT_mobius_flow_pick_knot.bl_idname, text=f"Add {label}", icon="ADD")
+        text = iface_("Add {knot}", knot=Phrase(label or ""))
+        button = row.operator(CURVE_OT_mobius_flow_pick_knot.bl_idname, text=text, icon="ADD")
         button.knot, button.mirror = label or "", picked.mirror
         row.prop(picked, "mirror", text="", icon="MOD_MIRROR")
         search(layout)

@@ -2,6 +2,8 @@
 
 import bpy
 
+from ..translations import iface_
+
 
 class InSidebar:
     """A panel in our tab of the sidebar, with the names of settings before them."""
@@ -24,12 +26,12 @@ class InSidebar:
 
 
 def value(layout: bpy.types.UILayout, name: str, text: str) -> None:
-    """Show a name and what it is."""
+    """Show a name and what it is, in the user's language."""
     split = layout.split(factor=0.4)
     left = split.row()
     left.alignment = "RIGHT"
-    left.label(text=name)
-    split.label(text=text)
+    left.label(text=iface_(name), translate=False)
+    split.label(text=iface_(text), translate=False)
 
 
 def settings_column(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, *names: str) -> None:

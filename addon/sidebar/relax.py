@@ -13,14 +13,25 @@ from ..buttons.running import (
 from ..buttons.showing import CURVE_OT_mobius_flow_show
 from ..curves import neighbours
 from ..curves.units import length
+from ..engine.phrase import Phrase
 from ..engine.quality import QUALITIES
 from ..live import registry
 from ..live.checks import refusal, selected_curves
 from ..live.run import Run, State
+from ..translations import iface_
 from .labels import sentence
 from .layout import InSidebar, value
 from .presets import VIEW3D_PT_mobius_flow_presets
 from .refused import refused
+
+_STATES = {
+    State.RUNNING: Phrase("Running"),
+    State.PAUSED: Phrase("Paused"),
+    State.FINISHING: Phrase("Finishing"),
+    State.DONE: Phrase("Done"),
+    State.CANCELLED: Phrase("Cancelled"),
+    State.LOST: Phrase("Lost"),
+}
 
 
 class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):  # noqa: N801 - Blender's naming scheme
@@ -45,8 +56,8 @@ class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):  # noqa: N801 - Blender
 def _quality(layout: bpy.types.UILayout, panel: bpy.types.PropertyGroup) -> None:
     column = layout.column(align=True)
     column.use_property_split = False
-    title = "Quality" if panel.quality in QUALITIES else "Quality: Custom, see Expert"
-    column.label(text=title)
+    title = iface_("Quality" if panel.quality in QUALITIES else "Quality: Custom, see Expert")
+    column.label(text=title, translate=False)
     row = column.row(align=True)
     for name in QUALITIES:
         row.prop_enum(panel, "quality", name)
@@ -56,7 +67,8 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context, shown: Run 
     run = registry.current()
     column = layout.column(align=True)
     objects = run.group.objects if run is not None else selected_curves(context)
-    text = f"Relax {len(objects)} Curves Together" if len(objects) > 1 else "Relax"
+    several = iface_("Relax {count} Curves Together", count=len(objects))
+    text = several if len(objects) > 1 else iface_("Relax")
     large = column.row(align=True)
     large.scale_y = 1.8
     if run is None:
@@ -73,16 +85,16 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context, shown: Run 
 
 
 def _run_buttons(row: bpy.types.UILayout, run: Run) -> None:
-    text, icon = ("Resume", "PLAY") if run.state is State.PAUSED else ("Pause", "PAUSE")
+    text, icon = (iface_("Resume"), "PLAY") if run.state is State.PAUSED else (iface_("Pause"), "PAUSE")
     row.operator(CURVE_OT_mobius_flow_pause.bl_idname, text=text, icon=icon)
     row.operator(CURVE_OT_mobius_flow_stop.bl_idname, icon="CHECKMARK")
     row.operator(CURVE_OT_mobius_flow_cancel.bl_idname, icon="X")
 
 
-def _state(run: Run) -> str:
+def _state(run: Run) -> Phrase:
     if run.waits:
-        return "Waiting for the render"
-    return "Failed" if run.failed and run.state is State.CANCELLED else run.state.value.capitalize()
+        return Phrase("Waiting for the render")
+    return Phrase("Failed") if run.failed and run.state is State.CANCELLED else _STATES[run.state]
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:
@@ -96,8 +108,8 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) 
         value(box, "Iteration", f"{run.last.index}")
         value(box, "Step", f"{run.last.step_size:.3g}")
         proved = run.last.certified if run.report is None else run.report.certified
-        whom = "with itself" if len(run.group.names) == 1 else "among themselves"
-        value(box, "Free of contact", whom if proved else "not proved")
+        whom = Phrase("with itself") if len(run.group.names) == 1 else Phrase("among themselves")
+        value(box, "Free of contact", whom if proved else Phrase("not proved"))
     if run.report is not None and run.report.radius is not None:
         value(box, "Tube radius", length(context.scene, run.report.radius))
     if run.message:

@@ -12,7 +12,7 @@ ADDON = Path(__file__).resolve().parents[2] / "addon"
 ENGINE = sorted((ADDON / "engine").glob("*.py"))
 FLOORS = [
     {"engine"},
-    {"curves"},
+    {"curves", "translations"},
     {"pictures", "properties"},
     {"live"},
     {"scripting"},

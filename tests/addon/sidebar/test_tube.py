@@ -30,7 +30,8 @@ class Layout:
 
     row = split = lambda self, **_: self
 
-    def label(self, text):
+    def label(self, text, translate):
+        assert not translate, "it is in the user's language already"
         self.labels.append(text)
 
     def operator(self, name, icon):
