@@ -55,6 +55,11 @@ def is_baked(data: "bpy.types.Curve") -> bool:
     return record is not None and list(record["fingerprint"]) == _fingerprint(data)
 
 
+def was_baked(data: "bpy.types.Curve") -> bool:
+    """Whether a curve was baked, whatever has become of its keys and points since."""
+    return _RECORD in data
+
+
 def is_edited(data: "bpy.types.Curve") -> bool:
     """Whether somebody has moved points of a baked curve's shape keys: a look at all of them, not for every redraw."""
     return bool(data[_RECORD]["shapes"] != _digest(data))

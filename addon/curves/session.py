@@ -81,7 +81,8 @@ class Report:
         whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
         whom += ", before modifiers" if self.modified else ""
         proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
-        keys = f"{self.keys - 1} new keys" if self.continues else f"{self.keys} keys"
+        new = self.keys - 1
+        keys = f"{new} new key{'s' * (new > 1)}" if self.continues else f"{self.keys} keys"
         animation = f"{keys} up to frame {self.last_frame:g}, " if self.keys > 1 else ""
         return f"{named(self.names)} {self.outcome.message.rstrip('.')}; {animation}{proof}"
 

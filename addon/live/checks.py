@@ -84,7 +84,11 @@ def unbaked(context: "bpy.types.Context") -> Refusal | None:
 def bare(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
     """Say which of some curve objects was not baked, or return None if all were."""
     found = next((obj for obj in objects if not bake.is_baked(obj.data)), None)
-    return Refusal(f"'{found.name}' has no keys of Möbius Flow; press Relax first") if found is not None else None
+    if found is None:
+        return None
+    if bake.was_baked(found.data):
+        return Refusal(f"'{found.name}' has other keys or points than it was baked with; undo that, or relax a copy")
+    return Refusal(f"'{found.name}' has no keys of Möbius Flow; press Relax first")
 
 
 def edited(context: "bpy.types.Context") -> Refusal | None:

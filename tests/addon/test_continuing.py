@@ -58,6 +58,13 @@ def test_the_rest_at_the_beginning_is_still_played_after_continuing():
     assert bake.scene_range([obj]) == (1, 150)
 
 
+def test_one_new_key_is_not_called_keys(capfd):
+    add_trefoil()
+    relax(max_iterations=3)
+    go_on(max_iterations=1)
+    assert "; 1 new key up to frame 254, proved" in capfd.readouterr().out
+
+
 def test_continuing_gets_where_a_longer_run_gets():
     obj = add_trefoil()
     relax(max_iterations=3)
