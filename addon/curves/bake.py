@@ -22,17 +22,17 @@ _RECORD = "mobius_flow_bake"  # custom property of curve data
 def remember(data: "bpy.types.Curve", original: Snapshot, timing: Timing) -> None:
     """Note on curve data that has just been keyed how it was before; nothing is noted on data without keys."""
     if _animated(data) is not None:
-        data[_RECORD] = {"original": original.to_values()}
+        data[_RECORD] = {"original": original.to_values(), "holds": [timing.hold_start, timing.hold_end]}
         update(data, timing)
 
 
 def update(data: "bpy.types.Curve", timing: Timing) -> None:
-    """Note how the keys are that were written last."""
+    """Note how the keys are that were written last; the rest before the first of all is the one that was baked."""
     record = data[_RECORD]
     record["fingerprint"] = _fingerprint(data)
     record["shapes"] = _digest(data)
     record["bevel_depth"] = data.bevel_depth
-    record["holds"] = [timing.hold_start, timing.hold_end]
+    record["holds"] = [record["holds"][0], timing.hold_end]
 
 
 def renew(data: "bpy.types.Curve") -> None:
@@ -53,6 +53,11 @@ def is_baked(data: "bpy.types.Curve") -> bool:
     """Whether a curve has the keys that were written here, and neither others nor other points."""
     record = data.get(_RECORD)
     return record is not None and list(record["fingerprint"]) == _fingerprint(data)
+
+
+def was_baked(data: "bpy.types.Curve") -> bool:
+    """Whether a curve was baked, whatever has become of its keys and points since."""
+    return _RECORD in data
 
 
 def is_edited(data: "bpy.types.Curve") -> bool:

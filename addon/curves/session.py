@@ -96,9 +96,19 @@ class Report:
         if not self.certified:
             return Phrase("NOT proved free of contact everywhere")
         # nothing but the curves that were relaxed is looked at
+<<<<<<< HEAD
         alone = Phrase("proved free of contact with itself")
         whom = alone if len(self.names) == 1 else Phrase("proved free of contact with themselves and each other")
         return Phrase("{proof}, before modifiers", proof=whom) if self.modified else whom
+=======
+        whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
+        whom += ", before modifiers" if self.modified else ""
+        proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
+        new = self.keys - 1
+        keys = f"{new} new key{'s' * (new > 1)}" if self.continues else f"{self.keys} keys"
+        animation = f"{keys} up to frame {self.last_frame:g}, " if self.keys > 1 else ""
+        return f"{named(self.names)} {self.outcome.message.rstrip('.')}; {animation}{proof}"
+>>>>>>> 9f704be657f00271c0f579cdc789b38929bfe73f
 
     @property
     def clean(self) -> bool:

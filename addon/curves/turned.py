@@ -1,6 +1,6 @@
 """Curve objects turned as one rigid body, or their keys where something else turns the object."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +17,8 @@ from .moving import what_moves
 if TYPE_CHECKING:
     import bpy
 
+_SQUARE = 1e-5  # cosines of angles that are right but for the rounding of Blender's matrices
+
 
 def lay_flat(objects: Sequence["bpy.types.Object"]) -> int:
     """Turn curves so that they extend least upwards; one that is animated, least along its own Z axis.
@@ -29,7 +31,8 @@ def lay_flat(objects: Sequence["bpy.types.Object"]) -> int:
     Raises
     ------
     MobiusFlowError
-        If one of them is moved by something, and is not the only one, or has no keys that could be turned.
+        If one of them is moved by something, or would be sheared by its parent's scale, and is not the only one, or has
+        no keys that could be turned; or if all of their points are the same.
     """
     flat = np.array(objects[0].matrix_world, dtype=np.float64)[:3, :3].T if what_moves(objects[0]) else np.eye(3)
     return _turn(objects, orthonormal(flat))
@@ -46,9 +49,13 @@ def face_camera(objects: Sequence["bpy.types.Object"], camera: "bpy.types.Object
 
 def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
     turn = Turn.onto(_shape(objects), wanted)
+<<<<<<< HEAD
     moved = next((obj for obj in objects if what_moves(obj)), None)
     if moved is not None:
         why = Phrase("'{name}' is moved by {mover}", name=moved.name, mover=what_moves(moved))
+=======
+    if why := next((why for obj in objects for why in _obstacles(obj, objects, turn)), None):
+>>>>>>> 9f704be657f00271c0f579cdc789b38929bfe73f
         return _turn_keys(objects, turn, why)
     _turn_objects(objects, turn)
     # a single object goes wherever it likes; places of several against each other are rounded anew
@@ -56,7 +63,28 @@ def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
     return BakedKeys(objects).unproved if proved else 0
 
 
+<<<<<<< HEAD
 def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: Phrase) -> int:
+=======
+def _obstacles(obj: "bpy.types.Object", objects: Sequence["bpy.types.Object"], turn: Turn) -> Iterator[str]:
+    """Say why an object cannot be turned."""
+    if mover := what_moves(obj):
+        yield f"'{obj.name}' is moved by {mover}"
+    elif obj.parent and not any(each in objects for each in _ancestors(obj)) and _shears(obj, turn):
+        yield f"'{obj.name}' would change its shape, as its parent's scale is uneven"
+
+
+def _shears(obj: "bpy.types.Object", turn: Turn) -> bool:
+    """Whether no location, rotation and scale under an object's parent are the turned object."""
+    matrix, own = (np.array(each, dtype=np.float64)[:3, :3] for each in (obj.matrix_world, obj.matrix_basis))
+    parental = matrix @ np.linalg.inv(own)
+    columns = np.linalg.solve(parental, turn.rotation @ matrix)
+    columns /= np.linalg.norm(columns, axis=0)
+    return not np.allclose(columns.T @ columns, np.eye(3), atol=_SQUARE)
+
+
+def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: str) -> int:
+>>>>>>> 9f704be657f00271c0f579cdc789b38929bfe73f
     if len(objects) > 1 or not bake.is_baked(objects[0].data):
         raise MobiusFlowError(Phrase("{why}; remove that, or bake it and turn it alone", why=why))
     if bake.is_edited(objects[0].data):
@@ -85,4 +113,9 @@ def _turn_objects(objects: Sequence["bpy.types.Object"], turn: Turn) -> None:
 
 
 def _depth(obj: "bpy.types.Object") -> int:
-    return 0 if obj.parent is None else 1 + _depth(obj.parent)
+    return sum(1 for _ in _ancestors(obj))
+
+
+def _ancestors(obj: "bpy.types.Object") -> "Iterator[bpy.types.Object]":
+    while obj.parent is not None:
+        yield (obj := obj.parent)

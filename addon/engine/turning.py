@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from ...core import Curve
+from ...core import Curve, CurveError
 from ...core.types import FloatArray
 from .size import barycenter
 
@@ -21,8 +21,10 @@ class Turn:
     def onto(cls, curve: Curve, wanted: FloatArray) -> "Turn":
         """Turn a curve's principal axes, the longest first, into wanted ones, orthonormal rows, by the least angle.
 
-        Which way an axis points is left open.
+        Which way an axis points is left open. Raises CurveError if all points are the same.
         """
+        if not curve.length:
+            raise CurveError("All points of the curves are the same; move them apart")
         axes = principal_axes(curve)
         return cls(max(_rotations(axes, wanted), key=np.trace), barycenter(curve))
 

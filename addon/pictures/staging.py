@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...core import CurveError
 from ..curves.neighbours import STAGE
 from ..curves.world_motion import WorldMotion
 from . import camera, stage
@@ -40,12 +41,14 @@ def set_up(
     Raises
     ------
     CurveError
-        If splines cannot be read; nothing has changed then.
+        If splines cannot be read, or are a single point; nothing has changed then.
     """
     motion = WorldMotion.of(scene, objects)
+    ground = stage.Stage.around(motion.points, stage.level_axes(motion.points[-1]))
+    if not ground.size:
+        raise CurveError("All points of the curves are the same; move them apart")
     strike(scene)
     collection = _collection(scene)
-    ground = stage.Stage.around(motion.points, stage.level_axes(motion.points[-1]))
     floor = stage.build(collection, ground)
     floor.hide_select = True  # it is in the way of every click
     eye = camera.follow(collection, _shape(scene), ground, floor, motion.points, motion.radii, motion.frames)

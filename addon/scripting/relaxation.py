@@ -45,7 +45,7 @@ class Relaxation:
     Raises
     ------
     MobiusFlowError
-        If an object is no curve.
+        If an object is no curve, or is given twice.
 
     Examples
     --------
@@ -62,8 +62,10 @@ class Relaxation:
         if not objects:
             raise MobiusFlowError("give at least one curve object")
         for obj in objects:
-            if obj.type != "CURVE":
-                raise MobiusFlowError(f"'{obj.name}' is not a curve object")
+            if getattr(obj, "type", None) != "CURVE":
+                raise MobiusFlowError(f"'{getattr(obj, 'name', obj)}' is not a curve object")
+            if objects.count(obj) > 1:
+                raise MobiusFlowError(f"'{obj.name}' is given twice")
         self.objects = objects
         self.sample_splines = sample_splines
 

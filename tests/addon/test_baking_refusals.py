@@ -61,6 +61,21 @@ def test_what_was_not_baked_cannot_be_baked_again():
         bpy.ops.curve.mobius_flow_scene_range()
 
 
+def test_nobody_is_told_to_relax_what_has_other_keys_than_it_was_baked_with():
+    obj = add_trefoil()
+    relax(max_iterations=3)
+    obj.shape_key_add(name="Mine")
+    before = contents()
+    sentence = "'Knot' has other keys or points than it was baked with; undo that, or relax a copy"
+    for call in (clear, bpy.ops.curve.mobius_flow_keep_size):
+        with pytest.raises(RuntimeError, match=sentence):
+            call()
+    assert contents() == before
+    obj.shape_key_remove(obj.data.shape_keys.key_blocks["Mine"])
+    clear()
+    assert len(obj.data.splines[0].points) == 30
+
+
 @pytest.mark.parametrize(
     "call",
     [bpy.ops.curve.mobius_flow_relax, bpy.ops.curve.mobius_flow_continue, bpy.ops.curve.mobius_flow_clear],

@@ -10,7 +10,7 @@ bpy = pytest.importorskip("bpy")
 
 from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings  # noqa: E402
 from blender_scenes import add_trefoil, evaluated, relax, stored  # noqa: E402
-from mobius_flow.addon.curves import keyframes  # noqa: E402
+from mobius_flow.addon.curves import bake, keyframes  # noqa: E402
 from mobius_flow.core.collision import is_free  # noqa: E402
 from mobius_flow.core.curve import Mesh  # noqa: E402
 
@@ -49,6 +49,20 @@ def test_continuing_by_length_goes_on_after_the_rest():
     np.testing.assert_array_equal(evaluated(obj, 55), evaluated(obj, 40))
     clear()
     assert len(obj.data.splines[0].points) == 30
+
+
+def test_the_rest_at_the_beginning_is_still_played_after_continuing():
+    obj = add_trefoil()
+    relax(max_iterations=3, timing="EVEN", length=50, hold_start=10, hold_end=5)
+    go_on(length=100, hold_start=3, hold_end=2)
+    assert bake.scene_range([obj]) == (1, 150)
+
+
+def test_one_new_key_is_not_called_keys(capfd):
+    add_trefoil()
+    relax(max_iterations=3)
+    go_on(max_iterations=1)
+    assert "; 1 new key up to frame 254, proved" in capfd.readouterr().out
 
 
 def test_continuing_gets_where_a_longer_run_gets():

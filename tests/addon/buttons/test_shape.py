@@ -294,6 +294,65 @@ def test_an_animated_curve_without_keys_is_refused():
     assert sentence(error.value) == "'Knot' is moved by animation; remove that, or bake it and turn it alone"
 
 
+def uneven_parent(obj):
+    """An empty whose scale shears what is turned under it."""
+    parent = show(bpy.data.objects.new("Parent", None))
+    parent.rotation_euler, parent.scale = (0.3, 0.5, 1.0), (2.0, 0.5, -1.0)
+    obj.parent, obj.rotation_euler = parent, (0.4, 0.0, 0.2)
+    parent.select_set(False)
+    bpy.context.view_layer.objects.active = obj
+    bpy.context.view_layer.update()
+    return parent
+
+
+@pytest.mark.parametrize("keyframes", KEYED)
+def test_keys_are_turned_where_the_scale_of_a_parent_would_shear_them(keyframes):
+    obj = add_curve([torus_trefoil(40).vertices[:, [2, 0, 1]]])
+    uneven_parent(obj)
+    relax(max_iterations=5, keyframes=keyframes)
+    matrix, before = obj.matrix_world.copy(), BakedKeys([obj]).curves
+    assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+    assert obj.matrix_world == matrix
+    for old, new in zip(before, BakedKeys([obj]).curves, strict=True):
+        np.testing.assert_allclose(new.edge_lengths, old.edge_lengths, rtol=1e-4)
+    x, y, z = np.ptp(BakedKeys([obj]).curves[-1].vertices, axis=0)
+    assert max(x, y) > z
+    assert BakedKeys([obj]).unproved == 0
+
+
+def test_a_curve_that_its_parent_would_shear_is_refused_without_keys():
+    obj = add_trefoil()
+    parent = uneven_parent(obj)
+    before = contents()
+    with pytest.raises(RuntimeError) as error:
+        OPS.mobius_flow_lay_flat()
+    why = "'Knot' would change its shape, as its parent's scale is uneven"
+    assert sentence(error.value) == f"{why}; remove that, or bake it and turn it alone"
+    assert contents() == before
+    parent.scale = (-2.0, -2.0, -2.0)
+    obj.scale = (1.0, 3.0, 0.5)
+    bpy.context.view_layer.update()
+    lengths = Curve(in_world(obj, evaluated(obj))).edge_lengths
+    assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+    np.testing.assert_allclose(Curve(in_world(obj, evaluated(obj))).edge_lengths, lengths, rtol=1e-4)
+
+
+def test_an_unevenly_scaled_curve_carries_its_child_along():
+    parent, obj = add_curve([torus_trefoil(40).vertices], "Parent"), add_curve([torus_trefoil(40).vertices + 9.0])
+    parent.scale, obj.parent, obj.rotation_euler = (2.0, 0.5, 1.0), parent, (0.4, 0.5, 0.2)
+    parent.select_set(True)
+    bpy.context.view_layer.update()
+    lengths = Curve(in_world(obj, evaluated(obj))).edge_lengths
+    assert OPS.mobius_flow_lay_flat() == {"FINISHED"}
+    np.testing.assert_allclose(Curve(in_world(obj, evaluated(obj))).edge_lengths, lengths, rtol=1e-4)
+
+
+def test_a_single_point_has_no_flat_side():
+    add_curve([np.zeros((3, 3))])
+    with pytest.raises(RuntimeError, match="All points of the curves are the same; move them apart"):
+        OPS.mobius_flow_lay_flat()
+
+
 def test_links_are_turned_as_one():
     obj = add_hopf_link()
     points = stored(obj.data)

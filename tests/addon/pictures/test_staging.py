@@ -10,6 +10,7 @@ from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
 from mathutils import Vector  # noqa: E402
 from mobius_flow.addon.curves import neighbours  # noqa: E402
 from mobius_flow.addon.pictures import stage, staging  # noqa: E402
+from mobius_flow.core import CurveError  # noqa: E402
 from shapes import lattice_knot  # noqa: E402
 
 KINDS = ("objects", "cameras", "lights", "meshes", "materials", "worlds", "collections", "actions")
@@ -135,6 +136,14 @@ def test_set_up_twice_there_is_one_stage():
     assert {kind: len(names) for kind, names in blocks().items()} == first
     staging.strike(scene)
     assert (scene.camera.name, scene.world.name) == ("Mine", "Mine")
+
+
+def test_around_a_single_point_there_is_no_stage():
+    obj = add_curve([np.zeros((3, 3))])
+    before = blocks()
+    with pytest.raises(CurveError, match="All points of the curves are the same"):
+        staging.set_up(bpy.context.scene, [obj])
+    assert blocks() == before
 
 
 def test_neither_camera_nor_world_is_used_unless_asked_for():

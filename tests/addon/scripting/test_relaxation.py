@@ -112,6 +112,19 @@ def test_settings_that_are_none(settings, said):
     assert not bake.is_baked(obj.data)
 
 
+@pytest.mark.parametrize("wrong", [None, "Knot"])
+def test_what_is_no_object_is_named(wrong):
+    add_trefoil()
+    with pytest.raises(MobiusFlowError, match=f"'{wrong}' is not a curve object"):
+        Relaxation(wrong)
+
+
+def test_a_curve_given_twice_is_no_link():
+    obj = add_trefoil()
+    with pytest.raises(MobiusFlowError, match="'Knot' is given twice"):
+        Relaxation(obj, obj)
+
+
 def test_what_cannot_be_relaxed():
     with pytest.raises(MobiusFlowError, match="at least one"):
         Relaxation()
