@@ -87,6 +87,8 @@ class Report:
         if self.keys == 1:
             return Phrase("{names} {outcome}; {proof}", **told)
         told |= {"count": self.keys - self.continues, "frame": self.last_frame}
+        if self.continues and told["count"] == 1:
+            return Phrase("{names} {outcome}; 1 new key up to frame {frame:g}, {proof}", **told)
         if self.continues:
             return Phrase("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **told)
         return Phrase("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **told)
@@ -96,19 +98,9 @@ class Report:
         if not self.certified:
             return Phrase("NOT proved free of contact everywhere")
         # nothing but the curves that were relaxed is looked at
-<<<<<<< HEAD
         alone = Phrase("proved free of contact with itself")
         whom = alone if len(self.names) == 1 else Phrase("proved free of contact with themselves and each other")
         return Phrase("{proof}, before modifiers", proof=whom) if self.modified else whom
-=======
-        whom = "with itself" if len(self.names) == 1 else "with themselves and each other"
-        whom += ", before modifiers" if self.modified else ""
-        proof = f"proved free of contact {whom}" if self.certified else "NOT proved free of contact everywhere"
-        new = self.keys - 1
-        keys = f"{new} new key{'s' * (new > 1)}" if self.continues else f"{self.keys} keys"
-        animation = f"{keys} up to frame {self.last_frame:g}, " if self.keys > 1 else ""
-        return f"{named(self.names)} {self.outcome.message.rstrip('.')}; {animation}{proof}"
->>>>>>> 9f704be657f00271c0f579cdc789b38929bfe73f
 
     @property
     def clean(self) -> bool:

@@ -49,13 +49,7 @@ def face_camera(objects: Sequence["bpy.types.Object"], camera: "bpy.types.Object
 
 def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
     turn = Turn.onto(_shape(objects), wanted)
-<<<<<<< HEAD
-    moved = next((obj for obj in objects if what_moves(obj)), None)
-    if moved is not None:
-        why = Phrase("'{name}' is moved by {mover}", name=moved.name, mover=what_moves(moved))
-=======
     if why := next((why for obj in objects for why in _obstacles(obj, objects, turn)), None):
->>>>>>> 9f704be657f00271c0f579cdc789b38929bfe73f
         return _turn_keys(objects, turn, why)
     _turn_objects(objects, turn)
     # a single object goes wherever it likes; places of several against each other are rounded anew
@@ -63,15 +57,12 @@ def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
     return BakedKeys(objects).unproved if proved else 0
 
 
-<<<<<<< HEAD
-def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: Phrase) -> int:
-=======
-def _obstacles(obj: "bpy.types.Object", objects: Sequence["bpy.types.Object"], turn: Turn) -> Iterator[str]:
+def _obstacles(obj: "bpy.types.Object", objects: Sequence["bpy.types.Object"], turn: Turn) -> Iterator[Phrase]:
     """Say why an object cannot be turned."""
     if mover := what_moves(obj):
-        yield f"'{obj.name}' is moved by {mover}"
+        yield Phrase("'{name}' is moved by {mover}", name=obj.name, mover=mover)
     elif obj.parent and not any(each in objects for each in _ancestors(obj)) and _shears(obj, turn):
-        yield f"'{obj.name}' would change its shape, as its parent's scale is uneven"
+        yield Phrase("'{name}' would change its shape, as its parent's scale is uneven", name=obj.name)
 
 
 def _shears(obj: "bpy.types.Object", turn: Turn) -> bool:
@@ -83,8 +74,7 @@ def _shears(obj: "bpy.types.Object", turn: Turn) -> bool:
     return not np.allclose(columns.T @ columns, np.eye(3), atol=_SQUARE)
 
 
-def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: str) -> int:
->>>>>>> 9f704be657f00271c0f579cdc789b38929bfe73f
+def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: Phrase) -> int:
     if len(objects) > 1 or not bake.is_baked(objects[0].data):
         raise MobiusFlowError(Phrase("{why}; remove that, or bake it and turn it alone", why=why))
     if bake.is_edited(objects[0].data):

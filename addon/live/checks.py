@@ -87,13 +87,10 @@ def bare(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
     found = next((obj for obj in objects if not bake.is_baked(obj.data)), None)
     if found is None:
         return None
-<<<<<<< HEAD
-    return Refusal(Phrase("'{name}' has no keys of Möbius Flow; press Relax first", name=found.name))
-=======
     if bake.was_baked(found.data):
-        return Refusal(f"'{found.name}' has other keys or points than it was baked with; undo that, or relax a copy")
-    return Refusal(f"'{found.name}' has no keys of Möbius Flow; press Relax first")
->>>>>>> 9f704be657f00271c0f579cdc789b38929bfe73f
+        sentence = "'{name}' has other keys or points than it was baked with; undo that, or relax a copy"
+        return Refusal(Phrase(sentence, name=found.name))
+    return Refusal(Phrase("'{name}' has no keys of Möbius Flow; press Relax first", name=found.name))
 
 
 def edited(context: "bpy.types.Context") -> Refusal | None:

@@ -34,6 +34,12 @@ _REFUSALS = {
         "das entfernen oder jede Kurve einzeln entspannen"
     ),
     "'{name}' is moved by {mover}": "'{name}' wird bewegt ({mover})",
+    "'{name}' would change its shape, as its parent's scale is uneven": (
+        "'{name}' würde seine Form ändern, da sein übergeordnetes Objekt ungleichmäßig skaliert ist"
+    ),
+    "'{name}' has other keys or points than it was baked with; undo that, or relax a copy": (
+        "'{name}' hat andere Schlüssel oder Punkte als beim Backen; das rückgängig machen oder eine Kopie entspannen"
+    ),
     "'{name}' is of type {type}; select a curve object, or convert it with Object > Convert > Curve": (
         "'{name}' ist vom Typ {type}; ein Kurvenobjekt auswählen oder mit Objekt > Konvertieren > Kurve umwandeln"
     ),
@@ -276,6 +282,9 @@ _REPORTS = {
     "{measure} of {names} stays at all {count} keys": "{measure} von {names} bleibt an allen {count} Schlüsseln gleich",
     "{names} {outcome}; {count} keys up to frame {frame:g}, {proof}": (
         "{names}: {outcome}; {count} Schlüssel bis Bild {frame:g}, {proof}"
+    ),
+    "{names} {outcome}; 1 new key up to frame {frame:g}, {proof}": (
+        "{names}: {outcome}; 1 neuer Schlüssel bis Bild {frame:g}, {proof}"
     ),
     "{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}": (
         "{names}: {outcome}; {count} neue Schlüssel bis Bild {frame:g}, {proof}"
