@@ -191,3 +191,21 @@ def test_many_rises_are_added_up() -> None:
         "done; changes of mesh or shape raised the energy: 4 → 4.5 at iteration 2, 3 → 3.5 at iteration 6, "
         "2 → 2.25 at iteration 10, and 2 times more, by 0.188 in all"
     )
+
+
+@pytest.mark.parametrize(
+    ("energies", "told"),
+    [
+        ([4.0, 4.5, 4.25], "4 → 4.5 → 4.25"),
+        ([5.0, 3.0, 4.0], "5 → 3 → 4"),
+        ([9.1549, 9.15490002, 9.1549], "9.1549 → 9.15490002 → 9.1549"),
+        ([9.1549, 9.15490002], "9.1549 → 9.15490002"),
+    ],
+)
+def test_energies_that_are_told_show_where_it_rose(energies: list[float], told: str) -> None:
+    curve, rises = regular_polygon(5), Rises()
+    iterates = [Iterate(3, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for energy in energies]
+    for before, after in itertools.pairwise(iterates):
+        rises.change(before, after)
+    message = rises.told(Outcome(Status.CONVERGED, "done"), 9).message
+    assert message == f"done; changes of mesh or shape raised the energy: {told} at iteration 3"
