@@ -36,7 +36,8 @@ class Rises:
         if not changes:
             return outcome
         rest, total = len(changes) - NAMED, sum(map(_total, changes[NAMED:]))
-        more = f", and {rest} times more, by {total:.3g} in all" if rest > 0 else ""
+        again = "once more, by {:.3g}" if rest == 1 else f"{rest} times more, by {{:.3g}} in all"
+        more = f", and {again.format(total)}" if rest > 0 else ""
         return outcome.adding(REMESHED.format(rises=", ".join(map(_energies, changes[:NAMED])) + more))
 
 
