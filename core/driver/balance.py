@@ -75,7 +75,8 @@ def way_to_balance(point: Point) -> tuple[Step, ...]:
     Empty if none is worth it.  The steps end in the problem that is the point's own for the image.
     """
     images = MoebiusImages(point.curve, point.problem.constraints.lengths)
-    enough = (1.0 - GAIN) * bending(point.curve)
+    # against the identity's image too: what smoothing alone takes off is no gain, the flow would put it back
+    enough = (1.0 - GAIN) * min(bending(point.curve), bending(images.at(np.eye(point.curve.dimension + 1)[0])))
     for q in _least(images, point.curve.dimension):
         image = images.at(q)
         if bending(image) > enough:

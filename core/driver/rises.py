@@ -36,7 +36,8 @@ class Rises:
         if not changes:
             return outcome
         rest, total = len(changes) - NAMED, sum(map(_total, changes[NAMED:]))
-        more = f", and {rest} times more, by {total:.3g} in all" if rest > 0 else ""
+        again = "once more, by {:.3g}" if rest == 1 else f"{rest} times more, by {{:.3g}} in all"
+        more = f", and {again.format(total)}" if rest > 0 else ""
         return outcome.adding(REMESHED.format(rises=", ".join(map(_energies, changes[:NAMED])) + more))
 
 
@@ -50,8 +51,13 @@ def _total(change: list[Iterate]) -> float:
 
 
 def _energies(change: list[Iterate]) -> str:
-    """The energies before, between if that is the highest, and after."""
-    first, last = change[0].energy, change[-1].energy
-    highest = max(iterate.energy for iterate in change)
-    passed = [first, last] if highest in (first, last) else [first, highest, last]
-    return f"{' → '.join(f'{energy:.6g}' for energy in passed)} at iteration {change[-1].index}"
+    """The energies before, between if that is the highest (or, where none is above the first, the lowest), and after.
+
+    With as many digits as it takes to see that they are not equal.
+    """
+    energies = [iterate.energy for iterate in change]
+    first, last, highest = energies[0], energies[-1], max(energies)
+    between = highest if highest > first else min(energies)
+    passed = [first, last] if between in (first, last) else [first, between, last]
+    digits = 6 if f"{first:.6g}" != f"{between:.6g}" else 12
+    return f"{' → '.join(f'{energy:.{digits}g}' for energy in passed)} at iteration {change[-1].index}"

@@ -93,6 +93,27 @@ def test_what_bends_least_stays(curve: Curve) -> None:
     assert way_to_balance(point(curve)) == ()
 
 
+def uneven_circle() -> Curve:
+    angles = np.sort(np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, 30))
+    return Curve.from_components([np.stack([np.cos(angles), np.sin(angles), np.zeros(30)], axis=1)])
+
+
+def test_the_identity_is_no_gain(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its image, smooth and even, bends less than an uneven polygon; but there is no way to go, and no axis of it."""
+    bumpy = uneven_circle().with_vertices(uneven_circle().vertices * np.where(np.arange(30) % 3, 1.0, 1.03)[:, None])
+    start, identity = point(bumpy, edge_lengths="equal"), np.array([1.0, 0.0, 0.0, 0.0])
+    image = MoebiusImages(start.curve, start.problem.constraints.lengths).at(identity)
+    assert bending(image) < 0.95 * bending(start.curve)
+    monkeypatch.setattr(balance, "_least", lambda *_: [identity])
+    assert way_to_balance(start) == ()
+
+
+def test_what_the_flow_takes_back_is_not_told_as_a_gain() -> None:
+    result = minimize(uneven_circle(), RelaxOptions(balance=True, vertices=30, edge_lengths="keep"))
+    assert result.status is Status.CONVERGED
+    assert "balanced: " not in result.message
+
+
 def test_no_way_leads_through_a_strand() -> None:
     """The pole inside a circle, in its plane: it would have to come through the circle from wherever it comes."""
     start, inside = point(regular_polygon(60)), np.array([1.0, -2.0, 0.0, 0.0])
@@ -185,6 +206,16 @@ def test_the_limit_of_iterations_holds_on_the_way(runs) -> None:
     assert np.array_equal(result.curve.vertices, runs[True][0][limit].curve.vertices)
 
 
+def test_without_iterations_left_nothing_is_said_to_be_balanced(runs) -> None:
+    plain, result = runs[False]
+    assert result.status is Status.CONVERGED
+    limit = plain[-1].index
+    result = minimize(knot("8_19"), RelaxOptions(balance=True, mesh="fixed", max_iterations=limit))
+    assert result.status is Status.ITERATION_LIMIT
+    assert result.last.index == limit
+    assert "balanced" not in result.message
+
+
 def test_a_mesh_becomes_finer_where_strands_are_near_in_the_balanced_shape() -> None:
     plain, balanced = (minimize(knot("5_2"), RelaxOptions(balance=wanted)) for wanted in (False, True))
     assert len(balanced.curve) <= len(plain.curve)
@@ -194,7 +225,7 @@ def test_a_mesh_becomes_finer_where_strands_are_near_in_the_balanced_shape() -> 
 
 def test_what_is_balanced_already_is_said_to_be() -> None:
     result = minimize(knot("3_1"), RelaxOptions(balance=True))
-    assert result.message.endswith("; no Möbius image bends less")
+    assert result.message.endswith("; no Möbius image that there is a way to bends less")
 
 
 @pytest.mark.parametrize("method", ["flow-moebius", "penalty-lbfgs"])

@@ -180,14 +180,36 @@ def test_rises_of_the_energy_with_the_mesh_are_told_of(options: dict[str, object
     assert result.message.endswith(f"; changes of mesh or shape raised the energy: {', '.join(told)}")
 
 
-def test_many_rises_are_added_up() -> None:
+@pytest.mark.parametrize(
+    ("further", "told"),
+    [([1.0, 1.125], "once more, by 0.125"), ([1.0, 1.125, 1.0, 1.0625], "2 times more, by 0.188 in all")],
+)
+def test_many_rises_are_added_up(further: list[float], told: str) -> None:
     curve = regular_polygon(5)
-    rises, energies = Rises(), [4.0, 4.5, 3.0, 3.5, 2.0, 2.25, 1.0, 1.125, 1.0, 1.0625]
+    rises, energies = Rises(), [4.0, 4.5, 3.0, 3.5, 2.0, 2.25, *further]
     iterates = [Iterate(2 * k, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for k, energy in enumerate(energies)]
     for k in range(0, len(iterates), 2):
         rises.change(iterates[k], iterates[k + 1])
     message = rises.told(Outcome(Status.CONVERGED, "done"), 9).message
     assert message == (
         "done; changes of mesh or shape raised the energy: 4 → 4.5 at iteration 2, 3 → 3.5 at iteration 6, "
-        "2 → 2.25 at iteration 10, and 2 times more, by 0.188 in all"
+        f"2 → 2.25 at iteration 10, and {told}"
     )
+
+
+@pytest.mark.parametrize(
+    ("energies", "told"),
+    [
+        ([4.0, 4.5, 4.25], "4 → 4.5 → 4.25"),
+        ([5.0, 3.0, 4.0], "5 → 3 → 4"),
+        ([9.1549, 9.15490002, 9.1549], "9.1549 → 9.15490002 → 9.1549"),
+        ([9.1549, 9.15490002], "9.1549 → 9.15490002"),
+    ],
+)
+def test_energies_that_are_told_show_where_it_rose(energies: list[float], told: str) -> None:
+    curve, rises = regular_polygon(5), Rises()
+    iterates = [Iterate(3, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for energy in energies]
+    for before, after in itertools.pairwise(iterates):
+        rises.change(before, after)
+    message = rises.told(Outcome(Status.CONVERGED, "done"), 9).message
+    assert message == f"done; changes of mesh or shape raised the energy: {told} at iteration 3"

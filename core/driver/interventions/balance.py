@@ -1,13 +1,13 @@
 """Among the shapes of equal energy that Möbius maps make of a converged curve, the one that bends least."""
 
 from ...curve.bending import bending
-from ..balance import way_to_balance
+from ..balance import GAIN, way_to_balance
 from ..events import Change, Event
 from ..outcome import Outcome
 from ..run import Run
 
 BALANCED = "balanced: bending {after:.4g} instead of {before:.4g} (4π² on a round circle)"
-IS_BALANCED = "no Möbius image bends less"
+IS_BALANCED = "no Möbius image that there is a way to bends less"
 
 
 class Balance:
@@ -23,9 +23,13 @@ class Balance:
         if not (run.options.balance and isinstance(event, Outcome) and event.converged):
             return event
         if self._before is not None:
-            return event.adding(BALANCED.format(before=self._before, after=bending(run.iterate.curve)))
+            before, after = self._before, bending(run.iterate.curve)
+            # on coarse and uneven meshes energies of images differ, and the flow may have gone all the way back
+            gained = after <= (1.0 - GAIN) * before
+            return event.adding(BALANCED.format(before=before, after=after) if gained else IS_BALANCED)
         steps = way_to_balance(run.point)
         if not steps:
             return event.adding(IS_BALANCED)
         self._before = bending(run.iterate.curve)
-        return Change(steps[: run.iterations_left], method=run.method)  # which remembers nothing of the curve before
+        within_limit = steps[: max(1, run.iterations_left)]  # with none left a step is refused, and the run ends
+        return Change(within_limit, method=run.method)  # which remembers nothing of the curve before
