@@ -2,22 +2,19 @@
 
 import importlib
 
-import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, below, button, click, here, key, open_sidebar, region, window
+from hands import addon, button, here, key, open_panels, open_sidebar, window
 from scene import clear, is_, knot, look, obj, points
 
 
 def case() -> Steps:
-    opened()
+    open_panels("shape")
     clear()
     knot("5_2", vertices=280)
     window().scene.mobius_flow.length = 100
     yield from open_sidebar()
     yield from look()
-    y = yield from below("curve.mobius_flow_add_knot")
-    yield from click(region("UI").x + int(0.33 * region("UI").width), y - 14)  # close Animation, to make room
     yield from button("curve.mobius_flow_relax")
     yield from is_("done")
     yield from look()
@@ -52,15 +49,6 @@ def case() -> Steps:
     assert addon("curves.bake").is_baked(obj().data)
     assert not addon("curves.bake").is_edited(obj().data)
     yield from picture("shape-6-undone")
-
-
-def opened() -> None:
-    """Let the panel be open when it is first drawn."""
-    panel = addon("sidebar.shape").VIEW3D_PT_mobius_flow_shape
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
-    region("UI").tag_redraw()
 
 
 def count() -> int:

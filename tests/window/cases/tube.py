@@ -2,14 +2,14 @@
 
 import bpy
 from case import Steps, picture, until
-from hands import below, button, click, here, key, move, region, view, window
+from hands import button, here, key, move, open_panels, region, view, window
 from scene import is_, look, obj, ready
 
 
 def case() -> Steps:
+    open_panels("tube")
     yield from ready("L2a1", vertices=120)
     obj().data.bevel_depth = 0.0625
-    yield from opened()
     yield from picture("tube-1-ones-own")
     settings = window().scene.mobius_flow
     settings.max_iterations, settings.length = 12, 40
@@ -55,14 +55,3 @@ def rest() -> Steps:
     """Take the mouse away from the buttons, whose tooltips cover others."""
     main = region("WINDOW")
     yield from move(main.x + main.width // 2, main.y + 40)
-
-
-def opened() -> Steps:
-    """Close the sub-panel above, and open this one."""
-    y = yield from below("curve.mobius_flow_add_knot")
-    sidebar = region("UI")
-    x = sidebar.x + int(0.33 * sidebar.width)
-    for height in (14, 38):
-        yield from click(x, y - height)
-        for _ in range(5):
-            yield
