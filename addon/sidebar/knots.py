@@ -56,7 +56,7 @@ class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):  # noqa: N801
         for family in _FAMILIES:
             layout.operator(CURVE_OT_mobius_flow_add_family.bl_idname, text=family.title()).family = family
         layout.separator()
-        layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="By Name, to Be Relaxed")
+        layout.operator(CURVE_OT_mobius_flow_add_knot.bl_idname, text="By Name, as Woven")
         layout.operator(CURVE_OT_mobius_flow_draw_knot.bl_idname, text="From Drawing")
 
 

@@ -307,7 +307,7 @@ _SIDEBAR = {
     "1 crossing": "1 Kreuzung",
     "Add Knot": "Knoten hinzufügen",
     "Add {knot}": "{knot} hinzufügen",
-    "By Name, to Be Relaxed": "Nach Name, zum Entspannen",
+    "By Name, as Woven": "Nach Name, wie geflochten",
     "Change Crossings (1 to {count})": "Kreuzungen ändern (1 bis {count})",
     "For more or fewer points change the curve's Resolution Preview U.": (
         "Für mehr oder weniger Punkte die Auflösung Vorschau U der Kurve ändern."
