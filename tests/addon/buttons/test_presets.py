@@ -19,9 +19,15 @@ def user(tmp_path, monkeypatch):
     """Where the user's presets are, instead of in the user's own configuration."""
     monkeypatch.setattr(bpy.utils, "user_resource", lambda _kind, path="", create=False: _directory(tmp_path / path))
     monkeypatch.setattr(bpy.utils, "script_paths", lambda **_: [str(_directory(tmp_path / "presets"))])
-    title = VIEW3D_PT_mobius_flow_presets.bl_label
-    yield tmp_path / "presets" / presets.SUBDIRECTORY
-    VIEW3D_PT_mobius_flow_presets.bl_label = title  # which Blender makes the name of the preset that was used last
+    return tmp_path / "presets" / presets.SUBDIRECTORY
+
+
+@pytest.fixture(autouse=True)
+def title():
+    """Blender gives the menu the name of the preset that was used last."""
+    before = VIEW3D_PT_mobius_flow_presets.bl_label
+    yield
+    VIEW3D_PT_mobius_flow_presets.bl_label = before
 
 
 def _directory(path):
