@@ -80,7 +80,7 @@ def values(spline: bpy.types.Spline, name: str) -> np.ndarray:
 
 
 def evaluated(obj: bpy.types.Object, frame: float | None = None) -> np.ndarray:
-    """The points of an object without bevel as Blender shows them, in its own coordinates; (n, 3)."""
+    """The vertices that Blender shows of an object, in its own coordinates; without bevel the points; (n, 3)."""
     if frame is not None:
         bpy.context.scene.frame_set(int(np.floor(frame)), subframe=float(frame - np.floor(frame)))
     shown = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
@@ -89,6 +89,18 @@ def evaluated(obj: bpy.types.Object, frame: float | None = None) -> np.ndarray:
     mesh.vertices.foreach_get("co", points)
     shown.to_mesh_clear()
     return points.reshape(-1, 3)
+
+
+def place(obj: bpy.types.Object) -> None:
+    """Move, turn and stretch an object."""
+    obj.location, obj.rotation_euler, obj.scale = (1, 2, 3), (0.3, 0.2, 0.1), (2, 1, 0.5)
+    bpy.context.view_layer.update()
+
+
+def drawn(obj: bpy.types.Object) -> np.ndarray:
+    """Vertices of what is drawn of an object, a tube for instance, in the world; (n, 3)."""
+    shown = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return in_world(shown, evaluated(obj))
 
 
 def in_world(obj: bpy.types.Object, points: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
+from blender_scenes import drawn  # noqa: E402
 from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
 from mathutils import Vector  # noqa: E402
 from mobius_flow.addon.engine.motion import Key, Keys  # noqa: E402
@@ -26,17 +27,6 @@ def tumbling(keys):
     return Keys(tuple(frames), 0)
 
 
-def tube(obj):
-    """Vertices of the drawn tube in the world."""
-    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    mesh = evaluated.to_mesh()
-    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("co", points)
-    evaluated.to_mesh_clear()
-    matrix = np.array(obj.matrix_world)
-    return points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
-
-
 def composed(keys, size, origin=None):
     scene = bpy.context.scene
     rendering.use_cycles(scene, *size, 1)
@@ -54,7 +44,7 @@ def test_all_is_seen_in_every_frame(size, keys, far):
     widest = 0.0
     for frame in range(scene.frame_start, scene.frame_end + 1, 3):
         scene.frame_set(frame)
-        points = tube(obj)
+        points = drawn(obj)
         seen = np.array([world_to_camera_view(scene, scene.camera, Vector(p)) for p in points])
         assert seen[:, :2].min() > 0, frame
         assert seen[:, :2].max() < 1, frame

@@ -5,7 +5,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
-from blender_scenes import add_curve, add_trefoil, relax  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, drawn, relax  # noqa: E402
 from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
 from mathutils import Vector  # noqa: E402
 from mobius_flow.addon.curves import neighbours  # noqa: E402
@@ -31,17 +31,6 @@ def baked(**options):
     obj = relax(**{"max_iterations": 8, "vertices": 120} | options)
     obj.data.bevel_depth = 0.1
     return obj
-
-
-def drawn(obj):
-    """Vertices of the drawn tube in the world; (n, 3)."""
-    shown = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    mesh = shown.to_mesh()
-    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("co", points)
-    shown.to_mesh_clear()
-    matrix = np.array(shown.matrix_world)
-    return points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def see(scene, objects, frames):

@@ -20,14 +20,21 @@ def case() -> Steps:
         add_rings()
         bpy.ops.ed.undo_push(message="Rings")
     before = stored()
-    linked = linking_number(*in_world())
-    assert abs(linked) == 1
     yield from open_sidebar()
     yield from look()
     yield from picture("links-1-ready")
+    yield from escaped(before)
+    yield from relaxed(before)
+    yield from moved(before)
+    yield from removed(before)
+    yield from one_alone(before)
 
-    settings = window().scene.mobius_flow
-    settings.vertices = MANY
+
+def escaped(before: list[np.ndarray]) -> Steps:
+    """Both move, stay linked, and Esc puts both back."""
+    linked = linking_number(*in_world())
+    assert abs(linked) == 1
+    window().scene.mobius_flow.vertices = MANY
     yield from button("curve.mobius_flow_relax")
     yield from reaches(2)
     run().toggle_pause()
@@ -39,7 +46,11 @@ def case() -> Steps:
     are_whole(before)
     yield from picture("links-3-restored", differs_from="links-2-running")
 
-    settings.vertices = 0
+
+def relaxed(before: list[np.ndarray]) -> Steps:
+    """Both have the same keys, are linked at each of them, and one step of undo takes all of it back."""
+    linked = linking_number(*in_world())
+    window().scene.mobius_flow.vertices = 0
     yield from button("curve.mobius_flow_relax")
     yield from is_("done")
     print("MEASURED", run_message(), flush=True)
@@ -54,14 +65,19 @@ def case() -> Steps:
     yield from until(lambda: all(obj.data.shape_keys is None for obj in rings()), "one undo step for both")
     are_whole(before)
 
-    settings = window().scene.mobius_flow  # made anew by undo
-    settings.vertices = MANY
+
+def moved(before: list[np.ndarray]) -> Steps:
+    """To move one of them ends the run."""
+    window().scene.mobius_flow.vertices = MANY
     yield from started()
     rings()[1].location.x += 0.5
     yield from over("moving one of them", "lost")
     rings()[1].location.x = TURNED[0][0]
     are_whole(before)
 
+
+def removed(before: list[np.ndarray]) -> Steps:
+    """To remove one of them ends the run, and the other is what it was."""
     yield from started()
     bpy.data.objects.remove(rings()[0])
     yield from over("removal of one of them", "lost")
@@ -72,6 +88,9 @@ def case() -> Steps:
     yield from until(lambda: "A" in bpy.data.objects, "undo to bring it back")
     are_whole(before)
 
+
+def one_alone(before: list[np.ndarray]) -> Steps:
+    """With one of them selected the panel names the other, which stays as it is."""
     with here():
         bpy.ops.ed.undo_push(message="Whole")
         window().scene.mobius_flow.vertices = 0
