@@ -40,3 +40,13 @@ def test_energy_spent_on_edge_lengths_is_told_of():
     assert told in result.message
     assert iterates[-1].edge_length_error < iterates[0].edge_length_error
     assert "rose" not in minimize(torus_trefoil(60), RelaxOptions(max_iterations=5)).message
+
+
+def test_a_direction_without_length_is_tried_all_the_same():
+    """In L² nothing of a triangle's gradient is left beside the lengths, which are off their targets still."""
+    corners = [[0.12573022, -0.13210486], [0.64042265, 0.10490012], [-0.53566937, 0.36159505]]
+    triangle, options = Curve(np.array(corners)), RelaxOptions(method="flow-l2", vertices=3, max_iterations=2)
+    result = minimize(triangle, options)
+    assert result.status is Status.CONVERGED
+    assert result.last.gradient_norm == 0.0
+    assert result.last.edge_length_error < 1e-6
