@@ -10,6 +10,7 @@ import numpy as np
 from ..engine.key_options import KeyOptions, Output
 from ..engine.timing import Timing
 from . import keyframes
+from .exchange import key_points
 from .fcurves import count_own
 from .snapshot import Snapshot, shape
 
@@ -133,9 +134,7 @@ def _digest(data: "bpy.types.Curve") -> str:
     """A name for where the points are at all shape keys."""
     hashed = hashlib.blake2b(digest_size=16)
     for block in data.shape_keys.key_blocks if data.shape_keys else ():
-        points = np.empty(3 * len(block.data), dtype=np.float32)
-        block.data.foreach_get("co", points)
-        hashed.update(points.tobytes())
+        hashed.update(key_points(block).tobytes())
     return hashed.hexdigest()
 
 

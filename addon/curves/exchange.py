@@ -66,6 +66,20 @@ def spline_points(spline: "bpy.types.Spline") -> Frame:
     return points.reshape(-1, 4)[:, :3]
 
 
+def key_points(block: "bpy.types.ShapeKey") -> Frame:
+    """Coordinates of all points at a shape key; shape (n, 3)."""
+    points = np.empty(3 * len(block.data), dtype=np.float32)
+    block.data.foreach_get("co", points)
+    return points.reshape(-1, 3)
+
+
+def key_radii(block: "bpy.types.ShapeKey") -> Frame:
+    """Radii of all points at a shape key, relative to the bevel depth; shape (n,)."""
+    radii = np.empty(len(block.data), dtype=np.float32)
+    block.data.foreach_get("radius", radii)
+    return radii
+
+
 def write_points(data: "bpy.types.Curve", frame: Frame) -> None:
     """Move the points of all splines; shape (n, 3), the object's coordinates."""
     first = 0

@@ -139,6 +139,12 @@ def point_paths(data: "bpy.types.Curve") -> Iterator[str]:
         yield from (f"splines[{s}].points[{p}].co" for p in range(len(spline.points)))
 
 
+def coordinate_curves(data: "bpy.types.Curve") -> "list[bpy.types.FCurve]":
+    """The F-curves of all coordinates of a curve that is keyed by them, point by point."""
+    found = {(curve.data_path, curve.array_index): curve for curve in fcurves_of(data)}
+    return [found[path, axis] for path in point_paths(data) for axis in range(3)]
+
+
 def _result(
     obj: "bpy.types.Object", keys: Keys, _frames: FloatArray, _radii: FloatArray | None = None
 ) -> Iterator[None]:

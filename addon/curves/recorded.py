@@ -12,9 +12,9 @@ from ...core.types import FloatArray
 from ..engine.in_between import interpolated
 from ..engine.placement import Placement
 from . import bake
-from .exchange import read_splines
+from .exchange import key_points, key_radii, read_splines
 from .fcurves import fcurves_of
-from .keyframes import point_paths
+from .keyframes import coordinate_curves
 
 if TYPE_CHECKING:
     import bpy
@@ -80,12 +80,8 @@ def in_world(
 def _shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray]:
     """Vertices and relative radii of all shape keys; (keys, n, 3) and (keys, n)."""
     blocks = data.shape_keys.key_blocks
-    points = np.empty((len(blocks), 3 * len(blocks[0].data)), dtype=np.float32)
-    radii = np.empty((len(blocks), len(blocks[0].data)), dtype=np.float32)
-    for block, co, radius in zip(blocks, points, radii, strict=True):
-        block.data.foreach_get("co", co)
-        block.data.foreach_get("radius", radius)
-    return points.reshape(len(blocks), -1, 3).astype(np.float64), radii.astype(np.float64)
+    points, radii = (np.stack([read(block) for block in blocks]) for read in (key_points, key_radii))
+    return points.astype(np.float64), radii.astype(np.float64)
 
 
 def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -97,10 +93,9 @@ def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, F
 
 
 def _from_fcurves(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    curves = {(each.data_path, each.array_index): each for each in fcurves_of(data)}
-    frames = _frames(list(curves.values()))
-    coordinates = [curves[path, axis] for path in point_paths(data) for axis in range(3)]
-    values = np.array([[curve.evaluate(frame) for curve in coordinates] for frame in frames])
+    curves = coordinate_curves(data)
+    frames = _frames(curves)
+    values = np.array([[curve.evaluate(frame) for curve in curves] for frame in frames])
     radii = np.concatenate([_radii(spline, len(spline.points)) for spline in data.splines])
     points = values.reshape(len(frames), -1, 3)
     return frames, points, np.tile(radii, (len(frames), 1)), points[-1:]

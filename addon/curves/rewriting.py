@@ -10,9 +10,8 @@ from ...core.types import FloatArray
 from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from . import bake
-from .exchange import write_points
-from .fcurves import fcurves_of
-from .keyframes import point_paths
+from .exchange import key_points, key_radii, write_points
+from .keyframes import coordinate_curves
 
 if TYPE_CHECKING:
     import bpy
@@ -27,8 +26,8 @@ def keyed_points(data: "bpy.types.Curve") -> list[Frame]:
         If somebody has added or removed keys of some of its coordinates.
     """
     if data.shape_keys:
-        return [_points_of(block) for block in data.shape_keys.key_blocks]
-    columns = [_keys_of(curve)[:, 1] for curve in _coordinates(data)]
+        return [key_points(block) for block in data.shape_keys.key_blocks]
+    columns = [_keys_of(curve)[:, 1] for curve in coordinate_curves(data)]
     if len({len(column) for column in columns}) > 1:
         raise MobiusFlowError(Phrase("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
     return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
@@ -41,7 +40,7 @@ def move_keys(data: "bpy.types.Curve", frames: Sequence[Frame]) -> None:
             block.data.foreach_set("co", frame.ravel())
     else:
         values = np.stack(frames).reshape(len(frames), -1)
-        for curve, column in zip(_coordinates(data), values.T, strict=True):
+        for curve, column in zip(coordinate_curves(data), values.T, strict=True):
             places = _keys_of(curve)
             places[:, 1] = column
             curve.keyframe_points.foreach_set("co", places.ravel())
@@ -55,21 +54,7 @@ def scale_tube(data: "bpy.types.Curve", factors: FloatArray) -> None:
         bake.scale_bevel(data, float(factors[-1]))
         return
     for block, factor in zip(data.shape_keys.key_blocks, factors, strict=True):
-        radii = np.empty(len(block.data), dtype=np.float32)
-        block.data.foreach_get("radius", radii)
-        block.data.foreach_set("radius", radii * np.float32(factor))
-
-
-def _points_of(block: "bpy.types.ShapeKey") -> Frame:
-    points = np.empty(3 * len(block.data), dtype=np.float32)
-    block.data.foreach_get("co", points)
-    return points.reshape(-1, 3)
-
-
-def _coordinates(data: "bpy.types.Curve") -> "list[bpy.types.FCurve]":
-    """The F-curves of all coordinates, point by point."""
-    found = {(curve.data_path, curve.array_index): curve for curve in fcurves_of(data)}
-    return [found[path, axis] for path in point_paths(data) for axis in range(3)]
+        block.data.foreach_set("radius", key_radii(block) * np.float32(factor))
 
 
 def _keys_of(curve: "bpy.types.FCurve") -> Frame:

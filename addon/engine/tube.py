@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ...core import Curve
 from ...core.curve import Mesh
-from ...core.curve.distances import arc_distance_of_pairs
+from ...core.curve.strands import nearest_strands
 from ...core.types import FloatArray
 from .placement import Frame
 
@@ -30,30 +29,9 @@ def free_radius(curve: Curve, thickest: float) -> float:
 def strand_gap(curve: Curve, widest: float) -> float:
     """Least distance between strands of a curve, inf if it is more than ``widest``."""
     spacing = float(curve.edge_lengths.max())
-    nearest = _nearest_strands(curve, widest + spacing)
-    if nearest is None:
-        return np.inf
+    nearest = nearest_strands(curve, _DISTINCT, widest + spacing)
     # Edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side.
     return float(np.sqrt(max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2)))
-
-
-def _nearest_strands(curve: Curve, furthest: float) -> float | None:
-    """Least distance between vertices of different strands, None if it is more than ``furthest``.
-
-    The radius of search doubles until it finds some: all pairs within the furthest would be too many where a long
-    curve is tightly wound, as there the nearest strands are much nearer.
-    """
-    tree = cKDTree(curve.vertices)
-    radius = float(np.median(curve.edge_lengths))
-    while True:
-        radius = min(2 * radius, furthest)
-        i, j = tree.query_pairs(radius, output_type="ndarray").T
-        distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
-        distance = distance[arc_distance_of_pairs(curve, i, j) > _DISTINCT * distance]
-        if distance.size:
-            return float(distance.min())
-        if radius >= furthest:
-            return None
 
 
 def animated_radii(mesh: Mesh, points: Sequence[Frame], frames: FloatArray) -> FloatArray:

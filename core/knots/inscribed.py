@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..collision import is_free
 from ..curve import Curve, Mesh
+from ..curve.strands import nearest_strands
 from ..errors import CurveError
 from ..types import FloatArray
 from .rings import MAX_VERTICES, shares
@@ -46,20 +46,7 @@ def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
 
 def strand_gap(curve: Curve) -> float:
     """Least distance of vertices on different strands, which two sides of a bend are too."""
-    nearest = np.inf
-    position = np.concatenate([_arc(part)[:-1] for part in curve.components])
-    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
-    component = curve.mesh.component
-    tree, radius = cKDTree(curve.vertices), 2.0 * float(curve.edge_lengths.max())
-    while not nearest <= radius:
-        i, j = tree.query_pairs(radius, output_type="ndarray").T
-        distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
-        along = np.abs(position[i] - position[j])
-        along = np.minimum(along, lengths[component[i]] - along)
-        apart = (along > _DISTINCT * distance) | (component[i] != component[j])
-        nearest = float(distance[apart].min(initial=np.inf))
-        radius *= 2
-    return nearest
+    return nearest_strands(curve, _DISTINCT)
 
 
 def is_isotopic(first: Curve, first_at: Sequence[FloatArray], second: Curve, second_at: Sequence[FloatArray]) -> bool:
