@@ -12,7 +12,7 @@ from ...core.types import FloatArray
 from ..engine.key_options import Output
 from ..engine.motion import Keys
 from ..engine.placement import Frame
-from .exchange import write_points
+from .exchange import key_points, key_radii, write_points
 from .fcurves import FCurves, drop_actions, fcurves_of
 
 if TYPE_CHECKING:
@@ -72,20 +72,15 @@ def output_of(data: "bpy.types.Curve") -> Output | None:
 def end_of(data: "bpy.types.Curve") -> Frame:
     """Points of a curve at the last of its keys, (n, 3); what is stored may be another frame's."""
     if data.shape_keys:
-        points = np.empty(3 * sum(len(spline.points) for spline in data.splines), dtype=np.float32)
-        data.shape_keys.key_blocks[-1].data.foreach_get("co", points)
-        return points.reshape(-1, 3)
-    curves = fcurves_of(data)
-    last = {(curve.data_path, curve.array_index): curve.keyframe_points[-1].co[1] for curve in curves}
-    return np.array([[last[path, axis] for axis in range(3)] for path in point_paths(data)], dtype=np.float32)
+        return key_points(data.shape_keys.key_blocks[-1])
+    last = [curve.keyframe_points[-1].co[1] for curve in coordinate_curves(data)]
+    return np.array(last, dtype=np.float32).reshape(-1, 3)
 
 
 def scale_radii(data: "bpy.types.Curve", factor: float) -> None:
     """Multiply the points' radii at all keys, because the radius that they are relative to has been divided."""
     for block in data.shape_keys.key_blocks if data.shape_keys else ():
-        radii = np.empty(len(block.data), dtype=np.float32)
-        block.data.foreach_get("radius", radii)
-        block.data.foreach_set("radius", radii * np.float32(factor))
+        block.data.foreach_set("radius", key_radii(block) * np.float32(factor))
 
 
 def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None) -> None:

@@ -1,7 +1,8 @@
 """Relaxed shapes of the table's knots and links: smooth closed curves, stored as a few Fourier coefficients.
 
-``tools/knot_shapes.py`` makes the file from relaxations of the tangent-point energy, which spreads strands evenly, and
-proves that each polygon made here has the type its name says.
+The file ``shapes.npz`` is a build product, never edited by hand: ``tools/knot_shapes.py`` makes it from relaxations of
+the tangent-point energy, which spreads strands evenly, and proves that each polygon made here has the type its name
+says.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,0 +1,23 @@
+"""The tool that makes the stored shapes: what it makes anew is what is stored."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.core.knots.shapes import QUANTUM, shapes
+
+_FILE = Path(__file__).resolve().parents[3] / "tools" / "knot_shapes.py"
+_SPEC = importlib.util.spec_from_file_location("knot_shapes", _FILE)
+tool = importlib.util.module_from_spec(_SPEC)
+_SPEC.loader.exec_module(tool)
+
+
+@pytest.mark.parametrize("name", ["0_1", "3_1", "L2a1"])
+def test_shapes_are_made_anew_as_they_are_stored(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To a few quanta, as linear algebra may round otherwise than where they were made."""
+    monkeypatch.setattr(tool, "KEPT", tmp_path)
+    made, stored = tool.shape(name).coefficients, shapes()[name].coefficients
+    assert len(made) == len(stored)
+    for one, other in zip(made, stored, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=4 * QUANTUM)
