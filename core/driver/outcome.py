@@ -6,6 +6,8 @@ from enum import Enum
 from ..errors import Place, counted
 from ..hierarchy import SampledErrors
 
+_NEXT = "; "  # between clauses
+
 
 class Status(Enum):
     """Why a relaxation ended."""
@@ -47,7 +49,12 @@ class Outcome:
 
     def adding(self, more: str) -> "Outcome":
         """The same, with more to say."""
-        return replace(self, message=f"{self.message}; {more}")
+        return replace(self, message=f"{self.message}{_NEXT}{more}")
+
+    def stalling(self, reason: str) -> "Outcome":
+        """Stalled instead, for a reason that is a clause; what else there was to say is said still."""
+        _, *told = self.message.split(_NEXT)
+        return replace(self, status=Status.STALLED, message=_NEXT.join([stalled(reason).message, *told]))
 
 
 def converged(norm: float, bound: float) -> Outcome:
@@ -79,6 +86,7 @@ COMPOSITE = (
     "strands pull tight, and would do so without limit: the curve is composite, knotted both inside and outside the "
     "ball of radius {radius:.3g} around ({center}), and has no shape of least energy"
 )
+UNTESTED = "whether it is composite was not tested, as its components could lie in too many ways"
 UNRESOLVED = (
     "strands are nearer than this mesh resolves; with more vertices or a finer mesh there is less energy to reach"
 )

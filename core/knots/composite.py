@@ -7,20 +7,21 @@ looked for: lifted to the paraboloid (x, |x|²), balls are half spaces, and a ba
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain, compress, product
 
 import numpy as np
 from scipy.optimize import linprog
+from scipy.sparse.csgraph import connected_components
 
 from ..curve import Curve
-from ..types import BoolArray, FloatArray
-from .alexander import TRIVIAL, signature
+from ..types import BoolArray, FloatArray, IntArray
+from .alexander import TRIVIAL, linking_numbers, signature
 
 _ARCS = 24  # arcs of a knot begin and end at multiples of this fraction of it; in links, of fewer per component
 _MIN_ARC = 1 / 8  # arc, as a fraction of its component
 _SAMPLES = 120  # vertices that balls are looked for with
 _MARGIN = 1e-6  # of the separating plane, for a curve of size 1
-_MAX_COMPONENTS = 4  # each of the others may lie inside or outside
+_MAX_TRIALS = 3000  # balls that are looked for, which takes a few seconds
 _OUTER_PATH = 16  # edges of the path around a ball
 
 
@@ -48,14 +49,14 @@ def knotted_ball(curve: Curve) -> Ball | None:
     """A ball whose sphere meets the curve in two points, both parts being knotted or linked; None if none is found.
 
     A ball proves that the curve is composite.  None proves nothing: parts may have a trivial Alexander polynomial, or
-    lie in no round ball.
+    lie in no round ball, and a link may be beyond `is_searchable`.
 
     Parameters
     ----------
     curve
-        Closed polygons in space; None is returned for more than four components.
+        Closed polygons; only in space there are knots.
     """
-    if curve.dimension != 3 or len(curve.mesh.component_sizes) > _MAX_COMPONENTS:
+    if curve.dimension != 3 or not is_searchable(curve):
         return None
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())
@@ -67,20 +68,51 @@ def knotted_ball(curve: Curve) -> Ball | None:
     return None
 
 
+def is_searchable(curve: Curve) -> bool:
+    """Whether there are few enough ways in which the components of a curve in space can lie about a ball."""
+    components = len(curve.mesh.component_sizes)
+    arcs = _arc_count(components)
+    places = arcs * len(_arc_lengths(arcs))
+    if components * places > _MAX_TRIALS:
+        return False
+    return places * sum(1 << len(groups) for groups in _linked_groups(curve)) <= _MAX_TRIALS
+
+
+def _arc_count(components: int) -> int:
+    return max(int(1 / _MIN_ARC), _ARCS // components)
+
+
+def _arc_lengths(arcs: int) -> range:
+    return range(int(_MIN_ARC * arcs), arcs // 2 + 1)
+
+
+def _linked_groups(curve: Curve) -> list[list[IntArray]]:
+    """For each component, into which groups the others fall that lie on one side of any sphere that meets only it.
+
+    A sphere between two curves shows that they are not linked, so components with a linking number lie together.
+    """
+    count = len(curve.mesh.component_sizes)
+    linked = np.zeros((count, count))
+    linked[np.triu_indices(count, 1)] = linking_numbers(curve)
+    found = []
+    for cut in range(count):
+        others = np.delete(np.arange(count), cut)
+        groups, label = connected_components(linked[np.ix_(others, others)], directed=False)
+        found.append([others[label == k] for k in range(groups)])
+    return found
+
+
 def _arcs(curve: Curve) -> Iterator[BoolArray]:
-    """Masks of vertices: an arc of one component, and any of the others as a whole."""
-    slices = curve.mesh.slices
-    for cut, part in enumerate(slices):
+    """Masks of vertices: an arc of one component, and any of the others as a whole that can lie there together."""
+    slices, component = curve.mesh.slices, curve.mesh.component
+    arcs = _arc_count(len(slices))
+    for part, groups in zip(slices, _linked_groups(curve), strict=True):
         size = part.stop - part.start
-        others = [s for k, s in enumerate(slices) if k != cut]
-        arcs = max(int(1 / _MIN_ARC), _ARCS // len(slices))
         starts = np.unique(np.arange(arcs) * size // arcs)
-        lengths = np.unique(np.arange(int(_MIN_ARC * arcs), arcs // 2 + 1) * size // arcs)
-        for length, first, chosen in product(lengths[::-1], starts, product((False, True), repeat=len(others))):
-            inside = np.zeros(len(curve), dtype=bool)
+        lengths = np.unique(np.array(_arc_lengths(arcs)) * size // arcs)
+        for length, first, chosen in product(lengths[::-1], starts, product((False, True), repeat=len(groups))):
+            inside = np.isin(component, list(chain.from_iterable(compress(groups, chosen))))
             inside[part] = (np.arange(size) - first) % size < length
-            for other, within in zip(others, chosen, strict=True):
-                inside[other] = within
             yield inside
 
 

@@ -11,6 +11,7 @@ from mobius_flow.core.curve.bending import bending
 from mobius_flow.core.curve.moebius_map import moebius_image
 from mobius_flow.core.driver import balance
 from mobius_flow.core.driver.balance import MoebiusImages, way_to_balance
+from mobius_flow.core.driver.interventions.balance import CUT_OFF
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot, torus_knot
 from mobius_flow.core.taylor import taylor_slope
@@ -204,6 +205,7 @@ def test_the_limit_of_iterations_holds_on_the_way(runs) -> None:
     assert result.last.index == limit
     assert result.certified
     assert np.array_equal(result.curve.vertices, runs[True][0][limit].curve.vertices)
+    assert CUT_OFF in result.message
 
 
 def test_without_iterations_left_nothing_is_said_to_be_balanced(runs) -> None:
@@ -214,6 +216,14 @@ def test_without_iterations_left_nothing_is_said_to_be_balanced(runs) -> None:
     assert result.status is Status.ITERATION_LIMIT
     assert result.last.index == limit
     assert "balanced" not in result.message
+    assert CUT_OFF in result.message
+
+
+def test_what_is_cut_off_before_is_not_said_to_be_on_the_way(runs) -> None:
+    limit = runs[False][0][-1].index - 1
+    result = minimize(knot("8_19"), RelaxOptions(balance=True, mesh="fixed", max_iterations=limit))
+    assert result.status is Status.ITERATION_LIMIT
+    assert CUT_OFF not in result.message
 
 
 def test_a_mesh_becomes_finer_where_strands_are_near_in_the_balanced_shape() -> None:

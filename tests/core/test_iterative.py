@@ -51,8 +51,8 @@ def test_gradient(name: str) -> None:
     assert dense.norm(u - expected) < 1e-2 * size
     assert np.sqrt(np.sum(covector * u)) == pytest.approx(size, rel=1e-4)
     assert np.abs(space.constraints.apply(u)).max() < 1e-10 * np.abs(space.constraints.tangents).max() * np.abs(u).max()
-    # multipliers by what they do, the displacement that corresponds to their pull: nothing is asked of them but what
-    # the gradient needs, which where edges are of very different lengths sees little of what is normal
+    # multipliers by what they do, the displacement that corresponds to their pull; no tolerance is theirs, and those of
+    # the gradient leave them less exact where edges are of very different lengths
     pull = space.constraints.apply_transpose(multipliers - forces)
     displacement = spaces(name)[1]._inner.solve(pull)  # type: ignore[attr-defined]
     assert np.sqrt(np.sum(pull * displacement)) < (6e-2 if name == "graded" else 1.5e-2) * size

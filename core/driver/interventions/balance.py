@@ -3,10 +3,12 @@
 from ...curve.bending import bending
 from ..balance import GAIN, way_to_balance
 from ..events import Change, Event
-from ..outcome import Outcome
+from ..outcome import Outcome, Status
 from ..run import Run
+from ..termination import at_limit
 
 BALANCED = "balanced: bending {after:.4g} instead of {before:.4g} (4π² on a round circle)"
+CUT_OFF = "it has not come to rest yet at the Möbius image that bends least"
 IS_BALANCED = "no Möbius image that there is a way to bends less"
 
 
@@ -18,9 +20,13 @@ class Balance:
         self._before: float | None = None  # bending that the balanced curve had
 
     def __call__(self, event: Event) -> Event | Change:
-        """Look at converged curves."""
+        """Look at converged curves, and at ends of the run on the way from one."""
         run = self._run
-        if not (run.options.balance and isinstance(event, Outcome) and event.converged):
+        if not (run.options.balance and isinstance(event, Outcome)):
+            return event
+        if event.status is Status.ITERATION_LIMIT and self._before is not None:
+            return event.adding(CUT_OFF)
+        if not event.converged:
             return event
         if self._before is not None:
             before, after = self._before, bending(run.iterate.curve)
@@ -30,6 +36,8 @@ class Balance:
         steps = way_to_balance(run.point)
         if not steps:
             return event.adding(IS_BALANCED)
+        if run.iterations_left <= 0:
+            return at_limit(run).adding(CUT_OFF)
         self._before = bending(run.iterate.curve)
-        within_limit = steps[: max(1, run.iterations_left)]  # with none left a step is refused, and the run ends
-        return Change(within_limit, method=run.method)  # which remembers nothing of the curve before
+        # the method remembers nothing of the curve before
+        return Change(steps[: run.iterations_left], method=run.method)

@@ -2,9 +2,9 @@
 
 from ...curve import Curve
 from ...hierarchy import moebius_energy
-from ...knots.composite import Ball, knotted_ball
+from ...knots.composite import is_searchable, knotted_ball
 from ..events import Event
-from ..outcome import COMPOSITE, Outcome, stalled
+from ..outcome import COMPOSITE, UNTESTED, Outcome
 from ..run import Run
 from .split_links import split
 
@@ -24,16 +24,15 @@ class Composite:
         scale_invariant = problem.objective.energy.scale_exponent == 0.0
         if not (isinstance(event, Outcome) and event.converged and scale_invariant):
             return event
-        for curve in split(self._run.iterate.curve, problem.constraints.parts):
-            if (ball := _cutting_ball(curve)) is not None:
-                center = ", ".join(f"{x:.3g}" for x in ball.center)
-                return stalled(COMPOSITE.format(radius=ball.radius, center=center))
-        return event
+        parts = [part for part in split(self._run.iterate.curve, problem.constraints.parts) if _may_be_composite(part)]
+        ball = next(filter(None, map(knotted_ball, parts)), None)
+        if ball is not None:
+            center = ", ".join(f"{x:.3g}" for x in ball.center)
+            return event.stalling(COMPOSITE.format(radius=ball.radius, center=center))
+        return event if all(map(is_searchable, parts)) else event.adding(UNTESTED)
 
 
-def _cutting_ball(curve: Curve) -> Ball | None:
-    """A ball that proves a curve composite, looked for only where there is energy enough for that."""
+def _may_be_composite(curve: Curve) -> bool:
+    """Whether there is energy enough for that, in space."""
     components = len(curve.mesh.component_sizes)
-    if moebius_energy(curve)[0] < (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK):
-        return None
-    return knotted_ball(curve)
+    return curve.dimension == 3 and moebius_energy(curve)[0] >= (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK)

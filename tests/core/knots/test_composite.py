@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
+from mobius_flow.core.driver.outcome import UNTESTED
 from mobius_flow.core.knots import knot, scramble
-from mobius_flow.core.knots.composite import knotted_ball
+from mobius_flow.core.knots.composite import is_searchable, knotted_ball
+from shapes import chain_of_rings, regular_polygon
 
 COMPOSITES = ["3_1#3_1", "3_1#m3_1", "3_1#4_1", "4_1#5_2", "3_1#3_1#3_1", "L2a1#L2a1", "3_1#L2a1"]
 PRIMES = ["0_1", "3_1", "4_1", "7_7", "8_19", "9_46", "10_132", "L2a1", "L6a4", "T(2,4)"]
@@ -44,11 +46,61 @@ def test_it_moves_with_the_curve():
     assert moved.radius == pytest.approx(1e-3 * ball.radius)
 
 
-def test_flat_curves_and_many_components_have_none():
-    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    assert knotted_ball(Curve(square)) is None
-    rings = [np.column_stack([square, np.full(4, float(k))]) for k in range(5)]
-    assert knotted_ball(Curve.from_components(rings)) is None
+def test_flat_curves_have_none():
+    assert knotted_ball(Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]))) is None
+
+
+@pytest.mark.parametrize("rings", [3, 5, 16])
+def test_chains_have_one_as_rings_that_are_linked_lie_together(rings):
+    curve = chain_of_rings(rings, (20,))
+    ball = knotted_ball(curve)
+    sides = {tuple(np.unique(ball.contains(part))) for part in curve.components}
+    assert sides == {(False,), (True,), (False, True)}
+
+
+def test_a_closed_chain_has_none():
+    assert knotted_ball(closed_chain(6)) is None
+
+
+def closed_chain(rings):
+    """Round rings, each through the next one and the last through the first."""
+    t = 2 * np.pi * np.arange(20) / 20
+    components = []
+    for angle in 2 * np.pi * np.arange(rings) / rings:
+        outward, along = np.array([[np.cos(angle), np.sin(angle), 0.0], [-np.sin(angle), np.cos(angle), 0.0]])
+        across = [outward, np.array([0.0, 0.0, 1.0])][len(components) % 2]
+        components.append(0.23 * rings * outward + np.outer(np.cos(t), along) + np.outer(np.sin(t), across))
+    return Curve.from_components(components)
+
+
+def test_what_would_take_too_long_is_not_searched():
+    """Rings that are not linked may lie in any way."""
+    ring = regular_polygon(12).vertices
+    for rings, searched in ((4, True), (8, False), (500, False)):
+        curve = Curve.from_components([ring + np.array([0.0, 0.0, 0.1 * k]) for k in range(rings)])
+        assert is_searchable(curve) == searched
+    assert knotted_ball(curve) is None
+
+
+def test_a_chain_of_five_rings_does_not_converge():
+    result = minimize(chain_of_rings(5, (20,)), RelaxOptions(mesh="fixed", vertices=100, tolerance=3e-3))
+    assert result.status is Status.STALLED
+    assert "composite" in result.message
+
+
+def test_what_was_not_searched_is_said(monkeypatch):
+    monkeypatch.setattr("mobius_flow.core.knots.composite._MAX_TRIALS", 1)
+    result = minimize(chain_of_rings(3, (20,)), RelaxOptions(mesh="fixed", vertices=60, tolerance=3e-3))
+    assert result.status is Status.CONVERGED
+    assert f"; {UNTESTED}" in result.message
+
+
+def test_what_else_was_to_say_is_said_of_composites_too():
+    options = RelaxOptions(mesh="fixed", vertices=80, tolerance=3e-3, stability=True)
+    result = minimize(knot("L2a1#L2a1"), options)
+    assert result.status is Status.STALLED
+    assert "no shape of least energy; a " in result.message
+    assert result.outcome.negative_eigenvalues is not None
 
 
 @pytest.mark.parametrize(("name", "vertices"), [("granny", 100), ("L2a1#L2a1", 80)])
