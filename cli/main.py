@@ -24,7 +24,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError:
         return _end("there is not enough memory for this; use fewer vertices", FAILED)
     except Exception as error:
-        return _end(*_explained(error))
+        return _end(*explained(error))
 
 
 def _run(arguments: Sequence[str] | None) -> int:
@@ -46,7 +46,7 @@ def _end(sentence: str, status: int) -> int:
     return status
 
 
-def _explained(error: Exception) -> tuple[str, int]:
+def explained(error: Exception) -> tuple[str, int]:
     """The sentence and the exit status for an exception."""
     if isinstance(error, streams.OutputStreamError):
         return str(error), BAD_INPUT

@@ -11,6 +11,7 @@ from .streams import emit, one_line
 
 COMMANDS = {
     "relax": "relax a curve",
+    "batch": "relax many curves, on all cores or a cluster",
     "energy": "print the energy of a curve",
     "verify": "check a trajectory for contact",
     "compare": "compare descent methods on a curve",

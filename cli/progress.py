@@ -18,7 +18,7 @@ class Progress:
         self._bar: Any = None
         self._start: float | None = None
         if shown:
-            self._bar = _bar(total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}")
+            self._bar = bar(total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}")
 
     def __enter__(self) -> "Progress":
         return self
@@ -46,20 +46,20 @@ class Progress:
 @contextmanager
 def leg_progress(shown: bool) -> Iterator[Callable[[int, int], None] | None]:
     """Give what shows the numbers of legs that are checked and of all, or None where nothing can be shown."""
-    bar = _bar(unit=" legs") if shown else None
-    if bar is None:
+    legs = bar(unit=" legs") if shown else None
+    if legs is None:
         yield None
         return
 
     def show(done: int, total: int) -> None:
-        bar.total = total or None
-        bar.update(done - bar.n)
+        legs.total = total or None
+        legs.update(done - legs.n)
 
-    with bar:
+    with legs:
         yield show
 
 
-def _bar(**options: Any) -> Any:
+def bar(**options: Any) -> Any:
     """A bar of tqdm that vanishes in the end; None if it is not installed."""
     try:
         from tqdm import tqdm

@@ -1,0 +1,71 @@
+"""``mobius-flow batch``: relax tables of knots, on all cores of one machine or on a cluster."""
+
+import argparse
+
+from ...core.errors import OptionError
+from .. import options as relax_options
+from ..streams import emit
+
+_DESCRIPTION = "Relax many curves, each in a folder of its own, and write one table of the results."
+_EPILOG = """\
+examples:
+  mobius-flow batch 3_1..7_7 -o results --starts 3
+  mobius-flow batch curves/ "more/*.obj" trefoil "T(3,5)" -o results --time-limit 600
+  mobius-flow batch 3_1..10_165 -o /shared/results --scheduler tcp://head:8786 --extrapolate
+
+Start 1 is the input. Start k above 1 is the same knot, scrambled with seed S + k by random moves that are each checked
+to be an isotopy. A run that is refused, killed or too slow is a row that says why, and the others go on.
+
+DIR/NAME, or DIR/NAME-k for start k above 1, holds curve.txt, report.json and trajectory.npz, and appears whole or not
+at all. The table, DIR/results.csv and DIR/results.parquet, has a row for each run of the command. The same command
+again skips what is finished (the same input, options and version) and tries again what failed. On a cluster DIR and
+the input files are on a file system that all machines share.
+
+exit status:
+  0    every run has its row, also if some of them failed: the rows and the last line say so
+  1    memory ran out, or the cluster was lost
+  2    bad options, or inputs that name nothing
+  130  interrupted; the table has what is finished
+"""
+
+
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description, parser.epilog = _DESCRIPTION, _EPILOG
+    parser.add_argument(
+        "inputs",
+        metavar="INPUT",
+        nargs="+",
+        help="curve files, directories of them, patterns, names of knots, ranges of the table such as 3_1..8_21",
+    )
+    parser.add_argument("-o", "--output", required=True, metavar="DIR", help="directory of the results")
+    parser.add_argument("--starts", type=int, default=1, metavar="K", help="runs per input (default: 1)")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the scrambled starts (default: 0)")
+    parser.add_argument(
+        "--extrapolate",
+        action="store_true",
+        help="also estimate the smooth curve's energy, from two more runs with edges halved twice: ten times the work",
+    )
+    parser.add_argument("--time-limit", type=float, metavar="T", help="seconds per run (default: none)")
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="of a running Dask scheduler (default: all cores of this machine)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    relax_options.add_to(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Relax everything that is not finished, write the table, and print a line about it."""
+    if options.starts < 1:
+        raise OptionError(f"starts is {options.starts}; it must be 1 or more")
+    if options.seed < 0:
+        raise OptionError(f"seed is {options.seed}; it must be 0 or more")
+    if options.time_limit is not None and not 0.0 < options.time_limit < float("inf"):
+        raise OptionError(f"time-limit is {options.time_limit}; it must be a finite number of seconds above 0")
+    wanted = relax_options.from_arguments(options)
+    from .campaign import campaign
+
+    table = campaign(options, wanted)
+    if not options.quiet:
+        emit(table.summary())
+    return 0

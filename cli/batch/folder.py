@@ -1,0 +1,70 @@
+"""Folders of results, each whole or not there."""
+
+import json
+import os
+import secrets
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ...core import MobiusFlowError
+from .job import REPORT, Job
+from .table import Row
+
+_UNFINISHED = ".partial"
+
+
+@contextmanager
+def new_folder(path: Path) -> Iterator[Path]:
+    """Give an empty directory to fill; it takes the place of ``path`` when the block ends well, and else vanishes."""
+    room = path.with_name(f".{path.name}.{secrets.token_hex(8)}{_UNFINISHED}")
+    room.mkdir()
+    try:
+        yield room
+        _take_place(room, path)
+    finally:
+        shutil.rmtree(room, ignore_errors=True)
+
+
+def _take_place(room: Path, path: Path) -> None:
+    """Move a directory; results that are there give way, and only empty directories do so in a single move."""
+    check_replaceable(path)
+    try:
+        room.rename(path)
+    except OSError:
+        old = room.with_name(f".{secrets.token_hex(8)}{_UNFINISHED}")
+        path.rename(old)
+        room.rename(path)
+        shutil.rmtree(old, ignore_errors=True)
+
+
+def check_replaceable(path: Path) -> None:
+    """Raise a MobiusFlowError if there is something else than results."""
+    if os.path.lexists(path) and not (path / REPORT).is_file():
+        raise MobiusFlowError(f"{path}: is there already, and holds no results; move it, or name another directory")
+
+
+def sweep(directory: Path) -> None:
+    """Remove what killed runs have left behind; only while none is running."""
+    for room in directory.glob(f".*{_UNFINISHED}"):
+        shutil.rmtree(room, ignore_errors=True)
+
+
+def finished(job: Job) -> Row | None:
+    """The row of a run whose results are there already; None if they are missing, or of another recipe."""
+    try:
+        report: Any = json.loads(Path(job.folder, REPORT).read_text(encoding="utf-8"))
+        return Row(**report["row"]) if report["recipe"] == job.recipe else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def write_report(room: Path, job: Job, row: Row, report: dict[str, object]) -> None:
+    """Write the report, with what `finished` looks for."""
+    text = json.dumps(report | {"row": vars(row), "recipe": job.recipe}, indent=1) + "\n"
+    with (room / REPORT).open("w", encoding="utf-8") as stream:
+        stream.write(text)
+        stream.flush()
+        os.fsync(stream.fileno())

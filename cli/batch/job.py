@@ -1,0 +1,100 @@
+"""One run of a batch: what it starts from, and where its results go."""
+
+import hashlib
+import json
+import stat
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from ... import __version__
+from ...core import MobiusFlowError, RelaxOptions
+from ...core.curve.io.source import MAX_BYTES
+from .inputs import Input
+
+CURVE, REPORT, TRAJECTORY = "curve.txt", "report.json", "trajectory.npz"
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run, in plain values, which travel to other machines.
+
+    Attributes
+    ----------
+    name
+        Of the input.
+    start
+        1 for the input itself; above that it is scrambled.
+    seed
+        That it is scrambled by; None for the input itself.
+    file
+        Absolute path of the input; None for a knot that is made by its name.
+    sha256
+        Of the file when the job was made; None where there is nothing to read.
+    folder
+        Absolute path of the results.
+    options
+        Of the relaxation.
+    extrapolate
+        Whether the smooth curve's energy is wanted.
+    version
+        Of the program that made the job.
+    """
+
+    name: str
+    start: int
+    seed: int | None
+    file: str | None
+    sha256: str | None
+    folder: str
+    options: Mapping[str, object]
+    extrapolate: bool
+    version: str = __version__
+
+    @property
+    def recipe(self) -> dict[str, object]:
+        """All that the results depend on, as JSON has it: runs of equal recipes need not be repeated."""
+        made = asdict(self)
+        del made["folder"], made["file"]
+        plain: dict[str, object] = json.loads(json.dumps(made))
+        return plain
+
+
+def jobs(
+    inputs: Iterable[Input], starts: int, seed: int, directory: Path, options: RelaxOptions, extrapolate: bool
+) -> list[Job]:
+    """The runs of a batch; a MobiusFlowError tells where two would write into one folder."""
+    made = []
+    values = asdict(options)
+    for each in inputs:
+        sha256 = None if each.file is None else _hash(each.file)
+        for start in range(1, starts + 1):
+            folder = directory / (each.name if start == 1 else f"{each.name}-{start}")
+            scrambled = None if start == 1 else seed + start
+            file = None if each.file is None else str(each.file)
+            made.append(Job(each.name, start, scrambled, file, sha256, str(folder), values, extrapolate))
+    _check_folders(made)
+    return made
+
+
+def _check_folders(made: Iterable[Job]) -> None:
+    """Case does not tell folders apart everywhere, and the tables are in the same directory."""
+    count = Counter(job.folder.casefold() for job in made)
+    for job in made:
+        name = Path(job.folder).name
+        if count[job.folder.casefold()] > 1 or name.casefold() in ("results.csv", "results.parquet"):
+            raise MobiusFlowError(
+                f"{job.file or job.name}: its results would not be the only ones in {name}; rename it"
+            )
+
+
+def _hash(path: Path) -> str | None:
+    """Of a file's bytes; None for what no run can read: its own sentence comes from there."""
+    try:
+        found = path.stat()
+        if not stat.S_ISREG(found.st_mode) or found.st_size > MAX_BYTES:
+            return None
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return None

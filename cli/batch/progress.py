@@ -1,0 +1,42 @@
+"""How far a batch is, on a terminal."""
+
+import sys
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from ..progress import bar
+from .table import Row
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+
+class Progress:
+    """A bar of the runs that are done, with the numbers of those that failed and that are running, and the time left.
+
+    Above it stands where the cluster's dashboard is.
+    """
+
+    def __init__(self, client: "Client", total: int, shown: bool) -> None:
+        self._client, self._failed = client, 0
+        self._bar = bar(total=total, unit=" runs", smoothing=0.1) if shown else None
+        if shown:
+            print(f"mobius-flow: dashboard at {client.dashboard_link}", file=sys.stderr)
+
+    def __enter__(self) -> "Progress":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def show(self, row: Row) -> None:
+        """Count a run that has ended."""
+        self._failed += row.failed
+        if self._bar is not None:
+            left = self._bar.total - self._bar.n - 1
+            running = min(left, sum(self._client.nthreads().values()))
+            self._bar.set_postfix_str(f"{self._failed} failed, {running} running", refresh=False)
+            self._bar.update()

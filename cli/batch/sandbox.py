@@ -1,0 +1,108 @@
+"""Runs in child processes, one for each thread of a Dask worker, so that what hangs, crashes or is killed is only one.
+
+A child lives on from run to run: it takes half a second to import NumPy and SciPy.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import asdict
+from weakref import WeakSet
+
+from . import child
+from .job import Job
+from .table import Row
+
+# one thread each: set before the child imports NumPy
+_ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OPENBLAS", "OMP", "MKL")}
+_own = threading.local()
+_open: "WeakSet[Sandbox]" = WeakSet()
+
+
+class ChildDiedError(Exception):
+    """A child ended without an answer; Dask tries its run again."""
+
+
+class Sandbox:
+    """A child process that does one run at a time."""
+
+    def __init__(self) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", child.__name__],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=os.environ | _ONE_THREAD,
+            encoding="utf-8",
+            start_new_session=True,  # Ctrl-C is for the parent
+        )
+        _open.add(self)
+        self._answer()  # it is ready, or there would be an error
+
+    def run(self, job: Job, limit: float | None) -> Row:
+        """The row of a run of so many seconds at most; raises ChildDiedError, and then another sandbox is needed."""
+        seconds = threading.TIMEOUT_MAX if limit is None else limit
+        watchdog, began = threading.Timer(seconds, self._process.kill), time.monotonic()
+        watchdog.start()
+        try:
+            return Row(**json.loads(self._answer(json.dumps(asdict(job)))))
+        except ChildDiedError:
+            if time.monotonic() - began < seconds:
+                raise
+            return Row.failure(job, f"stopped at the time limit, {seconds:g} s")
+        finally:
+            watchdog.cancel()
+
+    def close(self) -> None:
+        """End the child, and the run under way."""
+        self._process.kill()
+        self._process.communicate()
+
+    @property
+    def alive(self) -> bool:
+        """Whether it can do a run."""
+        return self._process.poll() is None
+
+    def _answer(self, line: str = "") -> str:
+        """The next line of the child, after one for it."""
+        process = self._process
+        assert process.stdin is not None, "it is a pipe"
+        assert process.stdout is not None, "it is a pipe"
+        try:
+            if line:
+                print(line, file=process.stdin, flush=True)
+            answer = process.stdout.readline()
+        except OSError:
+            answer = ""
+        if not answer.endswith("\n"):
+            self.close()
+            raise ChildDiedError(f"its process {_ended(process.returncode)}")
+        return answer
+
+
+def run(job: Job, limit: float | None) -> Row:
+    """Do a run in the child of this thread, as a task of Dask; raises ChildDiedError."""
+    box: Sandbox | None = getattr(_own, "box", None)
+    if box is None or not box.alive:
+        box = _own.box = Sandbox()
+    return box.run(job, limit)
+
+
+def close_all() -> None:
+    """End all children of this process."""
+    for box in list(_open):
+        box.close()
+
+
+def _ended(code: int) -> str:
+    """How a process ended."""
+    if code >= 0:
+        return f"ended with status {code}"
+    try:
+        return f"was killed by {signal.Signals(-code).name}"
+    except ValueError:
+        return f"was killed by signal {-code}"
