@@ -1,5 +1,7 @@
 """A composite curve has no shape of least energy: only the mesh keeps one of its parts from shrinking to a point."""
 
+from dataclasses import replace
+
 from ...curve import Curve
 from ...hierarchy import moebius_energy
 from ...knots.composite import Ball, knotted_ball
@@ -27,7 +29,7 @@ class Composite:
         for curve in split(self._run.iterate.curve, problem.constraints.parts):
             if (ball := _cutting_ball(curve)) is not None:
                 center = ", ".join(f"{x:.3g}" for x in ball.center)
-                return stalled(COMPOSITE.format(radius=ball.radius, center=center))
+                return replace(stalled(COMPOSITE.format(radius=ball.radius, center=center)), unbounded=True)
         return event
 
 
