@@ -39,15 +39,25 @@ class WithOutcome:
 def iterates(run: Run) -> Relaxation:
     """Yield the start and every accepted step or change of mesh, each once; return how it ended."""
     rises = Rises()
+    yield run.iterate
+    outcome = yield from descent(run, rises)
+    return told(outcome, run, rises)
+
+
+def descent(run: Run, rises: Rises) -> Relaxation:
+    """Yield what comes after the point that a run has reached; return how it ended, without what `told` adds."""
     try:
-        outcome = yield from _iterates(run, [make(run) for make in INTERVENTIONS], rises)
+        return (yield from _descent(run, [make(run) for make in INTERVENTIONS], rises))
     except np.linalg.LinAlgError as error:
-        outcome = stalled(DEGENERATE.format(error=error))
+        return stalled(DEGENERATE.format(error=error))
+
+
+def told(outcome: Outcome, run: Run, rises: Rises) -> Outcome:
+    """The outcome with what is to be said of the whole run."""
     return with_errors(rises.told(outcome, run.iterate.index), run)
 
 
-def _iterates(run: Run, interventions: Sequence[Intervention], rises: Rises) -> Relaxation:
-    yield run.iterate
+def _descent(run: Run, interventions: Sequence[Intervention], rises: Rises) -> Relaxation:
     event: Event = Start()
     while True:
         answer = _answer(event, interventions)

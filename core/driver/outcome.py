@@ -34,6 +34,8 @@ class Outcome:
         Of the hierarchical solver, when they were last looked at: in the end, unless that came of a sudden; else None.
     place
         Where on the last curve the reason is, if it is somewhere.
+    unbounded
+        Whether strands pull tight without limit, so that there is no least energy to look for.
     """
 
     status: Status
@@ -41,6 +43,12 @@ class Outcome:
     negative_eigenvalues: int | None = None
     sampled_errors: SampledErrors | None = None
     place: Place | None = None
+    unbounded: bool = False
+
+    @property
+    def may_be_left(self) -> bool:
+        """Whether there may be less energy elsewhere: the curve has come to rest, or is stuck."""
+        return self.status in (Status.CONVERGED, Status.STALLED) and not self.unbounded
 
     @property
     def converged(self) -> bool:

@@ -11,8 +11,9 @@ from ..curve import Curve
 from ..errors import CurveError, OptionError
 from ..hierarchy import moebius_energy
 from ..units import centred
+from .hops import hopping
 from .iterate import Iterate
-from .loop import Relaxation, WithOutcome, iterates
+from .loop import Relaxation, WithOutcome
 from .options import RelaxOptions
 from .outcome import FEWER, INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import prepared_start, start_problem
@@ -132,7 +133,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
         run = Run(start_problem(start, options), start, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start)}") from error
-    return iterates(run)
+    return hopping(run)
 
 
 def _remedy(curve: Curve) -> str:

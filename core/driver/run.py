@@ -51,6 +51,7 @@ class Run:
         self.sampled_errors: SampledErrors | None = None
         self.point = problem.at_curve(start).anchored
         self._memory = State()
+        self._tried = 0
         self._certified = problem.certifiable  # an embedded start, and so far no motion
         self.iterate = self._described(0)
 
@@ -62,7 +63,12 @@ class Run:
     @property
     def iterations_left(self) -> int:
         """How many more iterations there may be."""
-        return self.options.max_iterations - self.iterate.index
+        return self.options.max_iterations - self.iterations
+
+    @property
+    def iterations(self) -> int:
+        """How many there were, those of trials included of which nothing is left."""
+        return self.iterate.index + self._tried
 
     def step(self) -> Step | NoStep:
         """The present method's next step, ending at a point of the present problem."""
@@ -85,6 +91,17 @@ class Run:
         self._certified &= step.certified
         path = tuple(leg.end.placed for leg in step.legs)
         self.iterate = self._described(self.iterate.index + 1, step.size, path)
+        return self.iterate
+
+    def tried(self, iterations: int) -> None:
+        """Take iterations of a trial off those that are left."""
+        self._tried += iterations
+
+    def hop(self, other: "Run", path: tuple[FloatArray, ...], certified: bool) -> Iterate:
+        """Go in one iterate to where another run on the same mesh has got to, by a way that is ``certified`` or not."""
+        self.point, self.method, self._memory = other.point, METHODS[self.options.method], State()
+        self._certified &= certified
+        self.iterate = self._described(self.iterate.index + 1, path=path)
         return self.iterate
 
     def allows(self, change: Change) -> bool:

@@ -20,7 +20,7 @@ def termination(run: Run) -> Outcome | None:
 
 def at_limit(run: Run) -> Outcome:
     """How a run ends that may not go on."""
-    outcome = out_of_iterations(run.iterate.index)
+    outcome = out_of_iterations(run.iterations)
     return outcome if _feasible(run) else outcome.adding(UNEVEN.format(percent=100 * run.iterate.edge_length_error))
 
 

@@ -50,6 +50,8 @@ class CoarseStart:
 
     def _is_wanted(self) -> bool:
         options, curve = self._run.options, self._run.iterate.curve
+        if self._run.iterate.index > 0:
+            return False  # after a hop the curve is untangled already
         if options.mesh != "auto" or options.edge_lengths not in ("auto", "equal"):
             return False
         if not self._problem.geometry.prescribes:

@@ -1,5 +1,7 @@
 """A composite curve has no shape of least energy: only the mesh keeps one of its parts from shrinking to a point."""
 
+from dataclasses import replace
+
 from ...curve import Curve
 from ...hierarchy import moebius_energy
 from ...knots.composite import is_searchable, knotted_ball
@@ -28,7 +30,7 @@ class Composite:
         ball = next(filter(None, map(knotted_ball, parts)), None)
         if ball is not None:
             center = ", ".join(f"{x:.3g}" for x in ball.center)
-            return event.stalling(COMPOSITE.format(radius=ball.radius, center=center))
+            return replace(event.stalling(COMPOSITE.format(radius=ball.radius, center=center)), unbounded=True)
         return event if all(map(is_searchable, parts)) else event.adding(UNTESTED)
 
 
