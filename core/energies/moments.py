@@ -64,7 +64,7 @@ class _Tails(NamedTuple):
 
     @classmethod
     def of(cls, h: FloatArray, a: FloatArray, b: FloatArray) -> "_Tails":
-        return cls(h, a, b, _tail_square(h / a), _tail_square(h / b))
+        return cls(h, a, b, tail_square(h / a), tail_square(h / b))
 
     def inverse(self) -> FloatArray:
         """arctan(h/a) − arctan(h/b) over h, by the addition theorem."""
@@ -78,11 +78,11 @@ class _Tails(NamedTuple):
         return self.square_a / self.a**3 - self.square_b / self.b**3
 
     def cube(self) -> FloatArray:
-        tail_a, tail_b = _tail_cube(self.h / self.a, self.square_a), _tail_cube(self.h / self.b, self.square_b)
+        tail_a, tail_b = tail_cube(self.h / self.a, self.square_a), tail_cube(self.h / self.b, self.square_b)
         return tail_a / self.a**5 - tail_b / self.b**5
 
 
-def _tail_square(x: FloatArray) -> FloatArray:
+def tail_square(x: FloatArray) -> FloatArray:
     """∫_1^∞ du/(x² + u²)² = (arctan x − x/(1 + x²))/(2x³) = 1/3 − 2x²/5 + 3x⁴/7 − …, also at 0."""
     x2 = x * x
     small = x2 < _SERIES_LIMIT
@@ -91,13 +91,13 @@ def _tail_square(x: FloatArray) -> FloatArray:
     return np.where(small, series, (np.arctan(safe) - safe / (1.0 + safe**2)) / (2.0 * safe**3))
 
 
-def _tail_cube(x: FloatArray, tail_square: FloatArray) -> FloatArray:
+def tail_cube(x: FloatArray, square: FloatArray) -> FloatArray:
     """∫_1^∞ du/(x² + u²)³ = (3 ∫_1^∞ du/(x² + u²)² − 1/(1 + x²)²)/(4x²) = 1/5 − 3x²/7 + 6x⁴/9 − …, also at 0."""
     x2 = x * x
     small = x2 < _SERIES_LIMIT
     safe = np.where(small, 1.0, x2)
     series = _alternating(x2, [(k + 1) * (k + 2) / (2 * (2 * k + 5)) for k in range(_SERIES_TERMS)])
-    return np.where(small, series, (3.0 * tail_square - 1.0 / (1.0 + safe) ** 2) / (4.0 * safe))
+    return np.where(small, series, (3.0 * square - 1.0 / (1.0 + safe) ** 2) / (4.0 * safe))
 
 
 def _alternating(y: FloatArray, coefficients: list[float]) -> FloatArray:

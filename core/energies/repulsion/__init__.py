@@ -1,0 +1,5 @@
+"""The repulsive potential between a curve and still obstacles."""
+
+from .repulsion import Repulsion
+
+__all__ = ["Repulsion"]

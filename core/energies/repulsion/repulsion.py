@@ -1,0 +1,118 @@
+"""The repulsion of still obstacles: their potential, integrated along a curve.
+
+    R(P) = Σ_I ∫_I Φ ds,   Φ(x) = ∫_triangles dA(y)/|x − y|³ + 2 ∫_segments ds(y)/|x − y|²
+
+has no unit of length, as the Möbius energy has none, and each exponent is the least with which every contact, the
+transversal one too, takes infinitely much.  A plane at the distance h has Φ = 2π/h, and so has a straight line: that is
+the force per length, too, with which a parallel strand at that distance repels by its Möbius energy.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...curve import Curve, Mesh
+from ...obstacle import Obstacle
+from ...types import FloatArray
+from .clusters import Clusters
+from .integrals import Forces, Integrals
+from .panels import Edges
+from .schedule import Schedule
+
+THETA = 0.4  # errors of some 10⁻⁴ of the potential and 10⁻³ of its gradient
+KEPT = 0.9  # slack up to which a schedule is as good as a new one
+OUTDATED = 0.75  # slack from which on it is not even good enough for a line search
+
+
+@dataclass(frozen=True, eq=False)
+class Repulsion:
+    """R of simplices of one dimension, triangles or segments.
+
+    Every curve has a schedule of its own, at whose change the value jumps by its error.  `frozen_at` keeps one, which
+    makes a smooth function as long as it suits: what a line search should see.
+
+    Parameters
+    ----------
+    clusters
+        The simplices, in the units of curves.
+    weight
+        Factor of R.
+    theta
+        Separation parameter of clusters; with 0 all simplices count one by one.
+    schedule
+        The one to be used as long as it suits; None for that of each curve.
+    """
+
+    clusters: Clusters
+    weight: float = 1.0
+    theta: float = THETA
+    schedule: Schedule | None = None
+
+    name = "repulsion"
+    description = "potential of still obstacles, integrated along the curve"
+
+    @classmethod
+    def of(cls, obstacles: Iterable[Obstacle], weight: float = 1.0) -> "tuple[Repulsion, ...]":
+        """That of obstacles, in the units of curves: one for all triangles, one for all segments, if there are any."""
+        corners = [obstacle.corners.transpose(1, 2, 0) for obstacle in obstacles]
+        kinds = ([each for each in corners if len(each) == count] for count in (3, 2))
+        return tuple(cls(Clusters.of(np.concatenate(kind, axis=2)), weight) for kind in kinds if kind)
+
+    def frozen_at(self, curve: Curve) -> "Repulsion":
+        """The smooth function that the schedule of ``curve`` makes of it, or that its own does if it suits."""
+        if self.schedule is not None and self.schedule.suits(curve, self.clusters, KEPT):
+            return self
+        return replace(self, schedule=_schedule(curve, self.clusters, self.theta))
+
+    def value(self, curve: Curve) -> float:
+        """R of the curve."""
+        return self.value_and_derivative(curve)[0]
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        """R and its derivative with respect to the vertices, shape (n, 3)."""
+        edges = Edges.of(curve.mesh, curve.vertices)
+        integrals = Integrals.of(edges, self.clusters, self._schedule(curve))
+        derivative = _at_vertices(curve.mesh, integrals.forces(edges))
+        return self.weight * integrals.energy(edges), self.weight * derivative
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        """D²R v for ``v`` of shape (n, 3); shape (n, 3)."""
+        changes = self._force_changes(curve, [Edges.of(curve.mesh, v)])
+        return self.weight * _at_vertices(curve.mesh, changes[0])
+
+    def sparse_hessian(self, curve: Curve) -> sp.csr_array:
+        """D²R as a sparse matrix, which couples the ends of edges only, in the order of ``vertices.ravel()``."""
+        n = len(curve)
+        rest, unit = np.zeros((3, n)), np.eye(3)[:, :, None] * np.ones(n)
+        tails_move, heads_move = [Edges(e, -e) for e in unit], [Edges(rest, e) for e in unit]
+        changes = np.array(self._force_changes(curve, [*tails_move, *heads_move]))
+        ends = np.stack([curve.mesh.tails, curve.mesh.heads])
+        index = (3 * ends[:, None] + np.arange(3)[:, None]).reshape(6, n)
+        rows, columns = np.broadcast_arrays(index[None], index[:, None])
+        return sp.csr_array((self.weight * changes.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, 3 * n))
+
+    def _schedule(self, curve: Curve) -> Schedule:
+        """The schedule that counts at a curve: its own, or that of the curve."""
+        if self.schedule is not None and self.schedule.suits(curve, self.clusters, OUTDATED):
+            return self.schedule
+        return _schedule(curve, self.clusters, self.theta)
+
+    def _force_changes(self, curve: Curve, motions: list[Edges]) -> list[Forces]:
+        """How the derivative by the ends of edges changes along some motions."""
+        schedule, edges = self._schedule(curve), Edges.of(curve.mesh, curve.vertices)
+        integrals = Integrals.of(edges, self.clusters, schedule)
+        changes = (Integrals.of(edges, self.clusters, schedule, motion) for motion in motions)
+        return [integrals.force_changes(edges, motion, each) for motion, each in zip(motions, changes, strict=True)]
+
+
+@lru_cache(maxsize=2)
+def _schedule(curve: Curve, clusters: Clusters, theta: float) -> Schedule:
+    """That of a curve; the last ones are kept, for value, derivative and second derivative alike."""
+    return Schedule.of(curve, clusters, theta)
+
+
+def _at_vertices(mesh: Mesh, forces: Forces) -> FloatArray:
+    return mesh.scatter(forces.at_tails.T, forces.at_heads.T)
