@@ -5,7 +5,7 @@ from typing import Any
 
 from ..core import CurveError
 from ..core.curve.io import FORMATS
-from ..core.knots import knot, knot_names, smooth_knot
+from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 from .streams import emit
@@ -48,7 +48,10 @@ def run(options: argparse.Namespace) -> int:
     """Make the knot and write it."""
     curves.format_for(options.output, options.format)
     check_place(options.output)
-    curve = (smooth_knot if options.smooth else knot)(options.name, vertices=options.vertices)
+    try:
+        curve = (smooth_knot if options.smooth else knot)(options.name, vertices=options.vertices)
+    except UnknownKnotError as error:
+        raise UnknownKnotError(f"{error}; see mobius-flow knot --list") from error
     if len(curve) > (most := curves.MAX_VERTICES):
         told = f"{options.name[:60]} gets {len(curve)} vertices, and no command takes more than {most}"
         raise CurveError(f"{told}; give --vertices {most}")

@@ -29,7 +29,8 @@ class CURVE_OT_mobius_flow_bake_again(Rebaking, bpy.types.Operator):  # noqa: N8
 
 
 class CURVE_OT_mobius_flow_continue(Rebaking, bpy.types.Operator):  # noqa: N801
-    """Relax the selected curves on from the end of their animation; new keys follow the old ones"""
+    """Relax the selected curves on from the end of their animation, with the points that they have, whatever \
+Vertices says; new keys follow the old ones"""
 
     bl_idname = "curve.mobius_flow_continue"
     bl_label = "Continue"

@@ -103,8 +103,11 @@ class CURVE_OT_mobius_flow_face_camera(_Turning, bpy.types.Operator):  # noqa: N
 def _tell(operator: bpy.types.Operator, what: Phrase, unproved: int) -> None:
     """Say what was done, and whether the animation is proved still."""
     if unproved:
-        sentence = "{done}; {count} motions between keys are NOT proved free of contact"
-        operator.report({"WARNING"}, rpt_(sentence, done=what, count=unproved))
+        one, several = (
+            "{done}; 1 motion between keys is NOT proved free of contact",
+            "{done}; {count} motions between keys are NOT proved free of contact",
+        )
+        operator.report({"WARNING"}, rpt_(one if unproved == 1 else several, done=what, count=unproved))
     else:
         operator.report({"INFO"}, rpt_("{done}, proved free of contact", done=what))
 

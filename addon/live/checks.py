@@ -88,8 +88,7 @@ def bare(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
     if found is None:
         return None
     if bake.was_baked(found.data):
-        sentence = "'{name}' has other keys or points than it was baked with; undo that, or relax a copy"
-        return Refusal(Phrase(sentence, name=found.name))
+        return _changed(found)
     return Refusal(Phrase("'{name}' has no keys of Möbius Flow; press Relax first", name=found.name))
 
 
@@ -221,7 +220,13 @@ def _smooth(obj: "bpy.types.Object") -> Iterator[Refusal]:
 
 def _animation(obj: "bpy.types.Object") -> Iterator[Refusal]:
     if not bake.is_baked(obj.data) and (sentence := _animated(obj)):
-        yield Refusal(sentence, Remedy.COPY)
+        yield _changed(obj) if bake.was_baked(obj.data) else Refusal(sentence, Remedy.COPY)
+
+
+def _changed(obj: "bpy.types.Object") -> Refusal:
+    """Say that a curve was baked and is not any more what it was then: shape keys alone would be no hindrance."""
+    sentence = "'{name}' has other keys or points than it was baked with; undo that, or relax a copy"
+    return Refusal(Phrase(sentence, name=obj.name), Remedy.COPY)
 
 
 def _animated(obj: "bpy.types.Object") -> Phrase | None:

@@ -46,6 +46,8 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
         options = replace(options, mesh="fixed")
     if isinstance(methods, str):
         raise OptionError(f"methods are {methods!r:.60}; give a list of names")
+    if len(set(methods)) < len(methods):
+        raise OptionError(f"methods are {','.join(methods):.60}; give each of them once")
     start = prepared_start(curve, options.vertices, [replace(options, method=method) for method in methods])
     each = [replace(options, method=method, vertices=len(start)) for method in methods]
     for wanted in each:

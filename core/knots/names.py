@@ -137,8 +137,7 @@ def _unknown(name: str) -> UnknownKnotError:
     advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""
     return UnknownKnotError(
         f"no knot is called {name[:60]!r}; {advice}known are 0_1 to 10_165, links such as L2a1, words such as trefoil "
-        "or goeritz, T(p,q), braid(1,-2,...), m before a name for the mirror image, and sums A#B; "
-        "see mobius-flow knot --list"
+        "or goeritz, T(p,q), braid(1,-2,...), m before a name for the mirror image, and sums A#B"
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from ..curve import Curve, refine
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .rings import MAX_VERTICES
+from .rings import MAX_VERTICES, check_whole
 
 Crossing = tuple[int, int, int, int]
 _Dart = tuple[int, int]  # a crossing, and the place from 0 to 3 of an edge that leaves it
@@ -53,6 +53,7 @@ def diagram_knot(code: Sequence[Crossing], vertices: int | None = None) -> Curve
     curve = Curve(path)
     if vertices is None:
         return curve
+    check_whole(vertices)
     if not len(curve) <= vertices <= MAX_VERTICES:
         few = "few" if vertices < len(curve) else "many"
         raise CurveError(f"{vertices} vertices are too {few} for this diagram; give {len(curve)} to {MAX_VERTICES}")

@@ -61,13 +61,27 @@ def test_what_was_not_baked_cannot_be_baked_again():
         bpy.ops.curve.mobius_flow_scene_range()
 
 
+def test_to_continue_takes_the_points_that_there_are_and_says_so():
+    obj = add_trefoil()
+    relax(max_iterations=3, vertices=40)
+    assert bpy.ops.curve.mobius_flow_continue(**SHORT, vertices=90) == {"FINISHED"}
+    assert len(obj.data.splines[0].points) == 40
+    assert "whatever Vertices says" in bpy.ops.curve.mobius_flow_continue.get_rna_type().description
+
+
 def test_nobody_is_told_to_relax_what_has_other_keys_than_it_was_baked_with():
     obj = add_trefoil()
     relax(max_iterations=3)
     obj.shape_key_add(name="Mine")
     before = contents()
     sentence = "'Knot' has other keys or points than it was baked with; undo that, or relax a copy"
-    for call in (clear, bpy.ops.curve.mobius_flow_keep_size):
+    operators = bpy.ops.curve
+    for call in (
+        clear,
+        operators.mobius_flow_keep_size,
+        operators.mobius_flow_continue,
+        operators.mobius_flow_bake_again,
+    ):
         with pytest.raises(RuntimeError, match=sentence):
             call()
     assert contents() == before

@@ -52,6 +52,13 @@ def test_the_last_line_tells_objective_and_energy(tmp_path, capsys):
     assert f"Möbius energy {energy:.6g}" in line
 
 
+def test_an_unknown_knot_is_told_where_the_names_are(tmp_path, capsys):
+    for smooth in ([], ["--smooth"]):
+        assert run("knot", "nonsense", tmp_path / "k.vect", *smooth) == 2
+        assert "no knot is called 'nonsense'" in (said := capsys.readouterr().err)
+        assert said.endswith("; see mobius-flow knot --list\n")
+
+
 def test_compare_prints_objectives(trefoil, tmp_path, capsys):
     assert run("compare", trefoil, "--methods", "cg", "--max-iterations", 1, "-o", tmp_path / "c.json") == 0
     last = json.loads((tmp_path / "c.json").read_text())[0]["energy"][-1]

@@ -101,6 +101,7 @@ def test_what_an_output_cannot_hold_is_refused_before_the_work(
     [
         (["--methods", "lbfgs,trust-region", "--energy", "tangent-point"], "second derivative"),
         (["--methods", "lbfgs,nonsense"], "unknown"),
+        (["--methods", "lbfgs,lbfgs"], "give each of them once"),
         (["--methods", "cg", "--penalty", "3"], "penalty"),
         (["--methods", "lbfgs", "--metric", "nonsense"], "unknown"),
     ],

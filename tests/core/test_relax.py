@@ -232,6 +232,10 @@ def test_bad_options(options, message):
             "a Curve is wanted, not an object of type list",
         ),
         (lambda: compare(torus_trefoil(20), "lbfgs", RelaxOptions(), 1.0), "methods are 'lbfgs'; give a list of names"),
+        (
+            lambda: compare(torus_trefoil(20), ["lbfgs", "cg", "lbfgs"], RelaxOptions(), 1.0),
+            "methods are lbfgs,cg,lbfgs; give each of them once",
+        ),
         (lambda: Trajectory().add(5), "an Iterate is wanted, not an object of type int"),
         (lambda: read_curve(5), "path is of type int; give the name of a file"),
         (lambda: knot(5), "no knot is called '5'"),

@@ -271,6 +271,9 @@ _REPORTS = {
     ),
     "{done}, proved free of contact": "{done}, bewiesen berührungsfrei",
     "{done}. {hidden}": "{done}. {hidden}",
+    "{done}; 1 motion between keys is NOT proved free of contact": (
+        "{done}; 1 Bewegung zwischen Schlüsseln ist NICHT als berührungsfrei bewiesen"
+    ),
     "{done}; {count} motions between keys are NOT proved free of contact": (
         "{done}; {count} Bewegungen zwischen Schlüsseln sind NICHT als berührungsfrei bewiesen"
     ),

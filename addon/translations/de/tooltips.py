@@ -80,8 +80,10 @@ _OPERATORS = {
     "Relax the selected curves anew from how they were before they were baked; new keys replace the old ones": (
         "Die ausgewählten Kurven neu entspannen, beginnend vor dem Backen; neue Schlüssel ersetzen die alten"
     ),
-    "Relax the selected curves on from the end of their animation; new keys follow the old ones": (
-        "Die ausgewählten Kurven vom Ende ihrer Animation an weiter entspannen; neue Schlüssel folgen auf die alten"
+    "Relax the selected curves on from the end of their animation, with the points that they have, whatever Vertices "
+    "says; new keys follow the old ones": (
+        "Die ausgewählten Kurven vom Ende ihrer Animation an weiter entspannen, mit den Punkten, die sie haben, "
+        "wie auch immer Punkte eingestellt ist; neue Schlüssel folgen auf die alten"
     ),
     "Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes": (
         "Die ausgewählten Kurven gemeinsam entspannen, nie durch sich selbst oder einander hindurch, "

@@ -6,9 +6,9 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import contents, sentence, stored  # noqa: E402
-from mobius_flow.addon.engine import tube  # noqa: E402
 from mobius_flow.core import Curve  # noqa: E402
 from mobius_flow.core.collision import check_embedded  # noqa: E402
+from mobius_flow.core.curve import strands  # noqa: E402
 from mobius_flow.core.knots import knot  # noqa: E402
 
 
@@ -83,6 +83,13 @@ def test_what_is_no_knot_is_refused(options):
     assert contents() == before
 
 
+def test_a_misspelt_name_gets_no_advice_for_the_command_line():
+    with pytest.raises(RuntimeError, match="did you mean trefoil") as error:
+        bpy.ops.curve.mobius_flow_add_knot(knot="trefol")
+    assert "--" not in sentence(error.value)
+    assert "mobius-flow" not in sentence(error.value)
+
+
 def test_not_in_edit_mode():
     bpy.ops.curve.mobius_flow_add_knot()
     bpy.ops.object.mode_set(mode="EDIT")
@@ -95,8 +102,8 @@ def test_not_in_edit_mode():
 def test_strands_wound_tightly_do_not_take_all_pairs_of_points(monkeypatch, p, q):
     """All pairs within the thickest tube of T(60, 61) would be a hundred million."""
     looked_at = []
-    counted = tube.arc_distance_of_pairs
-    monkeypatch.setattr(tube, "arc_distance_of_pairs", lambda c, i, j: looked_at.append(len(i)) or counted(c, i, j))
+    counted = strands.arc_distance_of_pairs
+    monkeypatch.setattr(strands, "arc_distance_of_pairs", lambda c, i, j: looked_at.append(len(i)) or counted(c, i, j))
     bpy.ops.curve.mobius_flow_add_knot(kind="TORUS", p=p, q=q)
     obj = bpy.context.object
     assert obj.data.bevel_depth > 0

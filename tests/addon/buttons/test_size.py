@@ -106,6 +106,8 @@ def test_words_about_proofs():
     teller = Teller()
     shape._tell(teller, "It stays", 0)
     assert teller.words == ({"INFO"}, "It stays, proved free of contact")
+    shape._tell(teller, "It stays", 1)
+    assert teller.words == ({"WARNING"}, "It stays; 1 motion between keys is NOT proved free of contact")
     shape._tell(teller, "It stays", 2)
     assert teller.words == ({"WARNING"}, "It stays; 2 motions between keys are NOT proved free of contact")
 

@@ -101,6 +101,27 @@ def test_what_cannot_be_read_is_left_alone(name):
     assert contents() == before
 
 
+CROSSED = np.array([[0.0, 0.0, 0.0], [2.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]])
+
+
+def test_no_tube_fits_a_curve_that_touches_itself():
+    add_curve([CROSSED + 9.0])
+    before = contents()
+    with pytest.raises(RuntimeError) as error:
+        press("fit_tube")
+    said = "Spline 1 of 'Knot': segments 1 and 3 touch or cross near (10, 10, 9); move the strands apart"
+    assert sentence(error.value).lower() == said.lower()
+    assert contents() == before
+
+
+def test_no_tube_fits_curves_that_touch_each_other():
+    ring = hopf_link(24).components[0]
+    for name in "AB":
+        add_curve([ring], name)
+    with pytest.raises(RuntimeError, match=r"spline 1 of 'A' and .* spline 1 of 'B' touch or cross"):
+        press("fit_tube")
+
+
 @pytest.mark.parametrize("name", ["fit_tube", "color_components"])
 def test_shared_data_is_not_changed(name):
     obj = add_trefoil()

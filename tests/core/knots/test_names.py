@@ -1,10 +1,24 @@
 """The grammar of knot names."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from knot_type import knot_invariants
+from mobius_flow.core import Curve
 from mobius_flow.core.errors import CurveError, MobiusFlowError
-from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, UnknownKnotError, braid_word, knot, knot_names
+from mobius_flow.core.knots import (
+    HARD_UNKNOTS,
+    KNOTS,
+    UnknownKnotError,
+    braid_word,
+    knot,
+    knot_names,
+    lissajous_knot,
+    rope,
+    smooth_knot,
+    spiral,
+)
 
 SAME = {
     "3_1": ["trefoil", " Trefoil  Knot ", "TREFOIL", "3_1", "braid(1,1,1)", "braid( 1, 1,+1 )", "mm3_1"],
@@ -51,7 +65,7 @@ def test_handedness(name: str, genus: int, tau: int) -> None:
         ("braid(1,-2,x)", "'x' in 'braid(1,-2,x)' is not a whole number"),
         ("T(2,x)", "'x' in 'T(2,x)' is not a whole number"),
         (f"T(2,{'9' * 5000})", "up to 18 digits"),
-        ("T[2,3]", "knot --list"),
+        ("T[2,3]", "known are"),
         ("x" * 5000, "known are"),
     ],
 )
@@ -82,6 +96,25 @@ def test_listed_names_are_names() -> None:
 def test_too_few_vertices(name: str, vertices: int) -> None:
     with pytest.raises(CurveError, match="too few"):
         knot(name, vertices)
+
+
+MAKERS = {
+    "braid": lambda n: knot("3_1", n),
+    "torus": lambda n: knot("T(2,3)", n),
+    "diagram": lambda n: knot("goeritz", n),
+    "smooth": lambda n: smooth_knot("3_1", n),
+    "lissajous": lambda n: lissajous_knot((3, 2, 7), vertices=n),
+    "spiral": lambda n: spiral(2.0, n),
+    "rope": lambda n: rope(2.0, 0.1, n),
+}
+
+
+@pytest.mark.parametrize("make", MAKERS.values(), ids=MAKERS)
+@pytest.mark.parametrize("vertices", [300.5, 300.0, "300"])
+def test_vertices_are_counted_in_whole_numbers(make: Callable[[object], Curve], vertices: object) -> None:
+    with pytest.raises(CurveError, match=f"^vertices is {vertices!r}; it must be a whole number$"):
+        make(vertices)
+    assert len(make(np.int64(300))) == 300
 
 
 @pytest.mark.parametrize("vertices", [90, 101, 1000])
