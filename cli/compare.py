@@ -4,12 +4,10 @@ import argparse
 import csv
 import json
 import math
-import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..core import METHODS, MobiusFlowError
 from ..core.curve.io import FORMATS
@@ -18,12 +16,11 @@ from ..core.errors import OptionError, OutputError, counted, wrong_suffix
 from ..core.system.files import atomic_write
 from . import curves, signals
 from . import options as relax_options
+from .figures import figure_class
 from .places import check_places
 from .recovery import kept
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+_INSTEAD = "or write .csv or .json"
 _EPILOG = """\
 example:
   mobius-flow compare knot.txt --methods lbfgs,flow-moebius,flow-l2 --time-limit 20 -o figure.png
@@ -56,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
     if suffix not in WRITERS:
         raise OptionError(f"{options.output}: {wrong_suffix(options.output, WRITERS, 'outputs')}")
     if WRITERS[suffix] is _write_figure:
-        _figure_class()
+        figure_class(_INSTEAD)
     if not (math.isfinite(options.time_limit) and options.time_limit > 0):
         raise OptionError(f"time-limit is {options.time_limit}; it must be a finite number of seconds above 0")
     names = list(METHODS) if options.methods is None else [name.strip() for name in options.methods.split(",")]
@@ -120,7 +117,7 @@ def _write_csv(path: Path, runs: Sequence[History]) -> None:
 
 
 def _write_figure(path: Path, runs: Sequence[History]) -> None:
-    figure = _figure_class()(figsize=(13, 6), layout="constrained")
+    figure = figure_class(_INSTEAD)(figsize=(13, 6), layout="constrained")
     from matplotlib.ticker import LogFormatter
 
     left, right = figure.subplots(1, 2, sharey=True)
@@ -137,20 +134,6 @@ def _write_figure(path: Path, runs: Sequence[History]) -> None:
         axes.grid(alpha=0.3)
     figure.legend(*left.get_legend_handles_labels(), loc="outside right center", fontsize="small")
     figure.savefig(path, dpi=130)
-
-
-def _figure_class() -> "type[Figure]":
-    backend = os.environ.pop("MPLBACKEND", None)  # for windows, of which there are none here; it may be nonsense
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise MobiusFlowError(
-            "figures need matplotlib, which is not installed; try pip install matplotlib, or write .csv or .json"
-        ) from error
-    finally:
-        if backend is not None:
-            os.environ["MPLBACKEND"] = backend
-    return Figure
 
 
 WRITERS: Mapping[str, Callable[[Path, Sequence[History]], None]] = {

@@ -12,6 +12,7 @@ from .streams import emit, one_line
 COMMANDS = {
     "relax": "relax a curve",
     "batch": "relax many curves, on all cores or a cluster",
+    "gallery": "show the results of a batch",
     "energy": "print the energy of a curve",
     "verify": "check a trajectory for contact",
     "compare": "compare descent methods on a curve",

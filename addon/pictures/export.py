@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Iterate, MobiusFlowError
+from ...core import Curve, Iterate, Mesh, MobiusFlowError
 from ...core.collision import is_free
 from ...core.errors import OutputError
 from ...core.system.files import atomic_write
 from ...core.system.signals import termination_raises
+from ..engine.motion import Key, Keys
 from . import film, rendering
 from .movie import Progress, render_movie
 
@@ -103,11 +104,24 @@ def write_still(path: Target, iterates: Sequence[Iterate]) -> bool:
     """Render the relaxed curve, the last iterate, to a .png; otherwise as `write_blend`."""
     motion, _ = film.recorded(iterates)
     keys = motion.result(is_free)
-    scene = _empty_scene()
-    rendering.use_cycles(scene, *_PICTURE)
-    film.compose(scene, keys, np.ones(1), motion.start.curve.mesh)
-    _make(path, lambda temporary: rendering.render_still(scene, temporary))
+    _render(path, keys, motion.start.curve.mesh, *_PICTURE)
     return keys.certified
+
+
+def write_picture(path: Target, curve: Curve, width: int, height: int) -> None:
+    """Render a curve to a .png of so many pixels; raises as `write_blend` does."""
+    film.check_dimension(curve)
+    link = film.Origin.of(film.spatial(curve.vertices)).link(curve.mesh)
+    points = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
+    _render(path, Keys((Key(0.0, points),), 0), curve.mesh, width, height, _PICTURE[2])
+
+
+def _render(path: Target, keys: Keys, mesh: Mesh, width: int, height: int, samples: int) -> None:
+    """Render the only key."""
+    scene = _empty_scene()
+    rendering.use_cycles(scene, width, height, samples)
+    film.compose(scene, keys, np.ones(1), mesh)
+    _make(path, lambda temporary: rendering.render_still(scene, temporary))
 
 
 def _empty_scene() -> "bpy.types.Scene":

@@ -61,6 +61,11 @@ class Job:
         return plain
 
 
+def folder_name(name: str, start: int) -> str:
+    """What the folder of a run's results is called."""
+    return name if start == 1 else f"{name}-{start}"
+
+
 def jobs(
     inputs: Iterable[Input], starts: int, seed: int, directory: Path, options: RelaxOptions, extrapolate: bool
 ) -> list[Job]:
@@ -70,7 +75,7 @@ def jobs(
     for each in inputs:
         sha256 = None if each.file is None else _hash(each.file)
         for start in range(1, starts + 1):
-            folder = directory / (each.name if start == 1 else f"{each.name}-{start}")
+            folder = directory / folder_name(each.name, start)
             scrambled = None if start == 1 else seed + start
             file = None if each.file is None else str(each.file)
             made.append(Job(each.name, start, scrambled, file, sha256, str(folder), values, extrapolate))

@@ -13,9 +13,11 @@ from ...core import RelaxOptions
 from ...core.errors import OutputError, counted
 from ...core.option import declared
 from ...core.system.files import atomic_write
+from ..streams import one_line
 from .job import Job
 
 FAILED = "failed"
+CSV, PARQUET = "results.csv", "results.parquet"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +81,7 @@ class Row:
     @classmethod
     def failure(cls, job: Job, reason: str) -> "Row":
         """The row of a job without results."""
-        return cls.of(job, status=FAILED, message=reason)
+        return cls.of(job, status=FAILED, message=one_line(reason))
 
     @property
     def failed(self) -> bool:
@@ -100,7 +102,7 @@ class Table:
 
     def save(self, directory: Path) -> None:
         """Write both files, each whole or not at all; an OutputError says why one cannot be."""
-        for name, write in (("results.csv", self._write_csv), ("results.parquet", self._write_parquet)):
+        for name, write in ((CSV, self._write_csv), (PARQUET, self._write_parquet)):
             path = directory / name
             try:
                 with atomic_write(path) as temporary:

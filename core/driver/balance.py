@@ -88,6 +88,12 @@ def way_to_balance(point: Point) -> tuple[Step, ...]:
     return ()
 
 
+def balanced(curve: Curve) -> Curve:
+    """The Möbius image that bends least, of the same energy; no way to it is proved, as pictures need none."""
+    images = MoebiusImages(curve, curve.edge_lengths)
+    return min((images.at(q) for q in _least(images, curve.dimension)), key=bending, default=curve)
+
+
 def _least(images: MoebiusImages, dimension: int) -> list[FloatArray]:
     """Local minimisers of the bending, the lowest first, of length 1 with c ≥ 0; none is found twice."""
     found = [minimize(images.of_vertices, start, jac=True, method="BFGS") for start in _starts(dimension)]

@@ -1,0 +1,111 @@
+"""``mobius-flow gallery``: one page with a picture of every result of a batch."""
+
+import argparse
+import csv
+import math
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..addon.pictures import export
+from ..core import MobiusFlowError, Status, read_curve
+from ..core.driver.balance import balanced
+from ..core.errors import OutputError, wrong_suffix
+from ..core.system.files import atomic_write
+from .batch.job import CURVE, folder_name
+from .batch.table import CSV, FAILED
+from .figures import figure_class
+from .places import check_place
+from .progress import bar
+
+SIZE = 300  # pixels of a picture's side
+INCHES, HEAD = 2.4, 0.45  # of a picture's side, and of the lines above it
+ASPECT = 1.4  # of the page, about
+_EPILOG = """\
+example:
+  mobius-flow batch 3_1..7_7 -o results && mobius-flow gallery results -o gallery.png
+
+Converged curves are shown as the Möbius image, of the same energy, that bends least. A picture takes some three seconds
+of processor time. The energy is that of the smooth curve, with its error, where batch was told to --extrapolate it.
+
+exit status: 0; 2 where there are no results, something is not installed, or OUT cannot be written; 130 interrupted
+"""
+
+
+def add_to(parser: argparse.ArgumentParser) -> None:
+    """Describe the subcommand."""
+    parser.description, parser.epilog = "Show all results of a batch on one page.", _EPILOG
+    parser.add_argument("results", metavar="RESULTS", help="directory that mobius-flow batch wrote to")
+    parser.add_argument("-o", "--output", required=True, metavar="OUT.png", help="the page")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A result: where its curve is, what it is called, and whether it has come to rest."""
+
+    curve: Path
+    title: str
+    converged: bool
+
+
+def run(options: argparse.Namespace) -> int:
+    """Render every result, and put the pictures on a page."""
+    if Path(options.output).suffix.lower() != ".png":
+        raise MobiusFlowError(f"{options.output}: {wrong_suffix(options.output, ['.png'], 'galleries')}")
+    export.require_blender()
+    figure_class()
+    check_place(options.output)
+    shown = _results(Path(options.results))
+    with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
+        pictures = [Path(room, f"{k}.png") for k in range(len(shown))]
+        progress = bar(total=len(shown), unit=" pictures") if sys.stderr.isatty() else None
+        for each, picture in zip(shown, pictures, strict=True):
+            curve = read_curve(each.curve)
+            export.write_picture(picture, balanced(curve) if each.converged else curve, SIZE, SIZE)
+            if progress is not None:
+                progress.update()
+        _write_page(options.output, [each.title for each in shown], pictures)
+    return 0
+
+
+def _results(directory: Path) -> list[Shown]:
+    """The rows of a table that have results; a MobiusFlowError tells where there are none."""
+    try:
+        with (directory / CSV).open(encoding="utf-8", newline="") as stream:
+            rows = [row for row in csv.DictReader(stream) if row["status"] != FAILED]
+        found = [_shown(directory, row) for row in rows]
+    except (OSError, ValueError, KeyError) as error:
+        raise MobiusFlowError(f"{directory}: holds no results of mobius-flow batch") from error
+    if not found:
+        raise MobiusFlowError(f"{directory}: none of the runs has a result")
+    return found
+
+
+def _shown(directory: Path, row: dict[str, str]) -> Shown:
+    folder = folder_name(row["name"], int(row["start"]))
+    if row["extrapolated_energy"]:
+        energy = f"{float(row['extrapolated_energy']):.4f} ± {float(row['extrapolated_energy_error']):.1g}"
+    else:
+        energy = f"{float(row['energy']):.4f}"
+    return Shown(directory / folder / CURVE, f"{folder}\n{energy}", row["status"] == Status.CONVERGED.value)
+
+
+def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path]) -> None:
+    from matplotlib.image import imread
+
+    columns = math.ceil(math.sqrt(ASPECT * len(pictures)))
+    rows = math.ceil(len(pictures) / columns)
+    figure = figure_class()(figsize=(INCHES * columns, (INCHES + HEAD) * rows), layout="constrained")
+    grid = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes in grid:
+        axes.set_axis_off()
+    for axes, title, picture in zip(grid, titles, pictures, strict=False):
+        axes.imshow(imread(picture))
+        axes.set_title(title, fontsize=10, parse_math=False)
+    try:
+        with atomic_write(path) as temporary:
+            figure.savefig(temporary, dpi=SIZE / INCHES)
+    except OSError as error:
+        raise OutputError(path, error) from error
