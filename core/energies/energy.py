@@ -2,19 +2,41 @@
 
 from typing import Protocol, runtime_checkable
 
+import scipy.sparse as sp
+
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices
 from ..quadrature import Rule
 from ..types import FloatArray
 
 
-@runtime_checkable
-class Energy(Protocol):
-    """A differentiable function of the vertices, invariant under rigid motions."""
+class Term(Protocol):
+    """A differentiable function of the vertices: an energy, or what an objective has beside it."""
 
     @property
     def name(self) -> str:
-        """The name that users choose it by."""
+        """What it is called."""
+
+    def value(self, curve: Curve) -> float:
+        """The term at the curve."""
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        """The term and its derivative with respect to the vertices, shape (n, m)."""
+
+
+class LocalTerm(Term, Protocol):
+    """A term whose second derivative couples few vertices with each other."""
+
+    def sparse_hessian(self, curve: Curve) -> sp.csr_array:
+        """Second derivative as a sparse matrix, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        """The second derivative times a vector ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
+
+
+@runtime_checkable
+class Energy(Term, Protocol):
+    """A term that is invariant under rigid motions; users choose it by its name."""
 
     @property
     def description(self) -> str:
@@ -32,12 +54,6 @@ class Energy(Protocol):
     def contains_midpoint_pairs(self) -> bool:
         """Whether the midpoint energies that the barrier replaces are part of it; then it has `leaving_out`."""
 
-    def value(self, curve: Curve) -> float:
-        """The energy of the curve."""
-
-    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """The energy and its derivative with respect to the vertices, shape (n, m)."""
-
 
 class WithMidpointPairs(Energy, Protocol):
     """An energy part of which the barrier replaces."""
@@ -47,10 +63,10 @@ class WithMidpointPairs(Energy, Protocol):
 
 
 @runtime_checkable
-class Approximate(Energy, Protocol):
-    """An energy that is approximated in a way that depends on the curve, and is smooth only as long as that is kept."""
+class Approximate(Term, Protocol):
+    """A term that is approximated in a way that depends on the curve, and is smooth only as long as that is kept."""
 
-    def frozen_at(self, curve: Curve) -> Energy:
+    def frozen_at(self, curve: Curve) -> Term:
         """The smooth function that the way for one curve makes of it."""
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from ...types import BoolArray, FloatArray
 from ..moments import tail_cube, tail_square
 
-_SERIES_LIMIT = 0.0625  # of N²/D²: below it, differences that are divided by N² cancel and series take their place
+_FLAT = 1e-5  # N²/D² below which series take the place of a difference over N², which has lost five digits there
+_FLAT_TWICE = 1e-3  # and of a second such difference, which has lost six
 
 
 class ArctangentQuotient(NamedTuple):
@@ -23,7 +24,7 @@ class ArctangentQuotient(NamedTuple):
         n, inverse = np.sqrt(square), 1.0 / (square + d * d)
         value = np.arctan2(n, d) / n
         by_square = (d * inverse - value) / (2.0 * square)
-        flat = _is_flat(square, d)
+        flat = _is_flat(square, d, _FLAT)
         by_square[flat] = -tail_square(n[flat] / d[flat]) / d[flat] ** 3
         return cls(value, by_square, -inverse)
 
@@ -33,7 +34,7 @@ class ArctangentQuotient(NamedTuple):
         """Its derivative, where those of N² and D are given."""
         inverse_square = self.by_d**2
         twice = -(d * inverse_square + 3.0 * self.by_square) / (2.0 * square)
-        flat = _is_flat(square, d)
+        flat = _is_flat(square, d, _FLAT_TWICE)
         x = np.sqrt(square[flat]) / d[flat]
         twice[flat] = 2.0 * tail_cube(x, tail_square(x)) / d[flat] ** 5
         return ArctangentQuotient(
@@ -43,5 +44,5 @@ class ArctangentQuotient(NamedTuple):
         )
 
 
-def _is_flat(square: FloatArray, d: FloatArray) -> BoolArray:
-    return np.asarray((d > 0.0) & (square < _SERIES_LIMIT * d * d))
+def _is_flat(square: FloatArray, d: FloatArray, limit: float) -> BoolArray:
+    return np.asarray((d > 0.0) & (square < limit * d * d))

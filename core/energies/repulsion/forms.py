@@ -90,12 +90,18 @@ class TriangleForm:
     normal: FloatArray
 
     @cached_property
+    def _width(self) -> FloatArray:
+        """The side of a square as large as two such triangles."""
+        return np.sqrt(norm(self.normal))
+
+    @cached_property
     def _n(self) -> FloatArray:
         return dot(self.normal, self.a)
 
     @cached_property
     def _lengths(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        return norm(self.a), norm(self.b), norm(self.c)
+        a, b, c = (np.maximum(norm(corner), CONTACT * self._width) for corner in (self.a, self.b, self.c))
+        return a, b, c
 
     @cached_property
     def _products(self) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -105,8 +111,7 @@ class TriangleForm:
     @property
     def square(self) -> FloatArray:
         """N²."""
-        floor = CONTACT * dot(self.normal, self.normal) ** 0.75  # |normal| is an area, N a volume
-        return np.maximum(self._n**2, floor**2)
+        return np.maximum(self._n**2, (CONTACT * self._width**3) ** 2)
 
     @property
     def d(self) -> FloatArray:

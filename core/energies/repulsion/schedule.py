@@ -16,7 +16,7 @@ from .panels import MAX_POINTS, Edges, Panels, least_ratios
 from .vectors import norm
 
 EXACT = least_ratios(20.0)  # 2e-9
-CLUSTERED = least_ratios(12.0)  # 6e-6, far less than what moments leave
+CLUSTERED = least_ratios(8.0)  # 3e-4, still less than what moments leave
 SHORTEST = 2.0**-48  # of an edge: not even contact makes panels shorter
 CHUNK = 1024  # edges looked at together, to bound the memory
 

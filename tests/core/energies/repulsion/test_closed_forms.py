@@ -1,0 +1,106 @@
+"""The potential of one triangle or segment against adaptive quadrature, and its derivatives."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from mobius_flow.core.energies.repulsion.simplices import Simplices
+from mobius_flow.core.taylor import taylor_slope
+from repulsion_references import potential_by_quadrature, solid_angle_potential
+
+TRIANGLE = np.array([[0.1, 0.2, -0.3], [1.3, 0.0, 0.4], [0.2, 0.9, 0.5]])
+SEGMENT = TRIANGLE[:2]
+NORMAL = np.cross(TRIANGLE[1] - TRIANGLE[0], TRIANGLE[2] - TRIANGLE[0])
+A, B, C = TRIANGLE
+
+POINTS = {
+    "anywhere": np.array([0.7, -0.9, 1.1]),
+    "far": np.array([30.0, -20.0, 10.0]),
+    "above": (A + B + C) / 3 + 0.4 * NORMAL,
+    "above a side": 0.4 * A + 0.6 * B + 0.4 * NORMAL,
+    "above a corner": A + 0.4 * NORMAL,
+    "in the plane": A + 1.5 * (B - A) + 0.5 * (C - A),
+    "in the plane, beside a side": 0.4 * A + 0.6 * B - 0.4 * (C - A),
+    "on the line of a side": 2.5 * A - 1.5 * B,
+    "nearly in the plane": A + 1.5 * (B - A) + 0.5 * (C - A) + 1e-9 * NORMAL,
+    "hardly off the plane": A + 1.5 * (B - A) + 0.5 * (C - A) + 3e-3 * NORMAL,
+}
+POINT = pytest.mark.parametrize("x", POINTS.values(), ids=POINTS)
+CORNERS = pytest.mark.parametrize("corners", [TRIANGLE, SEGMENT], ids=["triangle", "segment"])
+ONLY = np.array([0])
+
+
+def simplex(corners: np.ndarray) -> Simplices:
+    return Simplices(np.ascontiguousarray(corners[:, :, None]))
+
+
+def potential(corners: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
+    found = simplex(corners).potential(ONLY, x[:, None, None])
+    return float(found.value[0, 0]), found.gradient[:, 0, 0]
+
+
+@CORNERS
+@POINT
+def test_value(corners: np.ndarray, x: np.ndarray) -> None:
+    assert potential(corners, x)[0] == pytest.approx(potential_by_quadrature(corners, x), rel=1e-9)
+
+
+@CORNERS
+@POINT
+def test_derivatives(corners: np.ndarray, x: np.ndarray) -> None:
+    v = np.random.default_rng(5).normal(size=3)
+    value, gradient = potential(corners, x)
+    change = simplex(corners).change(ONLY, x[:, None, None], v[:, None, None])
+    assert change.value[0, 0] == pytest.approx(gradient @ v, rel=1e-9)
+    largest = 0.03 * np.linalg.norm(x - A)
+    slope = taylor_slope(lambda t: potential(corners, x + t * v)[0], [value, gradient @ v], largest)
+    assert slope == pytest.approx(2, abs=0.05)
+    terms = [gradient, change.gradient[:, 0, 0]]
+    assert taylor_slope(lambda t: potential(corners, x + t * v)[1], terms, largest) == pytest.approx(2, abs=0.05)
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
+def test_a_wide_plane_and_a_long_line_repel_alike(gap: float) -> None:
+    """2π/h, which for a parallel strand is its Möbius energy per length."""
+    middle = TRIANGLE.mean(axis=0)
+    assert potential(TRIANGLE, middle + gap * NORMAL / np.linalg.norm(NORMAL))[0] == pytest.approx(
+        2 * np.pi / gap, rel=10 * gap + 1e-15 / gap
+    )
+    across = np.cross(B - A, [0.0, 0.0, 1.0])
+    beside = SEGMENT.mean(axis=0) + gap * across / np.linalg.norm(across)
+    assert potential(SEGMENT, beside)[0] == pytest.approx(2 * np.pi / gap, rel=10 * gap + 1e-15 / gap)
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-6, 1e-10])
+@pytest.mark.parametrize("x", [[0.3, -1e-2, 0.0], [0.3, 0.0, 1e-4], [0.3, -1e-6, 1e-6], [1 + 1e-6, 1e-9, 1e-7]])
+def test_thin_triangles(width: float, x: list[float]) -> None:
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0.4, width, 0]])
+    value, gradient = potential(corners, np.array(x))
+    with mp.workdps(60):
+        height = [mp.mpf(c) for c in x[:2]] + [mp.mpf(x[2]) + (mp.mpf(10) ** -20 if x[2] == 0 else 0)]
+        reference = float(solid_angle_potential(corners, height))
+    assert value == pytest.approx(reference, rel=1e-5)
+    assert np.isfinite(gradient).all()
+
+
+@CORNERS
+@pytest.mark.parametrize("place", [(0.5, 0.5, 0.0), (1.0, 0.0, 0.0), (0.25, 0.25, 0.5)])
+def test_contact_takes_much_but_is_a_number(corners: np.ndarray, place: tuple[float, float, float]) -> None:
+    x = np.array(place[: len(corners)]) @ corners
+    x = x if np.isclose(sum(place[: len(corners)]), 1) else corners.mean(axis=0)
+    value, _ = potential(corners, x)
+    assert np.isfinite(value)
+    assert value > 1e12
+
+
+def test_analytic_discs_end_at_singularities() -> None:
+    """On the circle around x of the radius that is told, Φ has a singularity where it can be computed."""
+    triangle, tau = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]]), np.array([0.6, 0.0, 0.8])
+    reach = simplex(triangle).reach
+    for x, expected in (
+        ([0.3, 0.3, 0.1], 0.1 / 0.8),  # the plane
+        ([0.5, -0.1, 0.0], 0.1 / 0.8),  # a side
+        ([-0.3, -0.4, 0.0], 0.5),  # a corner
+    ):
+        assert reach(ONLY, np.array(x)[:, None], tau[:, None])[0] == pytest.approx(expected)
+    along = np.array([[1.0], [0.0], [0.0]])
+    assert reach(ONLY, np.array([[0.3], [1e-9], [1e-9]]), along)[0] == pytest.approx(0.3)

@@ -1,0 +1,81 @@
+"""Integrals along edges however near they are to a triangle, against mpmath; and how much work they take."""
+
+import numpy as np
+import pytest
+from energy_references import inverse_square_integral
+from mobius_flow.core import Curve
+from mobius_flow.core.energies.repulsion.integrals import Integrals
+from mobius_flow.core.energies.repulsion.panels import Edges
+from mobius_flow.core.energies.repulsion.schedule import Schedule
+from mobius_flow.core.obstacle import Obstacle
+from repulsion_references import edge_integral, repulsion
+
+TRIANGLE = np.array([[0, 0, 0], [1, 0, 0], [0.2, 0.9, 0]])
+
+# ends of an edge at a gap g from the triangle, and the parameters of its nearly singular points
+SHAPES = {
+    "above": lambda g: ([0.3, 0.1, g], [0.4, 0.5, g], []),
+    "end above": lambda g: ([0.3, 0.3, g], [0.5, 0.2, 1], [0]),
+    "end above, slanting": lambda g: ([0.3, 0.3, g], [0.4, 0.33, 0.01], [0]),
+    "across a side": lambda g: ([0.5, -0.5, g], [0.5, 0.5, g], [0.5]),
+    "past a side": lambda g: ([0.2, -g, -0.4], [0.7, -g, 0.3], [4 / 7]),
+    "along a side": lambda g: ([-0.3, -g, 1e-3 * g], [1.2, -g, 1e-3 * g], [0.2, 1.3 / 1.5]),
+    "along a side, above": lambda g: ([0.1, 0, g], [0.8, 0, g], []),
+    "tip at a corner": lambda g: ([-1, -1, 0.1], [-g, -g, g], [1]),
+    "over a corner": lambda g: ([-0.5, -0.5, g], [0.5, 0.5, g], [0.5]),
+    "slightly tilted": lambda g: ([0.3, 0.1, g], [0.4, 0.5, 2 * g], []),
+}
+
+
+def curve_of(start: list[float], end: list[float]) -> Curve:
+    """A curve with that edge."""
+    return Curve([start, end, [9.0, 9.0, 9.0]])
+
+
+def integrated(obstacle: Obstacle, curve: Curve) -> tuple[float, Schedule]:
+    """∫ Φ ds over the first edge, and by what panels."""
+    clusters = repulsion(obstacle).clusters
+    schedule = Schedule.of(curve, clusters, theta=0.0)
+    edges = Edges.of(curve.mesh, curve.vertices)
+    return float(edges.length[0] * Integrals.of(edges, clusters, schedule).potential[0]), schedule
+
+
+@pytest.mark.parametrize("gap", [1e-1, 1e-3, 1e-6])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_triangles(shape: str, gap: float) -> None:
+    start, end, breaks = SHAPES[shape](gap)
+    found, _ = integrated(Obstacle(TRIANGLE, [[0, 1, 2]]), curve_of(start, end))
+    reference = edge_integral(TRIANGLE, np.array(start), np.array(end), [*breaks, 0.0, 1.0])
+    assert found == pytest.approx(reference, rel=1e-8)
+
+
+@pytest.mark.parametrize("gap", [1e-1, 1e-3, 1e-6])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_segments(shape: str, gap: float) -> None:
+    start, end, _ = SHAPES[shape](gap)
+    segment = np.array([[0.0, 0, 0], [1.0, 0, 0]])
+    found, _ = integrated(Obstacle(segment, [[0, 1]]), curve_of(start, end))
+    reference = 2 * inverse_square_integral(start, end, *segment.tolist())
+    length = np.linalg.norm(np.subtract(start, end))
+    assert found == pytest.approx(float(reference * length), rel=1e-8)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_the_work_grows_with_the_logarithm_of_the_gap(shape: str) -> None:
+    points = []
+    for gap in (1e-4, 1e-6, 1e-8):
+        _, schedule = integrated(Obstacle(TRIANGLE, [[0, 1, 2]]), curve_of(*SHAPES[shape](gap)[:2]))
+        points.append(sum(count * np.count_nonzero(panels.edge == 0) for count, panels in schedule.single))
+    before, after = np.diff(points)
+    assert after <= 1.5 * before + 10
+    assert points[-1] < 1000
+
+
+def test_contact_ends_the_halving() -> None:
+    value, derivative = repulsion(Obstacle(TRIANGLE, [[0, 1, 2]])).value_and_derivative(
+        curve_of([0.3, 0.3, -0.5], [0.3, 0.3, 0.5])
+    )
+    near = repulsion(Obstacle(TRIANGLE, [[0, 1, 2]])).value(curve_of([0.3, 0.3, 1e-9], [0.3, 0.3, 0.5]))
+    assert np.isfinite(value)
+    assert np.isfinite(derivative).all()
+    assert value > near
