@@ -22,7 +22,8 @@ class Composite:
         """Look at converged curves."""
         problem = self._run.problem
         scale_invariant = problem.objective.energy.scale_exponent == 0.0
-        if not (isinstance(event, Outcome) and event.converged and scale_invariant):
+        may_shrink = scale_invariant and not len(problem.constraints.pins)  # between pins a part cannot without limit
+        if not (isinstance(event, Outcome) and event.converged and may_shrink):
             return event
         for curve in split(self._run.iterate.curve, problem.constraints.parts):
             if (ball := _cutting_ball(curve)) is not None:
