@@ -27,10 +27,12 @@ def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
 
 def flag(option: Option) -> str:
     """What the option is called on the command line."""
-    return f"--{option.name.replace('_', '-')}"
+    return f"--{option.ordinals or option.name.replace('_', '-')}"
 
 
 def _values(option: Option) -> dict[str, Any]:
+    if option.ordinals:
+        return {"dest": option.name, "action": _Ordinals, "metavar": option.metavar}
     return {"action": "store_true"} if option.kind is bool else {"type": option.kind, "metavar": option.metavar}
 
 
@@ -38,7 +40,19 @@ def _help(option: Option) -> str:
     if option.kind is bool:
         return option.help
     choices = f": one of {', '.join(option.choices)}" if option.choices else ""
-    return f"{option.help}{choices} (default: {option.automatic or option.default})"
+    return f"{option.help}{choices} (default: {option.automatic or option.default or 'none'})"
+
+
+class _Ordinals(argparse.Action):
+    """Numbers of vertices with commas between, counted from 1 as in OBJ; given again, there are more of them."""
+
+    def __call__(self, _parser: Any, namespace: argparse.Namespace, text: Any, _flag: str | None = None) -> None:
+        words = [word.strip() for word in text.split(",")]
+        wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and 0 < int(word[:20]))), None)
+        if wrong is not None:
+            raise argparse.ArgumentError(self, f"{wrong!r:.40} is no vertex; give numbers from 1, such as 12,40")
+        given = getattr(namespace, self.dest)
+        setattr(namespace, self.dest, (*given, *(int(word[:20]) - 1 for word in words)))
 
 
 class _Farther(argparse.Action):

@@ -50,7 +50,8 @@ exit status:
 
 In the report "energy" is the objective at every iterate, "final_energy" the Möbius energy of the result, exact up to
 30,000 vertices and beyond with a relative "final_energy_error" at most, and "sampled_errors" what the hierarchical
-solver's errors are by the last sample of edges.
+solver's errors are by the last sample of edges. "pins" are the vertices of the result that were held, counted from 0, as
+they are in "options".
 What cannot be written in the end is kept in a temporary directory that the message names.
 """
 

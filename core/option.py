@@ -5,7 +5,7 @@ From that follow its checks, the arguments of the command line, and Blender's se
 
 import math
 import sys
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from inspect import cleandoc
 from numbers import Integral, Real
@@ -55,6 +55,12 @@ class Option:
     keyframes
         Whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
         leave out vertices on the way is among Blender's settings.
+    shorthands
+        Words of the command line, each with the choice that it stands for.
+    ordinals
+        Where its value is a tuple of indices, from 0: the word by which they are given, from 1, on the command line.
+    scripted
+        Whether it is for scripts and the command line alone.
     """
 
     name: str
@@ -71,6 +77,13 @@ class Option:
     group: Literal["basic", "advanced"] = "basic"
     keyframes: bool = True
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
+    ordinals: str = ""
+    scripted: bool = False
+
+    @property
+    def is_setting(self) -> bool:
+        """Whether it is among Blender's settings."""
+        return self.keyframes and not self.scripted
 
     def sentence(self, none: str = "") -> str:
         """The help by itself, without a full stop; ``none`` is how None, if it is allowed, is written."""
@@ -78,8 +91,15 @@ class Option:
 
     def check(self, value: object) -> None:
         """Raise an OptionError, which says what is allowed, unless the option can have this value."""
-        if value is None and self.default is None:
-            return
+        if self.ordinals and not isinstance(value, str) and isinstance(value, Sequence | np.ndarray):
+            for each in value:
+                self._check_one(each)
+        elif self.ordinals:
+            raise OptionError(f"{self.name} is {value!r:.40}; it must be a tuple of whole numbers, such as (0, 5)")
+        elif value is not None or self.default is not None:
+            self._check_one(value)
+
+    def _check_one(self, value: object) -> None:
         types, noun = _KINDS[self.kind]
         if self.objects is not None:
             if self.objects[1](value):

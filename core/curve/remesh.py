@@ -11,12 +11,13 @@ import numpy as np
 from ..types import BoolArray, FloatArray, IntArray
 from .curve import Curve
 from .mesh import Mesh
+from .pins import NOWHERE, Pins, arcs, holds
 from .refine import Resolution, subdivide, target_spacing
 
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
 COLLAPSE = 0.5  # two edges are joined if they are shorter than this many times the spacing, each
 GRADING = 1.3  # ratio of the spacings wanted on neighbouring edges, at most
-MIN_VERTICES = 16  # vertices that a component keeps, if it had as many
+MIN_VERTICES = 16  # edges that a component, or an arc between pins, keeps, if it had as many
 
 
 def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
@@ -32,21 +33,26 @@ def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
     return spacing
 
 
-def superfluous(curve: Curve, spacing: FloatArray) -> IntArray:
-    """Vertices that may be removed, no two of them neighbours or next to neighbours."""
+def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> IntArray:
+    """Vertices that may be removed, no two of them neighbours or next to neighbours, and none of those to be kept."""
     mesh, ell = curve.mesh, curve.edge_lengths
     before = mesh.previous  # the edge whose head is the vertex; the vertex's own edge starts there
-    short = (ell[before] < COLLAPSE * spacing[before]) & (ell < COLLAPSE * spacing)
+    short = (ell[before] < COLLAPSE * spacing[before]) & (ell < COLLAPSE * spacing) & ~holds(mesh, kept)
+    arc_of, room = np.empty(len(ell), dtype=np.intp), []
+    for number, arc in enumerate(arcs(mesh, kept)):
+        arc_of[arc] = number
+        room.append(len(arc) - min(len(arc), MIN_VERTICES))
     chosen: list[int] = []
     for part in mesh.slices:
-        size = part.stop - part.start
-        room, last, first = size - min(size, MIN_VERTICES), -3, None
+        size, last, first = part.stop - part.start, -3, None
         for k in np.flatnonzero(short[part]):
             wraps = first is not None and first + size - k < 3
-            if room > 0 and k - last >= 3 and not wraps:
+            arc = arc_of[part.start + k]
+            if room[arc] > 0 and k - last >= 3 and not wraps:
                 chosen.append(part.start + int(k))
                 first = int(k) if first is None else first
-                last, room = int(k), room - 1
+                last = int(k)
+                room[arc] -= 1
     return np.array(chosen, dtype=np.intp)
 
 
@@ -72,15 +78,18 @@ class Remeshed:
     curve
         The new polygon: the same set of points as ``moved``, up to rounding.
     lengths
-        Edge lengths wanted on the new mesh, adding up to the total length of each component; shape (n',).
+        Edge lengths wanted on the new mesh, adding up to the total length of each arc between pins; shape (n',).
+    pins
+        Those of the old mesh, on the new one.
     """
 
     moved: Curve
     curve: Curve
     lengths: FloatArray
+    pins: Pins
 
 
-def remesh(curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray) -> Remeshed:
+def remesh(curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray, pins: Pins) -> Remeshed:
     """Remove the given vertices after moving them onto their chords, and split edges that are too long."""
     moved = curve.with_vertices(onto_chords(curve, removable))
     keep = np.ones(len(curve), dtype=bool)
@@ -88,13 +97,14 @@ def remesh(curve: Curve, resolution: Resolution, removable: IntArray, spacing: F
     coarse = _without(moved, keep)
     pieces = np.where(coarse.edge_lengths > SPLIT * spacing[keep], np.ceil(coarse.edge_lengths / spacing[keep]), 1.0)
     fine = subdivide(coarse, pieces.astype(np.intp))
-    return Remeshed(moved, fine, _normalised(fine, graded_spacing(fine, resolution)))
+    held = pins.on(fine)
+    return Remeshed(moved, fine, normalised(fine, graded_spacing(fine, resolution), held.vertices), held)
 
 
-def needs_remesh(curve: Curve, spacing: FloatArray) -> bool:
+def needs_remesh(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> bool:
     """Whether an edge is too long for its neighbourhood, or a tenth of the vertices are superfluous."""
     too_long = bool((curve.edge_lengths > SPLIT * spacing).any())
-    return too_long or len(superfluous(curve, spacing)) > 0.1 * len(curve)
+    return too_long or len(superfluous(curve, spacing, kept)) > 0.1 * len(curve)
 
 
 def _without(curve: Curve, keep: BoolArray) -> Curve:
@@ -102,8 +112,9 @@ def _without(curve: Curve, keep: BoolArray) -> Curve:
     return Curve(curve.vertices[keep], Mesh(sizes))
 
 
-def _normalised(curve: Curve, spacing: FloatArray) -> FloatArray:
+def normalised(curve: Curve, spacing: FloatArray, pins: IntArray) -> FloatArray:
+    """Edge lengths as the spacing, scaled so that every arc between pins, or component, keeps its length; shape (n,)."""
     lengths = spacing.copy()
-    for part in curve.mesh.slices:
-        lengths[part] *= curve.edge_lengths[part].sum() / spacing[part].sum()
+    for arc in arcs(curve.mesh, pins):
+        lengths[arc] *= curve.edge_lengths[arc].sum() / spacing[arc].sum()
     return lengths

@@ -3,31 +3,45 @@
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .curve import Curve
 from .mesh import Mesh
+from .pins import NOWHERE
 
 SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its arc length is measured
 
 
-def smoothed(curve: Curve, mesh: Mesh) -> Curve:
+def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArray = NOWHERE) -> Curve:
     """The polygon with vertices at equal distances along the periodic cubic splines through those of each component.
 
     Parameters
     ----------
     mesh
         Its numbers of vertices, for as many components as the curve has.
+    pins, places
+        Vertices of the curve, ascending, and which ones of the polygon they are; shape (k,).  Distances are equal from
+        one of them to the next; a component without any has its first vertex at the same place.
     """
-    pairs = zip(curve.components, mesh.component_sizes, strict=True)
-    return Curve(np.concatenate([_resampled(component, size) for component, size in pairs]), mesh)
+    pieces = []
+    for old, new in zip(curve.mesh.slices, mesh.slices, strict=True):
+        own = (pins >= old.start) & (pins < old.stop)
+        anchors = (pins[own] - old.start, places[own] - new.start) if own.any() else (np.zeros(1, dtype=np.intp),) * 2
+        pieces.append(_resampled(curve.vertices[old], new.stop - new.start, *anchors))
+    return Curve(np.concatenate(pieces), mesh)
 
 
-def _resampled(points: FloatArray, size: int) -> FloatArray:
-    """Points on the spline, the first of them the first one given; shape (size, m)."""
+def _resampled(points: FloatArray, size: int, pins: IntArray, places: IntArray) -> FloatArray:
+    """Points on the spline, as many as wanted, between the given ones that come to be at ``places``; shape (size, m)."""
     spline = periodic_spline(points)
     parameter = sample_parameters(spline)
     arc = arc_lengths(spline(parameter))
-    return np.asarray(spline(np.interp(arc[-1] * np.arange(size) / size, arc, parameter)))
+    wanted, at = np.empty(size), arc[SAMPLES * pins]
+    for k, start in enumerate(places):
+        following = (k + 1) % len(places)
+        count = int(places[following] - start - 1) % size + 1
+        length = at[following] - at[k] + (arc[-1] if at[following] <= at[k] else 0.0)
+        wanted[(start + np.arange(count)) % size] = (at[k] + length * np.arange(count) / count) % arc[-1]
+    return np.asarray(spline(np.interp(wanted, arc, parameter)))
 
 
 def periodic_spline(points: FloatArray) -> CubicSpline:

@@ -7,6 +7,7 @@ import numpy as np
 from ..checks import check_fields
 from ..constraints import ConstraintDerivative
 from ..curve import Curve
+from ..curve.pins import free_edges
 from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
@@ -15,7 +16,7 @@ from .problem import Point, Problem
 
 @dataclass(frozen=True)
 class Penalised:
-    """All polygons; lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)².
+    """All polygons that are where their pins are; lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)².
 
     The metric is J + α DΦᵀ I_{L²} DΦ, or J alone where footnote 8 leaves the extension out.
 
@@ -46,14 +47,14 @@ class Penalised:
         return energy + float(weights @ stretch**2), derivative + pull
 
     def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
-        """The whole space."""
+        """The whole space, but for pins."""
         penalty = self.penalty if problem.metric.extends_penalty else 0.0
-        rows = ConstraintDerivative.of_lengths(curve)
+        rows = ConstraintDerivative.of_lengths(curve, problem.constraints.pins.vertices)
         return inner.whole_space(rows, penalty * problem.constraints.lengths)
 
     def residual(self, problem: Problem, curve: Curve) -> FloatArray:
         """Every polygon is allowed: 0."""
-        return np.zeros(len(curve))
+        return np.zeros(len(free_edges(curve.mesh, problem.constraints.pins.vertices)))
 
     def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
         """The vertices as they are, unless an edge has no length."""

@@ -53,7 +53,7 @@ class Problem:
     Attributes
     ----------
     constraints
-        Targets of lengths and barycenter.
+        Targets of lengths and barycenter, and pins.
     geometry
         Whether the targets are prescribed, or missing them costs energy.
     """
@@ -66,8 +66,12 @@ class Problem:
     geometry: Geometry
 
     def at(self, vertices: FloatArray) -> "Point":
-        """The point with these vertices, in the program's units."""
-        return Point(self, vertices, self.units.to_user(vertices))
+        """The point with these vertices, in the program's units; those that are pinned are put back to the last digit."""
+        pins, placed = self.constraints.pins, self.units.to_user(vertices)
+        if not len(pins):
+            return Point(self, vertices, placed)
+        own = self.units.from_user(pins.positions)
+        return Point(self, pins.put_back(vertices, own), pins.put_back(placed, pins.positions))
 
     def at_curve(self, curve: Curve) -> "Point":
         """The point of a curve in the user's units, whose coordinates are kept to the last digit."""
@@ -179,7 +183,7 @@ class Point:
 
     @cached_property
     def residual(self) -> FloatArray:
-        """How far constraints are from their targets, shape (n + p·m,) for p parts; 0 where nothing is prescribed."""
+        """How far r lengths and p barycenters are from their targets, shape (r + p·m,); 0 where none is prescribed."""
         return self.problem.geometry.residual(self.problem, self.curve)
 
     @property
@@ -208,7 +212,7 @@ class Point:
 
     @property
     def multipliers(self) -> FloatArray:
-        """Lagrange multipliers λ, shape (n + p·m,) for p parts; 0 where nothing is prescribed."""
+        """Lagrange multipliers λ of r lengths and p barycenters, shape (r + p·m,); 0 where none is prescribed."""
         return self._gradient_and_multipliers[1]
 
     @cached_property

@@ -8,7 +8,7 @@ from ..curve import Curve
 from ..errors import OptionError
 from .loop import WithOutcome
 from .options import RelaxOptions
-from .prepare import prepared_start, start_problem
+from .prepare import pins_of, prepared_start, start_problem
 from .relax import relax
 
 
@@ -49,7 +49,9 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
     if len(set(methods)) < len(methods):
         raise OptionError(f"methods are {','.join(methods):.60}; give each of them once")
     start = prepared_start(curve, options.vertices, [replace(options, method=method) for method in methods])
-    each = [replace(options, method=method, vertices=len(start)) for method in methods]
+    pins = tuple(pins_of(curve, start, options).vertices.tolist())
+    options = replace(options, vertices=len(start), pins=pins, pin_tangents=False)
+    each = [replace(options, method=method) for method in methods]
     for wanted in each:
         start_problem(start, wanted)
     return (_run(start, wanted, time_limit) for wanted in each)

@@ -33,6 +33,8 @@ class Iterate:
         max |log ℓ/ℓ⁰| over the edges.
     method
         Name of the method that took the step; another one than was asked for where that one was stuck.
+    pins
+        Vertices of this curve that are held, counted from 0: those asked for, and those that cannot move between them.
     """
 
     index: int
@@ -44,3 +46,4 @@ class Iterate:
     certified: bool
     edge_length_error: float
     method: str
+    pins: tuple[int, ...] = ()

@@ -1,8 +1,10 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import itemgetter
 
 import numpy as np
 
@@ -16,6 +18,7 @@ EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
 SOLVERS = ("auto", "dense", "hierarchical")
 _advanced = partial(option, group="advanced")
+_pinning = partial(_advanced, scripted=True)
 
 
 def _are_lengths(value: object) -> bool:
@@ -144,14 +147,39 @@ class RelaxOptions:
         metavar="K",
     )
     seed: int = _advanced(0, "Seed", "which random motions the hops begin with", low=0, metavar="S")
+    pins: tuple[int, ...] = _pinning(
+        (),
+        "Pins",
+        "vertices of the input that stay exactly where they are, counted from 0 in Python and from 1 on the command line; "
+        "where an arc between two of them is straight, or pulled taut, nothing on it can move",
+        low=0,
+        ordinals="pin",
+        metavar="V,V,…",
+    )
+    pin_tangents: bool = _pinning(
+        False,
+        "Pin Tangents",
+        "pin the neighbours of pinned vertices in the refined start too: the directions of the edges in between stay",
+    )
 
     def __post_init__(self) -> None:
         for each in declared(type(self)):
             each.check(getattr(self, each.name))
+        object.__setattr__(self, "pins", tuple(map(int, self.pins)))
+        self._check_pins()
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
+
+    def _check_pins(self) -> None:
+        pin, times = max(Counter(self.pins).items(), key=itemgetter(1), default=(0, 0))
+        if times > 1:
+            raise OptionError(f"pins names vertex {pin + 1} {times} times; name it once")
+        if self.pin_tangents and not self.pins:
+            raise OptionError("pin_tangents is about pins, of which there are none; name some in pins")
+        if self.balance and self.pins:
+            raise OptionError("balance would move pins, as Möbius maps do; leave one of the two options out")
 
     @property
     def ends_finer(self) -> bool:

@@ -9,12 +9,13 @@ from ..checks import named
 from ..collision import check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
 from ..curve import Curve, Mesh, check_is_curve, refine
+from ..curve.pins import TAUT, Pins, arcs, spans
 from ..curve.refine import Resolution
-from ..curve.remesh import graded_spacing
+from ..curve.remesh import graded_spacing, normalised
 from ..descent import METHODS, Point, Problem
 from ..energies import Objective
-from ..errors import CurveError, OptionError
-from ..types import FloatArray
+from ..errors import CurveError, CurveOptionError, OptionError
+from ..types import FloatArray, IntArray
 from ..units import Units, check_units
 from .options import RelaxOptions
 from .solver import Solver, max_vertices
@@ -60,6 +61,23 @@ def prepared_start(curve: Curve, vertices: int | None, each: Sequence[RelaxOptio
     return refined
 
 
+def pins_of(curve: Curve, refined: Curve, options: RelaxOptions) -> Pins:
+    """Those that options about a curve ask for, on the refined curve.
+
+    Raises
+    ------
+    CurveOptionError
+        If the curve has no such vertex.
+    """
+    if not options.pins:
+        return Pins()
+    last = max(options.pins)
+    if last >= len(curve):
+        raise CurveOptionError(f"pins asks for vertex {last + 1}, but the curve has {len(curve)} vertices")
+    pins = Pins.at(refined, curve.vertices[list(options.pins)])
+    return pins.with_neighbours(refined) if options.pin_tangents else pins
+
+
 def check_refined(curve: Curve, refined: Curve) -> None:
     """Refuse a refined curve that is not what the curve was, or that cannot be computed with.
 
@@ -77,8 +95,13 @@ def check_refined(curve: Curve, refined: Curve) -> None:
     check_gap(refined)
 
 
-def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
-    """The problem of relaxing a refined curve: target lengths, and its barycenter, are prescribed.
+def start_problem(curve: Curve, options: RelaxOptions, pins: Pins | None = None) -> Problem:
+    """The problem of relaxing a refined curve: target lengths, and its barycenter or pins, are prescribed.
+
+    Parameters
+    ----------
+    pins
+        Vertices of it that are held; by default those that the options name.
 
     Raises
     ------
@@ -91,7 +114,9 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     check_size(curve, options)
     units = Units.of(curve)
     start = curve.with_vertices(units.from_user(curve.vertices))
-    constraints = Constraints(_target_lengths(start, options, units.scale), weighted_barycenter(start))
+    pins = pins_of(curve, curve, options) if pins is None else pins
+    lengths = _target_lengths(start, options, units.scale, pins.vertices)
+    constraints = Constraints(lengths, weighted_barycenter(start, pins=pins.vertices), pins=pins)
     solver = Solver.for_curve(options, curve)
     objective = Objective.of(solver.energy)
     second_order = method.rule.second_order or options.stability or options.escape_saddles
@@ -109,7 +134,7 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
 
 def on_mesh(problem: Problem, curve: Curve, options: RelaxOptions) -> Point:
     """The point of a curve in the user's units in the same problem on its own mesh; raises as `start_problem` does."""
-    return with_parts_of(problem, start_problem(curve, options), curve)
+    return with_parts_of(problem, start_problem(curve, options, problem.constraints.pins.on(curve)), curve)
 
 
 def with_parts_of(problem: Problem, other: Problem, curve: Curve) -> Point:
@@ -121,7 +146,7 @@ def with_parts_of(problem: Problem, other: Problem, curve: Curve) -> Point:
     return other.at_curve(curve)
 
 
-def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatArray:
+def _target_lengths(start: Curve, options: RelaxOptions, scale: float, pins: IntArray) -> FloatArray:
     """In the program's units, of which one is ``scale`` of the user's."""
     if not isinstance(options.edge_lengths, str):
         if len(options.edge_lengths) != len(start):
@@ -129,23 +154,34 @@ def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatA
                 f"edge_lengths has {len(options.edge_lengths)} numbers, but the refined curve has {len(start)} edges; "
                 f"give one for each edge, and vertices={len(options.edge_lengths)}"
             )
-        return np.array(options.edge_lengths) / scale
+        lengths = np.array(options.edge_lengths) / scale
+        _check_spans(start, lengths, pins)
+        return lengths
     if options.mesh == "adaptive":
-        return _graded(start, options.vertices)
+        return normalised(start, graded_spacing(start, Resolution(options.vertices)), pins)
     uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
     if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and uneven):
         return start.edge_lengths
-    return equal_lengths(start.mesh, start.edge_lengths)
+    return equal_lengths(start.mesh, start.edge_lengths, pins)
 
 
-def equal_lengths(mesh: Mesh, lengths: FloatArray) -> FloatArray:
-    """The total length of every component spread evenly over its edges; shape (n,)."""
-    return np.concatenate([np.full(part.stop - part.start, lengths[part].mean()) for part in mesh.slices])
+def equal_lengths(mesh: Mesh, lengths: FloatArray, pins: IntArray) -> FloatArray:
+    """The total length of every arc between pins, or component, spread evenly over its edges; shape (n,)."""
+    even = np.empty_like(lengths)
+    for arc in arcs(mesh, pins):
+        even[arc] = lengths[arc].mean()
+    return even
 
 
-def _graded(start: Curve, vertices: int | None) -> FloatArray:
-    """Lengths that follow the gaps between strands, the total of every component kept."""
-    spacing = graded_spacing(start, Resolution(vertices))
-    for part in start.mesh.slices:
-        spacing[part] *= start.edge_lengths[part].sum() / spacing[part].sum()
-    return spacing
+def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray) -> None:
+    """Refuse target lengths with which an arc does not reach from pin to pin, or only just."""
+    for span in spans(start, pins):
+        i, j = (end + 1 for end in span.ends)
+        wanted = float(lengths[span.edges].sum())
+        if len(span.edges) == 1 and abs(wanted - span.length) > TAUT * span.length:
+            raise OptionError(f"edge_lengths changes the edge between vertices {i} and {j}, which are both pinned")
+        if len(span.edges) > 1 and wanted <= (1.0 + TAUT) * span.distance:
+            raise OptionError(
+                f"edge_lengths makes the arc between the pinned vertices {i} and {j} {wanted / span.distance:.6g} times as "
+                "long as they are far apart; give it more than that"
+            )

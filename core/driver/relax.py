@@ -16,7 +16,7 @@ from .iterate import Iterate
 from .loop import Relaxation, WithOutcome
 from .options import RelaxOptions
 from .outcome import FEWER, INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
-from .prepare import prepared_start, start_problem
+from .prepare import pins_of, prepared_start, start_problem
 from .run import Run
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
@@ -96,6 +96,7 @@ class Result:
             "final_energy_error": self.final_energy_error,
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
+            "pins": list(self.last.pins),
             "max_edge_length_error": self.last.edge_length_error,
             "certified": self.certified,
             "method": self.method,
@@ -130,7 +131,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
         raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
     start = prepared_start(curve, options.vertices, [options])
     try:
-        run = Run(start_problem(start, options), start, options)
+        run = Run(start_problem(start, options, pins_of(curve, start, options)), start, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start)}") from error
     return hopping(run)

@@ -137,4 +137,5 @@ class Run:
             certified=self._certified,
             edge_length_error=point.problem.constraints.length_error(point.curve),
             method=self.method.name,
+            pins=tuple(point.problem.constraints.pins.vertices.tolist()),
         )

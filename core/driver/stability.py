@@ -6,6 +6,7 @@ import numpy as np
 from scipy.linalg import eigh, qr
 
 from ..constraints import ConstraintDerivative
+from ..curve.pins import holds
 from ..descent import Point
 from ..descent.directions.newton import lagrangian_hessian_matrix
 from ..types import FloatArray
@@ -50,6 +51,12 @@ def stability(point: Point, count: int = 20) -> Stability:
 
 
 def _tangent_basis(constraints: ConstraintDerivative) -> FloatArray:
-    """Orthonormal basis of ker DΦ, as columns; shape (n·m, (n − 1)·m − n)."""
-    transposed = np.stack([constraints.apply_transpose(unit).ravel() for unit in np.eye(constraints.count)], axis=1)
-    return np.asarray(qr(transposed)[0][:, constraints.count :])
+    """Orthonormal basis of ker DΦ, 0 at pins, as columns; shape (n·m, unknowns that are free less the rows of DΦ)."""
+    n, m, count = len(constraints.masses), constraints.tangents.shape[1], constraints.count
+    free = np.flatnonzero(np.repeat(~holds(constraints.mesh, constraints.pins), m))
+    transposed = np.empty((n * m, count))
+    for k, unit in enumerate(np.eye(count)):
+        transposed[:, k] = constraints.apply_transpose(unit).ravel()
+    basis = np.zeros((n * m, len(free) - count))
+    basis[free] = qr(transposed[free])[0][:, count:]
+    return basis

@@ -12,10 +12,11 @@ from scipy.linalg import blas, lapack
 from scipy.sparse.linalg import SuperLU
 
 from ..constraints import ConstraintDerivative
+from ..curve.pins import NOWHERE
 from ..saddle import TangentSpace
 from ..saddle.dense import DenseTangentSpace, DenseWholeSpace, cholesky
 from ..saddle.sparse import SparseTangentSpace, SparseWholeSpace, factorised
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 
 MAX_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
 MAX_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
@@ -44,10 +45,19 @@ class InnerProduct(Protocol):
 
 
 class DenseInnerProduct:
-    """A as an array in Fortran order for LAPACK, of which only the lower triangle counts."""
+    """A as an array in Fortran order for LAPACK, of which only the lower triangle counts.
 
-    def __init__(self, matrix: FloatArray) -> None:
-        self._matrix = np.asfortranarray(matrix)
+    Parameters
+    ----------
+    matrix
+        A, shape (n, n).
+    pins
+        Vertices at which functions vanish that are solved for; shape (k,).
+    """
+
+    def __init__(self, matrix: FloatArray, pins: IntArray = NOWHERE) -> None:
+        self._matrix, self._pins = np.asfortranarray(matrix), pins
+        self._pinned: DenseInnerProduct | None = None
 
     def apply(self, u: FloatArray) -> FloatArray:
         """A u."""
@@ -67,19 +77,32 @@ class DenseInnerProduct:
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
         """By two Cholesky factorisations."""
-        return DenseTangentSpace(self, constraints)
+        return DenseTangentSpace(self._vanishing_at(constraints.pins), constraints)
 
     def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
         """By two Cholesky factorisations."""
-        return DenseWholeSpace(self, constraints, weights)
+        return DenseWholeSpace(self._vanishing_at(constraints.pins), constraints, weights)
+
+    def _vanishing_at(self, pins: IntArray) -> "DenseInnerProduct":
+        """The same on functions that vanish at pins; kept, with its inverse, as a metric outlives tangent spaces."""
+        if np.array_equal(pins, self._pins):
+            return self
+        if self._pinned is None or not np.array_equal(pins, self._pinned._pins):
+            self._pinned = DenseInnerProduct(self._matrix, pins)
+        return self._pinned
 
     @cached_property
     def inverse(self) -> FloatArray:
-        """A⁻¹, in full."""
-        inverse, info = lapack.dpotri(cholesky(self._matrix.copy(order="F")), lower=1, overwrite_c=1)
+        """A⁻¹, in full; with pins that of their complement's block, continued by 0."""
+        matrix, pins = self._matrix.copy(order="F"), self._pins
+        matrix[pins], matrix[:, pins] = 0.0, 0.0
+        matrix[pins, pins] = 1.0
+        inverse, info = lapack.dpotri(cholesky(matrix), lower=1, overwrite_c=1)
         if info != 0:
             raise np.linalg.LinAlgError(f"matrix is singular: pivot {info} of {len(self._matrix)}")
-        return _filled(np.asarray(inverse))
+        filled = _filled(np.asarray(inverse))
+        filled[pins, pins] = 0.0
+        return filled
 
 
 class SparseInnerProduct:

@@ -2,7 +2,7 @@
 
 The paper factorises the dense matrix of (m+1) n + m rows.  With J = A ⊗ Id_m, D the edge differences and t_I = τ_I/ℓ_I
 the Schur complement of the length rows is the Hadamard product (t tᵀ) ∘ (D A⁻¹ Dᵀ), to which p barycenters add p·m
-rows, so two Cholesky factorisations of size n do.
+rows, so two Cholesky factorisations of size n do.  Pins leave to A⁻¹ the functions that vanish there.
 """
 
 from typing import Protocol
@@ -17,7 +17,7 @@ from .tangent_space import TangentSpace, WholeSpace
 
 
 class WithInverse(Protocol):
-    """A Gram matrix A whose inverse is at hand."""
+    """A Gram matrix A whose inverse is at hand, on functions that vanish at pins continued by 0."""
 
     @property
     def inverse(self) -> FloatArray:
@@ -47,7 +47,7 @@ class DenseTangentSpace(TangentSpace):
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve the Schur complement's system for λ, then for u."""
         c = self.constraints
-        free = np.zeros(c.tangents.shape) if eta is None else self._inner.solve(eta)
+        free = np.zeros((len(c.masses), c.tangents.shape[1])) if eta is None else self._inner.solve(eta)
         right = c.apply(free)
         if xi is not None:
             right -= xi
@@ -87,8 +87,8 @@ def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray
 
     D A⁻¹ Dᵀ comes from differences of rows and columns, block by block in the processor's cache.
     """
-    n = len(c.tangents)
-    schur = np.zeros((c.count, c.count), order="F")
+    n, rows = len(c.tangents), len(c.edges)
+    schur = np.zeros((n + c.count - rows,) * 2, order="F")
     inverse, upper, heads = inner.inverse.T, schur.T, c.mesh.heads
     width = max(1, ROWS_TIMES_COLUMNS // n)
     for first in range(0, n, width):
@@ -98,7 +98,10 @@ def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray
         part = upper[block, first:n]
         np.subtract(change.take(heads[first:], axis=1), change[:, first:], out=part)
         part *= c.tangents[block] @ c.tangents[first:].T
-    for k, row in enumerate(c.barycenter_rows(), n):
+    if rows < n:
+        kept = np.concatenate([c.edges, np.arange(n, len(schur))])
+        schur = np.asfortranarray(schur[np.ix_(kept, kept)])
+    for k, row in enumerate(c.barycenter_rows(), rows):
         schur[k, :] = c.apply(inner.solve(row))
     return schur
 
@@ -113,4 +116,6 @@ def cholesky(matrix: FloatArray) -> FloatArray:
 
 def substituted(factor: FloatArray, right: FloatArray) -> FloatArray:
     """Solve L Lᵀ x = right for one right side; LAPACK's dpotrs is made for many and takes twice the time."""
+    if not len(right):  # which BLAS refuses
+        return right
     return np.asarray(blas.dtrsv(factor, blas.dtrsv(factor, right, lower=1), lower=1, trans=1))

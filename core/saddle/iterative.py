@@ -15,6 +15,7 @@ from ..curve import Curve
 from ..types import FloatArray
 from .krylov import conjugate_gradients, flexible_conjugate_gradients, relative
 from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
+from .pinned import vanishing_at
 from .tangent_space import TangentSpace, WholeSpace
 
 MIN_FORCING = 1e-4  # relative residual of Newton's method for the constraints
@@ -86,7 +87,8 @@ class IterativeTangentSpace(TangentSpace):
         super().__init__(constraints)
         self._inner = inner
         self._tolerances = tolerances
-        self._preconditioner = ConstraintPreconditioner(inner.model, constraints)
+        self._model = vanishing_at(constraints.pins, inner.model, len(constraints.masses))
+        self._preconditioner = ConstraintPreconditioner(self._model, constraints)
 
     def apply(self, u: FloatArray) -> FloatArray:
         """J u."""
@@ -94,7 +96,8 @@ class IterativeTangentSpace(TangentSpace):
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve for each of the two right sides, to its own tolerance."""
-        u, multipliers = np.zeros(self.constraints.tangents.shape), np.zeros(self.constraints.count)
+        c = self.constraints
+        u, multipliers = np.zeros((len(c.masses), c.tangents.shape[1])), np.zeros(c.count)
         for part in (None if eta is None else self._projected(eta), None if xi is None else self._shortest(xi)):
             if part is not None:
                 u, multipliers = u + part[0], multipliers + part[1]
@@ -109,7 +112,7 @@ class IterativeTangentSpace(TangentSpace):
 
         On fine meshes the shortest in the Euclidean metric is too rough: it turns edges by more than they are off.
         """
-        here = ConstraintPreconditioner(self._inner.model, constraints.derivative(curve))
+        here = ConstraintPreconditioner(self._model, constraints.derivative(curve))
         return here.shortest(-residual, max(float(np.max(np.abs(residual))), MIN_FORCING))
 
     def _projected(self, eta: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -163,13 +166,13 @@ class IterativeWholeSpace(WholeSpace):
         self, inner: WithModel, constraints: ConstraintDerivative, weights: FloatArray, tolerances: Tolerances
     ) -> None:
         super().__init__(constraints, weights)
-        self._inner = inner
-        self._tolerances = tolerances
+        self._inner, self._tolerances = inner, tolerances
+        self._model = vanishing_at(constraints.pins, inner.model, len(constraints.masses))
 
     def riesz(self, eta: FloatArray) -> FloatArray:
         """To the tolerance of gradients."""
         enough = relative(self._tolerances.gradient)
-        return conjugate_gradients(self.apply, self._inner.model.solve, eta, enough, self._tolerances.max_iterations)
+        return conjugate_gradients(self.apply, self._model.solve, eta, enough, self._tolerances.max_iterations)
 
     def apply(self, u: FloatArray) -> FloatArray:
         """(J + Cᵀ w C) u."""

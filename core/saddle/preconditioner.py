@@ -40,9 +40,9 @@ class ConstraintPreconditioner:
         self._model = model
         self.constraints = constraints
         self._tension = model.tension(constraints.tangents)
-        n, pinned = len(constraints.tangents), constraints.pinned
-        forced = [constraints.apply(model.solve(row))[n:] for row in constraints.barycenter_rows()]
-        self._pinned = np.linalg.inv(np.reshape(forced, (pinned, pinned)))
+        rows = len(constraints.edges)
+        forced = [constraints.apply(model.solve(row))[rows:] for row in constraints.barycenter_rows()]
+        self._held = np.linalg.inv(np.reshape(forced, (len(forced), len(forced))))
 
     def project(self, r: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
         """Solve for the right side (r, 0): u, shape (n, m), and λ.
@@ -75,5 +75,5 @@ class ConstraintPreconditioner:
         return c.apply(self._model.solve(c.apply_transpose(multipliers)))
 
     def _near_inverse(self, residual: FloatArray) -> FloatArray:
-        n = len(self.constraints.tangents)
-        return np.concatenate([self._tension(residual[:n]), self._pinned @ residual[n:]])
+        c = self.constraints
+        return np.concatenate([self._tension(c.tensions(residual))[c.edges], self._held @ residual[len(c.edges) :]])

@@ -24,21 +24,22 @@ class SparseTangentSpace(TangentSpace):
     def __init__(self, gram: sp.csr_array, constraints: ConstraintDerivative) -> None:
         super().__init__(constraints)
         self._gram = gram
-        n, m = constraints.tangents.shape
-        lengths = constraints.length_rows()
-        self._factor = factorised(sp.block_array([[sp.kron(gram, sp.eye_array(m)), lengths.T], [lengths, None]]))
-        border = np.reshape(list(constraints.barycenter_rows()), (-1, n * m))
-        self._border = np.hstack([border, np.zeros((len(border), n))])
+        rows, m = len(constraints.edges), constraints.tangents.shape[1]
+        self._free = _free(constraints)
+        lengths, full = constraints.length_rows(), sp.kron(_vanishing(gram, constraints), sp.eye_array(m))
+        self._factor = factorised(sp.block_array([[full, lengths.T], [lengths, None]]))
+        border = np.reshape(list(constraints.barycenter_rows()), (-1, full.shape[0]))
+        self._border = np.hstack([border, np.zeros((len(border), rows))])
         self._response = self._factor.solve(self._border.T)
-        self._pinned = self._border @ self._response
+        self._held = self._border @ self._response
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        """Solve without barycenters, then pin these."""
-        n, m = self.constraints.tangents.shape
-        eta = np.zeros((n, m)) if eta is None else eta
+        """Solve without barycenters, then hold these."""
+        rows, (n, m) = len(self.constraints.edges), (len(self._free), self.constraints.tangents.shape[1])
+        eta = np.zeros((n, m)) if eta is None else self._free * eta
         xi = np.zeros(self.constraints.count) if xi is None else xi
-        free = self._factor.solve(np.concatenate([eta.ravel(), xi[:n]]))
-        pull = np.linalg.solve(self._pinned, self._border @ free - xi[n:])
+        free = self._factor.solve(np.concatenate([eta.ravel(), xi[:rows]]))
+        pull = np.linalg.solve(self._held, self._border @ free - xi[rows:])
         both = free - self._response @ pull
         return both[: n * m].reshape(n, m), np.concatenate([both[n * m :], pull])
 
@@ -52,18 +53,33 @@ class SparseWholeSpace(WholeSpace):
 
     def __init__(self, gram: sp.csr_array, constraints: ConstraintDerivative, weights: FloatArray) -> None:
         super().__init__(constraints, weights)
-        lengths = constraints.length_rows()
-        full = sp.kron(gram, sp.eye_array(constraints.tangents.shape[1]))
+        self._free, lengths = _free(constraints), constraints.length_rows()
+        full = sp.kron(_vanishing(gram, constraints), sp.eye_array(constraints.tangents.shape[1]))
         self._matrix = sp.csr_array(full + lengths.T @ sp.diags_array(weights) @ lengths)
         self._factor = factorised(self._matrix)
 
     def riesz(self, eta: FloatArray) -> FloatArray:
         """By the factorisation."""
-        return np.asarray(self._factor.solve(eta.ravel())).reshape(eta.shape)
+        return np.asarray(self._factor.solve((self._free * eta).ravel())).reshape(eta.shape)
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """(J + Cᵀ w C) u."""
+        """(J + Cᵀ w C) u, for u that vanishes at pins."""
         return np.asarray(self._matrix @ u.ravel()).reshape(u.shape)
+
+
+def _free(constraints: ConstraintDerivative) -> FloatArray:
+    """0 at pins, 1 elsewhere; shape (n, 1)."""
+    free = np.ones((len(constraints.masses), 1))
+    free[constraints.pins] = 0.0
+    return free
+
+
+def _vanishing(gram: sp.csr_array, constraints: ConstraintDerivative) -> sp.csr_array:
+    """A where functions are free; rows and columns of pins are those of the identity."""
+    if not len(constraints.pins):
+        return gram
+    free = _free(constraints)[:, 0]
+    return sp.csr_array(sp.diags_array(free) @ gram @ sp.diags_array(free) + sp.diags_array(1.0 - free))
 
 
 def factorised(matrix: sp.sparray) -> SuperLU:

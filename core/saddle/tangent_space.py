@@ -11,14 +11,14 @@ from .restoration import euclidean_correction
 
 
 class TangentSpace(ABC):
-    """The tangent space {u : C u = 0} of the constraints, C = DΦ(P), with an inner product J on all of R^(n·m).
+    """The tangent space {u : C u = 0, u = 0 at pins}, C = DΦ(P), with an inner product J on all of R^(n·m).
 
     All of it rests on the saddle-point system (41) of [RS21],
 
         [ J  Cᵀ ] (u)   (η)
         [ C  0  ] (λ) = (ξ),
 
-    for three right sides: (DE, 0) gives the projected gradient, (0, ξ) the pseudo-inverse C^† ξ, (J v, 0) the
+    whose rows of J, and columns of C, at pins are left out, for three right sides: (DE, 0) gives the projected gradient, (0, ξ) the pseudo-inverse C^† ξ, (J v, 0) the
     projection of v.
     """
 
@@ -49,7 +49,7 @@ class TangentSpace(ABC):
         return euclidean_correction(constraints, curve, residual)
 
     def project(self, u: FloatArray) -> FloatArray:
-        """The orthogonal projection of u, shape (n, m)."""
+        """The orthogonal projection of u, which vanishes at pins; shape (n, m)."""
         return self.solve(self.apply(u), None)[0]
 
     def norm(self, u: FloatArray) -> float:
@@ -58,7 +58,7 @@ class TangentSpace(ABC):
 
 
 class WholeSpace(TangentSpace):
-    """All of R^(n·m), nothing being constrained, with J + Cᵀ w C: how Section 6.4 of [RS21] penalises lengths.
+    """All of R^(n·m), nothing being constrained but pins, with J + Cᵀ w C: how Section 6.4 of [RS21] penalises lengths.
 
     Parameters
     ----------
@@ -78,7 +78,8 @@ class WholeSpace(TangentSpace):
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """The same without constraints: ξ is of no consequence, multipliers are 0."""
-        u = np.zeros(self.constraints.tangents.shape) if eta is None else self.riesz(eta)
+        c = self.constraints
+        u = np.zeros((len(c.masses), c.tangents.shape[1])) if eta is None else self.riesz(eta)
         return u, np.zeros(self.constraints.count)
 
     def project(self, u: FloatArray) -> FloatArray:

@@ -7,11 +7,12 @@ import numpy as np
 
 from ...collision import survives_rounding
 from ...curve import Curve
+from ...curve.pins import arcs
 from ...curve.refine import Resolution, apportion, subdivide
 from ...curve.remesh import graded_spacing, superfluous
 from ...curve.smooth import smoothed
-from ...descent import Leg, NoStep, Point, Step
-from ...types import FloatArray
+from ...descent import Leg, NoStep, Point, Problem, Step
+from ...types import FloatArray, IntArray
 from ..events import Change, Event, Start
 from ..outcome import Outcome
 from ..prepare import equal_lengths, on_mesh, with_parts_of
@@ -32,10 +33,9 @@ class CoarseStart:
         self._run = run
         # what kept lengths from being equal at the start is gone in the end
         constraints = run.problem.constraints
-        lengths = equal_lengths(run.problem.mesh, constraints.lengths)
+        lengths = equal_lengths(run.problem.mesh, constraints.lengths, constraints.pins.vertices)
         self._problem = replace(run.problem, constraints=replace(constraints, lengths=lengths))
         self._options = replace(run.options, vertices=None, edge_lengths="keep", mesh="fixed")
-        self._sizes = np.array(run.problem.mesh.component_sizes)
         self._wanted = self._is_wanted()
         self._coarse: Curve | None = None
 
@@ -66,8 +66,8 @@ class CoarseStart:
             return None
         curve, problem = self._run.iterate.curve, self._run.problem
         spacing = graded_spacing(curve, Resolution())
-        unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no component has more vertices than in the end
-        found = proved_remesh(problem, curve, Resolution(), superfluous(curve, spacing), unsplit)
+        unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no arc has more vertices than in the end
+        found = proved_remesh(problem, curve, Resolution(), superfluous(curve, spacing, _kept(problem)), unsplit)
         if found is None or len(found[1].curve) >= len(curve):
             return None
         step, remeshed = found
@@ -77,8 +77,11 @@ class CoarseStart:
     def _finest(self) -> Change | None:
         """The same curve with all vertices, in the problem of the start; None if doubles do not tell them apart."""
         self._coarse = curve = self._run.iterate.curve
-        parts = zip(curve.mesh.slices, self._sizes, strict=True)
-        finest = subdivide(curve, np.concatenate([apportion(curve.edge_lengths[part], n) for part, n in parts]))
+        pieces = np.empty(len(curve), dtype=np.intp)
+        coarse, fine = (arcs(each.mesh, _kept(each)) for each in (self._run.problem, self._problem))
+        for arc, again in zip(coarse, fine, strict=True):
+            pieces[arc] = apportion(curve.edge_lengths[arc], len(again))
+        finest = subdivide(curve, pieces)
         if not survives_rounding(finest):
             self._coarse = None
             return None
@@ -92,7 +95,10 @@ class CoarseStart:
         if self._coarse is None:
             return None
         start = self._run.iterate.curve
-        way = smoothed(self._coarse, start.mesh).vertices - start.vertices
+        pins = self._run.problem.constraints.pins
+        old = pins.on(self._coarse).vertices
+        way = smoothed(self._coarse, start.mesh, old, pins.vertices).vertices - start.vertices
+        way[pins.vertices] = 0.0
         self._coarse = None
         return self._motion(way, _restored) or self._motion(way, lambda end: end)
 
@@ -109,6 +115,12 @@ class CoarseStart:
                 return Change((Step((Leg(end, proof),), 0.0, None),))
             share *= min(0.9, proof.time)
         return None
+
+
+def _kept(problem: Problem) -> IntArray:
+    """Pins, and the first vertices of their components: so arcs come in the same order on all meshes."""
+    mesh, pins = problem.mesh, problem.constraints.pins.vertices
+    return np.union1d(pins, mesh.offsets[mesh.component[pins]])
 
 
 def _restored(point: Point) -> Point | None:

@@ -24,7 +24,8 @@ class Composite:
         """Look at converged curves."""
         problem = self._run.problem
         scale_invariant = problem.objective.energy.scale_exponent == 0.0
-        if not (isinstance(event, Outcome) and event.converged and scale_invariant):
+        may_shrink = scale_invariant and not len(problem.constraints.pins)  # between pins a part cannot without limit
+        if not (isinstance(event, Outcome) and event.converged and may_shrink):
             return event
         parts = [part for part in split(self._run.iterate.curve, problem.constraints.parts) if _may_be_composite(part)]
         ball = next(filter(None, map(knotted_ball, parts)), None)

@@ -48,20 +48,21 @@ class Remesh:
         stuck
             Two edges that keep each other from moving: the mesh around them is refined whether it needs it or not.
         """
-        curve, resolution = self._run.iterate.curve, self._run.resolution
+        problem, curve, resolution = self._run.problem, self._run.iterate.curve, self._run.resolution
+        pins = problem.constraints.pins.vertices
         spacing = graded_spacing(curve, resolution)
         if stuck is not None:
             for edge in stuck:
                 near = curve.mesh.index_distance(np.full(len(curve), edge), np.arange(len(curve))) <= 2
                 spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
-        elif not needs_remesh(curve, spacing):
+        elif not needs_remesh(curve, spacing, pins):
             return None
-        problem = self._run.problem
-        found = proved_remesh(problem, curve, resolution, superfluous(curve, spacing), spacing)
+        found = proved_remesh(problem, curve, resolution, superfluous(curve, spacing, pins), spacing)
         if found is None:
             return None
         step, remeshed = found
-        constraints = replace(problem.constraints, lengths=remeshed.lengths / problem.units.scale)
+        lengths = remeshed.lengths / problem.units.scale
+        constraints = replace(problem.constraints, lengths=lengths, pins=remeshed.pins)
         problem = replace(problem, mesh=remeshed.curve.mesh, constraints=constraints)
         return Change((step,), problem.at_curve(remeshed.curve))
 
@@ -74,7 +75,7 @@ def proved_remesh(
     None if doubles do not tell the vertices apart.
     """
     while True:
-        change = remesh(curve, resolution, removable, spacing)
+        change = remesh(curve, resolution, removable, spacing, problem.constraints.pins)
         free = problem.free_motion(curve.vertices, change.moved.vertices)
         if free.time == 1.0 or not len(removable):
             break
