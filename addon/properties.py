@@ -49,7 +49,7 @@ def measure_items() -> list[tuple[str, str, str]]:
 
 def shown(group: str | None = None) -> list[Option]:
     """The options of a relaxation, of one group or all, that Blender has settings for."""
-    return [each for each in declared(RelaxOptions) if each.keyframes and group in (None, each.group)]
+    return [each for each in declared(RelaxOptions) if each.is_setting and group in (None, each.group)]
 
 
 def _property(option: Option, options: set[str]) -> Any:

@@ -13,7 +13,7 @@ def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
     group = parser.add_argument_group("relaxation")
     for option in declared(RelaxOptions):
         if method or option.name != "method":
-            group.add_argument(flag(option), default=option.default, help=_help(option), **_values(option))
+            group.add_argument(flag(option), help=_help(option), **_values(option))
             for word, value in option.shorthands.items():
                 text = f"the same as {flag(option)} {value}"
                 group.add_argument(f"--{word}", dest=option.name, action=_Farther, const=(option, value), help=text)
@@ -21,8 +21,19 @@ def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
 
 def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     """The options; raises OptionError if one is out of range."""
-    given, names = vars(arguments), [option.name for option in declared(RelaxOptions)]
-    return RelaxOptions(**{name: given[name] for name in names if name in given})
+    given = vars(arguments)
+    wanted = {each.name: _value(each, given[each.name]) for each in declared(RelaxOptions) if each.name in given}
+    return RelaxOptions(**wanted)
+
+
+def inputs(arguments: argparse.Namespace) -> dict[str, str]:
+    """The files that are read, by what they are on the command line."""
+    return {"IN": arguments.input, **{f"--avoid {path}": path for path in arguments.avoid}}
+
+
+def _value(option: Option, given: Any) -> Any:
+    """What is given, with words turned into the items of a tuple."""
+    return tuple(map(option.read, given)) if option.kind is tuple else given
 
 
 def flag(option: Option) -> str:
@@ -31,12 +42,18 @@ def flag(option: Option) -> str:
 
 
 def _values(option: Option) -> dict[str, Any]:
-    return {"action": "store_true"} if option.kind is bool else {"type": option.kind, "metavar": option.metavar}
+    if option.kind is bool:
+        return {"action": "store_true", "default": option.default}
+    if option.kind is tuple:
+        return {"action": "append", "default": [], "metavar": option.metavar}
+    return {"type": option.kind, "default": option.default, "metavar": option.metavar}
 
 
 def _help(option: Option) -> str:
     if option.kind is bool:
         return option.help
+    if option.kind is tuple:
+        return f"{option.help}; may be given several times"
     choices = f": one of {', '.join(option.choices)}" if option.choices else ""
     return f"{option.help}{choices} (default: {option.automatic or option.default})"
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields
 from inspect import cleandoc
 from numbers import Integral, Real
 from types import MappingProxyType
-from typing import Any, Literal, TypeVar, get_args, get_type_hints
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -24,6 +24,7 @@ _KINDS: Mapping[type, tuple[tuple[type, ...], str]] = MappingProxyType(  # what 
         float: ((Real,), "a number"),
         str: ((str,), "a name"),
         bool: ((bool, np.bool_), "True or False"),
+        tuple: ((), ""),  # nothing but its objects
     }
 )
 
@@ -47,7 +48,9 @@ class Option:
     choices
         The names it takes: a registry, or a few words.
     objects
-        What else than a name a script may give: what it is called, and whether a value is one.
+        What else than a name a script may give, or what a tuple holds: what it is called, and whether a value is one.
+    read
+        How an item of a tuple is made of a word of the command line, where it may be given several times.
     metavar
         What stands for its value in the command line's help.
     group
@@ -67,10 +70,16 @@ class Option:
     high: float = math.inf
     choices: Collection[str] | None = field(default=None, repr=False)
     objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
+    read: Callable[[str], object] = field(default=str, repr=False)
     metavar: str = "NAME"
     group: Literal["basic", "advanced"] = "basic"
     keyframes: bool = True
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
+
+    @property
+    def is_setting(self) -> bool:
+        """Whether Blender has a setting for it: keyframes can follow, and its value is not made of objects."""
+        return self.keyframes and self.kind is not tuple
 
     def sentence(self, none: str = "") -> str:
         """The help by itself, without a full stop; ``none`` is how None, if it is allowed, is written."""
@@ -84,7 +93,7 @@ class Option:
         if self.objects is not None:
             if self.objects[1](value):
                 return
-            noun = f"{noun} or {self.objects[0]}"
+            noun = f"{noun} or {self.objects[0]}" if noun else self.objects[0]
         # bool is a kind of int, but no number
         if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
             raise OptionError(f"{self.name} is {value!r:.40}; it must be {noun}")
@@ -110,8 +119,14 @@ def option(default: Any, label: str, help: str, **more: Any) -> Any:
 
 def declared(owner: type) -> list[Option]:
     """The options that are the fields of a dataclass, in order."""
-    kinds = {name: (get_args(hint) or (hint,))[0] for name, hint in get_type_hints(owner).items()}  # int of int | None
-    return [Option(name=f.name, kind=kinds[f.name], default=f.default, **f.metadata) for f in fields(owner)]
+    hints = get_type_hints(owner)
+    return [Option(name=f.name, kind=_kind(hints[f.name]), default=f.default, **f.metadata) for f in fields(owner)]
+
+
+def _kind(hint: Any) -> type:
+    """The type of an option's values, such as int of ``int | None``."""
+    kind: type = tuple if get_origin(hint) is tuple else (get_args(hint) or (hint,))[0]
+    return kind
 
 
 def documented(owner: _Class) -> _Class:

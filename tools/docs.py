@@ -58,7 +58,7 @@ def methods() -> str:
 def options() -> str:
     """The options of a relaxation."""
     rows = [
-        (f"`{each.name}`", each.help, _default(each), "yes" if each.keyframes else "no")
+        (f"`{each.name}`", each.help, _default(each), "yes" if each.is_setting else "no")
         for each in declared(RelaxOptions)
     ]
     return _table(("option", "what it does", "default", "in Blender"), rows)

@@ -10,6 +10,8 @@ from ..descent import METHODS
 from ..energies import ENERGIES, Energy
 from ..errors import OptionError
 from ..metrics import METRICS
+from ..obstacle import Obstacle
+from ..obstacle_files import read_obstacle
 from ..option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
@@ -26,6 +28,10 @@ def _are_lengths(value: object) -> bool:
     except (TypeError, ValueError):
         return False
     return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
+
+
+def _are_obstacles(value: object) -> bool:
+    return isinstance(value, Sequence) and all(isinstance(each, Obstacle) for each in value)
 
 
 @documented
@@ -72,6 +78,14 @@ class RelaxOptions:
         low=1,
         high=16,
         metavar="k",
+    )
+    avoid: tuple[Obstacle, ...] = _advanced(
+        (),
+        "Avoid",
+        "surfaces and polylines, in the curve's units, that it never touches: triangles or segments that stand still",
+        objects=("obstacles, such as (Obstacle(vertices, faces),)", _are_obstacles),
+        metavar="MESH.obj",
+        read=read_obstacle,
     )
     penalty: float | None = _advanced(
         None,
@@ -140,6 +154,7 @@ class RelaxOptions:
             each.check(getattr(self, each.name))
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
+        object.__setattr__(self, "avoid", tuple(self.avoid))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
 

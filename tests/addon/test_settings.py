@@ -19,7 +19,7 @@ from mobius_flow.core.option import declared, option  # noqa: E402
 from option_values import unlike_default  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
 
-SHOWN = {each.name: each for each in declared(RelaxOptions) if each.keyframes}
+SHOWN = {each.name: each for each in declared(RelaxOptions) if each.is_setting}
 GIVEN = {name: unlike_default(each) for name, each in SHOWN.items()}
 
 

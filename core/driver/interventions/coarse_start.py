@@ -77,7 +77,7 @@ class CoarseStart:
         self._coarse = curve = self._run.iterate.curve
         parts = zip(curve.mesh.slices, self._sizes, strict=True)
         finest = subdivide(curve, np.concatenate([apportion(curve.edge_lengths[part], n) for part, n in parts]))
-        if not survives_rounding(finest):
+        if not survives_rounding(finest, self._problem.obstacles):
             self._coarse = None
             return None
         return Change(point=with_parts_of(self._run.problem, self._problem, finest))
