@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
     if not (math.isfinite(options.time_limit) and options.time_limit > 0):
         raise OptionError(f"time-limit is {options.time_limit}; it must be a finite number of seconds above 0")
     names = list(METHODS) if options.methods is None else [name.strip() for name in options.methods.split(",")]
-    check_places(options.input, {"OUT": options.output})
+    check_places(relax_options.inputs(options), {"OUT": options.output})
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         wanted = relax_options.from_arguments(options)

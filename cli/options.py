@@ -13,7 +13,7 @@ def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
     group = parser.add_argument_group("relaxation")
     for option in declared(RelaxOptions):
         if method or option.name != "method":
-            group.add_argument(flag(option), default=option.default, help=_help(option), **_values(option))
+            group.add_argument(flag(option), help=_help(option), **_values(option))
             for word, value in option.shorthands.items():
                 text = f"the same as {flag(option)} {value}"
                 group.add_argument(f"--{word}", dest=option.name, action=_Farther, const=(option, value), help=text)
@@ -21,38 +21,41 @@ def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
 
 def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     """The options; raises OptionError if one is out of range."""
-    given, names = vars(arguments), [option.name for option in declared(RelaxOptions)]
-    return RelaxOptions(**{name: given[name] for name in names if name in given})
+    given = vars(arguments)
+    wanted = {each.name: _value(each, given[each.name]) for each in declared(RelaxOptions) if each.name in given}
+    return RelaxOptions(**wanted)
+
+
+def inputs(arguments: argparse.Namespace) -> dict[str, str]:
+    """The files that are read, by what they are on the command line."""
+    return {"IN": arguments.input, **{f"--avoid {path}": path for path in arguments.avoid}}
+
+
+def _value(option: Option, given: Any) -> Any:
+    """What is given, with words turned into the items of a tuple."""
+    return tuple(item for word in given for item in option.read(word)) if option.repeated else given
 
 
 def flag(option: Option) -> str:
     """What the option is called on the command line."""
-    return f"--{option.ordinals or option.name.replace('_', '-')}"
+    return f"--{option.flag or option.name.replace('_', '-')}"
 
 
 def _values(option: Option) -> dict[str, Any]:
-    if option.ordinals:
-        return {"dest": option.name, "action": _Ordinals, "metavar": option.metavar}
-    return {"action": "store_true"} if option.kind is bool else {"type": option.kind, "metavar": option.metavar}
+    if option.kind is bool:
+        return {"action": "store_true"}
+    if option.repeated:
+        return {"dest": option.name, "action": "append", "default": [], "metavar": option.metavar}
+    return {"type": option.kind, "metavar": option.metavar}
 
 
 def _help(option: Option) -> str:
     if option.kind is bool:
         return option.help
+    if option.repeated:
+        return f"{option.help}; may be given several times"
     choices = f": one of {', '.join(option.choices)}" if option.choices else ""
-    return f"{option.help}{choices} (default: {option.automatic or option.default or 'none'})"
-
-
-class _Ordinals(argparse.Action):
-    """Numbers of vertices with commas between, counted from 1 as in OBJ; given again, there are more of them."""
-
-    def __call__(self, _parser: Any, namespace: argparse.Namespace, text: Any, _flag: str | None = None) -> None:
-        words = [word.strip() for word in text.split(",")]
-        wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and 0 < int(word[:20]))), None)
-        if wrong is not None:
-            raise argparse.ArgumentError(self, f"{wrong!r:.40} is no vertex; give numbers from 1, such as 12,40")
-        given = getattr(namespace, self.dest)
-        setattr(namespace, self.dest, (*given, *(int(word[:20]) - 1 for word in words)))
+    return f"{option.help}{choices} (default: {option.automatic or option.default})"
 
 
 class _Farther(argparse.Action):

@@ -5,7 +5,7 @@ import secrets
 import stat
 import sys
 from collections.abc import Mapping
-from itertools import combinations
+from itertools import combinations, product
 from pathlib import Path
 
 from ..core import MobiusFlowError
@@ -16,21 +16,22 @@ from .curves import DEVICE, OUTPUT, STREAM
 Identity = tuple[int | str, ...]
 
 
-def check_places(source: str, outputs: Mapping[str, str | None]) -> None:
+def check_places(inputs: Mapping[str, str], outputs: Mapping[str, str | None]) -> None:
     """Raise a MobiusFlowError unless all outputs can be written and are files of their own.
 
     Parameters
     ----------
-    source
-        The input.
+    inputs
+        The path of each, by what it is on the command line.
     outputs
         The path of each, by its name on the command line; those that are None are not wanted.
     """
     wanted = {name: path for name, path in outputs.items() if path is not None}
     for path in wanted.values():
         check_place(path)
-    named = [("IN", source, _identity(source, 0)), *((k, path, _identity(path, 1)) for k, path in wanted.items())]
-    for (first, _, one), (second, path, other) in combinations(named, 2):
+    read = [(k, path, _identity(path, 0)) for k, path in inputs.items()]
+    written = [(k, path, _identity(path, 1)) for k, path in wanted.items()]
+    for (first, _, one), (second, path, other) in [*product(read, written), *combinations(written, 2)]:
         if one is not None and one == other:
             raise MobiusFlowError(f"{path}: {first} and {second} are the same file; give each one of its own")
 

@@ -2,7 +2,6 @@
 
 import os
 import platform
-from dataclasses import asdict
 
 import numpy
 import scipy
@@ -15,10 +14,15 @@ from ..core.curve.io import CurveFile
 def provenance(options: RelaxOptions, file: CurveFile) -> dict[str, object]:
     """The version, the options as used, the input and its hash, the BLAS threads and the libraries, as plain values."""
     return {
-        "options": asdict(options),
+        "options": plain(options),
         "input": {"name": str(file.source.path), "sha256": file.source.sha256},
         **environment(),
     }
+
+
+def plain(options: RelaxOptions) -> dict[str, object]:
+    """The options as plain values, obstacles by their names."""
+    return vars(options) | {"avoid": [each.name for each in options.avoid]}
 
 
 def environment() -> dict[str, object]:

@@ -3,7 +3,7 @@
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -11,6 +11,7 @@ from ..core import (
     Curve,
     Iterate,
     MobiusFlowError,
+    Obstacle,
     Outcome,
     RelaxOptions,
     Result,
@@ -39,6 +40,7 @@ _EPILOG = """\
 examples:
   mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
   mobius-flow relax knot.txt film.mp4 --method trust-region
+  mobius-flow relax knot.txt relaxed.txt --avoid bunny.obj --trajectory path.npz
   mobius-flow knot 8_19 - | mobius-flow relax - - --format txt | mobius-flow energy -
 
 exit status:
@@ -93,7 +95,8 @@ def run(options: argparse.Namespace) -> int:
                 "leave --mesh out, or write a curve file"
             )
         wanted = wanted.keyed
-    check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
+    outputs = {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
+    check_places(relax_options.inputs(options), outputs)
     file = curves.read(options.input, options.format)
     admit(output, options.output, file.curve)
     origin = provenance(wanted, file)
@@ -123,7 +126,7 @@ def _relax(
                 notes.show()  # the curve is accepted: there will be no refusal
             progress.update(iterate)
 
-        return finish(_interruptible(relaxation), wanted.method, on_iterate), iterates
+        return finish(_interruptible(relaxation), wanted, on_iterate), iterates
 
 
 def _interruptible(relaxation: Relaxation) -> Relaxation:
@@ -187,7 +190,7 @@ def _jobs(
 ) -> Iterator[_Job]:
     for path, write in (
         (options.report, lambda path: _write_report(path, result, origin)),
-        (options.trajectory, lambda path: _trajectory(iterates, origin).save(path)),
+        (options.trajectory, lambda path: _trajectory(iterates, origin, result.obstacles).save(path)),
     ):
         if path is not None:
             yield _Job(path, write, interruptible=not is_file(path))
@@ -201,8 +204,8 @@ def _jobs(
         yield job._replace(name=name, interruptible=not is_file(options.output))
 
 
-def _trajectory(iterates: list[Iterate], origin: Mapping[str, object]) -> Trajectory:
-    trajectory = Trajectory(origin)
+def _trajectory(iterates: list[Iterate], origin: Mapping[str, object], obstacles: Sequence[Obstacle]) -> Trajectory:
+    trajectory = Trajectory(origin, obstacles)
     for iterate in iterates:
         trajectory.add(iterate)
     return trajectory

@@ -25,7 +25,7 @@ examples:
   mobius-flow verify path.npz
   mobius-flow relax knot.txt out.txt --quiet --trajectory /dev/stdout | mobius-flow verify - --json
 
-In JSON stages and frames are counted from 0, edges, as in "reason", from 1.
+In JSON stages and frames are counted from 0, edges and the obstacle, as in "reason", from 1.
 
 exit status:
   0    accepted: free of contact, with proof
@@ -51,8 +51,12 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _plain(verdict: Verdict) -> dict[str, object]:
-    """The verdict with edges counted as in its reason, from 1."""
-    return asdict(verdict) | {"edges": verdict.edges and [edge + 1 for edge in verdict.edges]}
+    """The verdict with edges and the obstacle counted as in its reason, from 1."""
+    counted = {
+        "edges": verdict.edges and [edge + 1 for edge in verdict.edges],
+        "obstacle": None if verdict.obstacle is None else verdict.obstacle + 1,
+    }
+    return asdict(verdict) | counted
 
 
 @contextmanager

@@ -9,6 +9,8 @@ from .descent import METHODS
 from .driver import Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, WithOutcome, minimize, relax
 from .energies import MoebiusEnergy, Objective
 from .errors import CurveError, CurveFileError, MobiusFlowError, OptionError
+from .obstacle import Obstacle
+from .obstacle_files import read_obstacle
 
 __all__ = [
     "METHODS",
@@ -20,6 +22,7 @@ __all__ = [
     "MobiusFlowError",
     "MoebiusEnergy",
     "Objective",
+    "Obstacle",
     "OptionError",
     "Outcome",
     "RelaxOptions",
@@ -29,6 +32,7 @@ __all__ = [
     "WithOutcome",
     "minimize",
     "read_curve",
+    "read_obstacle",
     "relax",
     "write_curve",
 ]

@@ -1,6 +1,7 @@
 """What a curve must not touch: a still surface of triangles, or polylines."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -8,10 +9,16 @@ import numpy.typing as npt
 from .errors import CurveError
 from .types import FloatArray, IntArray, frozen
 
+NAMELESS = "obstacle"
+MAX_COORDINATE = 1e40  # as for curves: powers of it are still numbers
+
 
 @dataclass(frozen=True, eq=False)
 class Obstacle:
     """A set of triangles or segments in space, which share vertices.
+
+    Triangles without area are welcome, for meshes have some: they are the segments, or points, that they are. So are
+    open meshes, meshes that cross themselves, and triangles of either orientation: there is no inside and no outside.
 
     Parameters
     ----------
@@ -25,25 +32,60 @@ class Obstacle:
     Raises
     ------
     CurveError
-        If a coordinate is not finite, an index has no vertex, a shape is wrong, or a simplex is degenerate; the message
-        says which.
+        If there is no simplex, a coordinate is not finite or too large, an index has no vertex, or a shape or type is
+        wrong; the message says which, counted from 1.
     """
 
     vertices: FloatArray
     faces: IntArray
     name: str
 
-    def __init__(self, vertices: npt.ArrayLike, faces: npt.ArrayLike, name: str = "obstacle") -> None:
-        points, simplices = np.array(vertices, dtype=np.float64), np.array(faces, dtype=np.intp)
+    def __init__(self, vertices: npt.ArrayLike, faces: npt.ArrayLike, name: str = NAMELESS) -> None:
+        try:
+            points, simplices = np.array(vertices, dtype=np.float64), np.array(faces)
+        except (TypeError, ValueError) as error:
+            raise CurveError(f"{name}: vertices and faces must be arrays of numbers: {error}") from error
         if points.ndim != 2 or points.shape[1] != 3:
             raise CurveError(f"{name}: vertices have shape {points.shape}; they must be an array (k, 3)")
-        if simplices.ndim != 2 or simplices.shape[1] not in (2, 3):
+        if simplices.ndim != 2 or simplices.shape[1] not in (2, 3) or not len(simplices):
             raise CurveError(f"{name}: faces have shape {simplices.shape}; they must be an array (f, 3) or (f, 2)")
+        if simplices.dtype.kind not in "iu":
+            raise CurveError(f"{name}: faces are of type {simplices.dtype}; they must be whole numbers")
+        _check_points(points, name)
+        _check_indices(simplices, len(points), name)
         object.__setattr__(self, "vertices", frozen(points))
-        object.__setattr__(self, "faces", frozen(simplices))
+        object.__setattr__(self, "faces", frozen(simplices.astype(np.intp)))
         object.__setattr__(self, "name", name)
 
     @property
+    def title(self) -> str:
+        """What sentences call it."""
+        return self.name if self.name == NAMELESS else f"obstacle {self.name}"
+
+    @cached_property
     def corners(self) -> FloatArray:
         """The simplices' vertices, shape (f, 3, 3) or (f, 2, 3)."""
         return frozen(self.vertices[self.faces])
+
+    @cached_property
+    def size(self) -> float:
+        """The largest coordinate, in the user's units and without its sign."""
+        return float(np.abs(self.vertices).max())
+
+
+def _check_points(points: FloatArray, name: str) -> None:
+    sizes = np.abs(points).max(axis=1)
+    bad = np.flatnonzero(~(sizes <= MAX_COORDINATE))  # NaN is not
+    if bad.size:
+        place = ", ".join(f"{x:.6g}" for x in points[bad[0]])
+        finite = np.isfinite(sizes[bad[0]])
+        reason = f"beyond {MAX_COORDINATE:g}; use a larger unit of length" if finite else "not finite"
+        raise CurveError(f"{name}: vertex {bad[0] + 1}, ({place}), is {reason}")
+
+
+def _check_indices(simplices: IntArray, count: int, name: str) -> None:
+    bad = np.flatnonzero(((simplices < 0) | (simplices >= count)).any(axis=1))
+    if bad.size:
+        raise CurveError(
+            f"{name}: face {bad[0] + 1} has vertices {simplices[bad[0]].tolist()}, counted from 0; there are {count}"
+        )

@@ -5,12 +5,12 @@ From that follow its checks, the arguments of the command line, and Blender's se
 
 import math
 import sys
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from inspect import cleandoc
 from numbers import Integral, Real
 from types import MappingProxyType
-from typing import Any, Literal, TypeVar, get_args, get_type_hints
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -48,6 +48,8 @@ class Option:
         The names it takes: a registry, or a few words.
     objects
         What else than a name a script may give: what it is called, and whether a value is one.
+    read
+        Which items of a tuple a word of the command line stands for, where it may be given several times.
     metavar
         What stands for its value in the command line's help.
     group
@@ -57,8 +59,12 @@ class Option:
         leave out vertices on the way is among Blender's settings.
     shorthands
         Words of the command line, each with the choice that it stands for.
-    ordinals
-        Where its value is a tuple of indices, from 0: the word by which they are given, from 1, on the command line.
+    repeated
+        Whether its value is a tuple, whose items are checked.
+    flag
+        What it is called on the command line, if not by its name.
+    example
+        A tuple that is allowed, for messages.
     scripted
         Whether it is for scripts and the command line alone.
     """
@@ -73,11 +79,14 @@ class Option:
     high: float = math.inf
     choices: Collection[str] | None = field(default=None, repr=False)
     objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
+    read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
     metavar: str = "NAME"
     group: Literal["basic", "advanced"] = "basic"
     keyframes: bool = True
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
-    ordinals: str = ""
+    repeated: bool = False
+    flag: str = ""
+    example: str = ""
     scripted: bool = False
 
     @property
@@ -91,20 +100,20 @@ class Option:
 
     def check(self, value: object) -> None:
         """Raise an OptionError, which says what is allowed, unless the option can have this value."""
-        if self.ordinals and not isinstance(value, str) and isinstance(value, Sequence | np.ndarray):
+        if self.repeated and not isinstance(value, str) and isinstance(value, Sequence | np.ndarray):
             for each in value:
                 self._check_one(each)
-        elif self.ordinals:
-            raise OptionError(f"{self.name} is {value!r:.40}; it must be a tuple of whole numbers, such as (0, 5)")
+        elif self.repeated:
+            raise OptionError(f"{self.name} is {value!r:.40}; it must be a tuple, such as {self.example}")
         elif value is not None or self.default is not None:
             self._check_one(value)
 
     def _check_one(self, value: object) -> None:
-        types, noun = _KINDS[self.kind]
+        types, noun = _KINDS.get(self.kind, ((), ""))
         if self.objects is not None:
             if self.objects[1](value):
                 return
-            noun = f"{noun} or {self.objects[0]}"
+            noun = f"{noun} or {self.objects[0]}" if noun else self.objects[0]
         # bool is a kind of int, but no number
         if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
             raise OptionError(f"{self.name} is {value!r:.40}; it must be {noun}")
@@ -130,8 +139,13 @@ def option(default: Any, label: str, help: str, **more: Any) -> Any:
 
 def declared(owner: type) -> list[Option]:
     """The options that are the fields of a dataclass, in order."""
-    kinds = {name: (get_args(hint) or (hint,))[0] for name, hint in get_type_hints(owner).items()}  # int of int | None
-    return [Option(name=f.name, kind=kinds[f.name], default=f.default, **f.metadata) for f in fields(owner)]
+    hints = get_type_hints(owner)
+    return [Option(name=f.name, default=f.default, **_type(hints[f.name]), **f.metadata) for f in fields(owner)]
+
+
+def _type(hint: Any) -> dict[str, Any]:
+    """The type of an option's values, or of their items: int of ``int``, ``int | None`` and ``tuple[int, ...]``."""
+    return {"kind": (get_args(hint) or (hint,))[0], "repeated": get_origin(hint) is tuple}
 
 
 def documented(owner: _Class) -> _Class:

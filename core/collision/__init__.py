@@ -1,13 +1,16 @@
 """Conservative continuous collision detection: motions of polygons that are proved free of contact."""
 
+from .clearance import check_clear
 from .embedded import check_embedded
 from .gap import check_gap, minimal_gap
-from .motion import FreeMotion, Limit, free_motion, is_free
+from .motion import Contact, FreeMotion, Limit, free_motion, is_free
 from .rounding import survives_rounding
 
 __all__ = [
+    "Contact",
     "FreeMotion",
     "Limit",
+    "check_clear",
     "check_embedded",
     "check_gap",
     "free_motion",

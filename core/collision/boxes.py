@@ -1,4 +1,4 @@
-"""A tree of moving boxes over the edges: which edges can come near each other, and when."""
+"""Trees of boxes over moving edges and still triangles: which of them can come near each other, and when."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ _ROOTS = 24  # the coarsest level has at most this many boxes; above it a tree o
 _NOWHERE = -4.0  # upper bounds of a padding box: empty, and away from everything when coordinates are at most 1
 _SLACK = 16 * float(np.finfo(np.float64).eps)
 
-Test = Callable[["Level", IntArray, IntArray], BoolArray]
+Test = Callable[["Level", IntArray, "Level", IntArray], BoolArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,81 +25,96 @@ class Level:
     ----------
     upper, flipped
         Shape (2, 2m, boxes): at the two times, the upper bounds of (x, −x), and of (−x, x). A vertex that moves
-        linearly from one box to the other is at time t in the box interpolated between them.
+        linearly from one box to the other is at time t in the box interpolated between them. Boxes that stand still
+        may have shape (1, 2m, boxes).
     leaves
-        Whether a box holds a single edge.
+        Whether a box holds a single simplex.
     """
 
     upper: FloatArray
     flipped: FloatArray
     leaves: bool
 
-    def gaps(self, a: IntArray, b: IntArray) -> FloatArray:
-        """Signed gaps between boxes ``a`` and ``b`` along ±each axis at both times; shape (2, 2m, pairs)."""
+    def gaps(self, a: IntArray, other: "Level", b: IntArray) -> FloatArray:
+        """Signed gaps to boxes ``b`` of another level from boxes ``a``, which move, along ±each axis at both times.
+
+        The result has shape (2, 2m, pairs).
+        """
         gaps = self.upper.take(a, axis=2)
-        gaps += self.flipped.take(b, axis=2)
+        gaps += other.flipped.take(b, axis=2)
         return np.asarray(np.negative(gaps, out=gaps))
 
 
 @dataclass(frozen=True, eq=False)
 class BoxTree:
-    """Boxes over contiguous ranges of edges in curve order, halved from level to level.
+    """Boxes over contiguous ranges of simplices, neighbours in order being near in space, halved from level to level.
 
     Attributes
     ----------
-    mesh
-        Connectivity.
     order
-        Edge at each position of the finest level; components near each other in space come next to each other.
+        Edge, or triangle, at each position of the finest level; shape (k,).
+    corners
+        Vertices of the simplex at each position; shape (2, k) for edges, (3, k) for triangles.
     levels
-        From the coarsest to single edges.
+        From the coarsest to single simplices.
     """
 
-    mesh: Mesh
     order: IntArray
+    corners: IntArray
     levels: tuple[Level, ...]
 
     @classmethod
     def build(cls, mesh: Mesh, start: FloatArray, end: FloatArray) -> "BoxTree":
         """Build the tree of one leg; ``start`` and ``end`` have shape (m, n) and entries of at most 1 in size."""
         order = component_order(mesh, start)
-        points = np.stack([start, end])
-        tails, heads = points[..., order], points[..., mesh.heads[order]]
-        upper = np.concatenate([np.maximum(tails, heads), -np.minimum(tails, heads)], axis=1)
-        upper = _padded(upper)
+        return cls.over(order, np.stack([mesh.tails[order], mesh.heads[order]]), np.stack([start, end]))
+
+    @classmethod
+    def over(cls, order: IntArray, corners: IntArray, points: FloatArray) -> "BoxTree":
+        """Build a tree over simplices; ``points``, shape (2 or 1, m, n), are all vertices at both times, or at all."""
+        ends = [points[..., vertices] for vertices in corners]
+        upper = _padded(np.concatenate([np.maximum.reduce(ends), -np.minimum.reduce(ends)], axis=1))
         levels = [_level(upper, leaves=True)]
         while upper.shape[2] > _ROOTS:
             upper = _padded(np.maximum(upper[..., 0::2], upper[..., 1::2]))
             levels.append(_level(upper, leaves=False))
-        return cls(mesh, order, tuple(reversed(levels)))
+        return cls(order, corners, tuple(reversed(levels)))
 
     def pairs(self, near: Test) -> Iterator[tuple[IntArray, IntArray]]:
-        """Yield all pairs of non-neighbour edges whose boxes, and all boxes above them, pass the test ``near``.
+        """Yield all pairs of edges without a common vertex whose boxes, and all boxes above them, pass a test.
 
-        ``near`` gets a level and two arrays of box indices and returns which pairs to keep. Every pair of edges is
-        met at most once. Edges are yielded as two arrays of positions in ``order``, about ``CHUNK`` pairs at a time.
+        See `pairs_with`; every pair is met at most once.
         """
-        a, b = np.triu_indices(self.levels[0].upper.shape[2])
-        stack = [(0, a, b)]
-        while stack:
-            depth, a, b = stack.pop()
-            level = self.levels[depth]
-            keep = near(level, a, b)
-            a, b = a[keep], b[keep]
-            if level.leaves:
-                yield self._strangers(a, b)
-                continue
-            a, b = _children(a, b)
-            # The last part is taken up first, so the stack stays short: depth first in chunks.
-            stack += [(depth + 1, a[k : k + CHUNK], b[k : k + CHUNK]) for k in range(0, len(a), CHUNK)]
+        for a, b in self.pairs_with(self, near):
+            common = [p[a] == q[b] for p in self.corners for q in self.corners]
+            apart = ~np.logical_or.reduce(common)
+            yield a[apart], b[apart]
 
-    def _strangers(self, a: IntArray, b: IntArray) -> tuple[IntArray, IntArray]:
-        """Drop padding, equal and neighbouring edges from pairs of positions."""
-        real = b < len(self.order)
-        a, b = a[real], b[real]
-        i, j = self.order[a], self.order[b]
-        apart = (i != j) & (self.mesh.heads[i] != j) & (self.mesh.heads[j] != i)
-        return a[apart], b[apart]
+    def pairs_with(self, other: "BoxTree", near: Test) -> Iterator[tuple[IntArray, IntArray]]:
+        """Yield all pairs of simplices of two trees whose boxes, and all boxes above them, pass the test ``near``.
+
+        ``near`` gets two levels, each with an array of boxes, and returns which pairs to keep. Simplices are yielded as
+        two arrays of positions in either ``order``, about ``CHUNK`` pairs at a time.
+        """
+        a, b = np.indices((self.levels[0].upper.shape[2], other.levels[0].upper.shape[2])).reshape(2, -1)
+        stack = [(0, 0, a, b)]
+        while stack:
+            p, q, a, b = stack.pop()
+            one, two = self.levels[p], other.levels[q]
+            if self is other:
+                a, b = a[a <= b], b[a <= b]
+            keep = near(one, a, two, b)
+            a, b = a[keep], b[keep]
+            if one.leaves and two.leaves:
+                real = (a < len(self.order)) & (b < len(other.order))
+                yield a[real], b[real]
+                continue
+            # The tree with more levels left is halved, or both, so that they come to their leaves together.
+            ahead = len(self.levels) - p - len(other.levels) + q
+            a, b = _halved(a, b, ahead >= 0, ahead <= 0)
+            p, q = p + (ahead >= 0), q + (ahead <= 0)
+            # The last part is taken up first, so the stack stays short: depth first in chunks.
+            stack += [(p, q, a[k : k + CHUNK], b[k : k + CHUNK]) for k in range(0, len(a), CHUNK)]
 
 
 def contact_window(gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -128,9 +143,9 @@ def _padded(upper: FloatArray) -> FloatArray:
     return np.concatenate([upper, np.full((*upper.shape[:2], 1), _NOWHERE)], axis=2)
 
 
-def _children(a: IntArray, b: IntArray) -> tuple[IntArray, IntArray]:
-    """Pairs of halves of each pair of boxes, every unordered pair once."""
-    left = (2 * a + np.array([[0], [0], [1], [1]])).ravel()
-    right = (2 * b + np.array([[0], [1], [0], [1]])).ravel()
-    once = left <= right
-    return left[once], right[once]
+def _halved(a: IntArray, b: IntArray, first: bool, second: bool) -> tuple[IntArray, IntArray]:
+    """Pairs of halves of the first, of the second, or of both boxes of each pair."""
+    left = 2 * a + np.array([[0], [1]]) if first else a[None]
+    right = 2 * b + np.array([[0], [1]]) if second else b[None]
+    left, right = np.broadcast_arrays(left[:, None], right[None])
+    return left.ravel(), right.ravel()

@@ -9,9 +9,10 @@ from ..curve.places import at_edges, at_vertices
 from ..errors import CurveError
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level
+from .chords import closest_chord
 from .exact import first_contact
 from .gap import near_edges, scaled_points
-from .planes import ROUNDING, Separation, closest_chord, relative_motion
+from .planes import ROUNDING, Separation, relative_motion
 
 MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
 
@@ -40,10 +41,10 @@ def _check_repeated(curve: Curve) -> None:
     nearest = MIN_SPACING * np.ptp(points, axis=0).max()
     same = np.flatnonzero((np.abs(points[heads] - points) <= nearest).all(axis=1))
     if same.size:
-        component, k, n = _place(curve.mesh, int(same[0]))
+        component, k, n = numbered(curve.mesh, int(same[0]))
         raise CurveError(
             f"component {component}: vertices {k} and {k % n + 1} are the same point "
-            f"{_point(curve.vertices[same[0]])}; remove one of them",
+            f"{written(curve.vertices[same[0]])}; remove one of them",
             at_vertices(curve, int(same[0]), int(heads[same[0]])),
         )
 
@@ -59,10 +60,10 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
     bad = np.flatnonzero(parallel & (np.einsum("mn,mn->n", first, second) < 0))
     if bad.size:
         vertex = int(heads[bad[0]])
-        component, k, n = _place(curve.mesh, vertex)
+        component, k, n = numbered(curve.mesh, vertex)
         raise CurveError(
             f"component {component}: edge {k} doubles back on edge {(k - 2) % n + 1} at vertex {k}, "
-            f"{_point(curve.vertices[vertex])}; move or remove that vertex",
+            f"{written(curve.vertices[vertex])}; move or remove that vertex",
             at_vertices(curve, vertex),
         )
 
@@ -70,8 +71,8 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
 def _check_crossings(curve: Curve, points: FloatArray) -> None:
     touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
     for i, j in touching(curve, points):
-        where = _meeting_point(curve.vertices[[i, curve.mesh.heads[i], j, curve.mesh.heads[j]]])
-        reason = f"{_names(curve.mesh, i, j)} touch or cross near {_point(where)}; move the strands apart"
+        where = meeting_point(curve.vertices[[i, curve.mesh.heads[i], j, curve.mesh.heads[j]]])
+        reason = f"{_names(curve.mesh, i, j)} touch or cross near {written(where)}; move the strands apart"
         raise CurveError(reason, at_edges(curve, (i, j), where))
 
 
@@ -98,8 +99,8 @@ def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]
     """
     tree = BoxTree.build(mesh, points, points)
 
-    def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
-        return np.asarray((level.gaps(a, b)[0] <= 0).all(axis=0))
+    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
+        return np.asarray((level.gaps(a, other, b)[0] <= 0).all(axis=0))
 
     for a, b in tree.pairs(near):
         i, j = np.sort(tree.order[np.stack([a, b])], axis=0)
@@ -109,7 +110,7 @@ def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]
         yield from sorted(zip(i[doubtful].tolist(), j[doubtful].tolist(), strict=True))
 
 
-def _meeting_point(corners: FloatArray) -> FloatArray:
+def meeting_point(corners: FloatArray) -> FloatArray:
     """Return a point of the first edge near the second, to be named in a message; ``corners`` has shape (4, m)."""
     x0, x1, y0, y1 = corners
     x = x0 + np.linspace(0.0, 1.0, 257)[:, None] * (x1 - x0)
@@ -118,18 +119,19 @@ def _meeting_point(corners: FloatArray) -> FloatArray:
     return np.asarray(x[np.linalg.norm(x - y0 - r[:, None] * f, axis=1).argmin()])
 
 
-def _place(mesh: Mesh, edge: int) -> tuple[int, int, int]:
+def numbered(mesh: Mesh, edge: int) -> tuple[int, int, int]:
     """Component of an edge or vertex, its number there, both from 1, and the component's size."""
     c = int(mesh.component[edge])
     return c + 1, edge - int(mesh.offsets[c]) + 1, mesh.component_sizes[c]
 
 
 def _names(mesh: Mesh, i: int, j: int) -> str:
-    (c, p, _), (d, q, _) = _place(mesh, i), _place(mesh, j)
+    (c, p, _), (d, q, _) = numbered(mesh, i), numbered(mesh, j)
     if c == d:
         return f"component {c}: edges {p} and {q}"
     return f"edge {p} of component {c} and edge {q} of component {d}"
 
 
-def _point(position: FloatArray) -> str:
+def written(position: FloatArray) -> str:
+    """A point as messages have it."""
     return "(" + ", ".join(f"{x:.6g}" for x in position) + ")"

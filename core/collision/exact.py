@@ -49,7 +49,7 @@ def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> flo
         if b <= after or _free(motion):
             continue
         if b - a <= max(_MIN_LENGTH, _MIN_RATIO * b) or (b - a <= _SURE * b and _crosses(motion)):
-            return max(_below(a), after)
+            return max(below(a), after)
         if bracket := _only_root(motion):
             low, high = (a + (b - a) * Fraction(k, 2**_BITS) for k in bracket)
             work.append((low, high, _part(motion, *bracket)))
@@ -58,15 +58,20 @@ def first_contact(start: FloatArray, end: FloatArray, after: float = 0.0) -> flo
             half = 2 ** (_BITS - 1)
             work.append((middle, b, _part(motion, half, 2 * half)))
             work.append((a, middle, _part(motion, 0, half)))
-    return max(_below(work[-1][0]), after) if work else None
+    return max(below(work[-1][0]), after) if work else None
 
 
 def _motion(start: FloatArray, end: FloatArray) -> Motion:
-    ratios = [[x.as_integer_ratio() for x in row] for row in np.concatenate([start, end]).tolist()]
-    unit = max(q for row in ratios for _, q in row)  # denominators are powers of two
-    points = [[p * (unit // q) for p, q in row] for row in ratios]
+    points = whole_numbers(np.concatenate([start, end]))
     x0, x1, y0, y1 = (tuple(zip(points[k], points[k + 4], strict=True)) for k in range(4))
     return _minus(x0, y0), _minus(x1, x0), _minus(y1, y0)
+
+
+def whole_numbers(points: FloatArray) -> list[list[int]]:
+    """Coordinates times a common denominator; shape (k, m)."""
+    ratios = [[x.as_integer_ratio() for x in row] for row in points.tolist()]
+    unit = max(q for row in ratios for _, q in row)  # denominators are powers of two
+    return [[p * (unit // q) for p, q in row] for row in ratios]
 
 
 def _frame(motion: Motion, time: int) -> Motion:
@@ -86,7 +91,7 @@ def _part(motion: Motion, first: int, last: int) -> Motion:
     return D, e, f
 
 
-def _below(time: Fraction) -> float:
+def below(time: Fraction) -> float:
     """A double that is not greater, nor negative."""
     return float(time) if Fraction(float(time)) <= time else math.nextafter(float(time), 0.0)
 

@@ -8,7 +8,8 @@ from ..curve import Curve
 from ..errors import CurveError, Place
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level
-from .planes import closest_chord, relative_motion
+from .chords import closest_chord
+from .planes import relative_motion
 
 MIN_GAP = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
 ENDS_ONLY = 1e-3  # of the longer edge: midpoints further apart than that don't feel that the edges are near
@@ -76,8 +77,8 @@ def near_edges(
     """
     tree = BoxTree.build(curve.mesh, points, points)
 
-    def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
-        return _squared_gaps(level, a, b) <= bound()
+    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
+        return squared_gaps(level.gaps(a, other, b)) <= bound()
 
     heads = curve.mesh.heads
     for a, b in tree.pairs(near):
@@ -96,8 +97,9 @@ def squared_segment_distances(points: FloatArray, vertices: IntArray) -> FloatAr
     return np.asarray(np.einsum("mp,mp->p", chord, chord))
 
 
-def _squared_gaps(level: Level, a: IntArray, b: IntArray) -> FloatArray:
-    gaps = np.maximum(level.gaps(a, b)[0], 0.0)
+def squared_gaps(signed: FloatArray) -> FloatArray:
+    """Squared distances of boxes at the first time, from their signed gaps along ±each axis."""
+    gaps = np.maximum(signed[0], 0.0)
     return np.asarray(np.einsum("kp,kp->p", gaps, gaps))
 
 

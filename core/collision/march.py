@@ -1,9 +1,10 @@
-"""March pairs of moving segments from separating plane to separating plane, all pairs together."""
+"""March pairs of moving segments, or of a segment and a triangle, from separating plane to separating plane."""
 
 import numpy as np
 
 from ..types import FloatArray, IntArray
-from .planes import Separation, at_time, closest_chord, relative_motion
+from .chords import closest_chord
+from .planes import Separation, at_time, relative_motion
 
 _ROUNDS = 20
 _PATIENCE = 1 / 3  # so many pairs per round done are not worth another round: the exact decision is as quick
@@ -19,7 +20,7 @@ def march(start: FloatArray, end: FloatArray, vertices: IntArray, reached: Float
     start, end
         Vertices of the leg, shape (m, n), entries of at most 1 in size.
     vertices
-        The pairs' vertices x₀, x₁, y₀, y₁, shape (4, pairs).
+        The pairs' vertices x₀, x₁, y₀, y₁, shape (4, pairs), and y₂ of triangles, shape (5, pairs).
     reached
         Times up to which the pairs are known to be free, shape (pairs,).
     limit

@@ -1,16 +1,20 @@
-"""How far all vertices can move along straight lines before two edges meet."""
+"""How far all vertices can move along straight lines before two edges meet, or an edge and an obstacle."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
 from ..curve import Mesh
+from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, contact_window
 from .exact import first_contact
+from .exact_triangle import first_contact_with_triangle
 from .march import march
+from .still import still_triangles
 
 _BATCH = 1 << 13  # pairs marched together, so that their arrays stay in the cache
 _SHARPNESS = 0.985  # a time proved up to this part of a known contact time is near enough to it
@@ -21,10 +25,30 @@ class Limit(Enum):
     """What ends a free motion."""
 
     NONE = "the whole motion is free of contact"
-    CONTACT = "two edges meet, or come too near to each other to be told apart"
-    TOUCHING_START = "two edges touch, or cannot be told apart, at the start"
+    CONTACT = "edges, or an edge and an obstacle, meet, or come too near to each other to be told apart"
+    TOUCHING_START = "edges, or an edge and an obstacle, touch, or cannot be told apart, at the start"
     NOT_FINITE = "a vertex is not finite"
     UNTESTED = "in more than three dimensions, where nothing is knotted, contact is not tested"
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What is in the way of a motion.
+
+    Attributes
+    ----------
+    edges
+        The two edges that meet, or the one that meets an obstacle.
+    obstacle
+        What sentences call it; None if edges meet.
+    """
+
+    edges: tuple[int, ...]
+    obstacle: str | None = None
+
+    def __str__(self) -> str:
+        first, *second = (edge + 1 for edge in self.edges)
+        return f"edge {first} and {self.obstacle}" if self.obstacle else f"edges {first} and {second[0]}"
 
 
 @dataclass(frozen=True)
@@ -34,17 +58,25 @@ class FreeMotion:
     Attributes
     ----------
     time
-        No two non-neighbour edges meet at any time t in [0, time], unless time is 0; 1 if the whole motion is free.
-        If two edges meet, this is at most 2 % before the contact.
-    pair
-        The edges that limit it, None if there are none.
+        No two non-neighbour edges, and no edge and obstacle, meet at any time t in [0, time], unless time is 0; 1 if
+        the whole motion is free. If two meet, this is at most 2 % before the contact.
+    contact
+        What limits it, None if nothing does.
     limit
         The reason.
     """
 
     time: float
-    pair: tuple[int, int] | None = None
+    contact: Contact | None = None
     limit: Limit = Limit.NONE
+
+    @property
+    def pair(self) -> tuple[int, int] | None:
+        """The two edges that limit it; None if it is not limited, or by an obstacle."""
+        if self.contact is None or self.contact.obstacle is not None:
+            return None
+        i, j = self.contact.edges
+        return i, j
 
     @property
     def proved(self) -> bool:
@@ -52,7 +84,7 @@ class FreeMotion:
         return self.limit is Limit.NONE
 
 
-def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray) -> FreeMotion:
+def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: tuple[Obstacle, ...] = ()) -> FreeMotion:
     """Prove as much as possible of the motion (1−t) start + t end, t in [0, 1], free of contact.
 
     Neighbour edges are not tested: when they fold onto each other, one of them meets the edge after the other. In
@@ -64,21 +96,25 @@ def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray) -> FreeMotion:
         Connectivity.
     start, end
         Vertices at both ends, shape (n, m) with m = 2 or 3. The proof is about exactly these floating-point numbers.
+    obstacles
+        What edges must not meet either, in the same units; in space only.
 
     Raises
     ------
     ValueError
         If the shapes are wrong.
     """
-    return _search(mesh, start, end, exhaustive=True)
+    return _search(mesh, start, end, obstacles, exhaustive=True)
 
 
-def is_free(mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
+def is_free(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: tuple[Obstacle, ...] = ()) -> bool:
     """Whether the motion from ``start`` to ``end``, shape (n, m), is proved free of contact; see `free_motion`."""
-    return _search(mesh, start, end, exhaustive=False).limit is Limit.NONE
+    return _search(mesh, start, end, obstacles, exhaustive=False).limit is Limit.NONE
 
 
-def _search(mesh: Mesh, start: FloatArray, end: FloatArray, *, exhaustive: bool) -> FreeMotion:
+def _search(
+    mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: tuple[Obstacle, ...], *, exhaustive: bool
+) -> FreeMotion:
     if start.shape != end.shape or start.shape not in ((mesh.size, 2), (mesh.size, 3)):
         raise ValueError(
             f"start and end have shapes {start.shape} and {end.shape}; "
@@ -87,72 +123,91 @@ def _search(mesh: Mesh, start: FloatArray, end: FloatArray, *, exhaustive: bool)
     size = np.maximum(np.abs(start).max(), np.abs(end).max())
     if not np.isfinite(size):  # NumPy's maximum, unlike Python's, is NaN if one is
         return FreeMotion(0.0, None, Limit.NOT_FINITE)
-    # A power of two keeps products away from overflow and underflow. It changes no digit, but of the smallest numbers,
-    # by less than the planes' margins: exact decisions are about the numbers as they were given.
-    unit = -np.frexp(size)[1]
-    search = _Search(mesh, np.ldexp(start.T, unit, order="C"), np.ldexp(end.T, unit, order="C"), (start, end))
-    for vertices, reached in search.batches():
-        search.take(vertices, reached)
-        if search.pair is not None and not exhaustive:
+    search = _Search(mesh, (start, end), obstacles, max([size, *(each.size for each in obstacles)]))
+    for candidates in search.batches():
+        search.take(candidates)
+        if search.met is not None and not exhaustive:
             break
     return search.result()
 
 
-class _Search:
-    """The earliest contact so far, and what remains to be looked at."""
+class _Candidates(NamedTuple):
+    """Pairs of edges, or of edges and still triangles, that can meet before the limit.
 
-    def __init__(self, mesh: Mesh, start: FloatArray, end: FloatArray, given: tuple[FloatArray, FloatArray]) -> None:
-        self.mesh, self.start, self.end, self.given = mesh, start, end, given
+    Attributes
+    ----------
+    vertices
+        x₀, x₁, y₀, y₁, and y₂ of triangles; shape (4 or 5, pairs).
+    names
+        Numbers of the edges, or of edge and triangle; shape (2, pairs).
+    reached
+        Times up to which the pairs are surely free; shape (pairs,).
+    """
+
+    vertices: IntArray
+    names: IntArray
+    reached: FloatArray
+
+
+class _Search:
+    """The earliest contact so far, and what remains to be looked at; an obstacle is one more list of pairs."""
+
+    def __init__(
+        self, mesh: Mesh, given: tuple[FloatArray, FloatArray], obstacles: tuple[Obstacle, ...], size: float
+    ) -> None:
+        # A power of two keeps products away from overflow and underflow. It changes no digit, but of the smallest
+        # numbers, by less than the planes' margins: exact decisions are about the numbers as they were given.
+        exponent = int(np.frexp(size)[1])
+        self.mesh = mesh
+        self.still = still_triangles(obstacles, exponent) if obstacles else None
+        # the vertices of obstacles come after those of the curve
+        self.given = given if self.still is None else tuple(np.concatenate([p, self.still.vertices]) for p in given)
+        self.start, self.end = (np.ldexp(points.T, -exponent, order="C") for points in self.given)
         self.limit = 1.0  # proved free up to here, as far as pairs have been looked at
         self.contact = np.inf  # the earliest contact found by an exact decision
-        self.pair: tuple[int, int] | None = None
+        self.met: Contact | None = None
 
     def result(self) -> FreeMotion:
-        if self.pair is None:
+        if self.met is None:
             return FreeMotion(1.0)
-        return FreeMotion(self.limit, self.pair, Limit.CONTACT if self.limit > 0 else Limit.TOUCHING_START)
+        return FreeMotion(self.limit, self.met, Limit.CONTACT if self.limit > 0 else Limit.TOUCHING_START)
 
-    def batches(self) -> Iterator[tuple[IntArray, FloatArray]]:
-        """Yield pairs of edges that can meet before the limit: their vertices and the time each is surely free."""
-        yield self._triangles()
-        tree = BoxTree.build(self.mesh, self.start, self.end)
-        soon = self._soon()
+    def batches(self) -> Iterator[_Candidates]:
+        """Yield all pairs that can meet before the limit, those that can do so soon first."""
+        yield self._folding_triangles()
+        start, end = self.start[:, : self.mesh.size], self.end[:, : self.mesh.size]
+        tree = BoxTree.build(self.mesh, start, end)
+        soon = _soon(self.mesh, start, end)
         for after, until in ((-1.0, soon), (soon, 1.0)) if soon < 1 else ((-1.0, 1.0),):
-            yield from self._windows(tree, after, until)
+            yield from self._windows(tree, tree, 0, after, until)
+            if self.still is not None:
+                yield from self._windows(tree, self.still.tree, self.mesh.size, after, until)
 
-    def _soon(self) -> float:
-        """A time in which vertices move by about an edge length: contacts until then limit the search for others."""
-        speed = self.end - self.start
-        speed -= speed.mean(axis=1, keepdims=True)
-        fastest = float(np.sqrt(np.einsum("mn,mn->n", speed, speed).max()))
-        edges = self.start[:, self.mesh.heads] - self.start
-        length = float(np.sqrt(np.einsum("mn,mn->n", edges, edges)).mean())
-        return 1.0 if 2 * length >= fastest else length / fastest
+    def _windows(self, tree: BoxTree, other: BoxTree, first: int, after: float, until: float) -> Iterator[_Candidates]:
+        """Pairs whose boxes meet first at a time in (after, until]; ``first`` is the first vertex of the other tree."""
 
-    def _windows(self, tree: BoxTree, after: float, until: float) -> Iterator[tuple[IntArray, FloatArray]]:
-        """Pairs whose boxes meet first at a time in (after, until]."""
-
-        def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
-            enter, leave = contact_window(level.gaps(a, b))
+        def near(level: Level, a: IntArray, others: Level, b: IntArray) -> BoolArray:
+            enter, leave = contact_window(level.gaps(a, others, b))
             keep = enter <= np.minimum(leave, min(until, self.limit))
-            return keep & (enter > after) if level.leaves else keep
+            return keep & (enter > after) if level.leaves and others.leaves else keep
 
-        tails, heads = self.mesh.tails[tree.order], self.mesh.heads[tree.order]
-        for i, j in tree.pairs(near):
+        for i, j in tree.pairs(near) if other is tree else tree.pairs_with(other, near):
             for k in range(0, len(i), _BATCH):
                 a, b = i[k : k + _BATCH], j[k : k + _BATCH]
-                enter, _ = contact_window(tree.levels[-1].gaps(a, b))
-                yield np.stack([tails[a], heads[a], tails[b], heads[b]]), _EARLY_START * enter
+                enter, _ = contact_window(tree.levels[-1].gaps(a, other.levels[-1], b))
+                vertices = np.concatenate([tree.corners[:, a], first + other.corners[:, b]])
+                yield _Candidates(vertices, np.stack([tree.order[a], other.order[b]]), _EARLY_START * enter)
 
-    def _triangles(self) -> tuple[IntArray, FloatArray]:
+    def _folding_triangles(self) -> _Candidates:
         """Each vertex of a triangle, as an edge of no length, against the opposite edge."""
         sizes = np.asarray(self.mesh.component_sizes)
         first = self.mesh.offsets[:-1][sizes == 3]
         u, v, w = (np.concatenate([first + (k + c) % 3 for c in range(3)]) for k in range(3))
-        return np.stack([u, u, v, w]), np.zeros(len(u))
+        return _Candidates(np.stack([u, u, v, w]), np.stack([u, v]), np.zeros(len(u)))
 
-    def take(self, vertices: IntArray, reached: FloatArray) -> None:
+    def take(self, candidates: _Candidates) -> None:
         """March pairs and lower the limit to the earliest time that cannot be passed."""
+        vertices, names, reached = candidates
         reached = march(self.start, self.end, vertices, reached, self.limit)
         stopped = np.flatnonzero(reached < self.limit)
         for k in stopped[np.argsort(reached[stopped], kind="stable")]:
@@ -162,13 +217,29 @@ class _Search:
             if time < _SHARPNESS * self.contact:
                 time = self._decide(vertices[:, k], time)
             if time < self.limit:
-                self.limit, self.pair = time, (int(vertices[0, k]), int(vertices[2, k]))
+                self.limit, self.met = time, self._contact(*names[:, k].tolist(), with_obstacle=len(vertices) == 5)
+
+    def _contact(self, edge: int, other: int, *, with_obstacle: bool) -> Contact:
+        if self.still is not None and with_obstacle:
+            return Contact((edge,), self.still.obstacle_of(other).title)
+        return Contact((edge, other))
 
     def _decide(self, vertices: IntArray, reached: float) -> float:
         """The time up to which one pair is free by exact arithmetic, infinite if it never meets."""
-        start, end = self.given
-        contact = first_contact(start[vertices], end[vertices], reached)
+        start, end = (points[vertices] for points in self.given)
+        decide = first_contact if len(vertices) == 4 else first_contact_with_triangle
+        contact = decide(start, end, reached)
         if contact is None:
             return np.inf
         self.contact = min(self.contact, contact)
         return max(reached, float(np.nextafter(contact, 0.0)))
+
+
+def _soon(mesh: Mesh, start: FloatArray, end: FloatArray) -> float:
+    """A time in which vertices move by about an edge length: contacts until then limit the search for others."""
+    speed = end - start
+    speed -= speed.mean(axis=1, keepdims=True)
+    fastest = float(np.sqrt(np.einsum("mn,mn->n", speed, speed).max()))
+    edges = start[:, mesh.heads] - start[:, mesh.tails]
+    length = float(np.sqrt(np.einsum("mn,mn->n", edges, edges)).mean())
+    return 1.0 if 2 * length >= fastest else length / fastest

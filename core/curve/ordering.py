@@ -1,4 +1,4 @@
-"""An order of all edges in which components near each other in space come next to each other."""
+"""Orders in which things near each other in space come next to each other."""
 
 import numpy as np
 
@@ -15,12 +15,17 @@ def component_order(mesh: Mesh, points: FloatArray) -> IntArray:
         return mesh.tails
     starts = mesh.offsets[:-1]
     centres = 0.5 * (np.minimum.reduceat(points, starts, axis=1) + np.maximum.reduceat(points, starts, axis=1))
-    low, high = centres.min(axis=1, keepdims=True), centres.max(axis=1, keepdims=True)
-    cells = ((centres - low) / np.maximum(high - low, np.finfo(np.float64).tiny) * 1023).astype(np.int64)
-    code = np.zeros(len(starts), dtype=np.int64)
+    rank = np.empty(len(starts), dtype=np.intp)
+    rank[z_order(centres)] = np.arange(len(starts))
+    return np.argsort(rank[mesh.component], kind="stable")
+
+
+def z_order(points: FloatArray) -> IntArray:
+    """Points along a Z-curve through a grid of 1024 cells in every direction; shapes (m, k) -> (k,)."""
+    low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
+    cells = ((points - low) / np.maximum(high - low, np.finfo(np.float64).tiny) * 1023).astype(np.int64)
+    code = np.zeros(points.shape[1], dtype=np.int64)
     for bit in range(10):
         for axis, cell in enumerate(cells):
             code |= ((cell >> bit) & 1) << (len(cells) * bit + axis)
-    rank = np.empty(len(starts), dtype=np.intp)
-    rank[np.argsort(code, kind="stable")] = np.arange(len(starts))
-    return np.argsort(rank[mesh.component], kind="stable")
+    return np.argsort(code, kind="stable")

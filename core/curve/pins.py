@@ -12,7 +12,9 @@ from ..types import BoolArray, FloatArray, IntArray, frozen
 from .curve import Curve
 from .mesh import Mesh
 
-TAUT = 1e-9  # slack of an arc, relative to the distance of its ends, up to which it is straight: rounding leaves far less
+TAUT = (
+    1e-9  # slack of an arc, relative to the distance of its ends, up to which it is straight: rounding leaves far less
+)
 NOWHERE: IntArray = frozen(np.empty(0, dtype=np.intp))
 
 

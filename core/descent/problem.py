@@ -12,6 +12,7 @@ from ..constraints import Constraints
 from ..curve import Curve, Mesh
 from ..energies import Objective
 from ..metrics import InnerProduct, Metric
+from ..obstacle import Obstacle
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from ..units import Units
@@ -56,6 +57,8 @@ class Problem:
         Targets of lengths and barycenter, and pins.
     geometry
         Whether the targets are prescribed, or missing them costs energy.
+    obstacles
+        What no motion may touch, in the user's units.
     """
 
     mesh: Mesh
@@ -64,6 +67,7 @@ class Problem:
     constraints: Constraints
     units: Units
     geometry: Geometry
+    obstacles: tuple[Obstacle, ...] = ()
 
     def at(self, vertices: FloatArray) -> "Point":
         """The point with these vertices, in the program's units; those that are pinned are put back to the last digit."""
@@ -86,7 +90,7 @@ class Problem:
         """How far a straight motion in the user's units, both (n, m), is proved free of contact."""
         if not self.certifiable:
             return FreeMotion(1.0, None, Limit.UNTESTED)
-        return free_motion(self.mesh, start, end)
+        return free_motion(self.mesh, start, end, self.obstacles)
 
 
 NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from ..collision import FreeMotion
+from ..collision import Contact, FreeMotion
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from .problem import Point, Problem
@@ -38,9 +38,9 @@ class Rejected(NamedTuple):
     proof: FreeMotion | None = None
 
     @property
-    def in_the_way(self) -> tuple[int, int] | None:
-        """The edges that meet on the way, if that is the reason."""
-        return None if self.proof is None else self.proof.pair
+    def in_the_way(self) -> Contact | None:
+        """What meets on the way, if that is the reason."""
+        return None if self.proof is None else self.proof.contact
 
 
 def leg(start: Point, end: Point) -> Leg:
@@ -94,12 +94,12 @@ class Step:
     size
         Its τ.
     limited_by
-        The pair of edges whose contact limited τ, if any.
+        The contact that limited τ, if any.
     """
 
     legs: tuple[Leg, ...]
     size: float
-    limited_by: tuple[int, int] | None
+    limited_by: Contact | None
 
     @property
     def point(self) -> Point:
@@ -125,15 +125,14 @@ class Step:
 
 @dataclass(frozen=True)
 class NoStep:
-    """Why no step was found: in words, and the pair of edges in the way if it was contact."""
+    """Why no step was found: in words, and what is in the way if it was contact."""
 
     reason: str
-    limited_by: tuple[int, int] | None = None
+    limited_by: Contact | None = None
 
     @classmethod
-    def because(cls, limited_by: tuple[int, int] | None) -> "NoStep":
+    def because(cls, limited_by: Contact | None) -> "NoStep":
         """The usual two reasons: contact, or an energy that does not go down any more."""
         if limited_by is None:
             return cls("no step along the direction lowers the energy by a measurable amount")
-        i, j = limited_by
-        return cls(f"edges {i + 1} and {j + 1} are so near to each other that no step is free of contact", limited_by)
+        return cls(f"{limited_by} are so near to each other that no step is free of contact", limited_by)

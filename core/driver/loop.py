@@ -69,7 +69,7 @@ def _descent(run: Run, interventions: Sequence[Intervention], rises: Rises) -> R
                 continue
         elif isinstance(answer, NoStep):
             limits, curve = answer.limited_by, run.iterate.curve
-            return stalled(answer.reason, None if limits is None else at_edges(curve, limits))
+            return stalled(answer.reason, None if limits is None else at_edges(curve, limits.edges))
         elif isinstance(event, Outcome):
             return answer if isinstance(answer, Outcome) else at_limit(run)
         event = termination(run) or run.step()

@@ -12,13 +12,15 @@ from ..descent import METHODS
 from ..energies import ENERGIES, Energy
 from ..errors import OptionError
 from ..metrics import METRICS
+from ..obstacle import Obstacle
+from ..obstacle_files import read_obstacle
 from ..option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
 SOLVERS = ("auto", "dense", "hierarchical")
 _advanced = partial(option, group="advanced")
-_pinning = partial(_advanced, scripted=True)
+_scripted = partial(_advanced, scripted=True)
 
 
 def _are_lengths(value: object) -> bool:
@@ -29,6 +31,23 @@ def _are_lengths(value: object) -> bool:
     except (TypeError, ValueError):
         return False
     return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
+
+
+def _is_obstacle(value: object) -> bool:
+    return isinstance(value, Obstacle)
+
+
+def _read_obstacles(path: str) -> tuple[Obstacle]:
+    return (read_obstacle(path),)
+
+
+def _indices(text: str) -> tuple[int, ...]:
+    """Indices of vertices that are counted from 1, with commas between."""
+    words = [word.strip() for word in text.split(",")]
+    wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and int(word[:20]) > 0)), None)
+    if wrong is not None:
+        raise OptionError(f"{wrong!r:.40} is no vertex to pin; give numbers from 1, such as 12,40")
+    return tuple(int(word[:20]) - 1 for word in words)
 
 
 @documented
@@ -75,6 +94,15 @@ class RelaxOptions:
         low=1,
         high=16,
         metavar="k",
+    )
+    avoid: tuple[Obstacle, ...] = _scripted(
+        (),
+        "Avoid",
+        "surfaces and polylines, in the curve's units, that it never touches: triangles or segments that stand still",
+        objects=("an obstacle, such as Obstacle(vertices, faces)", _is_obstacle),
+        example="(Obstacle(vertices, faces),)",
+        metavar="MESH.obj",
+        read=_read_obstacles,
     )
     penalty: float | None = _advanced(
         None,
@@ -147,16 +175,18 @@ class RelaxOptions:
         metavar="K",
     )
     seed: int = _advanced(0, "Seed", "which random motions the hops begin with", low=0, metavar="S")
-    pins: tuple[int, ...] = _pinning(
+    pins: tuple[int, ...] = _scripted(
         (),
         "Pins",
         "vertices of the input that stay exactly where they are, counted from 0 in Python and from 1 on the command line; "
         "where an arc between two of them is straight, or pulled taut, nothing on it can move",
         low=0,
-        ordinals="pin",
+        example="(0, 5)",
+        flag="pin",
         metavar="V,V,…",
+        read=_indices,
     )
-    pin_tangents: bool = _pinning(
+    pin_tangents: bool = _scripted(
         False,
         "Pin Tangents",
         "pin the neighbours of pinned vertices in the refined start too: the directions of the edges in between stay",
@@ -169,6 +199,7 @@ class RelaxOptions:
         self._check_pins()
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
+        object.__setattr__(self, "avoid", tuple(self.avoid))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..checks import named
-from ..collision import check_embedded, check_gap, minimal_gap, survives_rounding
+from ..collision import check_clear, check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
 from ..curve import Curve, Mesh, check_is_curve, refine
 from ..curve.pins import TAUT, Pins, arcs, spans
@@ -15,6 +15,7 @@ from ..curve.remesh import graded_spacing, normalised
 from ..descent import METHODS, Point, Problem
 from ..energies import Objective
 from ..errors import CurveError, CurveOptionError, OptionError
+from ..obstacle import Obstacle
 from ..types import FloatArray, IntArray
 from ..units import Units, check_units
 from .options import RelaxOptions
@@ -42,12 +43,12 @@ def check_size(curve: Curve, options: RelaxOptions) -> None:
 
 
 def prepared_start(curve: Curve, vertices: int | None, each: Sequence[RelaxOptions]) -> Curve:
-    """The refined curve, from which relaxations can start whose options differ by their methods.
+    """The refined curve, from which relaxations can start whose options differ by their methods only.
 
     Raises
     ------
     CurveError
-        If the curve touches itself, or is degenerate, or too large.
+        If the curve touches itself or an obstacle, or is degenerate, or too large.
     OptionError
         If an option does not fit it.
     """
@@ -56,8 +57,10 @@ def prepared_start(curve: Curve, vertices: int | None, each: Sequence[RelaxOptio
         check_size(curve, options)
     check_units(curve)
     check_embedded(curve)
+    obstacles = each[0].avoid
+    check_clear(curve, obstacles)
     refined = refine(curve, vertices)
-    check_refined(curve, refined)
+    check_refined(curve, refined, obstacles)
     return refined
 
 
@@ -78,7 +81,7 @@ def pins_of(curve: Curve, refined: Curve, options: RelaxOptions) -> Pins:
     return pins.with_neighbours(refined) if options.pin_tangents else pins
 
 
-def check_refined(curve: Curve, refined: Curve) -> None:
+def check_refined(curve: Curve, refined: Curve, obstacles: tuple[Obstacle, ...]) -> None:
     """Refuse a refined curve that is not what the curve was, or that cannot be computed with.
 
     Raises
@@ -87,7 +90,7 @@ def check_refined(curve: Curve, refined: Curve) -> None:
         If strands are too near to compute with, or the new vertices, rounded to doubles, might not be on their edges
         for all that matters.
     """
-    if len(refined) > len(curve) and not survives_rounding(refined):
+    if len(refined) > len(curve) and not survives_rounding(refined, obstacles):
         raise CurveError(
             "the curve is so far from the origin, or has strands so near to each other, that there are too few digits "
             "for vertices to be inserted; move it nearer to the origin, or its strands apart"
@@ -129,7 +132,7 @@ def start_problem(curve: Curve, options: RelaxOptions, pins: Pins | None = None)
         name = objective.energy.name
         raise OptionError(f"balance takes Möbius images for curves of equal energy; that is not so for energy {name}")
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
-    return Problem(curve.mesh, objective, solver.metric, constraints, units, geometry)
+    return Problem(curve.mesh, objective, solver.metric, constraints, units, geometry, options.avoid)
 
 
 def on_mesh(problem: Problem, curve: Curve, options: RelaxOptions) -> Point:

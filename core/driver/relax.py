@@ -10,6 +10,7 @@ import numpy as np
 from ..curve import Curve
 from ..errors import CurveError, OptionError
 from ..hierarchy import moebius_energy
+from ..obstacle import Obstacle
 from ..units import centred
 from .hops import hopping
 from .iterate import Iterate
@@ -40,6 +41,8 @@ class Result:
         Wall-clock time.
     method
         Name of the method that was asked for.
+    obstacles
+        What was avoided.
     """
 
     outcome: Outcome
@@ -48,6 +51,7 @@ class Result:
     fallback_steps: tuple[int, ...]
     seconds: float
     method: str
+    obstacles: tuple[Obstacle, ...] = ()
 
     @property
     def curve(self) -> Curve:
@@ -97,6 +101,7 @@ class Result:
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
             "pins": list(self.last.pins),
+            "obstacles": len(self.obstacles),
             "max_edge_length_error": self.last.edge_length_error,
             "certified": self.certified,
             "method": self.method,
@@ -122,7 +127,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
     Raises
     ------
     CurveError
-        If the curve touches itself or is degenerate; the message says where.
+        If the curve touches itself or an obstacle, or is degenerate; the message says where.
     OptionError
         If an option does not fit.
     """
@@ -159,11 +164,11 @@ def minimize(
     """
     if callback is not None and not callable(callback):
         raise OptionError(f"callback is of type {type(callback).__name__}; give a function of one Iterate")
-    return finish(relax(curve, options), (options or RelaxOptions()).method, callback)
+    return finish(relax(curve, options), options or RelaxOptions(), callback)
 
 
-def finish(relaxation: Relaxation, method: str, callback: Callable[[Iterate], None] | None = None) -> Result:
-    """Run a relaxation by a method to its end, as `minimize` does."""
+def finish(relaxation: Relaxation, options: RelaxOptions, callback: Callable[[Iterate], None] | None = None) -> Result:
+    """Run a relaxation with some options to its end, as `minimize` does."""
     started = time.perf_counter()
     energies: list[float] = []
     fallback: list[int] = []
@@ -174,7 +179,7 @@ def finish(relaxation: Relaxation, method: str, callback: Callable[[Iterate], No
         for last in run:
             given = given or len(last.curve)
             energies.append(last.energy)
-            if last.method != method:
+            if last.method != options.method:
                 fallback.append(last.index)
             if callback is not None:
                 callback(last)
@@ -186,4 +191,5 @@ def finish(relaxation: Relaxation, method: str, callback: Callable[[Iterate], No
             run.outcome = run.outcome.adding(FEWER.format(vertices=len(last.curve), given=given))
     assert last is not None, "relax yields at least its start"
     assert run.outcome is not None, "the loop is through"
-    return Result(run.outcome, last, tuple(energies), tuple(fallback), time.perf_counter() - started, method)
+    seconds = time.perf_counter() - started
+    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, options.avoid)

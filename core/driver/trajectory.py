@@ -3,13 +3,14 @@
 import json
 import os
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..curve import Curve
 from ..errors import MobiusFlowError, OutputError
+from ..obstacle import Obstacle
 from ..system.files import atomic_write
 from ..types import FloatArray, IntArray
 from .iterate import Iterate
@@ -19,18 +20,20 @@ class Trajectory:
     """Frames between which all vertices move on straight lines, collected from iterates.
 
     Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, …; a new stage begins
-    where the mesh changes.  Coordinates are the user's, in double: what was proved is about exactly
-    these numbers.  Where the run came from is kept as JSON in ``provenance``, an array of one string, which `verify`
-    does not look at.
+    where the mesh changes.  What was avoided is in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``,
+    shape (f, 3) or (f, 2), ….  Coordinates are the user's, in double: what was proved is about exactly these numbers.
+    Where the run came from is kept as JSON in ``provenance``, an array of one string, which `verify` does not look at.
 
     Parameters
     ----------
     provenance
         Plain values, such as the version and the options; None leaves the array out.
+    obstacles
+        What the run avoids.
     """
 
-    def __init__(self, provenance: Mapping[str, object] | None = None) -> None:
-        self._provenance = provenance
+    def __init__(self, provenance: Mapping[str, object] | None = None, obstacles: Sequence[Obstacle] = ()) -> None:
+        self._provenance, self._obstacles = provenance, obstacles
         self._stages: list[tuple[tuple[int, ...], list[FloatArray]]] = []
         self._last: Curve | None = None
         self._last_index = -1
@@ -67,6 +70,9 @@ class Trajectory:
         named: dict[str, FloatArray | IntArray | NDArray[np.str_]] = {}
         if self._provenance is not None:
             named["provenance"] = np.array(json.dumps(self._provenance))
+        for k, obstacle in enumerate(self._obstacles):
+            named[f"obstacle_{k:03d}_vertices"] = obstacle.vertices
+            named[f"obstacle_{k:03d}_faces"] = obstacle.faces
         for k, (sizes, frames) in enumerate(self._stages):
             named[f"stage_{k:03d}"] = np.stack(frames)
             named[f"component_sizes_{k:03d}"] = np.array(sizes, dtype=np.intp)

@@ -14,8 +14,8 @@ from ..constraints import ConstraintDerivative, Constraints
 from ..curve import Curve
 from ..types import FloatArray
 from .krylov import conjugate_gradients, flexible_conjugate_gradients, relative
-from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
 from .pinned import vanishing_at
+from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
 from .tangent_space import TangentSpace, WholeSpace
 
 MIN_FORCING = 1e-4  # relative residual of Newton's method for the constraints

@@ -1,4 +1,4 @@
-"""Check that a trajectory is an isotopy: no two non-neighbour edges ever meet, and stages fit together.
+"""Check that a trajectory is an isotopy: no two non-neighbour edges ever meet, nor any obstacle, and stages fit.
 
 Why this is enough: if two neighbour edges fold onto each other, or an edge shrinks to a point, then an edge meets the
 one after its neighbour at the same moment, in every polygon of 4 or more vertices. A triangle, which has no such edges,
@@ -13,15 +13,18 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..errors import counted
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
+from .obstacles import Obstacles
 from .segments import Point, meet
-from .trajectory import TrajectoryError, count_legs, stages
+from .trajectory import TrajectoryError, count_legs, stages, still_parts
 from .transition import DifferentCurveError, common_vertices, straightened
+from .triangles import meet_triangle
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,11 @@ class Verdict:
     stage, frame
         Place of the failure: number of the stage and of the frame that the leg begins with, from 0.
     edges
-        The edges that meet, from 0, None if that is not the reason.
+        The edges that meet, or the one that meets an obstacle, from 0; None if that is not the reason.
+    obstacles
+        How many there are.
+    obstacle
+        The one that an edge meets, from 0; None if that is not the reason.
     """
 
     accepted: bool
@@ -48,31 +55,49 @@ class Verdict:
     reason: str = ""
     stage: int | None = None
     frame: int | None = None
-    edges: tuple[int, int] | None = None
+    edges: tuple[int, ...] | None = None
+    obstacles: int = 0
+    obstacle: int | None = None
 
     def __str__(self) -> str:
         if self.accepted:
-            return f"accepted: no contact on {counted(self.legs, 'leg')} in {counted(self.stages, 'stage')}"
+            nor = f", nor with {counted(self.obstacles, 'obstacle')}" if self.obstacles else ""
+            return f"accepted: no contact on {counted(self.legs, 'leg')} in {counted(self.stages, 'stage')}{nor}"
         place = "" if self.stage is None else f"stage {self.stage}"
         place += "" if self.frame is None else f", frame {self.frame}"
         return f"rejected: {place}: {self.reason}" if place else f"rejected: {self.reason}"
 
 
 class ContactError(Exception):
-    """Two edges meet, or a vertex x₀ = x₁ of a triangle the opposite edge; edges have the numbers of their tails."""
+    """Edges, given by the numbers of their tails, meet, or one of them an obstacle; the message says so."""
 
-    def __init__(self, x0: int, x1: int, y0: int, _y1: int) -> None:
-        self.edges = x0, y0
+    def __init__(self, message: str, edges: tuple[int, ...], obstacle: int | None = None) -> None:
+        super().__init__(message)
+        self.edges, self.obstacle = edges, obstacle
+
+    @classmethod
+    def between(cls, x0: int, x1: int, y0: int, _y1: int) -> "ContactError":
+        """Two edges, or a vertex x₀ = x₁ of a triangle and the opposite edge."""
         edges = f"edges {x0 + 1} and {y0 + 1} (counted from 1) meet"
-        super().__init__(f"a triangle collapses at vertex {x0 + 1}" if x0 == x1 else edges)
+        return cls(f"a triangle collapses at vertex {x0 + 1}" if x0 == x1 else edges, (x0, y0))
+
+    @classmethod
+    def with_obstacle(cls, x0: int, obstacle: int) -> "ContactError":
+        """An edge and an obstacle."""
+        return cls(f"edge {x0 + 1} meets obstacle {obstacle + 1} (counted from 1)", (x0,), obstacle)
 
 
 @dataclass
 class _Progress:
     stages: int = 0
     legs: int = 0
+    obstacles: int = 0
     frame: int | None = None
     tell: Callable[[int], None] = lambda legs: None
+
+    def verdict(self, **values: Any) -> Verdict:
+        """The verdict, with what has been counted."""
+        return Verdict(stages=self.stages, legs=self.legs, obstacles=self.obstacles, **values)
 
 
 def verify(path: Path | str, callback: Callable[[int, int], None] | None = None) -> Verdict:
@@ -87,29 +112,33 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
     try:
         _check_file(path, progress)
     except TrajectoryError as error:
-        return Verdict(False, progress.stages, progress.legs, str(error))
+        return progress.verdict(accepted=False, reason=str(error))
     except (ContactError, DifferentCurveError) as failure:
-        place = (progress.stages - 1, progress.frame)
-        edges = failure.edges if isinstance(failure, ContactError) else None
-        return Verdict(False, progress.stages, progress.legs, str(failure), *place, edges)
-    return Verdict(True, progress.stages, progress.legs)
+        what = {"edges": failure.edges, "obstacle": failure.obstacle} if isinstance(failure, ContactError) else {}
+        place = {"stage": progress.stages - 1, "frame": progress.frame}
+        return progress.verdict(accepted=False, reason=str(failure), **place, **what)
+    return progress.verdict(accepted=True)
 
 
 def _check_file(path: Path | str, progress: _Progress) -> None:
     last: FloatArray | None = None
     sizes: tuple[int, ...] = ()
+    obstacles = Obstacles.of(still_parts(path))
+    progress.obstacles = len(obstacles)
     for stage in stages(path):
         progress.stages, progress.frame = progress.stages + 1, None
         heads = _heads(stage.component_sizes)
         first = next(stage.frames)
+        if len(obstacles) and first.shape[1] != 3:
+            raise TrajectoryError(f"{stage.name} is not in space, as obstacles are")
         if last is not None:
-            _check_transition(last, sizes, first, stage.component_sizes)
+            _check_transition(last, sizes, first, stage.component_sizes, obstacles)
         progress.frame = 0
-        _check_leg(first, first, heads)  # also a stage of a single frame is a polygon that doesn't touch itself
+        _check_leg(first, first, heads, obstacles)  # a single frame is a polygon, too
         last, sizes = first, stage.component_sizes
         for frame in stage.frames:
             progress.legs += 1
-            _check_leg(last, frame, heads)
+            _check_leg(last, frame, heads, obstacles)
             last, progress.frame = frame, progress.frame + 1
             progress.tell(progress.legs)
 
@@ -122,23 +151,29 @@ def _heads(sizes: Sequence[int]) -> IntArray:
     return heads
 
 
-def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray) -> None:
-    """Raise if two edges meet while the vertices go from start to end."""
-    _check_pairs(doubtful_pairs(start, end, heads), _exact_points(start), _exact_points(end))
+def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray, obstacles: Obstacles) -> None:
+    """Raise if edges meet, or an edge an obstacle, while the vertices go from start to end."""
+    first, last = _exact_points(start), _exact_points(end)
+    _check_pairs(doubtful_pairs(start, end, heads), first, last)
+    _check_obstacles(obstacles, obstacles.doubtful(start, end, heads), first, last)
 
 
-def _check_transition(old: FloatArray, old_sizes: Sequence[int], new: FloatArray, new_sizes: Sequence[int]) -> None:
+def _check_transition(
+    old: FloatArray, old_sizes: Sequence[int], new: FloatArray, new_sizes: Sequence[int], obstacles: Obstacles
+) -> None:
     """Raise unless two polygons differ only by vertices on edges."""
     if len(old_sizes) != len(new_sizes) or old.shape[1] != new.shape[1]:
         raise DifferentCurveError("the stage before has another number of components or another dimension")
     kept = []
     for a, b in zip(_parts(old_sizes), _parts(new_sizes), strict=True):
         kept.append(common_vertices(old[a], new[b]))
-    _check_straightening(old, old_sizes, [here for here, _ in kept])
-    _check_straightening(new, new_sizes, [sorted(there) for _, there in kept])
+    _check_straightening(old, old_sizes, [here for here, _ in kept], obstacles)
+    _check_straightening(new, new_sizes, [sorted(there) for _, there in kept], obstacles)
 
 
-def _check_straightening(points: FloatArray, sizes: Sequence[int], kept: Sequence[Sequence[int]]) -> None:
+def _check_straightening(
+    points: FloatArray, sizes: Sequence[int], kept: Sequence[Sequence[int]], obstacles: Obstacles
+) -> None:
     """Raise unless the vertices that are not kept can move onto the edges between the others without contact."""
     moved: dict[int, Point] = {}
     change = 0.0
@@ -148,15 +183,30 @@ def _check_straightening(points: FloatArray, sizes: Sequence[int], kept: Sequenc
         change = max(change, largest)
     if change > 0:
         heads, here = _heads(sizes), _exact_points(points)
-        doubtful = doubtful_pairs(points, points, heads, clearance=change)
-        _check_pairs(doubtful, here, lambda k: moved.get(k) or here(k))
+
+        def there(k: int) -> Point:
+            return moved.get(k) or here(k)
+
+        _check_pairs(doubtful_pairs(points, points, heads, clearance=change), here, there)
+        _check_obstacles(obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)
 
 
 def _check_pairs(batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]) -> None:
     """Decide pairs, given by their vertices, shapes (4, pairs), exactly; raise at the first that meets."""
     for corners in chain.from_iterable(batch.T.tolist() for batch in batches):
         if meet([first(k) for k in corners], [last(k) for k in corners]):
-            raise ContactError(*corners)
+            raise ContactError.between(*corners)
+
+
+def _check_obstacles(
+    obstacles: Obstacles, batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]
+) -> None:
+    """The same for edges and triangles, shapes (5, pairs)."""
+    still = _exact_points(obstacles.vertices)
+    for x0, x1, *triangle in chain.from_iterable(batch.T.tolist() for batch in batches):
+        corners = [still(k) for k in triangle]
+        if meet_triangle([first(x0), first(x1), *corners], [last(x0), last(x1), *corners]):
+            raise ContactError.with_obstacle(x0, obstacles.number_of(triangle[0]))
 
 
 def _exact_points(points: FloatArray) -> Callable[[int], Point]:

@@ -1,7 +1,10 @@
-"""Sort out the pairs of edges that certainly don't meet during a leg, in floating-point numbers with error bounds."""
+"""Sort out what certainly does not meet during a leg, in floating-point numbers with error bounds.
+
+Pairs are those of edges here, and those of an edge and a triangle that stands still in `obstacles`.
+"""
 
 from collections.abc import Callable, Iterator
-from itertools import chain
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -34,12 +37,9 @@ def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearanc
     ------
     The vertices x₀, x₁, y₀, y₁ of a bounded number of pairs; shape (4, pairs).
     """
-    exponent = -int(np.frexp(max(np.abs(start).max(), np.abs(end).max()))[1])
-    start, end = np.ldexp(start, exponent), np.ldexp(end, exponent)
-    if clearance:
-        clearance = max(float(np.ldexp(clearance, exponent)), UNDERFLOW)
+    start, end, clearance = scaled(start, end, clearance)
     for vertices in chain([_triangles(heads)], _overlapping(start, end, heads, clearance)):
-        leg = _Leg(start, end, vertices, clearance)
+        leg = Leg(start, end, vertices, clearance)
         # Cheap things first; each looks at what is left over by the one before.
         leg.drop(leg.apart_along_axis)
         leg.drop(leg.apart_by_planes)
@@ -47,6 +47,14 @@ def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearanc
             leg.drop(leg.nowhere_coplanar)
         if leg.vertices.size:
             yield leg.vertices
+
+
+def scaled(start: FloatArray, end: FloatArray, clearance: float) -> tuple[FloatArray, FloatArray, float]:
+    """The same in units in which coordinates are at most 1 in size."""
+    exponent = -int(np.frexp(max(np.abs(start).max(), np.abs(end).max()))[1])
+    if clearance:
+        clearance = max(float(np.ldexp(clearance, exponent)), UNDERFLOW)
+    return np.ldexp(start, exponent), np.ldexp(end, exponent), clearance
 
 
 def _triangles(heads: IntArray) -> IntArray:
@@ -76,15 +84,27 @@ def _overlapping(start: FloatArray, end: FloatArray, heads: IntArray, clearance:
         yield np.stack([i, heads[i], j, heads[j]])
 
 
-class _Leg:
-    """Pairs of edges during one leg, and ways to prove them apart."""
+class Leg:
+    """Pairs of an edge x₀x₁ and an edge y₀y₁, or a triangle y₀y₁y₂, during one leg, and ways to prove them apart.
+
+    Parameters
+    ----------
+    start, end
+        Vertices, shape (n, m), entries of at most 1 in size.
+    vertices
+        Of the pairs: x₀, x₁, y₀, y₁, and y₂ of triangles; shape (4 or 5, pairs).
+    clearance
+        As in `doubtful_pairs`.
+    """
 
     def __init__(self, start: FloatArray, end: FloatArray, vertices: IntArray, clearance: float) -> None:
         self.vertices, self.clearance = vertices, clearance
-        ends = np.stack([start, end])[:, vertices].swapaxes(0, 1)  # (4, 2, pairs, m)
-        # x_i − y_j at both times: shape (2, 4, pairs, m)
-        self.corners = np.stack([x - y for x in ends[:2] for y in ends[2:]], axis=1)
-        self.edges = np.stack([ends[1] - ends[0], ends[3] - ends[2]], axis=1)
+        ends = np.stack([start, end])[:, vertices].swapaxes(0, 1)  # (4 or 5, 2, pairs, m)
+        x, y = ends[:2], ends[2:]
+        # x_i − y_j at both times: shape (2, 4 or 6, pairs, m); the vectors of x's edge, and of y's one or three
+        self.corners = np.stack([p - q for p in x for q in y], axis=1)
+        self.edges = np.stack([x[1] - x[0], *(q - p for p, q in combinations(y, 2))], axis=1)
+        self._normals = SEGMENT_NORMALS if len(y) == 2 else TRIANGLE_NORMALS
 
     def drop(self, proved: Callable[[], BoolArray]) -> None:
         """Forget the pairs that are proved apart."""
@@ -108,7 +128,7 @@ class _Leg:
     def _plane_parts(self, which: IntArray, a: float, b: float, halvings: int, proved: BoolArray) -> None:
         """Prove pairs apart during [a, b], halving it where no plane is found; mark those that fail."""
         middle = 0.5 * (a + b)
-        for normal in _NORMALS:
+        for normal in self._normals:
             if not which.size:
                 return
             corners, edges = self.corners[:, :, which], self.edges[:, :, which]
@@ -121,7 +141,7 @@ class _Leg:
             proved[which] = False
 
     def _separates(self, direction: FloatArray, corners: FloatArray, a: float, b: float) -> BoolArray:
-        """Whether ⟨n, x_i − y_j⟩, linear in time, is certainly positive at times a and b for all four corners."""
+        """Whether ⟨n, x_i − y_j⟩, linear in time, is certainly positive at times a and b for all corners."""
         value = np.einsum("tcpm,pm->tcp", corners, direction)
         error = ROUNDING * np.einsum("tcpm,pm->tcp", np.abs(corners), np.abs(direction))
         value -= error + (2.5 * self.clearance * np.abs(direction).sum(axis=1) + UNDERFLOW)
@@ -156,12 +176,16 @@ def _chord(corners: FloatArray, edges: FloatArray) -> FloatArray:
     return np.asarray(corners.sum(axis=0))
 
 
-def _common_normal(corners: FloatArray, edges: FloatArray) -> FloatArray:
-    """± e × f, pointing from y to x; in the plane there is none."""
-    if corners.shape[-1] == 2:
-        return np.zeros_like(corners[0])
-    normal = np.cross(edges[0], edges[1])
-    return np.asarray(normal * np.sign(np.einsum("pm,pm->p", normal, corners[0]))[:, None])
+def _across(first: int, second: int) -> Normal:
+    """± the vector product of two edges, pointing from y to x; in the plane there is none."""
+
+    def direction(corners: FloatArray, edges: FloatArray) -> FloatArray:
+        if corners.shape[-1] == 2:
+            return np.zeros_like(corners[0])
+        normal = np.cross(edges[first], edges[second])
+        return np.asarray(normal * np.sign(np.einsum("pm,pm->p", normal, corners.sum(axis=0)))[:, None])
+
+    return direction
 
 
 def _from_line(corner: int, edge: int) -> Normal:
@@ -179,9 +203,18 @@ def _from_end(corner: int) -> Normal:
     return lambda corners, edges: corners[corner]
 
 
-_NORMALS: tuple[Normal, ...] = (
+SEGMENT_NORMALS: tuple[Normal, ...] = (
     _chord,
-    _common_normal,
+    _across(0, 1),
     *(_from_line(corner, edge) for corner, edge in ((0, 1), (2, 1), (0, 0), (1, 0))),
     *(_from_end(corner) for corner in range(4)),
+)
+# corners x₀y₀, x₀y₁, x₀y₂, x₁y₀, x₁y₁, x₁y₂; edges e, y₁ − y₀, y₂ − y₀, y₂ − y₁
+TRIANGLE_NORMALS: tuple[Normal, ...] = (
+    _across(1, 2),
+    _chord,
+    *(_across(0, edge) for edge in (1, 2, 3)),
+    *(_from_line(corner, edge) for corner, edge in ((0, 1), (0, 2), (1, 3), (3, 1), (3, 2), (4, 3))),
+    *(_from_line(corner, 0) for corner in range(3)),
+    *(_from_end(corner) for corner in range(6)),
 )

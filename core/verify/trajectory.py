@@ -1,8 +1,10 @@
 """Read trajectory files frame by frame, trusting nothing in them.
 
 A file is a zip archive of .npy arrays, as numpy.savez writes it: ``stage_000``, ``stage_001``, … each (k, n, m) and
-float64, and ``component_sizes_000``, … with the numbers of vertices of the components. Only one frame is in memory at a
-time (in Fortran order, one stage of bounded size), and memory is taken only for data that the file really has.
+float64, and ``component_sizes_000``, … with the numbers of vertices of the components; perhaps obstacles,
+``obstacle_000_vertices``, … each (k, 3) and float64, and ``obstacle_000_faces``, … each (f, 3) or (f, 2), of whole
+numbers. Of the stages only one frame is in memory at a time (in Fortran order, one stage of bounded size), and memory
+is taken only for data that the file really has.
 """
 
 import ast
@@ -13,16 +15,18 @@ import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 
 _MAX_HEADER = 1000
 _MAX_FRAME = 1 << 25  # bytes: over a million vertices in space
 _MAX_FORTRAN = 1 << 28  # bytes of a whole stage in Fortran order, whose frames are scattered over it
 _MAX_SIZES = 1 << 24  # bytes
+_MAX_OBSTACLE = 1 << 28  # bytes of an array of an obstacle
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # what NumPy writes
 _DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError)
 
@@ -55,6 +59,23 @@ def stages(path: Path | str) -> Iterator[Stage]:
     except TrajectoryError:
         raise
     except (*_DAMAGE, ValueError) as error:  # ValueError: a path with a null character
+        raise TrajectoryError(f"the file cannot be read: {error}") from error
+
+
+def still_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
+    """The obstacles of a file: vertices, shape (k, 3), and indices of simplices, shape (f, 2 or 3), of each.
+
+    Raises
+    ------
+    TrajectoryError
+        If the file cannot be read, or an index has no vertex.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return [_obstacle(archive, name) for name in _obstacle_names(archive)]
+    except TrajectoryError:
+        raise
+    except (*_DAMAGE, ValueError) as error:
         raise TrajectoryError(f"the file cannot be read: {error}") from error
 
 
@@ -114,6 +135,42 @@ def _component_sizes(archive: zipfile.ZipFile, name: str) -> tuple[int, ...]:
     if min(sizes) < 3:
         raise TrajectoryError(f"{name} has a component with {min(sizes)} vertices; a closed polygon has 3 or more")
     return sizes
+
+
+def _obstacle_names(archive: zipfile.ZipFile) -> list[str]:
+    found = sorted(name for name in archive.namelist() if name.startswith("obstacle_"))
+    names = [f"obstacle_{k:03d}" for k in range(len(found) // 2)]
+    if found != sorted(f"{name}_{part}.npy" for name in names for part in ("faces", "vertices")):
+        raise TrajectoryError("the obstacles are not numbered obstacle_000, …, each with vertices and faces")
+    return names
+
+
+def _obstacle(archive: zipfile.ZipFile, name: str) -> tuple[FloatArray, IntArray]:
+    vertices, faces = _whole(archive, f"{name}_vertices", "f"), _whole(archive, f"{name}_faces", "iu")
+    if vertices.dtype != np.dtype("<f8") or vertices.shape[1] != 3:
+        found = f"{vertices.shape} of {vertices.dtype}"
+        raise TrajectoryError(f"{name}_vertices is an array {found}; it must be (k, 3) of float64")
+    if faces.shape[1] not in (2, 3):
+        raise TrajectoryError(f"{name}_faces has shape {faces.shape}; it must be (f, 3) or (f, 2)")
+    if not np.isfinite(vertices).all():
+        raise TrajectoryError(f"{name}_vertices: a coordinate is not finite")
+    if faces.size and not (faces.min() >= 0 and faces.max() < len(vertices)):
+        raise TrajectoryError(f"{name}_faces: an index has no vertex")
+    return np.array(vertices, dtype=np.float64, order="C"), faces.astype(np.intp)
+
+
+def _whole(archive: zipfile.ZipFile, name: str, kinds: str) -> NDArray[Any]:
+    """An array with two indices, of bounded size, read at once."""
+    with _member(archive, name) as file:
+        shape, dtype, fortran = _header(file, name)
+        if len(shape) != 2 or dtype.kind not in kinds:
+            raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be a table of numbers")
+        count = shape[0] * shape[1]
+        if count * dtype.itemsize > _MAX_OBSTACLE:
+            raise TrajectoryError(f"{name} has {shape[0]} rows, more than this program takes")
+        data = _exactly(file, count * dtype.itemsize, name)
+        _check_end(file, name)
+    return np.frombuffer(data, dtype).reshape(shape, order="F" if fortran else "C")
 
 
 def _member(archive: zipfile.ZipFile, name: str) -> IO[bytes]:

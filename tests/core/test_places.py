@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, Status, WithOutcome, relax
+from mobius_flow.core.collision import Contact
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.errors import Place
@@ -52,7 +53,7 @@ def test_what_is_the_matter_with_the_whole_curve_is_nowhere():
 
 
 def test_a_stalled_run_points_at_the_edges_in_the_way(monkeypatch):
-    monkeypatch.setattr(Run, "step", lambda _: NoStep.because((3, 39)))
+    monkeypatch.setattr(Run, "step", lambda _: NoStep.because(Contact((3, 39))))
     run = WithOutcome(relax(torus_trefoil(40), RelaxOptions(vertices=40)))
     last = list(run)[-1].curve
     assert run.outcome.status is Status.STALLED

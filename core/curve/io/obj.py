@@ -2,14 +2,15 @@
 
 A polyline may run over many indices, also negative ones (counted back from the last vertex read), and
 pieces in any order are joined where they share a vertex. Vertices on no line are dropped. A file with
-vertices alone is one closed polygon. Faces and everything else that OBJ knows are ignored.
+vertices alone is one closed polygon. Everything else that OBJ knows is ignored, and so are faces ``f``, but where an
+obstacle is read.
 """
 
 import logging
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TextIO
+from typing import NamedTuple, TextIO
 
 from ...errors import CurveError
 from ..curve import Curve
@@ -24,27 +25,55 @@ _RARE_NAMES = "c_interp d_interp lod shadow_obj trace_obj ctech stech surf curv2
 _IGNORED = frozenset(f"{_NAMES} {_RARE_NAMES}".split())
 
 
+class Face(NamedTuple):
+    """A face's words, the number of its line, and how many vertices came before it."""
+
+    words: list[str]
+    line: int
+    known: int
+
+
 @dataclass
-class _Content:
-    """What an OBJ file says about curves; indices count from 0."""
+class Content:
+    """What an OBJ file says; indices count from 0.
+
+    Attributes
+    ----------
+    points, lines
+        Vertices, and the line of each.
+    links
+        Edges of polylines.
+    faces
+        Not looked into: most readers do not want them.
+    """
 
     points: list[tuple[float, ...]] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
-    faces: int = 0
+    faces: list[Face] = field(default_factory=list)
+
+
+def parsed(source: Source) -> Content:
+    """Read all statements; raises CurveFileError naming the line."""
+    content = Content()
+    for line, words in _statements(source):
+        _take(source, content, words, line)
+    for link in content.links:
+        check_known(source, max(link.tail, link.head), len(content.points), link.line)
+    return content
+
+
+def check_known(source: Source, index: int, known: int, line: int) -> None:
+    """Raise a CurveFileError unless a vertex, counted from 0, is in the file."""
+    if index >= known:
+        raise source.error(f"vertex {index + 1} does not exist; there are {known}", line)
 
 
 def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line, also where a polyline is open."""
-    content = _Content()
-    for line, words in _statements(source):
-        _take(source, content, words, line)
-    for link in content.links:
-        if max(link.tail, link.head) >= len(content.points):
-            reason = f"vertex {max(link.tail, link.head) + 1} does not exist; there are {len(content.points)}"
-            raise source.error(reason, link.line)
+    content = parsed(source)
     if content.faces:
-        _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, content.faces)
+        _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, len(content.faces))
     chains = _chains(source, content)
     return [
         Polygon([content.points[i] for i in chain], lambda i, chain=chain: content.lines[chain[i]])  # type: ignore[misc]
@@ -52,7 +81,7 @@ def read(source: Source) -> list[Polygon]:
     ]
 
 
-def _chains(source: Source, content: _Content) -> list[list[int]]:
+def _chains(source: Source, content: Content) -> list[list[int]]:
     if content.links:
         return closed_chains(source, content.links, content.points)
     if content.faces:
@@ -81,7 +110,7 @@ def _statements(source: Source) -> Iterator[tuple[int, list[str]]]:
         yield first, words
 
 
-def _take(source: Source, content: _Content, words: list[str], line: int) -> None:
+def _take(source: Source, content: Content, words: list[str], line: int) -> None:
     keyword, arguments = words[0], words[1:]
     if keyword == "v":
         if len(arguments) < 3:
@@ -91,7 +120,7 @@ def _take(source: Source, content: _Content, words: list[str], line: int) -> Non
     elif keyword == "l":
         content.links += _links(source, arguments, line, len(content.points))
     elif keyword == "f":
-        content.faces += 1
+        content.faces.append(Face(arguments, line, len(content.points)))
     elif keyword == "curv":
         raise source.error("free-form curves (curv) are not read; convert the curve to a polyline before export", line)
     elif keyword not in _IGNORED:
@@ -99,16 +128,22 @@ def _take(source: Source, content: _Content, words: list[str], line: int) -> Non
 
 
 def _links(source: Source, arguments: list[str], line: int, known: int) -> Iterator[Link]:
-    """Turn ``l i j k ...`` into its edges; each argument may be ``vertex/texture``."""
+    """Turn ``l i j k ...`` into its edges."""
     if len(arguments) < 2:
         raise source.error("a polyline (l) needs at least two vertices", line)
-    indices = []
-    for argument in arguments:
-        index = source.integer(argument.partition("/")[0], line)
-        if index == 0 or index < -known:
-            raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)
-        indices.append(index - 1 if index > 0 else known + index)
+    indices = [index_of(source, argument, line, known) for argument in arguments]
     return (Link(tail, head, line) for tail, head in pairwise(indices))
+
+
+def index_of(source: Source, argument: str, line: int, known: int) -> int:
+    """The vertex, counted from 0, of an argument such as ``vertex`` or ``vertex/texture/normal``.
+
+    ``known`` is the number of vertices before it, from the last of which negative numbers count back.
+    """
+    index = source.integer(argument.partition("/")[0], line)
+    if index == 0 or index < -known:
+        raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)
+    return index - 1 if index > 0 else known + index
 
 
 def write(curve: Curve, stream: TextIO) -> None:

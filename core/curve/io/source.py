@@ -51,10 +51,10 @@ class Source:
         except OSError as error:
             raise CurveFileError(path, f"cannot be read: {reason_of(error)}") from error
         if len(data) > MAX_BYTES:
-            raise CurveFileError(path, f"longer than {MAX_BYTES >> 20} MB, which no curve that can be used is")
+            raise CurveFileError(path, f"longer than {MAX_BYTES >> 20} MB, more than this program reads")
         text = _decode(path, data).replace("\r\n", "\n").replace("\r", "\n")
         if text.count("\n") > MAX_LINES:
-            raise CurveFileError(path, f"more than {MAX_LINES} lines, which no curve that can be used has")
+            raise CurveFileError(path, f"more than {MAX_LINES} lines, more than this program reads")
         source = cls(path, text, hashlib.sha256(data).hexdigest())
         if not source.text.strip():
             raise source.error("the file is empty")

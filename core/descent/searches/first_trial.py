@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...checks import check_fields
+from ...collision import Contact
 from ...types import FloatArray
 from ..problem import Point
 from ..step import leg
@@ -33,8 +34,8 @@ class FirstTrial:
     def __post_init__(self) -> None:
         check_fields(self, collision_fraction=(0.0, 1.0), max_displacement=(0.0, np.inf), growth=(1.0, np.inf))
 
-    def __call__(self, point: Point, direction: FloatArray, longest: float) -> tuple[float, tuple[int, int] | None]:
-        """The first trial τ ≤ ``longest`` along a direction, and the pair of edges that limits it, if any.
+    def __call__(self, point: Point, direction: FloatArray, longest: float) -> tuple[float, Contact | None]:
+        """The first trial τ ≤ ``longest`` along a direction, and the contact that limits it, if any.
 
         Nothing is proved yet: the points on the way are rounded.
         """
@@ -45,4 +46,4 @@ class FirstTrial:
         free = leg(point, point.problem.at(point.vertices + tau * direction)).proof
         if free.time < 1.0:
             tau *= self.collision_fraction * free.time
-        return tau, free.pair
+        return tau, free.contact

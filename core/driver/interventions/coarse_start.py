@@ -82,7 +82,7 @@ class CoarseStart:
         for arc, again in zip(coarse, fine, strict=True):
             pieces[arc] = apportion(curve.edge_lengths[arc], len(again))
         finest = subdivide(curve, pieces)
-        if not survives_rounding(finest):
+        if not survives_rounding(finest, self._problem.obstacles):
             self._coarse = None
             return None
         return Change(point=with_parts_of(self._run.problem, self._problem, finest))

@@ -46,7 +46,7 @@ class FinerMesh:
         # lengths that are kept, shorter near strands as they are, need no evening out
         options = replace(self._run.options, vertices=None, mesh="fixed", edge_lengths="keep")
         try:
-            check_refined(curve, finer)
+            check_refined(curve, finer, self._run.problem.obstacles)
             point = on_mesh(self._run.problem, finer, options)
         except MobiusFlowError:
             return None

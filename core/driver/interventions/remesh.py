@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...collision import survives_rounding
+from ...collision import Contact, survives_rounding
 from ...curve import Curve
 from ...curve.refine import Resolution
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
@@ -40,19 +40,19 @@ class Remesh:
         self._just_refined = change is not None
         return change or event
 
-    def _change(self, stuck: tuple[int, int] | None) -> Change | None:
+    def _change(self, stuck: Contact | None) -> Change | None:
         """Another mesh; None if this one is good or must stay.
 
         Parameters
         ----------
         stuck
-            Two edges that keep each other from moving: the mesh around them is refined whether it needs it or not.
+            What keeps edges from moving: the mesh around them is refined whether it needs it or not.
         """
         problem, curve, resolution = self._run.problem, self._run.iterate.curve, self._run.resolution
         pins = problem.constraints.pins.vertices
         spacing = graded_spacing(curve, resolution)
         if stuck is not None:
-            for edge in stuck:
+            for edge in stuck.edges:
                 near = curve.mesh.index_distance(np.full(len(curve), edge), np.arange(len(curve))) <= 2
                 spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
         elif not needs_remesh(curve, spacing, pins):
@@ -79,10 +79,10 @@ def proved_remesh(
         free = problem.free_motion(curve.vertices, change.moved.vertices)
         if free.time == 1.0 or not len(removable):
             break
-        assert free.pair is not None
-        ends = [curve.mesh.tails[e] for e in free.pair] + [curve.mesh.heads[e] for e in free.pair]
+        assert free.contact is not None
+        ends = [end[list(free.contact.edges)] for end in (curve.mesh.tails, curve.mesh.heads)]
         guilty = np.isin(removable, ends)
         removable = removable[~guilty] if guilty.any() else removable[:0]
-    if not (survives_rounding(change.moved) and survives_rounding(change.curve)):
+    if not all(survives_rounding(each, problem.obstacles) for each in (change.moved, change.curve)):
         return None
     return Step((Leg(problem.at_curve(change.moved), free),), 0.0, None), change

@@ -33,7 +33,7 @@ def test_every_pair_exactly_once(mesh: Mesh, chunk: int, monkeypatch: pytest.Mon
     """As with the kernel 1: each pair of non-neighbour edges counts once."""
     monkeypatch.setattr(boxes, "CHUNK", chunk)
     tree = BoxTree.build(mesh, *random_leg(mesh, 3))
-    pairs = found(tree, lambda level, a, b: np.ones(len(a), dtype=bool))
+    pairs = found(tree, lambda level, a, other, b: np.ones(len(a), dtype=bool))
     assert len(pairs) == len(set(pairs))
     assert set(pairs) == strangers(mesh)
 
@@ -44,8 +44,8 @@ def test_no_pair_that_can_meet_is_lost(mesh: Mesh, m: int) -> None:
     start, end = random_leg(mesh, m)
     tree = BoxTree.build(mesh, start, end)
 
-    def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
-        enter, leave = contact_window(level.gaps(a, b))
+    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
+        enter, leave = contact_window(level.gaps(a, other, b))
         return np.asarray(enter <= leave)
 
     assert set(found(tree, near)) >= overlapping(mesh, start, end)

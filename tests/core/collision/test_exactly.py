@@ -38,7 +38,7 @@ def compare(motion: Motion, tally: Tally) -> None:
     tally.hits += 1
     assert answer.limit is not Limit.NONE, (motion, float(contact.high))
     if contact.sign_of((0, 1)) == 0:
-        assert answer == FreeMotion(0.0, answer.pair, Limit.TOUCHING_START)
+        assert answer == FreeMotion(0.0, answer.contact, Limit.TOUCHING_START)
     else:
         assert Fraction(answer.time) <= contact.low or answer.time == 0.0, (motion, float(contact.high))
         tally.worst_time = min(tally.worst_time, answer.time / float(contact.high))

@@ -115,7 +115,7 @@ def test_earliest_contact_of_all_pairs(seed: int, m: int, sizes: tuple[int, ...]
 def test_touching_at_the_start() -> None:
     square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, 0, 0], [0, 1, 0]])
     motion = free_motion(Mesh((5,)), square, square + np.array([0.0, 0.0, 1.0]))
-    assert motion == FreeMotion(0.0, motion.pair, Limit.TOUCHING_START)
+    assert motion == FreeMotion(0.0, motion.contact, Limit.TOUCHING_START)
     assert not is_free(Mesh((5,)), square, square)
 
 

@@ -16,6 +16,7 @@ from descent_contracts import (
     with_geometry,
 )
 from mobius_flow.core import OptionError
+from mobius_flow.core.collision import Contact
 from mobius_flow.core.descent import NoStep, State
 from mobius_flow.core.descent.constrained import Constrained
 from mobius_flow.core.descent.directions import SteepestDescent
@@ -72,7 +73,7 @@ def test_no_leg_is_taken_that_is_not_proved(name: str) -> None:
     corners = [point, *(leg.end for leg in step.legs)]
     for a, b in pairwise(corners):
         assert np.abs(b.placed - a.placed).max() / point.problem.units.scale <= width
-    assert step.limited_by == (0, 2)
+    assert step.limited_by == Contact((0, 2))
 
 
 @pytest.mark.parametrize("name", [*RULES, *(f"{s} {g}" for s in SEARCHES for g in GEOMETRIES)])
@@ -80,7 +81,7 @@ def test_what_can_not_be_proved_is_said(name: str) -> None:
     rule, geometry = RULES.get(name) or (LineSearch(SteepestDescent(), SEARCHES[name.split()[0]]), name.split()[1])
     step, _ = rule.step(narrow(start(geometry), 0.0), State())
     assert isinstance(step, NoStep)
-    assert step.limited_by == (0, 2)
+    assert step.limited_by == Contact((0, 2))
     assert "edges 1 and 3 are so near" in step.reason
 
 

@@ -1,0 +1,86 @@
+"""How near a curve is to obstacles: those that it touches, pierces, or comes too near to are refused."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..curve import Curve
+from ..curve.places import at_edges
+from ..errors import CurveError
+from ..obstacle import Obstacle
+from ..types import BoolArray, FloatArray, IntArray
+from .boxes import BoxTree, Level
+from .chords import closest_chord
+from .embedded import meeting_point, numbered, written
+from .exact import first_contact
+from .exact_triangle import EDGES, crossing
+from .gap import MIN_GAP, squared_gaps
+from .planes import Separation, relative_motion
+from .still import still_triangles
+
+
+def check_clear(curve: Curve, obstacles: tuple[Obstacle, ...]) -> None:
+    """Refuse a curve that touches obstacles or comes too near to them to compute with; inside a closed one it may be.
+
+    Raises
+    ------
+    CurveError
+        If there are obstacles and the curve is not in space, or not clear of them: one sentence that names the
+        component, its edge, counted from 1, the obstacle and the place.
+    """
+    if not obstacles:
+        return
+    if curve.dimension != 3:
+        raise CurveError(
+            f"the curve has dimension {curve.dimension}, but obstacles are in space; "
+            "give its vertices three coordinates, or leave the obstacles out"
+        )
+    for edge, corners, obstacle in _near(curve, obstacles, MIN_GAP * curve.length):
+        what, where = _meeting(corners)
+        component, k, _ = numbered(curve.mesh, edge)
+        reason = f"component {component}: edge {k} {what} {obstacle.title} at {written(where)}; move one of them away"
+        raise CurveError(reason, at_edges(curve, (edge,), where))
+
+
+def clears(curve: Curve, obstacles: tuple[Obstacle, ...], distance: float) -> bool:
+    """Whether a curve that is clear of obstacles certainly is further from them than a distance."""
+    return not obstacles or next(_near(curve, obstacles, distance), None) is None
+
+
+def _near(curve: Curve, obstacles: tuple[Obstacle, ...], distance: float) -> Iterator[tuple[int, FloatArray, Obstacle]]:
+    """Edges and obstacles not certainly further apart than a distance, with the pairs' vertices, shape (5, 3)."""
+    exponent = int(np.frexp(max(np.abs(curve.vertices).max(), *(each.size for each in obstacles)))[1])
+    still = still_triangles(obstacles, exponent)
+    given = np.concatenate([curve.vertices, still.vertices])
+    points, radius = np.ldexp(given.T, -exponent, order="C"), float(np.ldexp(distance, -exponent))
+    own = points[:, : len(curve)]
+    tree = BoxTree.build(curve.mesh, own, own)
+
+    def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
+        return squared_gaps(level.gaps(a, other, b)) <= radius**2
+
+    for a, b in tree.pairs_with(still.tree, near):
+        vertices = np.concatenate([tree.corners[:, a], len(curve) + still.tree.corners[:, b]])
+        close = np.flatnonzero(_doubtful(points, vertices, radius))
+        for k in close[np.argsort(tree.order[a[close]], kind="stable")].tolist():
+            yield int(tree.order[a[k]]), given[vertices[:, k]], still.obstacle_of(int(still.tree.order[b[k]]))
+
+
+def _doubtful(points: FloatArray, vertices: IntArray, radius: float) -> BoolArray:
+    """Pairs at a distance of at most the radius, or without a plane that certainly separates them; shape (pairs,)."""
+    motion = relative_motion(points, points, vertices)
+    chord = closest_chord(motion[0])
+    planes = Separation(motion, np.abs(motion).sum(axis=1), chord)
+    near = np.einsum("mp,mp->p", chord, chord) <= radius**2
+    return np.asarray(near | ~planes.proves(np.zeros(chord.shape[1])))
+
+
+def _meeting(corners: FloatArray) -> tuple[str, FloatArray]:
+    """What an edge does to a triangle near it, and where; ``corners`` has shape (5, 3)."""
+    s = crossing(corners[0], corners[1], corners[2:])
+    if s is not None:
+        return ("pierces" if 0 < s < 1 else "touches"), corners[0] + s * (corners[1] - corners[0])
+    touched = [four for four in (corners[[0, 1, *ends]] for ends in EDGES) if first_contact(four, four) is not None]
+    if touched:
+        return "touches", meeting_point(touched[0])
+    return "comes too near to", np.asarray(corners[:2].mean(axis=0))
