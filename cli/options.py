@@ -42,11 +42,10 @@ def flag(option: Option) -> str:
 
 
 def _values(option: Option) -> dict[str, Any]:
+    common = {"dest": option.name, "default": [] if option.repeated else option.default}
     if option.kind is bool:
-        return {"action": "store_true"}
-    if option.repeated:
-        return {"dest": option.name, "action": "append", "default": [], "metavar": option.metavar}
-    return {"type": option.kind, "metavar": option.metavar}
+        return common | {"action": "store_true"}
+    return common | {"metavar": option.metavar} | ({"action": "append"} if option.repeated else {"type": option.kind})
 
 
 def _help(option: Option) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 from .curve import Curve
 from .curve.places import at_vertices
 from .errors import CurveError
+from .obstacle import Obstacle
 from .types import FloatArray, frozen
 
 MAX_COORDINATE = 1e40  # coordinate, and the inverse of the smallest size: even seventh powers of both are still numbers
@@ -52,6 +53,10 @@ class Units:
     def from_user(self, vertices: FloatArray) -> FloatArray:
         """Vertices in the program's units; shape (n, m)."""
         return np.asarray((vertices - self.offset) / self.scale)
+
+    def obstacle_from_user(self, obstacle: Obstacle) -> Obstacle:
+        """An obstacle in the program's units."""
+        return Obstacle(self.from_user(obstacle.vertices), obstacle.faces, obstacle.name)
 
     def to_user(self, vertices: FloatArray) -> FloatArray:
         """Vertices in the user's units, rounded to the doubles that are proved and written, read-only; shape (n, m)."""

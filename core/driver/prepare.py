@@ -121,7 +121,7 @@ def start_problem(curve: Curve, options: RelaxOptions, pins: Pins | None = None)
     lengths = _target_lengths(start, options, units.scale, pins.vertices)
     constraints = Constraints(lengths, weighted_barycenter(start, pins=pins.vertices), pins=pins)
     solver = Solver.for_curve(options, curve)
-    objective = Objective.of(solver.energy)
+    objective = Objective.of(solver.energy, map(units.obstacle_from_user, options.avoid))
     second_order = method.rule.second_order or options.stability or options.escape_saddles
     if second_order and not objective.has_hessian:
         name = objective.energy.name
