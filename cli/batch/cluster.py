@@ -99,11 +99,13 @@ def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator
 
 def _row(job: Job, future: "Future[Row]") -> Row:
     try:
-        error = future.exception()
-    except CancelledError as lost:
-        raise MobiusFlowError("the Dask scheduler is lost; the same command goes on with what is not finished") from lost
-    if error is None:
         row: Row = future.result()
-        return row
-    tries = f"{TRIES} tries failed: " if isinstance(error, sandbox.ChildDiedError) else ""
-    return Row.failure(job, f"{tries}{error}")
+    except CancelledError as lost:
+        raise MobiusFlowError(
+            "the Dask scheduler is lost; the same command goes on with what is not finished"
+        ) from lost
+    except sandbox.ChildDiedError as error:
+        return Row.failure(job, f"{TRIES} tries failed: {error}")
+    except Exception as error:  # of the cluster: workers that die, or lack the program
+        return Row.failure(job, str(error))
+    return row
