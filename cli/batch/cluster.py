@@ -79,8 +79,8 @@ def _joined(address: str) -> "Iterator[Client]":
         yield client
 
 
-def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator[Row]:
-    """Do all runs, and give their rows as they come; a window of them at a time is on the cluster."""
+def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator[tuple[Job, Row]]:
+    """Do all runs, and give each with its row as they come; a window of them at a time is on the cluster."""
     from distributed import as_completed
 
     waiting, under_way = iter(jobs), dict[object, Job]()
@@ -93,7 +93,8 @@ def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator
 
     completed = as_completed(submitted(WINDOW))
     for future in completed:
-        yield _row(under_way.pop(future.key), future)
+        job = under_way.pop(future.key)
+        yield job, _row(job, future)
         completed.update(list(submitted(1)))
 
 
@@ -101,9 +102,7 @@ def _row(job: Job, future: "Future[Row]") -> Row:
     try:
         row: Row = future.result()
     except CancelledError as lost:
-        raise MobiusFlowError(
-            "the Dask scheduler is lost; the same command goes on with what is not finished"
-        ) from lost
+        raise MobiusFlowError("the Dask scheduler is lost; give the same command again to go on") from lost
     except sandbox.ChildDiedError as error:
         return Row.failure(job, f"{TRIES} tries failed: {error}")
     except Exception as error:  # of the cluster: workers that die, or lack the program

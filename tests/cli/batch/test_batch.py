@@ -204,8 +204,8 @@ def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkey
     with cluster.connected(scheduler) as client:
         submit, submitted = client.submit, []
         monkeypatch.setattr(client, "submit", lambda *words, **more: submitted.append(1) or submit(*words, **more))
-        for done, row in enumerate(cluster.rows(client, jobs, None), 1):
-            assert row.failed
+        for done, (job, row) in enumerate(cluster.rows(client, jobs, None), 1):
+            assert (row.name, row.message) == (job.name, "as asked for")
             assert len(submitted) <= done + 3
     assert done == 20 == len(submitted)
 
