@@ -106,6 +106,6 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path]) -> N
         axes.set_title(title, fontsize=10, parse_math=False)
     try:
         with atomic_write(path) as temporary:
-            figure.savefig(temporary, dpi=SIZE / INCHES)
+            figure.savefig(temporary, dpi=SIZE / INCHES, bbox_inches="tight")
     except OSError as error:
         raise OutputError(path, error) from error

@@ -8,6 +8,7 @@ from processes import finished
 
 BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 ARGUMENTS = {
+    "batch": ["many", "2"],
     "collision": ["60"],
     "hierarchy": ["60"],
     "metric": ["100"],
@@ -24,5 +25,5 @@ def test_every_benchmark_is_tried():
 def test_it_runs(name, tmp_path):
     done = finished([sys.executable, str(BENCHMARKS / f"{name}.py"), *ARGUMENTS[name]], cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
-    least = {"soak": 1, "resolution": 3}.get(name, 5)  # a title, and a line for each of four curves
+    least = {"batch": 1, "soak": 1, "resolution": 3}.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least

@@ -23,3 +23,12 @@ def test_a_film_of_a_knot(tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
     assert "frames: 4" in done.stdout
     assert "proved free of contact" in done.stdout
+
+
+def test_a_table_of_knots(tmp_path):
+    pytest.importorskip("distributed")
+    done = finished([sys.executable, str(EXAMPLES / "table_of_knots.py"), "0_1", "3_1"], cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = sorted(line.split() for line in done.stdout.splitlines())
+    assert [row[0] for row in rows] == ["0_1", "3_1"]
+    assert [float(row[2]) for row in rows] == pytest.approx([4.0, 74.45], abs=0.05)

@@ -23,8 +23,8 @@ the input files are on a file system that all machines share.
 
 exit status:
   0    every run has its row, also if some of them failed: the rows and the last line say so
-  1    memory ran out, or the cluster was lost
-  2    bad options, or inputs that name nothing
+  1    memory ran out
+  2    bad options, inputs that name nothing, or a cluster that does not answer or is lost
   130  interrupted; the table has what is finished
 """
 

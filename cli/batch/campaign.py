@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 from ...core import RelaxOptions
@@ -21,13 +22,18 @@ def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
     directory = Path(options.output).resolve()
     planned = jobs(inputs(options.inputs), options.starts, options.seed, directory, wanted, options.extrapolate)
     _prepare(directory, planned)
-    known = [(job, finished(job)) for job in planned]
-    rows, left = [row for _, row in known if row], [job for job, row in known if row is None]
+    rows = _found(planned)
+    left = [job for job in planned if job not in rows]
     if left:
         _run(left, rows, directory, options)
     else:
-        Table(rows).save(directory)
-    return Table(rows)
+        Table(rows.values()).save(directory)
+    return Table(rows.values())
+
+
+def _found(planned: Iterable[Job]) -> dict[Job, Row]:
+    """The rows of the runs that are finished."""
+    return {job: row for job in planned if (row := finished(job)) is not None}
 
 
 def _prepare(directory: Path, planned: list[Job]) -> None:
@@ -40,15 +46,16 @@ def _prepare(directory: Path, planned: list[Job]) -> None:
         check_replaceable(Path(job.folder))
 
 
-def _run(left: list[Job], rows: list[Row], directory: Path, options: argparse.Namespace) -> None:
+def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argparse.Namespace) -> None:
     """Add the rows of runs as they come, and write the table of those that there are in the end."""
     shown = not options.quiet and sys.stderr.isatty()
     with cluster.connected(options.scheduler) as client, Progress(client, len(left), shown) as progress:
         try:
-            for row in cluster.rows(client, left, options.time_limit):
-                rows.append(row)
+            for job, row in cluster.rows(client, left, options.time_limit):
+                rows[job] = row
                 progress.show(row)
         finally:
             signals.hold()  # the table is neither lost nor halved
-            Table(rows).save(directory)
+            rows |= _found(job for job in left if job not in rows)  # whose rows were still on their way
+            Table(rows.values()).save(directory)
     sweep(directory)

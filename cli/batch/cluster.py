@@ -1,8 +1,10 @@
 """Runs on a Dask cluster: this machine's cores, or one that is running already."""
 
+import logging
 import os
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from concurrent.futures import CancelledError
+from contextlib import AbstractContextManager, contextmanager
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -16,12 +18,8 @@ if TYPE_CHECKING:
 
 WINDOW = 1000  # runs that the scheduler knows of at a time: enough for hundreds of cores, and little memory
 TRIES = 3  # of a run whose process dies
-_PATIENCE = 60.0  # seconds for the first worker to join
-_CONFIG = {
-    "logging.distributed": "critical",  # what matters is told by rows
-    "distributed.dashboard.link": "http://{host}:{port}/status",
-    "distributed.comm.timeouts.connect": "10s",
-}
+_LOGS = "distributed", "distributed.client"
+_PATIENCE = 30.0  # seconds for the scheduler to answer, and for the first worker to join
 
 
 def require() -> None:
@@ -36,32 +34,33 @@ def require() -> None:
         ) from error
 
 
-@contextmanager
-def connected(address: str | None) -> "Iterator[Client]":
+def connected(address: str | None) -> "AbstractContextManager[Client]":
     """A client of the scheduler at an address, or of one for all cores of this machine.
 
     A MobiusFlowError says if there is no scheduler, or no worker.
     """
+    for name in _LOGS:
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # rows tell what goes wrong
+    return _own() if address is None else _joined(address)
+
+
+@contextmanager
+def _own() -> "Iterator[Client]":
+    """Threads of this process, since each has a child process: one per core, and a kill ends one run."""
     import dask
     from distributed import Client, LocalCluster
 
-    with dask.config.set(_CONFIG):
-        if address is not None:
-            with _joined(address) as client:
-                yield client
-            return
-        # threads, as each has a child process: a kill ends one run, and there is one process per core
-        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-        with (
-            LocalCluster(
-                n_workers=1, threads_per_worker=cores, processes=False, memory_limit=0, dashboard_address="127.0.0.1:0"
-            ) as cluster,
-            Client(cluster) as client,
-        ):
-            try:
-                yield client
-            finally:
-                sandbox.close_all()  # threads that wait for a child would keep the cluster
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    size = {"n_workers": 1, "threads_per_worker": cores, "memory_limit": 0}
+    with (
+        dask.config.set({"distributed.dashboard.link": "http://127.0.0.1:{port}/status"}),
+        LocalCluster(processes=False, dashboard_address="127.0.0.1:0", **size) as cluster,
+        Client(cluster) as client,
+    ):
+        try:
+            yield client
+        finally:
+            sandbox.close_all()  # threads that wait for a child would keep the cluster
 
 
 @contextmanager
@@ -69,7 +68,7 @@ def _joined(address: str) -> "Iterator[Client]":
     from distributed import Client
 
     try:
-        client = Client(address)
+        client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError) as error:
         raise MobiusFlowError(f"{address}: no Dask scheduler answers there") from error
     with client:
@@ -80,8 +79,8 @@ def _joined(address: str) -> "Iterator[Client]":
         yield client
 
 
-def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator[Row]:
-    """Do all runs, and give their rows as they come; a window of them at a time is on the cluster."""
+def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator[tuple[Job, Row]]:
+    """Do all runs, and give each with its row as they come; a window of them at a time is on the cluster."""
     from distributed import as_completed
 
     waiting, under_way = iter(jobs), dict[object, Job]()
@@ -94,14 +93,18 @@ def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator
 
     completed = as_completed(submitted(WINDOW))
     for future in completed:
-        yield _row(under_way.pop(future.key), future)
+        job = under_way.pop(future.key)
+        yield job, _row(job, future)
         completed.update(list(submitted(1)))
 
 
 def _row(job: Job, future: "Future[Row]") -> Row:
-    error = future.exception()
-    if error is None:
+    try:
         row: Row = future.result()
-        return row
-    tries = f"{TRIES} tries failed: " if isinstance(error, sandbox.ChildDiedError) else ""
-    return Row.failure(job, f"{tries}{error}")
+    except CancelledError as lost:
+        raise MobiusFlowError("the Dask scheduler is lost; give the same command again to go on") from lost
+    except sandbox.ChildDiedError as error:
+        return Row.failure(job, f"{TRIES} tries failed: {error}")
+    except Exception as error:  # of the cluster: workers that die, or lack the program
+        return Row.failure(job, str(error))
+    return row

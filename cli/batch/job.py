@@ -52,6 +52,9 @@ class Job:
     extrapolate: bool
     version: str = __version__
 
+    def __hash__(self) -> int:
+        return hash(self.folder)
+
     @property
     def recipe(self) -> dict[str, object]:
         """All that the results depend on, as JSON has it: runs of equal recipes need not be repeated."""

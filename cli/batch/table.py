@@ -3,7 +3,7 @@
 import csv
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import get_args, get_type_hints
@@ -92,7 +92,7 @@ class Row:
 class Table:
     """Rows in order of name and start."""
 
-    def __init__(self, rows: Sequence[Row]) -> None:
+    def __init__(self, rows: Iterable[Row]) -> None:
         self.rows = sorted(rows, key=lambda row: (row.name, row.start))
 
     def summary(self) -> str:

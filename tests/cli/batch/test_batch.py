@@ -1,0 +1,268 @@
+"""Batches: a row and a folder for each run, whatever becomes of the others."""
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.cli.batch import cluster, sandbox
+from mobius_flow.cli.batch.job import Job
+from mobius_flow.cli.batch.progress import Progress
+from mobius_flow.cli.batch.table import Row
+from mobius_flow.core import read_curve, write_curve
+from mobius_flow.core.knots import knot
+from mobius_flow.core.verify import verify
+from shapes import regular_polygon, torus_trefoil
+
+Rows = list[dict[str, str]]
+Batch = Callable[..., Rows]
+TINY = ("--vertices", 40, "--max-iterations", 3)
+
+
+@pytest.fixture
+def ring(tmp_path: Path) -> Path:
+    path = tmp_path / "ring.txt"
+    write_curve(path, regular_polygon(12))
+    return path
+
+
+def pick(rows: Rows, *columns: str) -> list[tuple[str, ...]]:
+    return [tuple(row[name] for name in columns) for row in rows]
+
+
+def test_rows_and_folders(batch: Batch, ring: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_curve(tmp_path / "knot.obj", torus_trefoil(30))
+    rows = batch(ring, tmp_path / "knot.obj", "L2a1", "--starts", 2, "--seed", 5, "--max-iterations", 3)
+    captured = capsys.readouterr()
+    assert captured.out == "6 runs: 6 iteration limit\n"
+    assert captured.err == ""
+    assert pick(rows, "name", "start", "seed") == [
+        (name, start, seed) for name in ("L2a1", "knot", "ring") for start, seed in (("1", ""), ("2", "7"))
+    ]
+    assert pick(rows, "type_before", "type_after") == [("", "")] * 2 + [("3_1", "3_1")] * 2 + [("0_1", "0_1")] * 2
+    assert {(row["certified"], row["verified"]) for row in rows} == {("True", "True")}
+    assert {row["options"] for row in rows} == {'{"max_iterations": 3}'}
+    for row in rows:
+        folder = tmp_path / "out" / (row["name"] + ("" if row["start"] == "1" else "-2"))
+        report = json.loads((folder / "report.json").read_text())
+        assert report["final_energy"] == float(row["energy"])
+        assert report["blas_threads"] == 1
+        assert len(read_curve(folder / "curve.txt")) == int(row["vertices"])
+        assert verify(folder / "trajectory.npz").accepted
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        *("L2a1", "L2a1-2", "knot", "knot-2", "ring", "ring-2", "results.csv", "results.parquet")
+    }
+
+
+def test_the_first_start_is_the_input_and_others_are_scrambled(batch: Batch, ring: Path, tmp_path: Path) -> None:
+    batch(ring, "--starts", 3, "--vertices", 12, "--max-iterations", 0)
+    given, *starts = (read_curve(tmp_path / f"out/{name}/curve.txt").vertices for name in ("ring", "ring-2", "ring-3"))
+    assert np.array_equal(given, read_curve(ring).vertices)
+    assert all(np.abs(start - given).max() > 0.1 for start in starts)
+    assert not np.array_equal(*starts)
+
+
+def test_parquet_holds_the_same(batch: Batch, ring: Path, tmp_path: Path) -> None:
+    (tmp_path / "empty.txt").touch()
+    rows = batch(ring, tmp_path / "empty.txt", *TINY)
+    parquet = pytest.importorskip("pyarrow.parquet")
+    table = parquet.read_table(tmp_path / "out/results.parquet")
+    assert {name: str(table.schema.field(name).type) for name in ("name", "start", "energy", "index", "certified")} == {
+        "name": "string",
+        "start": "int64",
+        "energy": "double",
+        "index": "int64",
+        "certified": "bool",
+    }
+    as_text = [{key: "" if value is None else str(value) for key, value in row.items()} for row in table.to_pylist()]
+    assert as_text == rows
+
+
+def test_extrapolated_energy_and_index(batch: Batch, tmp_path: Path) -> None:
+    (row,) = batch("3_1", "--vertices", 90, "--extrapolate", "--stability")
+    report = json.loads((tmp_path / "out/3_1/report.json").read_text())
+    assert row["index"] == str(report["negative_eigenvalues"])
+    assert abs(float(row["extrapolated_energy"]) - 74.41204) < float(row["extrapolated_energy_error"]) < 1e-3
+
+
+def test_what_is_finished_is_not_repeated(
+    batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[tuple[str, int]] = []
+    run = cluster.rows
+
+    def spied(client: Any, jobs: list[Job], limit: float | None) -> Any:
+        done.extend((job.name, job.start) for job in jobs)
+        return run(client, jobs, limit)
+
+    monkeypatch.setattr(cluster, "rows", spied)
+
+    def again(*words: object) -> tuple[list[tuple[str, int]], Rows]:
+        done.clear()
+        rows = batch(ring, tmp_path / "bad.txt", "--starts", 2, *words)
+        return sorted(done), rows
+
+    (tmp_path / "bad.txt").write_text("0 0 0\n1 x 0\n")
+    everything = [("bad", 1), ("bad", 2), ("ring", 1), ("ring", 2)]
+    first = again(*TINY)
+    assert first[0] == everything
+    assert again(*TINY) == (everything[:2], first[1])  # what failed is tried again
+    write_curve(tmp_path / "bad.txt", regular_polygon(9))
+    assert again(*TINY)[0] == everything[:2]
+    assert again(*TINY)[0] == []
+    assert again(*TINY, "--time-limit", 1000)[0] == []
+    assert again(*TINY, "--seed", 1)[0] == [("bad", 2), ("ring", 2)]
+    assert again(*TINY, "--seed", 1, "--tolerance", "1e-3")[0] == everything
+    write_curve(ring, regular_polygon(13))
+    assert again(*TINY, "--seed", 1, "--tolerance", "1e-3")[0] == everything[2:]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names")
+def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path) -> None:
+    poison = tmp_path / "poison"
+    poison.mkdir()
+    os.mkfifo(poison / "pipe.txt")
+    (poison / "broken.obj").symlink_to("nowhere")
+    for name, text in {
+        "cross.txt": "0 0 0\n1 0 0\n1 1 0\n0.5 -1 0\n",
+        "empty.txt": "",
+        "huge.vect": "VECT\n1 1000000000 1\n-1000000000\n1\n0 0 0\n",
+        "nan.xyz": "0 0 0\n1 nan 0\n1 1 0\n",
+        "two\nlines.json": "{}",
+    }.items():
+        (poison / name).write_text(text)
+    rows = batch(poison, ring, "--starts", 2, *TINY)
+    told = {row["name"]: row["message"] for row in rows if row["status"] == "failed"}
+    assert len(rows) == 16
+    assert [row["name"] for row in rows if row["status"] != "failed"] == ["ring", "ring"]
+    for name, reason in {
+        "pipe": "no regular file",
+        "broken": "missing",
+        "cross": "edges 1 and 3 touch",
+        "empty": "empty",
+        "huge": "3000000000 coordinates announced",
+        "nan": "line 2",
+        "two\nlines": r"two\nlines.json",
+    }.items():
+        assert reason in told[name]
+        assert "\n" not in told[name]
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        *("ring", "ring-2", "results.csv", "results.parquet")
+    }
+
+
+def test_the_time_limit(batch: Batch, ring: Path, tmp_path: Path) -> None:
+    assert pick(batch("7_7", "--time-limit", 0.05), "status", "message") == [
+        ("failed", "stopped at the time limit, 0.05 s")
+    ]
+    assert pick(batch(ring, *TINY), "status") != [("failed",)]  # in a new process
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"ring", "results.csv", "results.parquet"}
+
+
+@pytest.mark.parametrize("deaths", [2, 3])
+def test_a_killed_run_is_tried_again(
+    deaths: int, batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+    answer = sandbox.Sandbox._answer
+
+    def killed(box: sandbox.Sandbox, line: str = "") -> str:
+        if line:
+            asked.append(line)
+            if len(asked) <= deaths:
+                box._process.kill()
+        return answer(box, line)
+
+    monkeypatch.setattr(sandbox.Sandbox, "_answer", killed)
+    (row,) = batch(ring, *TINY)
+    assert len(asked) == 3
+    assert (row["status"] == "failed") == (deaths == 3)
+    assert ("3 tries failed: its process was killed by SIGKILL" in row["message"]) == (deaths == 3)
+    assert (tmp_path / "out/ring").is_dir() == (deaths < 3)
+
+
+def test_an_interrupt_leaves_the_table(
+    batch: Batch, ring: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(Progress, "show", lambda *_: os.kill(os.getpid(), signal.SIGINT))
+    rows = batch(ring, "3_1..8_21", *TINY, status=130)
+    assert len(rows) == 1
+    assert rows[0]["status"] != "failed"
+    assert capsys.readouterr().err == "mobius-flow: interrupted\n"
+
+
+def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "WINDOW", 3)
+    monkeypatch.setattr(sandbox, "run", lambda job, _limit: Row.failure(job, "as asked for"))
+    jobs = [Job(f"{k}", 1, None, None, None, f"{tmp_path}/{k}", {}, False) for k in range(20)]
+    with cluster.connected(scheduler) as client:
+        submit, submitted = client.submit, []
+        monkeypatch.setattr(client, "submit", lambda *words, **more: submitted.append(1) or submit(*words, **more))
+        for done, (job, row) in enumerate(cluster.rows(client, jobs, None), 1):
+            assert (row.name, row.message) == (job.name, "as asked for")
+            assert len(submitted) <= done + 3
+    assert done == 20 == len(submitted)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["3_1", "--starts", "0"], "starts is 0; it must be 1 or more"),
+        (["3_1", "--seed", "-1"], "seed is -1; it must be 0 or more"),
+        (["3_1", "--time-limit", "0"], "time-limit is 0.0; it must be"),
+        (["3_1", "--time-limit", "inf"], "time-limit is inf; it must be"),
+        (["3_1", "--vertices", "2"], "vertices is 2"),
+        (["none.txt"], "none.txt: there is no such file"),
+        (["3_1", "--scheduler", "tcp://127.0.0.1:9"], "tcp://127.0.0.1:9: no Dask scheduler answers there"),
+        (["3_1", "--scheduler", "nonsense"], "nonsense: no Dask scheduler answers there"),
+    ],
+)
+def test_one_sentence(
+    words: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
+    monkeypatch.chdir(tmp_path)
+    assert main(["batch", *words, "-o", "out"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("mobius-flow: ")
+    assert told in said
+    assert said.count("\n") == 1
+
+
+def test_other_people_s_folders_are_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "out/3_1").mkdir(parents=True)
+    assert main(["batch", "3_1", "-o", str(tmp_path / "out")]) == 2
+    assert "holds no results" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.rglob("*")] == ["out", "3_1"]
+
+
+@pytest.mark.parametrize("library", ["distributed", "pyarrow"])
+def test_a_missing_library_is_named(
+    library: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, library, None)
+    assert main(["batch", "3_1", "-o", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert library in said
+    assert '".[cluster]"' in said
+
+
+def test_workers_of_another_version_are_refused(ring: Path, tmp_path: Path) -> None:
+    from mobius_flow.cli.batch.single import relaxed
+
+    row = relaxed(Job("ring", 1, None, str(ring), None, str(tmp_path / "out"), {}, False, version="0.0"))
+    assert row.failed
+    assert "and 0.0 is wanted" in row.message
+
+
+def test_knot_inputs_are_what_the_command_knot_makes(batch: Batch, tmp_path: Path) -> None:
+    start = knot("4_1")
+    batch("4_1", "--vertices", len(start), "--max-iterations", 0)
+    assert np.array_equal(read_curve(tmp_path / "out/4_1/curve.txt").vertices, start.vertices)

@@ -1,0 +1,125 @@
+"""Batches on clusters: the default one, and one whose processes are started by hand."""
+
+import csv
+import socket
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.core import write_curve
+from processes import finished, running
+from shapes import regular_polygon
+
+distributed = pytest.importorskip("distributed")
+PATIENCE = 300.0  # seconds
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    with (path / "results.csv").open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture
+def rings(tmp_path: Path) -> Path:
+    place = tmp_path / "in"
+    place.mkdir()
+    for k in range(8):
+        write_curve(place / f"ring{k}.txt", regular_polygon(8 + k))
+    return place
+
+
+def test_this_machine_s_cores_with_one_blas_thread_each(
+    rings: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
+    assert main(["batch", str(rings), "-o", str(tmp_path / "out"), "--max-iterations", "1", "--vertices", "20"]) == 0
+    assert capfd.readouterr() == ("8 runs: 8 iteration limit\n", "")
+    assert len(table(tmp_path / "out")) == 8
+    assert '"blas_threads": 1,' in (tmp_path / "out/ring3/report.json").read_text()
+
+
+def command(program: str, *words: str) -> list[str]:
+    """A program of Dask, without its dashboard."""
+    return [sys.executable, "-m", "distributed.cli." + program, *words, "--no-dashboard"]
+
+
+@pytest.fixture
+def port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return int(free.getsockname()[1])
+
+
+@pytest.fixture
+def workers(port: int, tmp_path: Path) -> Iterator[list[object]]:
+    """The processes of two workers, and of their scheduler."""
+    address, one = f"tcp://127.0.0.1:{port}", ("--nthreads", "1", "--no-nanny", "--local-directory", str(tmp_path))
+    with ExitStack() as stack:
+        commands = (
+            command("dask_scheduler", "--host", "127.0.0.1", "--port", str(port)),
+            *([command("dask_worker", address, *one)] * 2),
+        )
+        yield [stack.enter_context(running(each)) for each in commands]
+
+
+def wait_for_one(out: Path) -> None:
+    """Until there are the results of a run."""
+    until = time.monotonic() + PATIENCE
+    while not any(out.glob("ring*/")) and time.monotonic() < until:
+        time.sleep(0.02)
+
+
+def test_a_worker_that_is_killed_costs_no_row(workers: list, port: int, rings: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
+    with running([sys.executable, "-m", "mobius_flow", *words, "--vertices", "60", "--tolerance", "1e-9"]) as process:
+        wait_for_one(out)
+        workers[1].kill()
+        said, complained = process.communicate()
+    assert process.returncode == 0
+    assert said.startswith("8 runs: ")
+    assert "failed" not in said
+    assert complained == ""
+    assert [row["name"] for row in table(out)] == [f"ring{k}" for k in range(8)]
+    assert {path.name for path in out.iterdir()} == {*(f"ring{k}" for k in range(8)), "results.csv", "results.parquet"}
+
+
+def test_a_lost_scheduler_leaves_the_table(workers: list, port: int, rings: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ["batch", str(rings), "7_1..8_21", "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
+    with running([sys.executable, "-m", "mobius_flow", *words, "--max-iterations", "3"]) as process:
+        wait_for_one(out)
+        workers[0].kill()
+        said = process.communicate()
+    assert said[0] == ""
+    assert said[1].startswith("mobius-flow: the Dask scheduler is lost")
+    assert process.returncode == 2
+    assert table(out)
+
+
+ORPHAN = """
+import os, sys
+from mobius_flow.cli.batch.sandbox import Sandbox
+print(Sandbox()._process.pid, flush=True)
+os._exit(0)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes")
+def test_children_end_with_their_parent() -> None:
+    pid = finished([sys.executable, "-c", ORPHAN]).stdout.strip()
+    until = time.monotonic() + PATIENCE
+    while (left := _runs(pid)) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert not left
+
+
+def _runs(pid: str) -> bool:
+    try:
+        return " Z " not in Path(f"/proc/{pid}/stat").read_text()
+    except OSError:
+        return False

@@ -1,0 +1,82 @@
+"""Words of the command line, and the runs they stand for."""
+
+import os
+from pathlib import Path
+
+import pytest
+from mobius_flow.cli.batch.inputs import Input, inputs
+from mobius_flow.cli.batch.job import jobs
+from mobius_flow.core import MobiusFlowError, RelaxOptions
+
+
+@pytest.fixture(autouse=True)
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("b.txt", "a.obj", "notes.md", "more/c.txt", "empty/notes.md"):
+        Path(name).parent.mkdir(exist_ok=True)
+        Path(name).write_text("0 0 0\n")
+
+
+def names(*words: str) -> list[str]:
+    return [each.name for each in inputs(words)]
+
+
+def test_files_directories_and_patterns() -> None:
+    assert names("b.txt") == ["b"]
+    assert names(".") == ["a", "b"]
+    assert names("more", "*.obj") == ["c", "a"]
+    assert names("**/*.txt") == ["b", "c"]
+    assert inputs(["b.txt"]) == [Input("b", Path("b.txt").absolute())]
+
+
+def test_knots_and_ranges_in_the_table_s_order() -> None:
+    assert names("3_1..6_1") == ["3_1", "4_1", "5_1", "5_2", "6_1"]
+    assert names("8_21..9_2") == ["8_21", "9_1", "9_2"]
+    assert names("trefoil..4_1") == ["3_1", "4_1"]
+    assert names("T(3,5)", "goeritz", "3_1#m3_1", "hopf") == ["T(3,5)", "goeritz", "3_1#m3_1", "hopf"]
+
+
+def test_nothing_comes_twice() -> None:
+    assert names("a.obj", ".", "*.txt", "3_1", "3_1..4_1") == ["a", "b", "3_1", "4_1"]
+
+
+def test_a_file_comes_before_a_knot() -> None:
+    Path("3_1").write_text("0 0 0\n")
+    assert inputs(["3_1"])[0].file is not None
+
+
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        ("none.txt", "none.txt: there is no such file"),
+        ("no/file", "there is no such file"),
+        ("*.vect", "matches no file"),
+        ("empty", "holds no curve files"),
+        ("3_l", "did you mean 3_1"),
+        ("4_1..3_1", "3_1 comes before 4_1 in the table"),
+        ("3_1..m4_1", "no mirror images"),
+        ("3_1..T(2,9)", "none of the table"),
+        ("..", "holds no curve files"),
+    ],
+)
+def test_words_that_name_nothing(word: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "empty/empty").mkdir()
+    if word == "..":
+        monkeypatch.chdir(tmp_path / "empty/empty")
+    with pytest.raises(MobiusFlowError, match=told):
+        inputs([word])
+
+
+def test_starts_have_folders_and_seeds(tmp_path: Path) -> None:
+    made = jobs(inputs(["3_1", "b.txt"]), 3, 10, tmp_path, RelaxOptions(), False)
+    assert [(job.name, job.start, job.seed) for job in made[:3]] == [("3_1", 1, None), ("3_1", 2, 12), ("3_1", 3, 13)]
+    assert [os.path.basename(job.folder) for job in made] == ["3_1", "3_1-2", "3_1-3", "b", "b-2", "b-3"]
+    assert all(job.sha256 is None for job in made[:3])
+    assert len({job.sha256 for job in made[3:]}) == 1
+
+
+@pytest.mark.parametrize("other", ["more/b.txt", "B.obj", "results.csv.txt", "b-2.txt"])
+def test_results_do_not_share_a_folder(other: str, tmp_path: Path) -> None:
+    Path(other).write_text("0 0 0\n")
+    with pytest.raises(MobiusFlowError, match="rename it"):
+        jobs(inputs(["b.txt", other]), 2, 0, tmp_path, RelaxOptions(), False)
