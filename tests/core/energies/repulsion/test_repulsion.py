@@ -36,9 +36,9 @@ def direction_for(curve: Curve) -> np.ndarray:
 CASES = {
     "in a ball": (BALL, wavy(24)),
     "near a ball": (BALL, wavy(24, 0.9)),
-    "far from a ball": (BALL, Curve(wavy(24).vertices + [50.0, 0, 0])),
+    "far from a ball": (BALL, Curve(wavy(24).vertices + np.array([50.0, 0, 0]))),
     "by a frame": (FRAME, wavy(24)),
-    "far from a frame": (FRAME, Curve(wavy(24).vertices - [50.0, 0, 0])),
+    "far from a frame": (FRAME, Curve(wavy(24).vertices - np.array([50.0, 0, 0]))),
 }
 CASE = pytest.mark.parametrize(("obstacle", "curve"), CASES.values(), ids=CASES)
 
