@@ -22,7 +22,7 @@ from .integrals import Forces, Integrals
 from .panels import Edges
 from .schedule import Schedule
 
-THETA = 0.4  # errors of some 10⁻⁴ of the potential and 10⁻³ of its gradient
+THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
 KEPT = 0.9  # slack up to which a schedule is as good as a new one
 OUTDATED = 0.75  # slack from which on it is not even good enough for a line search
 

@@ -1,0 +1,118 @@
+"""Clusters: their moments, the exactness of the lists, and how far clusters are from their simplices."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve
+from mobius_flow.core.energies.repulsion.clusters import Clusters
+from mobius_flow.core.energies.repulsion.repulsion import THETA
+from mobius_flow.core.energies.repulsion.schedule import Schedule
+from mobius_flow.core.obstacle import Obstacle
+from mobius_flow.core.taylor import taylor_slope
+from repulsion_references import quartered, repulsion, soup, sphere, wavy
+
+
+def wires(seed: int, count: int) -> Obstacle:
+    """Segments all over the surroundings of the unit ball."""
+    rng = np.random.default_rng(seed)
+    places = rng.normal(size=(count, 1, 3))
+    places *= 1.5 / np.linalg.norm(places, axis=2, keepdims=True)
+    return soup(places + 0.1 * rng.normal(size=(count, 2, 3)))
+
+
+OBSTACLES = {"sphere": sphere(4), "wires": wires(2, 900)}
+OBSTACLE = pytest.mark.parametrize("obstacle", OBSTACLES.values(), ids=OBSTACLES)
+
+
+@OBSTACLE
+def test_clusters_are_ranges_of_all_their_leaves(obstacle: Obstacle) -> None:
+    clusters = repulsion(obstacle).clusters
+    leaves = np.flatnonzero(clusters.child == 0)
+    assert np.array_equal(np.sort(clusters.simplex[leaves]), np.arange(len(obstacle.faces)))
+    assert clusters.size[0] == pytest.approx(clusters.simplices.sizes.sum())
+    corners = {tuple(each) for each in np.sort(obstacle.corners.reshape(len(obstacle.faces), -1), axis=1)}
+    sorted_corners = clusters.simplices.corners.transpose(2, 0, 1).reshape(len(obstacle.faces), -1)
+    assert corners == {tuple(each) for each in np.sort(sorted_corners, axis=1)}
+
+
+@OBSTACLE
+def test_moments_against_many_points(obstacle: Obstacle) -> None:
+    """Moments of degree two are exact by the midpoints of sides (Simpson's rule for segments)."""
+    clusters = repulsion(obstacle).clusters
+    corners, sizes = clusters.simplices.corners, clusters.simplices.sizes
+    if len(corners) == 3:
+        points, weights = 0.5 * (corners + np.roll(corners, 1, axis=0)), np.full(3, 1 / 3)
+    else:
+        points, weights = np.array([corners[0], corners.mean(axis=0), corners[1]]), np.array([1, 4, 1]) / 6
+    mass = weights[:, None] * sizes
+    centre = np.einsum("qf,qif->i", mass, points) / sizes.sum()
+    np.testing.assert_allclose(clusters.centre[:, 0], centre, atol=1e-13)
+    away = points - centre[:, None]
+    moments = np.einsum("qf,qif,qjf->ij", mass, away, away)
+    np.testing.assert_allclose(clusters.spread[:, 0], moments[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]], atol=1e-11)
+
+
+@OBSTACLE
+def test_balls_hold_their_clusters(obstacle: Obstacle) -> None:
+    clusters = repulsion(obstacle).clusters
+    for index in (0, 1, 2, 10, 100, 1000):
+        members, queue = [], [index]
+        while queue:
+            child = clusters.child[queue[0]]
+            members += [] if child else [clusters.simplex[queue[0]]]
+            queue = queue[1:] + ([child, child + 1] if child else [])
+        away = clusters.simplices.corners[:, :, members] - clusters.centre[:, index, None]
+        assert np.linalg.norm(away, axis=1).max() == pytest.approx(clusters.radius[index], rel=1e-12)
+
+
+@OBSTACLE
+@pytest.mark.parametrize("curve", [wavy(50), wavy(50, 0.98), wavy(7, 1.3)], ids=["inside", "near", "long edges"])
+def test_every_simplex_is_seen_once(obstacle: Obstacle, curve: Curve) -> None:
+    """With the kernel 1 the sum over an edge's panels is the size of the whole obstacle."""
+    clusters = repulsion(obstacle).clusters
+    schedule = Schedule.of(curve, clusters, THETA)
+    total = np.zeros(len(curve))
+    for groups, sizes in ((schedule.single, clusters.simplices.sizes), (schedule.clustered, clusters.size)):
+        for _, panels in groups:
+            total += np.bincount(panels.edge, panels.width * sizes[panels.source], len(curve))
+    np.testing.assert_allclose(total, clusters.size[0], rtol=1e-12)
+
+
+@OBSTACLE
+@pytest.mark.parametrize("radius", [0.3, 0.7, 0.95])
+def test_error_of_clusters(obstacle: Obstacle, radius: float) -> None:
+    curve = wavy(60, radius)
+    exact, derivative = repulsion(obstacle).value_and_derivative(curve)
+    value, found = repulsion(obstacle, THETA).value_and_derivative(curve)
+    assert value == pytest.approx(exact, rel=6e-4)
+    assert np.linalg.norm(found - derivative) <= 1e-3 * np.linalg.norm(derivative)
+
+
+def test_most_of_a_fine_mesh_is_seen_in_clusters() -> None:
+    curve, counts = wavy(20, 0.6), []
+    for subdivisions in (3, 4, 5):
+        schedule = Schedule.of(curve, repulsion(sphere(subdivisions)).clusters, THETA)
+        counts.append(sum(len(panels) for _, panels in (*schedule.single, *schedule.clustered)))
+    assert counts[2] < 1.2 * counts[1]
+
+
+@pytest.mark.parametrize("corners", [3, 2], ids=["triangles", "segments"])
+def test_far_clusters(corners: int) -> None:
+    """Of a symmetric cluster moments of the fourth order are the first to be missed, and those of the gradient too."""
+    half = 0.3 * np.random.default_rng(4).normal(size=(20, 3, 3))
+    simplices = np.concatenate([half, -half])[:, :corners]
+    clusters = Clusters.of(simplices.transpose(1, 2, 0))
+    x = np.array([4.0, -3.0, 5.0])[:, None, None] * 2.0 ** np.arange(4)
+    near = clusters.simplices.potential(np.arange(40), np.broadcast_to(x, (3, 40, 4)))
+    far, root = clusters.potential(np.array([0]), x), np.array([0])
+    errors = np.abs(far.value[0] / near.value.sum(axis=0) - 1)
+    assert np.all(errors[1:] < errors[:-1] / 14)
+    v = np.broadcast_to(np.array([1.0, 2.0, -1.0])[:, None, None], x.shape)
+    terms = [far.gradient, clusters.change(root, x, v).gradient]
+    slope = taylor_slope(lambda t: clusters.potential(root, x + t * v).gradient, terms)
+    assert slope == pytest.approx(2, abs=0.02)
+
+
+def test_quartered_triangles_are_the_same_surface() -> None:
+    coarse, curve = sphere(2), wavy(30, 0.8)
+    fine = soup(quartered(coarse.corners))
+    assert repulsion(fine).value(curve) == pytest.approx(repulsion(coarse).value(curve), rel=1e-8)
