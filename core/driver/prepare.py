@@ -63,7 +63,7 @@ def prepared_start(curve: Curve, vertices: int | None, each: Sequence[RelaxOptio
     return refined
 
 
-def check_refined(curve: Curve, refined: Curve, obstacles: tuple[Obstacle, ...]) -> None:
+def check_refined(curve: Curve, refined: Curve, obstacles: Sequence[Obstacle]) -> None:
     """Refuse a refined curve that is not what the curve was, or that cannot be computed with.
 
     Raises
