@@ -120,7 +120,7 @@ def _search(
             f"start and end have shapes {start.shape} and {end.shape}; "
             f"both must be ({mesh.size}, 2) or ({mesh.size}, 3)"
         )
-    if obstacles and start.shape[1] != 3:
+    if obstacles and start.shape == (mesh.size, 2):
         raise ValueError(f"start and end have shapes {start.shape}, but obstacles are in space")
     size = np.maximum(np.abs(start).max(), np.abs(end).max())
     if not np.isfinite(size):  # NumPy's maximum, unlike Python's, is NaN if one is
