@@ -1,6 +1,6 @@
 """How near a curve is to obstacles: those that it touches, pierces, or comes too near to are refused."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from .planes import Separation, relative_motion
 from .still import still_triangles
 
 
-def check_clear(curve: Curve, obstacles: tuple[Obstacle, ...]) -> None:
+def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
     """Refuse a curve that touches obstacles or comes too near to them to compute with; inside a closed one it may be.
 
     Raises
@@ -42,15 +42,15 @@ def check_clear(curve: Curve, obstacles: tuple[Obstacle, ...]) -> None:
         raise CurveError(reason, at_edges(curve, (edge,), where))
 
 
-def clears(curve: Curve, obstacles: tuple[Obstacle, ...], distance: float) -> bool:
+def clears(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> bool:
     """Whether a curve that is clear of obstacles certainly is further from them than a distance."""
     return not obstacles or next(_near(curve, obstacles, distance), None) is None
 
 
-def _near(curve: Curve, obstacles: tuple[Obstacle, ...], distance: float) -> Iterator[tuple[int, FloatArray, Obstacle]]:
+def _near(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> Iterator[tuple[int, FloatArray, Obstacle]]:
     """Edges and obstacles not certainly further apart than a distance, with the pairs' vertices, shape (5, 3)."""
     exponent = int(np.frexp(max(np.abs(curve.vertices).max(), *(each.size for each in obstacles)))[1])
-    still = still_triangles(obstacles, exponent)
+    still = still_triangles(tuple(obstacles), exponent)
     given = np.concatenate([curve.vertices, still.vertices])
     points, radius = np.ldexp(given.T, -exponent, order="C"), float(np.ldexp(distance, -exponent))
     own = points[:, : len(curve)]

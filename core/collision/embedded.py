@@ -115,7 +115,7 @@ def meeting_point(corners: FloatArray) -> FloatArray:
     x0, x1, y0, y1 = corners
     x = x0 + np.linspace(0.0, 1.0, 257)[:, None] * (x1 - x0)
     f = y1 - y0
-    r = ((x - y0) @ f / (f @ f)).clip(0.0, 1.0)
+    r = ((x - y0) @ f / max(f @ f, np.finfo(np.float64).tiny)).clip(0.0, 1.0)
     return np.asarray(x[np.linalg.norm(x - y0 - r[:, None] * f, axis=1).argmin()])
 
 

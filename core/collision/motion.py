@@ -1,6 +1,6 @@
 """How far all vertices can move along straight lines before two edges meet, or an edge and an obstacle."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
@@ -84,7 +84,7 @@ class FreeMotion:
         return self.limit is Limit.NONE
 
 
-def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: tuple[Obstacle, ...] = ()) -> FreeMotion:
+def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = ()) -> FreeMotion:
     """Prove as much as possible of the motion (1−t) start + t end, t in [0, 1], free of contact.
 
     Neighbour edges are not tested: when they fold onto each other, one of them meets the edge after the other. In
@@ -107,23 +107,25 @@ def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: tuple
     return _search(mesh, start, end, obstacles, exhaustive=True)
 
 
-def is_free(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: tuple[Obstacle, ...] = ()) -> bool:
+def is_free(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = ()) -> bool:
     """Whether the motion from ``start`` to ``end``, shape (n, m), is proved free of contact; see `free_motion`."""
     return _search(mesh, start, end, obstacles, exhaustive=False).limit is Limit.NONE
 
 
 def _search(
-    mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: tuple[Obstacle, ...], *, exhaustive: bool
+    mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle], *, exhaustive: bool
 ) -> FreeMotion:
     if start.shape != end.shape or start.shape not in ((mesh.size, 2), (mesh.size, 3)):
         raise ValueError(
             f"start and end have shapes {start.shape} and {end.shape}; "
             f"both must be ({mesh.size}, 2) or ({mesh.size}, 3)"
         )
+    if obstacles and start.shape == (mesh.size, 2):
+        raise ValueError(f"start and end have shapes {start.shape}, but obstacles are in space")
     size = np.maximum(np.abs(start).max(), np.abs(end).max())
     if not np.isfinite(size):  # NumPy's maximum, unlike Python's, is NaN if one is
         return FreeMotion(0.0, None, Limit.NOT_FINITE)
-    search = _Search(mesh, (start, end), obstacles, max([size, *(each.size for each in obstacles)]))
+    search = _Search(mesh, (start, end), tuple(obstacles), max([size, *(each.size for each in obstacles)]))
     for candidates in search.batches():
         search.take(candidates)
         if search.met is not None and not exhaustive:

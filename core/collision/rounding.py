@@ -1,5 +1,7 @@
 """Vertices inserted on edges are rounded: whether the curve is still what it was."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..curve import Curve
@@ -13,7 +15,7 @@ from .gap import minimal_gap
 UNITS = 2.5
 
 
-def survives_rounding(curve: Curve, obstacles: tuple[Obstacle, ...] = ()) -> bool:
+def survives_rounding(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> bool:
     """Whether vertices that lie on edges but for rounding can move onto these without any contact.
 
     Then the curve with them and the curve without them are isotopic: no point moves by more than r, the rounding, and

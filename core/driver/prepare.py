@@ -81,7 +81,7 @@ def pins_of(curve: Curve, refined: Curve, options: RelaxOptions) -> Pins:
     return pins.with_neighbours(refined) if options.pin_tangents else pins
 
 
-def check_refined(curve: Curve, refined: Curve, obstacles: tuple[Obstacle, ...]) -> None:
+def check_refined(curve: Curve, refined: Curve, obstacles: Sequence[Obstacle]) -> None:
     """Refuse a refined curve that is not what the curve was, or that cannot be computed with.
 
     Raises

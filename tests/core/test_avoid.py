@@ -1,0 +1,110 @@
+"""Relaxations among obstacles: whatever the method and the mesh, no motion touches one, and the verifier agrees."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import (
+    METHODS,
+    Curve,
+    CurveError,
+    Obstacle,
+    OptionError,
+    RelaxOptions,
+    Trajectory,
+    minimize,
+    relax,
+)
+from mobius_flow.core.knots import knot, scramble
+from mobius_flow.core.verify import verify
+from shapes import regular_polygon, torus_trefoil
+from solids import box, plate, rod
+
+NEAR = (plate(0.95, name="ceiling"), plate(-0.95, name="floor"))  # a relaxed trefoil would rise through them
+
+
+def verified(curve, options, tmp_path):
+    """The result of a run whose trajectory is accepted, with the obstacles of the options."""
+    trajectory = Trajectory(obstacles=options.avoid)
+    result = minimize(curve, options, trajectory.add)
+    trajectory.save(tmp_path / "T.npz")
+    verdict = verify(tmp_path / "T.npz")
+    assert verdict.accepted, str(verdict)
+    assert verdict.obstacles == len(options.avoid) == result.report()["obstacles"]
+    assert result.certified
+    return result
+
+
+def flat_trefoil(n=60):
+    curve = torus_trefoil(n)
+    return curve.with_vertices(curve.vertices * [1.0, 1.0, 0.9])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_no_method_goes_through_a_wall(method, tmp_path):
+    options = RelaxOptions(method=method, max_iterations=6, vertices=60, mesh="fixed", avoid=NEAR)
+    result = verified(flat_trefoil(), options, tmp_path)
+    assert np.abs(result.curve.vertices[:, 2]).max() < 0.95
+
+
+def test_without_the_wall_it_goes_there():
+    """The test above is about something."""
+    result = minimize(flat_trefoil(), RelaxOptions(max_iterations=6, vertices=60, mesh="fixed"))
+    assert np.abs(result.curve.vertices[:, 2]).max() > 1.0
+    assert result.report()["obstacles"] == 0
+
+
+@pytest.mark.parametrize("more", [{"mesh": "adaptive"}, {"mesh": "finer"}, {"balance": True}, {"escape_saddles": True}])
+def test_changes_of_mesh_and_shape_stay_clear(more, tmp_path):
+    curve = scramble(knot("3_1", vertices=60), seed=3, moves=300)
+    low, high = float(curve.vertices.min()), float(curve.vertices.max())
+    container = box(low - 0.02 * (high - low), high + 0.02 * (high - low))
+    verified(curve, RelaxOptions(max_iterations=40, avoid=[container], **more), tmp_path)
+
+
+def test_a_coarse_start_stays_clear(tmp_path):
+    curve = torus_trefoil(1600)
+    options = RelaxOptions(max_iterations=40, avoid=(rod(0.0, 0.0), plate(1.3), box(9.0, 10.0)))
+    result = verified(curve, options, tmp_path)
+    assert len(result.curve) >= 1600
+
+
+def test_links_that_drift_apart_stay_clear(tmp_path):
+    rings = [regular_polygon(30).vertices + np.array([2.1 * k, 0.0, 0.1 * k]) for k in range(2)]
+    options = RelaxOptions(max_iterations=60, avoid=(rod(-1.2, 0.0), rod(3.4, 0.0)))
+    verified(Curve.from_components(rings), options, tmp_path)
+
+
+def test_a_curve_stays_on_its_side_of_a_rod(tmp_path):
+    """A circle around a rod winds around it once in the end, as in the beginning."""
+    curve = regular_polygon(60).with_vertices(regular_polygon(60).vertices * [3.0, 0.5, 1.0] + [2.5, 0.0, 0.0])
+    result = verified(curve, RelaxOptions(max_iterations=60, vertices=60, avoid=(rod(0.0, 0.0),)), tmp_path)
+    x, y, _ = result.curve.vertices.T
+    angles = np.unwrap(np.arctan2(np.append(y, y[0]), np.append(x, x[0])))
+    assert angles[-1] - angles[0] == pytest.approx(2 * np.pi)
+
+
+def test_a_stalled_run_names_the_obstacle():
+    tight = (plate(0.9 + 1e-9, name="ceiling"), plate(-0.9 - 1e-9, name="floor"))
+    result = minimize(flat_trefoil(), RelaxOptions(max_iterations=200, vertices=60, mesh="fixed", avoid=tight))
+    assert result.outcome.place is not None
+    assert any(f"and obstacle {name} are so near to each other" in result.message for name in ("ceiling", "floor"))
+
+
+def test_a_start_that_pierces_is_refused():
+    with pytest.raises(CurveError, match=r"component 1: edge \d+ pierces obstacle wall at \(.*\); move one"):
+        relax(torus_trefoil(30), RelaxOptions(avoid=(plate(0.3, name="wall"),)))
+    with pytest.raises(CurveError, match="the curve has dimension 2, but obstacles are in space"):
+        relax(regular_polygon(30, dimension=2), RelaxOptions(avoid=(plate(0.3),)))
+
+
+@pytest.mark.parametrize("value", [plate(1.0), "wall.obj", [[0.0, 0.0]], 3, None])
+def test_what_is_no_tuple_of_obstacles_is_refused(value):
+    with pytest.raises(OptionError, match=r"avoid is .*; it must be obstacles, such as \(Obstacle\("):
+        RelaxOptions(avoid=value)
+
+
+def test_a_list_becomes_a_tuple():
+    wall = plate(1.0)
+    assert RelaxOptions(avoid=[wall]).avoid == (wall,)
+    assert RelaxOptions().avoid == ()
+    assert isinstance(Trajectory(obstacles=[wall]).arrays()["obstacle_000_faces"], np.ndarray)
+    assert isinstance(wall, Obstacle)
