@@ -25,7 +25,7 @@ class Constraints:
     Parameters
     ----------
     lengths
-        Target lengths ℓ⁰, positive, shape (n,).
+        Target lengths ℓ⁰, positive, shape (edges,).
     barycenter
         Target of Σ ℓ_I m_I, shape (m,); for p parts one after the other, shape (p·m,).
     parts
@@ -45,7 +45,7 @@ class Constraints:
         return ConstraintDerivative.at(curve, self.parts)
 
     def residual(self, curve: Curve) -> FloatArray:
-        """Φ(P): n logarithmic length errors, then the p·m barycenter errors; shape (n + p·m,)."""
+        """Φ(P): the logarithmic length errors, then the p·m barycenter errors; shape (edges + p·m,)."""
         shift = weighted_barycenter(curve, self.parts) - self.barycenter
         return np.concatenate([np.log(curve.edge_lengths / self.lengths), shift])
 
@@ -54,7 +54,7 @@ class Constraints:
 
         Σ ℓ_I m_I itself is so large on long chains of components that its rounding is above any tolerance.
         """
-        n = mesh.size
+        n = mesh.edges
         totals = np.array([own @ self.lengths for own in _memberships(mesh, self.parts)])
         shifts = residual[n:].reshape(len(totals), -1) / totals[:, None]
         return max(float(np.max(np.abs(residual[:n]))), float(np.max(np.abs(shifts), initial=0.0)))
@@ -71,11 +71,11 @@ def weighted_barycenter(curve: Curve, parts: Parts | None = None) -> FloatArray:
 
 
 def _memberships(mesh: Mesh, parts: Parts | None) -> Iterator[FloatArray]:
-    """For each part, 1 at its edges (and vertices) and 0 elsewhere; shape (n,)."""
+    """For each part, 1 at its edges and 0 elsewhere; shape (edges,)."""
     if parts is None:
-        yield np.ones(mesh.size)
+        yield np.ones(mesh.edges)
         return
-    part = np.asarray(parts)[mesh.component]
+    part = np.asarray(parts)[mesh.edge_component]
     yield from (np.where(part == k, 1.0, 0.0) for k in range(max(parts) + 1))
 
 
@@ -88,12 +88,12 @@ class ConstraintDerivative:
     mesh
         Connectivity.
     tangents
-        τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (n, m).
+        τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (edges, m).
     masses, moments
         Of the barycenters, which also move with vertices and as edges become longer: (ℓ_I + ℓ_{I−1})/2 at each vertex,
-        shape (n,), and ℓ_I m_I for each edge, shape (n, m).
+        shape (n,), and ℓ_I m_I for each edge, shape (edges, m).
     membership
-        Which vertices and edges are in which of p parts, as 0 and 1; sparse, shape (p, n), without barycenter (0, n).
+        Which vertices are in which of p parts, as 0 and 1; sparse, shape (p, n), without barycenter (0, n).
     """
 
     mesh: Mesh
@@ -127,8 +127,13 @@ class ConstraintDerivative:
 
     @property
     def count(self) -> int:
-        """Number of rows, n + p·m."""
+        """Number of rows, edges + p·m."""
         return len(self.tangents) + self.pinned
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Shape (n, m) of displacements."""
+        return self.mesh.size, self.tangents.shape[1]
 
     def barycenter_rows(self) -> Iterator[FloatArray]:
         """The rows of the barycenters one by one, part by part and coordinate by coordinate; shape (n, m) each."""
@@ -138,25 +143,26 @@ class ConstraintDerivative:
             yield self.apply_transpose(unit)
 
     def length_rows(self) -> sp.csr_array:
-        """The rows of the lengths as a sparse matrix; shape (n, n·m)."""
-        n, m = self.tangents.shape
-        edge, coordinate = np.indices((n, m))
+        """The rows of the lengths as a sparse matrix; shape (edges, n·m)."""
+        edges, m = self.tangents.shape
+        edge, coordinate = np.indices((edges, m))
         ends = [m * end[edge] + coordinate for end in (self.mesh.tails, self.mesh.heads)]
         entries = np.concatenate([-self.tangents.ravel(), self.tangents.ravel()])
         places = (np.concatenate([edge.ravel()] * 2), np.concatenate([end.ravel() for end in ends]))
-        return sp.csr_array((entries, places), shape=(n, n * m))
+        return sp.csr_array((entries, places), shape=(edges, self.mesh.size * m))
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """DΦ u; shape (n + p·m,) from (n, m)."""
+        """DΦ u; shape (edges + p·m,) from (n, m)."""
         along = np.einsum("ij,ij->i", self.tangents, u[self.mesh.heads] - u[self.mesh.tails])
-        moved = self.membership @ (self.masses[:, None] * u + along[:, None] * self.moments)
+        stretched = self.mesh.at_tails(along[:, None] * self.moments)
+        moved = self.membership @ (self.masses[:, None] * u + stretched)
         return np.concatenate([along, moved.ravel()])
 
     def apply_transpose(self, multipliers: FloatArray) -> FloatArray:
-        """DΦᵀ λ; shape (n, m) from (n + p·m,)."""
-        n, m = self.tangents.shape
-        force = self._parts_to_vertices @ multipliers[n:].reshape(-1, m)
-        tension = multipliers[:n] + np.einsum("ij,ij->i", self.moments, force)
+        """DΦᵀ λ; shape (n, m) from (edges + p·m,)."""
+        edges, m = self.tangents.shape
+        force = self._parts_to_vertices @ multipliers[edges:].reshape(-1, m)
+        tension = multipliers[:edges] + np.einsum("ij,ij->i", self.moments, force[self.mesh.tails])
         pull = tension[:, None] * self.tangents
         return np.asarray(self.mesh.scatter(-pull, pull) + self.masses[:, None] * force)
 

@@ -64,7 +64,7 @@ class BoxTree:
         """Build the tree of one leg; ``start`` and ``end`` have shape (m, n) and entries of at most 1 in size."""
         order = component_order(mesh, start)
         points = np.stack([start, end])
-        tails, heads = points[..., order], points[..., mesh.heads[order]]
+        tails, heads = points[..., mesh.tails[order]], points[..., mesh.heads[order]]
         upper = np.concatenate([np.maximum(tails, heads), -np.minimum(tails, heads)], axis=1)
         upper = _padded(upper)
         levels = [_level(upper, leaves=True)]
@@ -98,8 +98,14 @@ class BoxTree:
         real = b < len(self.order)
         a, b = a[real], b[real]
         i, j = self.order[a], self.order[b]
-        apart = (i != j) & (self.mesh.heads[i] != j) & (self.mesh.heads[j] != i)
+        tails, heads = self.mesh.tails, self.mesh.heads
+        apart = (i != j) & (heads[i] != tails[j]) & (heads[j] != tails[i])
         return a[apart], b[apart]
+
+
+def corners(mesh: Mesh, i: IntArray | int, j: IntArray | int) -> IntArray:
+    """The vertices x₀, x₁, y₀, y₁ of edges ``i`` and ``j``; shape (4, pairs), or (4,) of one pair."""
+    return np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]])
 
 
 def contact_window(gaps: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -3,13 +3,15 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
 from ..curve import Mesh
 from ..types import BoolArray, FloatArray, IntArray
-from .boxes import BoxTree, Level, contact_window
+from .boxes import BoxTree, Level, contact_window, corners
 from .exact import first_contact
+from .folds import Folds
 from .march import march
 
 _BATCH = 1 << 13  # pairs marched together, so that their arrays stay in the cache
@@ -56,7 +58,7 @@ def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray) -> FreeMotion:
     """Prove as much as possible of the motion (1−t) start + t end, t in [0, 1], free of contact.
 
     Neighbour edges are not tested: when they fold onto each other, one of them meets the edge after the other. In
-    triangles, which have no such edges, each vertex is tested against the opposite edge.
+    triangles and at the ends of arcs, where there is no such edge, a vertex is tested against an edge (`folds`).
 
     Parameters
     ----------
@@ -91,11 +93,29 @@ def _search(mesh: Mesh, start: FloatArray, end: FloatArray, *, exhaustive: bool)
     # by less than the planes' margins: exact decisions are about the numbers as they were given.
     unit = -np.frexp(size)[1]
     search = _Search(mesh, np.ldexp(start.T, unit, order="C"), np.ldexp(end.T, unit, order="C"), (start, end))
-    for vertices, reached in search.batches():
-        search.take(vertices, reached)
+    for batch in search.batches():
+        search.take(*batch)
         if search.pair is not None and not exhaustive:
             break
     return search.result()
+
+
+class _Batch(NamedTuple):
+    """Pairs of edges that may meet before the limit.
+
+    Attributes
+    ----------
+    edges
+        The two edges of each pair; shape (2, pairs).
+    vertices
+        The vertices x₀, x₁, y₀, y₁ of the segments to be kept apart; shape (4, pairs).
+    reached
+        The time until which each pair is surely free; shape (pairs,).
+    """
+
+    edges: IntArray
+    vertices: IntArray
+    reached: FloatArray
 
 
 class _Search:
@@ -112,9 +132,9 @@ class _Search:
             return FreeMotion(1.0)
         return FreeMotion(self.limit, self.pair, Limit.CONTACT if self.limit > 0 else Limit.TOUCHING_START)
 
-    def batches(self) -> Iterator[tuple[IntArray, FloatArray]]:
-        """Yield pairs of edges that can meet before the limit: their vertices and the time each is surely free."""
-        yield self._triangles()
+    def batches(self) -> Iterator[_Batch]:
+        """Yield pairs of edges that can meet before the limit."""
+        yield self._folds()
         tree = BoxTree.build(self.mesh, self.start, self.end)
         soon = self._soon()
         for after, until in ((-1.0, soon), (soon, 1.0)) if soon < 1 else ((-1.0, 1.0),):
@@ -125,11 +145,11 @@ class _Search:
         speed = self.end - self.start
         speed -= speed.mean(axis=1, keepdims=True)
         fastest = float(np.sqrt(np.einsum("mn,mn->n", speed, speed).max()))
-        edges = self.start[:, self.mesh.heads] - self.start
+        edges = self.start[:, self.mesh.heads] - self.start[:, self.mesh.tails]
         length = float(np.sqrt(np.einsum("mn,mn->n", edges, edges)).mean())
         return 1.0 if 2 * length >= fastest else length / fastest
 
-    def _windows(self, tree: BoxTree, after: float, until: float) -> Iterator[tuple[IntArray, FloatArray]]:
+    def _windows(self, tree: BoxTree, after: float, until: float) -> Iterator[_Batch]:
         """Pairs whose boxes meet first at a time in (after, until]."""
 
         def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
@@ -137,21 +157,19 @@ class _Search:
             keep = enter <= np.minimum(leave, min(until, self.limit))
             return keep & (enter > after) if level.leaves else keep
 
-        tails, heads = self.mesh.tails[tree.order], self.mesh.heads[tree.order]
         for i, j in tree.pairs(near):
             for k in range(0, len(i), _BATCH):
                 a, b = i[k : k + _BATCH], j[k : k + _BATCH]
                 enter, _ = contact_window(tree.levels[-1].gaps(a, b))
-                yield np.stack([tails[a], heads[a], tails[b], heads[b]]), _EARLY_START * enter
+                edges = tree.order[np.stack([a, b])]
+                yield _Batch(edges, corners(self.mesh, *edges), _EARLY_START * enter)
 
-    def _triangles(self) -> tuple[IntArray, FloatArray]:
-        """Each vertex of a triangle, as an edge of no length, against the opposite edge."""
-        sizes = np.asarray(self.mesh.component_sizes)
-        first = self.mesh.offsets[:-1][sizes == 3]
-        u, v, w = (np.concatenate([first + (k + c) % 3 for c in range(3)]) for k in range(3))
-        return np.stack([u, u, v, w]), np.zeros(len(u))
+    def _folds(self) -> _Batch:
+        """Vertices, as edges of no length, against the edges that they would lie on."""
+        edges, vertices = Folds.of(self.mesh)
+        return _Batch(edges, vertices, np.zeros(edges.shape[1]))
 
-    def take(self, vertices: IntArray, reached: FloatArray) -> None:
+    def take(self, edges: IntArray, vertices: IntArray, reached: FloatArray) -> None:
         """March pairs and lower the limit to the earliest time that cannot be passed."""
         reached = march(self.start, self.end, vertices, reached, self.limit)
         stopped = np.flatnonzero(reached < self.limit)
@@ -162,7 +180,7 @@ class _Search:
             if time < _SHARPNESS * self.contact:
                 time = self._decide(vertices[:, k], time)
             if time < self.limit:
-                self.limit, self.pair = time, (int(vertices[0, k]), int(vertices[2, k]))
+                self.limit, self.pair = time, (int(edges[0, k]), int(edges[1, k]))
 
     def _decide(self, vertices: IntArray, reached: float) -> float:
         """The time up to which one pair is free by exact arithmetic, infinite if it never meets."""

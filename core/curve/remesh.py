@@ -20,23 +20,23 @@ MIN_VERTICES = 16  # vertices that a component keeps, if it had as many
 
 
 def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
-    """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (n,)."""
+    """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (edges,)."""
     spacing = target_spacing(curve, resolution)
-    for part in curve.mesh.slices:
-        # one sweep each way, twice round, spreads every minimum as far as it reaches
+    for part, closed in zip(curve.mesh.edge_slices, curve.mesh.closed, strict=True):
+        # one sweep each way, twice round where there is a way round, spreads every minimum as far as it reaches
         for direction in (1, -1):
-            local = np.tile(spacing[part][::direction], 2)
+            local = np.tile(spacing[part][::direction], 2 if closed else 1)
             steps = np.log(GRADING) * np.arange(len(local))
             local = np.exp(np.minimum.accumulate(np.log(local) - steps) + steps)
-            spacing[part] = local[len(local) // 2 :][::direction]
+            spacing[part] = local[part.start - part.stop :][::direction]
     return spacing
 
 
 def superfluous(curve: Curve, spacing: FloatArray) -> IntArray:
-    """Vertices that may be removed, no two of them neighbours or next to neighbours."""
-    mesh, ell = curve.mesh, curve.edge_lengths
-    before = mesh.previous  # the edge whose head is the vertex; the vertex's own edge starts there
-    short = (ell[before] < COLLAPSE * spacing[before]) & (ell < COLLAPSE * spacing)
+    """Vertices that may be removed, no two of them neighbours or next to neighbours, and none of them an end."""
+    mesh, before, after = curve.mesh, curve.mesh.incoming, curve.mesh.outgoing
+    joined = curve.edge_lengths < COLLAPSE * spacing
+    short = joined[before] & joined[after] & (before != after)
     chosen: list[int] = []
     for part in mesh.slices:
         size = part.stop - part.start
@@ -54,7 +54,8 @@ def onto_chords(curve: Curve, vertices: IntArray) -> FloatArray:
     """All vertices after the given ones have moved onto the chords of their neighbours; shape (n, m)."""
     mesh = curve.mesh
     moved = curve.vertices.copy()
-    before, after = curve.vertices[mesh.tails[mesh.previous[vertices]]], curve.vertices[mesh.heads[vertices]]
+    before = curve.vertices[mesh.tails[mesh.incoming[vertices]]]
+    after = curve.vertices[mesh.heads[mesh.outgoing[vertices]]]
     chord = after - before
     along = np.einsum("ij,ij->i", curve.vertices[vertices] - before, chord) / np.einsum("ij,ij->i", chord, chord)
     moved[vertices] = before + np.clip(along, 0.2, 0.8)[:, None] * chord
@@ -72,7 +73,7 @@ class Remeshed:
     curve
         The new polygon: the same set of points as ``moved``, up to rounding.
     lengths
-        Edge lengths wanted on the new mesh, adding up to the total length of each component; shape (n',).
+        Edge lengths wanted on the new mesh, adding up to the total length of each component; shape (edges',).
     """
 
     moved: Curve
@@ -86,7 +87,8 @@ def remesh(curve: Curve, resolution: Resolution, removable: IntArray, spacing: F
     keep = np.ones(len(curve), dtype=bool)
     keep[removable] = False
     coarse = _without(moved, keep)
-    pieces = np.where(coarse.edge_lengths > SPLIT * spacing[keep], np.ceil(coarse.edge_lengths / spacing[keep]), 1.0)
+    wanted = spacing[keep[curve.mesh.tails]]
+    pieces = np.where(coarse.edge_lengths > SPLIT * wanted, np.ceil(coarse.edge_lengths / wanted), 1.0)
     fine = subdivide(coarse, pieces.astype(np.intp))
     return Remeshed(moved, fine, _normalised(fine, graded_spacing(fine, resolution)))
 
@@ -99,11 +101,11 @@ def needs_remesh(curve: Curve, spacing: FloatArray) -> bool:
 
 def _without(curve: Curve, keep: BoolArray) -> Curve:
     sizes = tuple(int(np.count_nonzero(keep[part])) for part in curve.mesh.slices)
-    return Curve(curve.vertices[keep], Mesh(sizes))
+    return Curve(curve.vertices[keep], Mesh(sizes, curve.mesh.closed))
 
 
 def _normalised(curve: Curve, spacing: FloatArray) -> FloatArray:
     lengths = spacing.copy()
-    for part in curve.mesh.slices:
+    for part in curve.mesh.edge_slices:
         lengths[part] *= curve.edge_lengths[part].sum() / spacing[part].sum()
     return lengths

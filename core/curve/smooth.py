@@ -11,29 +11,34 @@ SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its 
 
 
 def smoothed(curve: Curve, mesh: Mesh) -> Curve:
-    """The polygon with vertices at equal distances along the periodic cubic splines through those of each component.
+    """The polygon with vertices at equal distances along the cubic splines through those of each component.
 
     Parameters
     ----------
     mesh
         Its numbers of vertices, for as many components as the curve has.
     """
-    pairs = zip(curve.components, mesh.component_sizes, strict=True)
-    return Curve(np.concatenate([_resampled(component, size) for component, size in pairs]), mesh)
+    each = zip(curve.components, curve.mesh.closed, mesh.component_sizes, mesh.edge_counts, strict=True)
+    return Curve(np.concatenate([_resampled(*component) for component in each]), mesh)
 
 
-def _resampled(points: FloatArray, size: int) -> FloatArray:
-    """Points on the spline, the first of them the first one given; shape (size, m)."""
-    spline = periodic_spline(points)
+def _resampled(points: FloatArray, closed: bool, size: int, edges: int) -> FloatArray:
+    """Points on the spline, the first of them the first one given, and the last the last of an arc; shape (size, m)."""
+    spline = periodic_spline(points) if closed else open_spline(points)
     parameter = sample_parameters(spline)
     arc = arc_lengths(spline(parameter))
-    return np.asarray(spline(np.interp(arc[-1] * np.arange(size) / size, arc, parameter)))
+    return np.asarray(spline(np.interp(arc[-1] * np.arange(size) / edges, arc, parameter)))
 
 
 def periodic_spline(points: FloatArray) -> CubicSpline:
     """The periodic cubic spline through the vertices of a closed polygon, shape (n, m), by its arc length."""
     closed = np.concatenate([points, points[:1]])
     return CubicSpline(arc_lengths(closed), closed, bc_type="periodic")
+
+
+def open_spline(points: FloatArray) -> CubicSpline:
+    """The natural cubic spline through the vertices of an arc, shape (n, m), by its arc length."""
+    return CubicSpline(arc_lengths(points), points, bc_type="natural")
 
 
 def sample_parameters(spline: CubicSpline) -> FloatArray:

@@ -53,7 +53,7 @@ class Penalised:
 
     def residual(self, problem: Problem, curve: Curve) -> FloatArray:
         """Every polygon is allowed: 0."""
-        return np.zeros(len(curve))
+        return np.zeros(curve.mesh.edges)
 
     def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
         """The vertices as they are, unless an edge has no length."""

@@ -179,7 +179,7 @@ class Point:
 
     @cached_property
     def residual(self) -> FloatArray:
-        """How far constraints are from their targets, shape (n + p·m,) for p parts; 0 where nothing is prescribed."""
+        """How far constraints are from targets, shape (edges + p·m,) for p parts; 0 where nothing is prescribed."""
         return self.problem.geometry.residual(self.problem, self.curve)
 
     @property
@@ -208,7 +208,7 @@ class Point:
 
     @property
     def multipliers(self) -> FloatArray:
-        """Lagrange multipliers λ, shape (n + p·m,) for p parts; 0 where nothing is prescribed."""
+        """Lagrange multipliers λ, shape (edges + p·m,) for p parts; 0 where nothing is prescribed."""
         return self._gradient_and_multipliers[1]
 
     @cached_property

@@ -124,10 +124,11 @@ def with_parts_of(problem: Problem, other: Problem, curve: Curve) -> Point:
 def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatArray:
     """In the program's units, of which one is ``scale`` of the user's."""
     if not isinstance(options.edge_lengths, str):
-        if len(options.edge_lengths) != len(start):
+        given, edges = len(options.edge_lengths), start.mesh.edges
+        if given != edges:
             raise OptionError(
-                f"edge_lengths has {len(options.edge_lengths)} numbers, but the refined curve has {len(start)} edges; "
-                f"give one for each edge, and vertices={len(options.edge_lengths)}"
+                f"edge_lengths has {given} numbers, but the refined curve has {edges} edges; "
+                f"give one for each edge, and vertices={given + len(start) - edges}"
             )
         return np.array(options.edge_lengths) / scale
     if options.mesh == "adaptive":
@@ -139,13 +140,13 @@ def _target_lengths(start: Curve, options: RelaxOptions, scale: float) -> FloatA
 
 
 def equal_lengths(mesh: Mesh, lengths: FloatArray) -> FloatArray:
-    """The total length of every component spread evenly over its edges; shape (n,)."""
-    return np.concatenate([np.full(part.stop - part.start, lengths[part].mean()) for part in mesh.slices])
+    """The total length of every component spread evenly over its edges; shape (edges,)."""
+    return np.concatenate([np.full(part.stop - part.start, lengths[part].mean()) for part in mesh.edge_slices])
 
 
 def _graded(start: Curve, vertices: int | None) -> FloatArray:
     """Lengths that follow the gaps between strands, the total of every component kept."""
     spacing = graded_spacing(start, Resolution(vertices))
-    for part in start.mesh.slices:
+    for part in start.mesh.edge_slices:
         spacing[part] *= start.edge_lengths[part].sum() / spacing[part].sum()
     return spacing

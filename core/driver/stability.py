@@ -50,6 +50,6 @@ def stability(point: Point, count: int = 20) -> Stability:
 
 
 def _tangent_basis(constraints: ConstraintDerivative) -> FloatArray:
-    """Orthonormal basis of ker DΦ, as columns; shape (n·m, (n − 1)·m − n)."""
+    """Orthonormal basis of ker DΦ, as columns; shape (n·m, n·m less the rows of DΦ)."""
     transposed = np.stack([constraints.apply_transpose(unit).ravel() for unit in np.eye(constraints.count)], axis=1)
     return np.asarray(qr(transposed)[0][:, constraints.count :])

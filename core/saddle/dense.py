@@ -47,7 +47,7 @@ class DenseTangentSpace(TangentSpace):
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve the Schur complement's system for λ, then for u."""
         c = self.constraints
-        free = np.zeros(c.tangents.shape) if eta is None else self._inner.solve(eta)
+        free = np.zeros(c.shape) if eta is None else self._inner.solve(eta)
         right = c.apply(free)
         if xi is not None:
             right -= xi
@@ -87,18 +87,18 @@ def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray
 
     D A⁻¹ Dᵀ comes from differences of rows and columns, block by block in the processor's cache.
     """
-    n = len(c.tangents)
+    edges = len(c.tangents)
     schur = np.zeros((c.count, c.count), order="F")
-    inverse, upper, heads = inner.inverse.T, schur.T, c.mesh.heads
-    width = max(1, ROWS_TIMES_COLUMNS // n)
-    for first in range(0, n, width):
-        block = slice(first, min(n, first + width))
+    inverse, upper, tails, heads = inner.inverse.T, schur.T, c.mesh.tails, c.mesh.heads
+    width = max(1, ROWS_TIMES_COLUMNS // edges)
+    for first in range(0, edges, width):
+        block = slice(first, min(edges, first + width))
         change = inverse[heads[block]]
-        change -= inverse[block]
-        part = upper[block, first:n]
-        np.subtract(change.take(heads[first:], axis=1), change[:, first:], out=part)
+        change -= inverse[tails[block]]
+        part = upper[block, first:edges]
+        np.subtract(change.take(heads[first:], axis=1), change.take(tails[first:], axis=1), out=part)
         part *= c.tangents[block] @ c.tangents[first:].T
-    for k, row in enumerate(c.barycenter_rows(), n):
+    for k, row in enumerate(c.barycenter_rows(), edges):
         schur[k, :] = c.apply(inner.solve(row))
     return schur
 

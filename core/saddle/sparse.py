@@ -24,21 +24,22 @@ class SparseTangentSpace(TangentSpace):
     def __init__(self, gram: sp.csr_array, constraints: ConstraintDerivative) -> None:
         super().__init__(constraints)
         self._gram = gram
-        n, m = constraints.tangents.shape
+        n, m = constraints.shape
         lengths = constraints.length_rows()
         self._factor = factorised(sp.block_array([[sp.kron(gram, sp.eye_array(m)), lengths.T], [lengths, None]]))
         border = np.reshape(list(constraints.barycenter_rows()), (-1, n * m))
-        self._border = np.hstack([border, np.zeros((len(border), n))])
+        self._border = np.hstack([border, np.zeros((len(border), lengths.shape[0]))])
         self._response = self._factor.solve(self._border.T)
         self._pinned = self._border @ self._response
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve without barycenters, then pin these."""
-        n, m = self.constraints.tangents.shape
+        n, m = self.constraints.shape
+        edges = len(self.constraints.tangents)
         eta = np.zeros((n, m)) if eta is None else eta
         xi = np.zeros(self.constraints.count) if xi is None else xi
-        free = self._factor.solve(np.concatenate([eta.ravel(), xi[:n]]))
-        pull = np.linalg.solve(self._pinned, self._border @ free - xi[n:])
+        free = self._factor.solve(np.concatenate([eta.ravel(), xi[:edges]]))
+        pull = np.linalg.solve(self._pinned, self._border @ free - xi[edges:])
         both = free - self._response @ pull
         return both[: n * m].reshape(n, m), np.concatenate([both[n * m :], pull])
 
@@ -53,7 +54,7 @@ class SparseWholeSpace(WholeSpace):
     def __init__(self, gram: sp.csr_array, constraints: ConstraintDerivative, weights: FloatArray) -> None:
         super().__init__(constraints, weights)
         lengths = constraints.length_rows()
-        full = sp.kron(gram, sp.eye_array(constraints.tangents.shape[1]))
+        full = sp.kron(gram, sp.eye_array(constraints.shape[1]))
         self._matrix = sp.csr_array(full + lengths.T @ sp.diags_array(weights) @ lengths)
         self._factor = factorised(self._matrix)
 

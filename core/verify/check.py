@@ -1,8 +1,10 @@
 """Check that a trajectory is an isotopy: no two non-neighbour edges ever meet, and stages fit together.
 
 Why this is enough: if two neighbour edges fold onto each other, or an edge shrinks to a point, then an edge meets the
-one after its neighbour at the same moment, in every polygon of 4 or more vertices. A triangle, which has no such edges,
-is one as long as no vertex lies on the opposite edge. So a motion free of such contact is a motion through embedded
+one after its neighbour at the same moment, in every closed polygon of 4 or more vertices. A triangle, which has no such
+edges, is one as long as no vertex lies on the opposite edge. Of an open polygon the first edge can fold onto the second
+one with no edge before it that would meet this; so its first vertex must not lie on the second edge, or on its other
+end if there is none, and likewise at the last edge. A motion free of such contact is a motion through embedded
 polygons, all frames included.
 
 This package shares no code with ``core.collision``, which the program uses to find its steps.
@@ -20,7 +22,7 @@ from ..errors import counted
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .segments import Point, meet
-from .trajectory import TrajectoryError, count_legs, stages
+from .trajectory import Components, TrajectoryError, count_legs, stages
 from .transition import DifferentCurveError, common_vertices, straightened
 
 
@@ -59,12 +61,20 @@ class Verdict:
 
 
 class ContactError(Exception):
-    """Two edges meet, or a vertex x₀ = x₁ of a triangle the opposite edge; edges have the numbers of their tails."""
+    """Two edges meet, or a vertex x₀ = x₁ of a triangle or at the end of an open polygon lies on an edge."""
 
-    def __init__(self, x0: int, x1: int, y0: int, _y1: int) -> None:
-        self.edges = x0, y0
-        edges = f"edges {x0 + 1} and {y0 + 1} (counted from 1) meet"
-        super().__init__(f"a triangle collapses at vertex {x0 + 1}" if x0 == x1 else edges)
+    def __init__(self, heads: IntArray, x0: int, x1: int, y0: int, y1: int) -> None:
+        self.edges = _edge_number(heads, x0, x1), _edge_number(heads, y0, y1)
+        first, second = self.edges
+        edges = f"edges {first + 1} and {second + 1} (counted from 1) meet"
+        kind = "a triangle" if heads[heads[heads[x0]]] == x0 != heads[x0] else "an open polygon"
+        super().__init__(f"{kind} collapses at vertex {x0 + 1}" if x0 == x1 else edges)
+
+
+def _edge_number(heads: IntArray, a: int, b: int) -> int:
+    """Number of the edge between two vertices, or of one at a vertex given twice; ends of open polygons begin none."""
+    tail = b if heads[b] == a != b else a - int(heads[a] == a)
+    return int(np.count_nonzero(heads[:tail] != np.arange(tail)))
 
 
 @dataclass
@@ -97,16 +107,16 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
 
 def _check_file(path: Path | str, progress: _Progress) -> None:
     last: FloatArray | None = None
-    sizes: tuple[int, ...] = ()
+    before: Components = ()
     for stage in stages(path):
         progress.stages, progress.frame = progress.stages + 1, None
-        heads = _heads(stage.component_sizes)
+        heads = _heads(stage.components)
         first = next(stage.frames)
         if last is not None:
-            _check_transition(last, sizes, first, stage.component_sizes)
+            _check_transition(last, before, first, stage.components)
         progress.frame = 0
         _check_leg(first, first, heads)  # also a stage of a single frame is a polygon that doesn't touch itself
-        last, sizes = first, stage.component_sizes
+        last, before = first, stage.components
         for frame in stage.frames:
             progress.legs += 1
             _check_leg(last, frame, heads)
@@ -114,55 +124,60 @@ def _check_file(path: Path | str, progress: _Progress) -> None:
             progress.tell(progress.legs)
 
 
-def _heads(sizes: Sequence[int]) -> IntArray:
-    """Head vertex of each edge; its tail has the edge's number."""
-    heads = np.arange(1, sum(sizes) + 1)
-    after = np.cumsum(sizes)
-    heads[after - 1] = after - np.asarray(sizes)
-    return heads
+def _heads(components: Components) -> IntArray:
+    """The vertex that the edge from each vertex leads to: the vertex itself where an open polygon ends."""
+    after = np.arange(1, sum(each.size for each in components) + 1)
+    for part, each in zip(_parts(components), components, strict=True):
+        after[part.stop - 1] = part.start if each.closed else part.stop - 1
+    return after
 
 
 def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray) -> None:
     """Raise if two edges meet while the vertices go from start to end."""
-    _check_pairs(doubtful_pairs(start, end, heads), _exact_points(start), _exact_points(end))
+    _check_pairs(heads, doubtful_pairs(start, end, heads), _exact_points(start), _exact_points(end))
 
 
-def _check_transition(old: FloatArray, old_sizes: Sequence[int], new: FloatArray, new_sizes: Sequence[int]) -> None:
-    """Raise unless two polygons differ only by vertices on edges."""
-    if len(old_sizes) != len(new_sizes) or old.shape[1] != new.shape[1]:
+def _check_transition(old: FloatArray, before: Components, new: FloatArray, after: Components) -> None:
+    """Raise unless two curves differ only by vertices on edges."""
+    if len(before) != len(after) or old.shape[1] != new.shape[1]:
         raise DifferentCurveError("the stage before has another number of components or another dimension")
+    closed = [each.closed for each in before]
+    if closed != [each.closed for each in after]:
+        raise DifferentCurveError("a component is closed in one of two stages and open in the other")
     kept = []
-    for a, b in zip(_parts(old_sizes), _parts(new_sizes), strict=True):
-        kept.append(common_vertices(old[a], new[b]))
-    _check_straightening(old, old_sizes, [here for here, _ in kept])
-    _check_straightening(new, new_sizes, [sorted(there) for _, there in kept])
+    for a, b, is_closed in zip(_parts(before), _parts(after), closed, strict=True):
+        kept.append(common_vertices(old[a], new[b], is_closed))
+    _check_straightening(old, before, [here for here, _ in kept])
+    _check_straightening(new, after, [sorted(there) for _, there in kept])
 
 
-def _check_straightening(points: FloatArray, sizes: Sequence[int], kept: Sequence[Sequence[int]]) -> None:
+def _check_straightening(points: FloatArray, components: Components, kept: Sequence[Sequence[int]]) -> None:
     """Raise unless the vertices that are not kept can move onto the edges between the others without contact."""
     moved: dict[int, Point] = {}
     change = 0.0
-    for part, vertices in zip(_parts(sizes), kept, strict=True):
-        places, largest = straightened(points[part], vertices)
+    for part, each, vertices in zip(_parts(components), components, kept, strict=True):
+        places, largest = straightened(points[part], vertices, each.closed)
         moved |= {part.start + k: place for k, place in places.items()}
         change = max(change, largest)
     if change > 0:
-        heads, here = _heads(sizes), _exact_points(points)
+        heads, here = _heads(components), _exact_points(points)
         doubtful = doubtful_pairs(points, points, heads, clearance=change)
-        _check_pairs(doubtful, here, lambda k: moved.get(k) or here(k))
+        _check_pairs(heads, doubtful, here, lambda k: moved.get(k) or here(k))
 
 
-def _check_pairs(batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]) -> None:
+def _check_pairs(
+    heads: IntArray, batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]
+) -> None:
     """Decide pairs, given by their vertices, shapes (4, pairs), exactly; raise at the first that meets."""
     for corners in chain.from_iterable(batch.T.tolist() for batch in batches):
         if meet([first(k) for k in corners], [last(k) for k in corners]):
-            raise ContactError(*corners)
+            raise ContactError(heads, *corners)
 
 
 def _exact_points(points: FloatArray) -> Callable[[int], Point]:
     return lambda k: [Fraction(x) for x in points[k].tolist()]
 
 
-def _parts(sizes: Sequence[int]) -> list[slice]:
-    ends = np.cumsum(sizes).tolist()
-    return [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]
+def _parts(components: Components) -> list[slice]:
+    ends = np.cumsum([each.size for each in components]).tolist()
+    return [slice(end - each.size, end) for each, end in zip(components, ends, strict=True)]

@@ -53,19 +53,19 @@ def lagrangian_hessian_matrix(point: Point) -> FloatArray:
 
 
 def _curvature_weights(point: Point) -> FloatArray:
-    """The factor of |Δv_I|² in Σ λ D²Φ (v, v) for tangent v, of which ⟨τ_I, Δv_I⟩ = 0; shape (n,).
+    """The factor of |Δv_I|² in Σ λ D²Φ (v, v) for tangent v, of which ⟨τ_I, Δv_I⟩ = 0; shape (edges,).
 
     D² log ℓ_I has the factor 1/ℓ_I², D²(Σ ℓ_I m_I) = Σ m_I D²ℓ_I the factor m_I/ℓ_I.  The barycenter's multipliers
     vanish if it is that of the whole curve, because the energy does not change under translations.
     """
     curve = point.curve
-    ell, n = curve.edge_lengths, len(curve)
+    ell, edges = curve.edge_lengths, curve.mesh.edges
     parts = np.asarray(point.problem.constraints.parts or (0,) * len(curve.mesh.component_sizes))
-    forces = point.multipliers[n:].reshape(-1, curve.dimension)
+    forces = point.multipliers[edges:].reshape(-1, curve.dimension)
     if not len(forces):
-        return np.asarray(point.multipliers[:n] / ell**2)
-    along = np.einsum("ij,ij->i", forces[parts[curve.mesh.component]], curve.midpoints)
-    return np.asarray(point.multipliers[:n] / ell**2 + along / ell)
+        return np.asarray(point.multipliers[:edges] / ell**2)
+    along = np.einsum("ij,ij->i", forces[parts[curve.mesh.edge_component]], curve.midpoints)
+    return np.asarray(point.multipliers[:edges] / ell**2 + along / ell)
 
 
 def projected_conjugate_gradient(

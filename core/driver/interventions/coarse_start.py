@@ -35,7 +35,7 @@ class CoarseStart:
         lengths = equal_lengths(run.problem.mesh, constraints.lengths)
         self._problem = replace(run.problem, constraints=replace(constraints, lengths=lengths))
         self._options = replace(run.options, vertices=None, edge_lengths="keep", mesh="fixed")
-        self._sizes = np.array(run.problem.mesh.component_sizes)
+        self._edge_counts = run.problem.mesh.edge_counts
         self._wanted = self._is_wanted()
         self._coarse: Curve | None = None
 
@@ -75,7 +75,7 @@ class CoarseStart:
     def _finest(self) -> Change | None:
         """The same curve with all vertices, in the problem of the start; None if doubles do not tell them apart."""
         self._coarse = curve = self._run.iterate.curve
-        parts = zip(curve.mesh.slices, self._sizes, strict=True)
+        parts = zip(curve.mesh.edge_slices, self._edge_counts, strict=True)
         finest = subdivide(curve, np.concatenate([apportion(curve.edge_lengths[part], n) for part, n in parts]))
         if not survives_rounding(finest):
             self._coarse = None

@@ -52,7 +52,8 @@ class Remesh:
         spacing = graded_spacing(curve, resolution)
         if stuck is not None:
             for edge in stuck:
-                near = curve.mesh.index_distance(np.full(len(curve), edge), np.arange(len(curve))) <= 2
+                edges = np.arange(curve.mesh.edges)
+                near = curve.mesh.index_distance(np.full_like(edges, edge), edges) <= 2
                 spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
         elif not needs_remesh(curve, spacing):
             return None
