@@ -87,8 +87,8 @@ def weighted_barycenter(curve: Curve, parts: Parts | None = None, pins: IntArray
 
 
 def _memberships(mesh: Mesh, parts: Parts | None, pins: IntArray) -> Iterator[FloatArray]:
-    part = np.asarray(parts or (0,) * len(mesh.component_sizes))[mesh.component]
-    yield from (np.where(part == k, 1.0, 0.0) for k in _without_pins(part, pins))
+    part = np.asarray(parts or (0,) * len(mesh.component_sizes))
+    yield from (np.where(part[mesh.edge_component] == k, 1.0, 0.0) for k in _without_pins(part[mesh.component], pins))
 
 
 def _without_pins(part: IntArray, pins: IntArray) -> IntArray:
@@ -108,9 +108,9 @@ class ConstraintDerivative:
         τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (edges, m).
     masses, moments
         Of the barycenters, which also move with vertices and as edges become longer: (ℓ_I + ℓ_{I−1})/2 at each vertex,
-        shape (n,), and ℓ_I m_I for each edge, shape (n, m).
+        shape (n,), and ℓ_I m_I for each edge, shape (edges, m).
     membership
-        Which vertices and edges are in which of p parts, as 0 and 1; sparse, shape (p, n), without barycenter (0, n).
+        Which vertices are in which of p parts, as 0 and 1; sparse, shape (p, n), without barycenter (0, n).
     edges
         Those whose lengths are rows, ascending; shape (r,).
     pins
@@ -148,6 +148,11 @@ class ConstraintDerivative:
         """Number of rows, r + p·m."""
         return len(self.edges) + int(self.membership.shape[0]) * self.tangents.shape[1]
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Shape (n, m) of displacements."""
+        return self.mesh.size, self.tangents.shape[1]
+
     def barycenter_rows(self) -> Iterator[FloatArray]:
         """The rows of the barycenters one by one, part by part and coordinate by coordinate; shape (n, m) each."""
         for k in range(len(self.edges), self.count):
@@ -157,7 +162,7 @@ class ConstraintDerivative:
 
     def length_rows(self) -> sp.csr_array:
         """The rows of the lengths as a sparse matrix, 0 at pins; shape (r, n·m)."""
-        tangents, n, m = self.tangents[self.edges], len(self.masses), self.tangents.shape[1]
+        tangents, (n, m) = self.tangents[self.edges], self.shape
         row, coordinate = np.indices(tangents.shape)
         free = np.where(np.isin(np.arange(n), self.pins), 0.0, 1.0)
         ends = [end[self.edges] for end in (self.mesh.tails, self.mesh.heads)]
@@ -169,13 +174,14 @@ class ConstraintDerivative:
     def apply(self, u: FloatArray) -> FloatArray:
         """DΦ u; shape (r + p·m,) from (n, m)."""
         along = np.einsum("ij,ij->i", self.tangents, u[self.mesh.heads] - u[self.mesh.tails])
-        moved = self.membership @ (self.masses[:, None] * u + along[:, None] * self.moments)
+        stretched = self.mesh.at_tails(along[:, None] * self.moments)
+        moved = self.membership @ (self.masses[:, None] * u + stretched)
         return np.concatenate([along[self.edges], moved.ravel()])
 
     def apply_transpose(self, multipliers: FloatArray) -> FloatArray:
         """DΦᵀ λ, with the forces that pins take; shape (n, m) from (r + p·m,)."""
         force = self.forces(multipliers)
-        tension = self.tensions(multipliers) + np.einsum("ij,ij->i", self.moments, force)
+        tension = self.tensions(multipliers) + np.einsum("ij,ij->i", self.moments, force[self.mesh.tails])
         pull = tension[:, None] * self.tangents
         return np.asarray(self.mesh.scatter(-pull, pull) + self.masses[:, None] * force)
 

@@ -117,6 +117,11 @@ class BoxTree:
             stack += [(p, q, a[k : k + CHUNK], b[k : k + CHUNK]) for k in range(0, len(a), CHUNK)]
 
 
+def corners(mesh: Mesh, i: IntArray | int, j: IntArray | int) -> IntArray:
+    """The vertices x₀, x₁, y₀, y₁ of edges ``i`` and ``j``; shape (4, pairs), or (4,) of one pair."""
+    return np.stack([mesh.tails[i], mesh.heads[i], mesh.tails[j], mesh.heads[j]])
+
+
 def contact_window(gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the times between which moving boxes can overlap, each of shape (pairs,); empty if first > second.
 

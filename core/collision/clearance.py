@@ -37,7 +37,7 @@ def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
         )
     for edge, corners, obstacle in _near(curve, obstacles, MIN_GAP * curve.length):
         what, where = _meeting(corners)
-        component, k, _ = numbered(curve.mesh, edge)
+        component, k = numbered(curve.mesh, edge)
         reason = f"component {component}: edge {k} {what} {obstacle.title} at {written(where)}; move one of them away"
         raise CurveError(reason, at_edges(curve, (edge,), where))
 

@@ -8,7 +8,7 @@ from ..curve import Curve, Mesh
 from ..curve.places import at_edges, at_vertices
 from ..errors import CurveError
 from ..types import BoolArray, FloatArray, IntArray
-from .boxes import BoxTree, Level
+from .boxes import BoxTree, Level, corners
 from .chords import closest_chord
 from .exact import first_contact
 from .gap import near_edges, scaled_points
@@ -35,34 +35,38 @@ def check_embedded(curve: Curve) -> None:
 
 
 def _check_repeated(curve: Curve) -> None:
-    heads = curve.mesh.heads
+    tails, heads = curve.mesh.tails, curve.mesh.heads
     unit = int(np.frexp(np.abs(curve.vertices).max())[1]) + 1  # differences of scaled coordinates don't overflow
     points = np.ldexp(curve.vertices, -unit)
     nearest = MIN_SPACING * np.ptp(points, axis=0).max()
-    same = np.flatnonzero((np.abs(points[heads] - points) <= nearest).all(axis=1))
+    same = np.flatnonzero((np.abs(points[heads] - points[tails]) <= nearest).all(axis=1))
     if same.size:
-        component, k, n = numbered(curve.mesh, int(same[0]))
+        tail, head = int(tails[same[0]]), int(heads[same[0]])
+        (component, j), (_, k) = numbered_vertex(curve.mesh, tail), numbered_vertex(curve.mesh, head)
         raise CurveError(
-            f"component {component}: vertices {k} and {k % n + 1} are the same point "
-            f"{written(curve.vertices[same[0]])}; remove one of them",
-            at_vertices(curve, int(same[0]), int(heads[same[0]])),
+            f"component {component}: vertices {j} and {k} are the same point "
+            f"{written(curve.vertices[tail])}; remove one of them",
+            at_vertices(curve, tail, head),
         )
 
 
 def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
     """Find vertices where the curve turns by 180°, up to rounding."""
-    heads = curve.mesh.heads
-    first = points[:, heads] - points
-    second = first[:, heads]
+    mesh = curve.mesh
+    before = np.flatnonzero(mesh.next != np.arange(mesh.edges))
+    after = mesh.next[before]
+    vectors = points[:, mesh.heads] - points[:, mesh.tails]
+    first, second = vectors[:, before], vectors[:, after]
     p, q = np.triu_indices(len(points), 1)
     left, right = first[p] * second[q], first[q] * second[p]
     parallel = (np.abs(left - right) <= ROUNDING * (np.abs(left) + np.abs(right))).all(axis=0)
     bad = np.flatnonzero(parallel & (np.einsum("mn,mn->n", first, second) < 0))
     if bad.size:
-        vertex = int(heads[bad[0]])
-        component, k, n = numbered(curve.mesh, vertex)
+        i, j = int(after[bad[0]]), int(before[bad[0]])
+        vertex = int(mesh.tails[i])
+        (component, k), (_, previous), (_, place) = numbered(mesh, i), numbered(mesh, j), numbered_vertex(mesh, vertex)
         raise CurveError(
-            f"component {component}: edge {k} doubles back on edge {(k - 2) % n + 1} at vertex {k}, "
+            f"component {component}: edge {k} doubles back on edge {previous} at vertex {place}, "
             f"{written(curve.vertices[vertex])}; move or remove that vertex",
             at_vertices(curve, vertex),
         )
@@ -71,17 +75,16 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
 def _check_crossings(curve: Curve, points: FloatArray) -> None:
     touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
     for i, j in touching(curve, points):
-        where = meeting_point(curve.vertices[[i, curve.mesh.heads[i], j, curve.mesh.heads[j]]])
+        where = meeting_point(curve.vertices[corners(curve.mesh, i, j)])
         reason = f"{_names(curve.mesh, i, j)} touch or cross near {written(where)}; move the strands apart"
         raise CurveError(reason, at_edges(curve, (i, j), where))
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
     """Pairs of edges that touch, decided exactly."""
-    heads = curve.mesh.heads
     for i, j in _doubtful_pairs(curve.mesh, points):
-        corners = curve.vertices[[i, heads[i], j, heads[j]]]  # as given: scaling may cost the smallest digits
-        if first_contact(corners, corners) is not None:
+        ends = curve.vertices[corners(curve.mesh, i, j)]  # as given: scaling may cost the smallest digits
+        if first_contact(ends, ends) is not None:
             yield i, j
 
 
@@ -104,29 +107,35 @@ def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]
 
     for a, b in tree.pairs(near):
         i, j = np.sort(tree.order[np.stack([a, b])], axis=0)
-        motion = relative_motion(points, points, np.stack([i, mesh.heads[i], j, mesh.heads[j]]))
+        motion = relative_motion(points, points, corners(mesh, i, j))
         planes = Separation(motion, np.abs(motion).sum(axis=1), closest_chord(motion[0]))
         doubtful = ~planes.proves(np.zeros(len(i)))
         yield from sorted(zip(i[doubtful].tolist(), j[doubtful].tolist(), strict=True))
 
 
-def meeting_point(corners: FloatArray) -> FloatArray:
-    """Return a point of the first edge near the second, to be named in a message; ``corners`` has shape (4, m)."""
-    x0, x1, y0, y1 = corners
+def meeting_point(ends: FloatArray) -> FloatArray:
+    """Return a point of the first edge near the second, to be named in a message; ``ends`` has shape (4, m)."""
+    x0, x1, y0, y1 = ends
     x = x0 + np.linspace(0.0, 1.0, 257)[:, None] * (x1 - x0)
     f = y1 - y0
     r = ((x - y0) @ f / max(f @ f, np.finfo(np.float64).tiny)).clip(0.0, 1.0)
     return np.asarray(x[np.linalg.norm(x - y0 - r[:, None] * f, axis=1).argmin()])
 
 
-def numbered(mesh: Mesh, edge: int) -> tuple[int, int, int]:
-    """Component of an edge or vertex, its number there, both from 1, and the component's size."""
-    c = int(mesh.component[edge])
-    return c + 1, edge - int(mesh.offsets[c]) + 1, mesh.component_sizes[c]
+def numbered(mesh: Mesh, edge: int) -> tuple[int, int]:
+    """Component of an edge and its number there, both from 1."""
+    c = int(mesh.edge_component[edge])
+    return c + 1, edge - int(mesh.edge_offsets[c]) + 1
+
+
+def numbered_vertex(mesh: Mesh, vertex: int) -> tuple[int, int]:
+    """The same of a vertex."""
+    c = int(mesh.component[vertex])
+    return c + 1, vertex - int(mesh.offsets[c]) + 1
 
 
 def _names(mesh: Mesh, i: int, j: int) -> str:
-    (c, p, _), (d, q, _) = numbered(mesh, i), numbered(mesh, j)
+    (c, p), (d, q) = numbered(mesh, i), numbered(mesh, j)
     if c == d:
         return f"component {c}: edges {p} and {q}"
     return f"edge {p} of component {c} and edge {q} of component {d}"

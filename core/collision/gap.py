@@ -7,7 +7,7 @@ import numpy as np
 from ..curve import Curve
 from ..errors import CurveError, Place
 from ..types import BoolArray, FloatArray, IntArray
-from .boxes import BoxTree, Level
+from .boxes import BoxTree, Level, corners
 from .chords import closest_chord
 from .planes import relative_motion
 
@@ -18,8 +18,8 @@ ENDS_ONLY = 1e-3  # of the longer edge: midpoints further apart than that don't 
 def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
     """Return the smallest distance between two non-neighbour edges, and one pair of edges that has it.
 
-    A floating-point value, accurate to rounding: 0 or a tiny number if edges meet. A single triangle has no such
-    pair: infinity and None.
+    A floating-point value, accurate to rounding: 0 or a tiny number if edges meet. A single triangle, or an arc of two
+    edges, has no such pair: infinity and None.
     """
     points, unit = scaled_points(curve)
     best, pair = _some_gap(curve, points)
@@ -53,11 +53,12 @@ def check_gap(curve: Curve) -> None:
         near = apart <= ENDS_ONLY * np.maximum(curve.edge_lengths[i], curve.edge_lengths[j])
         if near.any():
             k = int(np.where(near, squares, np.inf).argmin())
-            gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in curve.vertices[i[k]])
+            point = curve.vertices[curve.mesh.tails[i[k]]]
+            gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in point)
             raise CurveError(
                 f"strands are only {gap:.2g} apart near ({place}), less than {MIN_GAP:g} of the curve's "
                 "length, which is too near to compute their energy; move them apart",
-                Place((), tuple(curve.vertices[i[k]].tolist())),
+                Place((), tuple(point.tolist())),
             )
 
 
@@ -80,10 +81,9 @@ def near_edges(
     def near(level: Level, a: IntArray, other: Level, b: IntArray) -> BoolArray:
         return squared_gaps(level.gaps(a, other, b)) <= bound()
 
-    heads = curve.mesh.heads
     for a, b in tree.pairs(near):
         i, j = tree.order[a], tree.order[b]
-        squares = squared_segment_distances(points, np.stack([i, heads[i], j, heads[j]]))
+        squares = squared_segment_distances(points, corners(curve.mesh, i, j))
         kept = squares <= bound()
         yield i[kept], j[kept], squares[kept]
 
@@ -106,12 +106,11 @@ def squared_gaps(signed: FloatArray) -> FloatArray:
 def _some_gap(curve: Curve, points: FloatArray) -> tuple[float, tuple[int, int] | None]:
     """A squared gap to begin with: the smallest one between edges one edge apart, and these; infinite without any."""
     mesh = curve.mesh
-    heads = mesh.heads
-    i, j = mesh.tails, heads[heads]
-    apart = heads[j] != i  # a triangle has no such edges
+    i, j = np.arange(mesh.edges), mesh.next[mesh.next]
+    apart = (j != mesh.next) & (mesh.next[j] != i)  # a triangle has no such edges, nor has the end of an arc
     i, j = i[apart], j[apart]
     if not i.size:
         return np.inf, None
-    squares = squared_segment_distances(points, np.stack([i, heads[i], j, heads[j]]))
+    squares = squared_segment_distances(points, corners(mesh, i, j))
     k = int(np.argmin(squares))
     return float(squares[k]), (int(i[k]), int(j[k]))

@@ -13,6 +13,7 @@ from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, contact_window
 from .exact import first_contact
 from .exact_triangle import first_contact_with_triangle
+from .folds import Folds
 from .march import march
 from .still import still_triangles
 
@@ -88,7 +89,7 @@ def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Seque
     """Prove as much as possible of the motion (1−t) start + t end, t in [0, 1], free of contact.
 
     Neighbour edges are not tested: when they fold onto each other, one of them meets the edge after the other. In
-    triangles, which have no such edges, each vertex is tested against the opposite edge.
+    triangles and at the ends of arcs, where there is no such edge, a vertex is tested against an edge (`folds`).
 
     Parameters
     ----------
@@ -176,7 +177,7 @@ class _Search:
 
     def batches(self) -> Iterator[_Candidates]:
         """Yield all pairs that can meet before the limit, those that can do so soon first."""
-        yield self._folding_triangles()
+        yield self._folds()
         start, end = self.start[:, : self.mesh.size], self.end[:, : self.mesh.size]
         tree = BoxTree.build(self.mesh, start, end)
         soon = _soon(self.mesh, start, end)
@@ -200,12 +201,10 @@ class _Search:
                 vertices = np.concatenate([tree.corners[:, a], first + other.corners[:, b]])
                 yield _Candidates(vertices, np.stack([tree.order[a], other.order[b]]), _EARLY_START * enter)
 
-    def _folding_triangles(self) -> _Candidates:
-        """Each vertex of a triangle, as an edge of no length, against the opposite edge."""
-        sizes = np.asarray(self.mesh.component_sizes)
-        first = self.mesh.offsets[:-1][sizes == 3]
-        u, v, w = (np.concatenate([first + (k + c) % 3 for c in range(3)]) for k in range(3))
-        return _Candidates(np.stack([u, u, v, w]), np.stack([u, v]), np.zeros(len(u)))
+    def _folds(self) -> _Candidates:
+        """Vertices, as edges of no length, against the edges that they would lie on."""
+        edges, vertices = Folds.of(self.mesh)
+        return _Candidates(vertices, edges, np.zeros(edges.shape[1]))
 
     def take(self, candidates: _Candidates) -> None:
         """March pairs and lower the limit to the earliest time that cannot be passed."""

@@ -20,15 +20,20 @@ def bending(curve: Curve) -> float:
 def bending_and_derivative(curve: Curve) -> tuple[float, FloatArray]:
     """`bending` and its derivative with respect to the vertices, shape (n, m)."""
     mesh, ell = curve.mesh, curve.edge_lengths
+    before, after = mesh.incoming[mesh.inner], mesh.outgoing[mesh.inner]
     tau = curve.edge_vectors / ell[:, None]
-    turn = tau - tau[mesh.previous]  # at each edge's tail, of length 2 sin(θ/2)
-    sine, per_length = np.einsum("ij,ij->i", turn, turn), 2.0 / (ell + ell[mesh.previous])
+    turn = tau[after] - tau[before]  # at each inner vertex, of length 2 sin(θ/2)
+    sine, per_length = np.einsum("ij,ij->i", turn, turn), 2.0 / (ell[after] + ell[before])
     cosine = np.maximum(4.0 - sine, TINY)  # (2 cos(θ/2))²
     bends, length = 4.0 * per_length * sine / cosine, curve.length
     by_turn = (32.0 * per_length / cosine**2)[:, None] * turn
-    by_tangent = by_turn - by_turn[mesh.heads]
+    by_tangent = np.zeros_like(tau)
+    by_tangent[after] += by_turn
+    by_tangent[before] -= by_turn
     by_tangent -= np.einsum("ij,ij->i", by_tangent, tau)[:, None] * tau
-    by_length = -0.5 * (bends * per_length + (bends * per_length)[mesh.heads])
+    by_length = np.zeros_like(ell)
+    by_length[after] -= 0.5 * bends * per_length
+    by_length[before] -= 0.5 * bends * per_length
     total = float(bends.sum())
     by_edge = length * (by_tangent / ell[:, None] + by_length[:, None] * tau) + total * tau
     return length * total, mesh.scatter(-by_edge, by_edge)

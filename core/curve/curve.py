@@ -1,4 +1,4 @@
-"""Closed polygons in R^m: the one value that everything else takes and gives."""
+"""Polygons in R^m, closed or open: the one value that everything else takes and gives."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from .mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One or more closed polygons: an immutable array of vertices and its connectivity.
+    """One or more polygons, closed or open: an immutable array of vertices and its connectivity.
 
     Parameters
     ----------
@@ -48,8 +48,8 @@ class Curve:
         object.__setattr__(self, "mesh", mesh)
 
     @classmethod
-    def from_components(cls, components: Sequence[npt.ArrayLike]) -> "Curve":
-        """Join closed polygons, arrays (n_k, m) of one common m, into one curve (a link)."""
+    def from_components(cls, components: Sequence[npt.ArrayLike], closed: Sequence[bool] = ()) -> "Curve":
+        """Join polygons, arrays (n_k, m) of one common m, into one curve (a link); ``closed`` is as for `Mesh`."""
         if not isinstance(components, Iterable):
             raise CurveError(f"components are of type {type(components).__name__}; give a list of arrays")
         arrays = [_numbers(component, f"component {k + 1}") for k, component in enumerate(components)]
@@ -58,7 +58,7 @@ class Curve:
                 raise CurveError(
                     f"component {k + 1} has shape {array.shape}; all components must be arrays (n, m) with one m"
                 )
-        mesh = Mesh(tuple(len(array) for array in arrays))
+        mesh = Mesh(tuple(len(array) for array in arrays), tuple(closed))
         return cls(np.concatenate(arrays), mesh)
 
     def __reduce__(self) -> tuple[type["Curve"], tuple[FloatArray, Mesh]]:
@@ -84,23 +84,28 @@ class Curve:
 
     @cached_property
     def edge_vectors(self) -> FloatArray:
-        """Edge vectors e_I = P(I↑) − P(I↓); shape (n, m)."""
+        """Edge vectors e_I = P(I↑) − P(I↓); shape (edges, m)."""
         return frozen(self.vertices[self.mesh.heads] - self.vertices[self.mesh.tails])
 
     @cached_property
     def edge_lengths(self) -> FloatArray:
-        """Edge lengths ℓ_I = |e_I|; shape (n,)."""
+        """Edge lengths ℓ_I = |e_I|; shape (edges,)."""
         return frozen(np.sqrt(np.einsum("ij,ij->i", self.edge_vectors, self.edge_vectors)))
 
     @cached_property
     def midpoints(self) -> FloatArray:
-        """Edge midpoints m_I; shape (n, m)."""
+        """Edge midpoints m_I; shape (edges, m)."""
         return frozen(0.5 * (self.vertices[self.mesh.heads] + self.vertices[self.mesh.tails]))
 
     @property
     def length(self) -> float:
         """Total length of all components."""
         return float(self.edge_lengths.sum())
+
+    @cached_property
+    def component_lengths(self) -> FloatArray:
+        """Length of each component; shape (components,)."""
+        return frozen(np.array([self.edge_lengths[s].sum() for s in self.mesh.edge_slices]))
 
 
 def check_is_curve(value: object) -> None:

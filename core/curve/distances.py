@@ -7,44 +7,74 @@ from .curve import Curve
 
 
 def points_at(curve: Curve, t: float) -> FloatArray:
-    """The point at parameter t ∈ [0, 1] of every edge; shape (n, m)."""
+    """The point at parameter t ∈ [0, 1] of every edge; shape (edges, m)."""
     return (1.0 - t) * curve.vertices[curve.mesh.tails] + t * curve.vertices[curve.mesh.heads]
 
 
 def arc_positions(curve: Curve, t: float) -> FloatArray:
-    """Arc length from its component's first vertex to the point at parameter t of every edge; shape (n,)."""
+    """Arc length from its component's first vertex to the point at parameter t of every edge; shape (edges,)."""
     ell = curve.edge_lengths
-    position = np.concatenate([np.cumsum(ell[s]) - ell[s] for s in curve.mesh.slices])
+    position = np.concatenate([np.cumsum(ell[s]) - ell[s] for s in curve.mesh.edge_slices])
     return np.asarray(position + t * ell)
 
 
+def vertex_positions(curve: Curve) -> FloatArray:
+    """Arc length from its component's first vertex to every vertex; shape (n,)."""
+    mesh, last = curve.mesh, curve.mesh.ends[:, 1]
+    position = mesh.at_tails(arc_positions(curve, 0.0))
+    position[last] = curve.component_lengths[mesh.component[last]]
+    return position
+
+
+def periods(curve: Curve) -> FloatArray:
+    """Length once round each component, infinite where there is no way round; shape (components,).
+
+    Of two points at a distance d along the curve one way, the other way is the period less d.
+    """
+    return np.where(curve.mesh.closed, curve.component_lengths, np.inf)
+
+
 def points_along(curve: Curve, component: IntArray, position: FloatArray) -> FloatArray:
-    """The points of components at arc lengths from their first vertices, taken modulo the length; shape (k, m)."""
-    ends = np.cumsum(curve.edge_lengths)
-    starts = np.concatenate([[0.0], ends])[curve.mesh.offsets]
-    along = starts[component] + position % np.diff(starts)[component]
-    edge = np.minimum(np.searchsorted(ends, along, side="right"), curve.mesh.offsets[component + 1] - 1)
-    t = 1.0 - ((ends[edge] - along) / np.maximum(curve.edge_lengths[edge], np.finfo(np.float64).tiny)).clip(0.0, 1.0)
-    return np.asarray(curve.vertices[edge] + t[:, None] * curve.edge_vectors[edge])
+    """The points of components at arc lengths from their first vertices, taken modulo the periods; shape (k, m)."""
+    mesh, ell = curve.mesh, curve.edge_lengths
+    ends = np.cumsum(ell)
+    starts = np.concatenate([[0.0], ends])[mesh.edge_offsets]
+    round_ = np.asarray(mesh.closed)[component]
+    along = starts[component] + np.where(round_, position % np.diff(starts)[component], position)
+    edge = np.minimum(np.searchsorted(ends, along, side="right"), mesh.edge_offsets[component + 1] - 1)
+    t = 1.0 - ((ends[edge] - along) / np.maximum(ell[edge], np.finfo(np.float64).tiny)).clip(0.0, 1.0)
+    return np.asarray(curve.vertices[mesh.tails[edge]] + t[:, None] * curve.edge_vectors[edge])
 
 
 def arc_distances(curve: Curve, t_i: float, t_j: float, rows: IntArray, columns: slice) -> FloatArray:
-    """ϱ between the points at t_i of edges ``rows`` and at t_j of edges ``columns``; inf across components."""
-    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
-    component = curve.mesh.component
-    distance = np.subtract.outer(arc_positions(curve, t_i)[rows], arc_positions(curve, t_j)[columns])
+    """ϱ between the points at t_i and t_j of the edges that begin at some vertices; inf across components.
+
+    Where an arc ends and no edge begins, distances have no meaning, but are numbers.
+    """
+    mesh, component = curve.mesh, curve.mesh.component
+    start, end = (mesh.at_tails(arc_positions(curve, t)) for t in (t_i, t_j))
+    distance = np.subtract.outer(start[rows], end[columns])
     np.abs(distance, out=distance)
-    np.minimum(distance, lengths[component[rows], None] - distance, out=distance)
-    if len(lengths) > 1:
+    np.minimum(distance, periods(curve)[component[rows], None] - distance, out=distance)
+    if len(mesh.closed) > 1:
         distance[component[rows, None] != component[columns]] = np.inf
     return distance
 
 
 def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray, t: float = 0.0) -> FloatArray:
-    """ϱ between the points at t of edges ``i`` and ``j``, by default vertices, elementwise; inf across components."""
-    lengths = np.add.reduceat(curve.edge_lengths, curve.mesh.offsets[:-1])
-    component = curve.mesh.component
-    position = arc_positions(curve, t)
-    gap = np.abs(position[i] - position[j])
-    distance = np.minimum(gap, lengths[component[i]] - gap)
-    return np.where(component[i] == component[j], distance, np.inf)
+    """ϱ between the points at t of edges ``i`` and ``j``, by default their tails; inf across components."""
+    position, component = arc_positions(curve, t), curve.mesh.edge_component
+    return _shorter_way(curve, component[i], component[j], np.abs(position[i] - position[j]))
+
+
+def arc_distance_of_vertices(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
+    """ϱ between vertices ``i`` and ``j``, elementwise; inf across components."""
+    position, component = vertex_positions(curve), curve.mesh.component
+    return _shorter_way(curve, component[i], component[j], np.abs(position[i] - position[j]))
+
+
+def _shorter_way(curve: Curve, c: IntArray, d: IntArray, gap: FloatArray) -> FloatArray:
+    """ϱ between points of components c and d, from the difference of their arc lengths."""
+    lengths = np.add.reduceat(curve.edge_lengths, curve.mesh.edge_offsets[:-1])
+    other_way = np.where(curve.mesh.closed, lengths, np.inf)[c] - gap
+    return np.where(c == d, np.minimum(gap, other_way), np.inf)

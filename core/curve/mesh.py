@@ -1,8 +1,9 @@
-"""Connectivity of closed polygons: which vertices each edge joins, and which edges are neighbours."""
+"""Connectivity of polygons, closed or open: which vertices each edge joins, and which edges are neighbours."""
 
 import operator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
@@ -10,26 +11,32 @@ import scipy.sparse as sp
 from ..errors import CurveError
 from ..types import BoolArray, FloatArray, IntArray, frozen
 
+_KINDS = {True: (3, "a closed polygon"), False: (2, "an open polygon")}  # by whether closed: least number of vertices
+
 
 @dataclass(frozen=True)
 class Mesh:
-    """Connectivity of one or more closed polygons sharing one array of vertices.
+    """Connectivity of one or more polygons, closed or open, sharing one array of vertices.
 
-    Edge I runs from vertex ``tails[I]`` to vertex ``heads[I]``; vertices of one component are
-    consecutive, and so are its edges.
+    Edge I runs from vertex ``tails[I]`` to vertex ``heads[I]``; vertices of one component are consecutive, and so are
+    its edges.  A closed component has as many edges as vertices, an open one (an arc) one less.
 
     Parameters
     ----------
     component_sizes
-        Number of vertices of every component, each at least 3.
+        Number of vertices of every component, each at least 3, or 2 where it is open.
+    closed
+        Whether each component is closed; by default all are.
 
     Raises
     ------
     CurveError
-        If these are no whole numbers, there is no component, or one has fewer than 3 vertices.
+        If these are no whole numbers, there is no component, one has too few vertices, or ``closed`` does not tell of
+        every component.
     """
 
     component_sizes: tuple[int, ...]
+    closed: tuple[bool, ...] = ()
 
     def __post_init__(self) -> None:
         try:
@@ -39,65 +46,134 @@ class Mesh:
                 f"component_sizes is {self.component_sizes!r}; it must be a tuple of whole numbers, such as (10, 12)"
             ) from error
         if not self.component_sizes:
-            raise CurveError("the curve is empty: it has no component; give at least one closed polygon")
-        for k, size in enumerate(self.component_sizes):
-            if size < 3:
+            raise CurveError("the curve is empty: it has no component; give at least one polygon")
+        object.__setattr__(self, "closed", _flags(self.closed, len(self.component_sizes)))
+        for k, (size, closed) in enumerate(zip(self.component_sizes, self.closed, strict=True), start=1):
+            least, kind = _KINDS[closed]
+            if size < least:
                 noun = "vertex" if size == 1 else "vertices"
-                raise CurveError(
-                    f"component {k + 1} has {size} {noun}; a closed polygon needs at least 3 different vertices"
-                )
+                raise CurveError(f"component {k} has {size} {noun}; {kind} needs at least {least} different vertices")
 
-    def __reduce__(self) -> tuple[type["Mesh"], tuple[tuple[int, ...]]]:
+    @classmethod
+    def of_edges(cls, edge_counts: IntArray, closed: tuple[bool, ...]) -> "Mesh":
+        """The mesh whose components have these numbers of edges."""
+        return cls(tuple((edge_counts + ~np.asarray(closed)).tolist()), closed)
+
+    def __reduce__(self) -> tuple[type["Mesh"], tuple[tuple[int, ...], tuple[bool, ...]]]:
         # made anew, because arrays come out of pickles and deep copies writable
-        return Mesh, (self.component_sizes,)
+        return Mesh, (self.component_sizes, self.closed)
 
     @cached_property
     def size(self) -> int:
-        """Number of vertices, which for closed polygons is also the number of edges."""
+        """Number of vertices n."""
         return sum(self.component_sizes)
 
     @cached_property
+    def edges(self) -> int:
+        """Number of edges: that of vertices less that of open components."""
+        return int(self.edge_counts.sum())
+
+    @cached_property
+    def edge_counts(self) -> IntArray:
+        """Number of edges of every component; shape (components,)."""
+        return frozen(np.asarray(self.component_sizes) - ~np.asarray(self.closed))
+
+    @cached_property
+    def all_closed(self) -> bool:
+        """Whether no component is open."""
+        return all(self.closed)
+
+    @cached_property
     def offsets(self) -> IntArray:
-        """Index of the first vertex of each component, and the size at the end; shape (components + 1,)."""
+        """Index of the first vertex of each component, and their number at the end; shape (components + 1,)."""
         return frozen(np.concatenate([[0], np.cumsum(self.component_sizes)]))
 
     @cached_property
+    def edge_offsets(self) -> IntArray:
+        """Index of the first edge of each component, and their number at the end; shape (components + 1,)."""
+        return frozen(np.concatenate([[0], np.cumsum(self.edge_counts)]))
+
+    @cached_property
     def slices(self) -> tuple[slice, ...]:
-        """The vertices (and edges) of each component, as slices."""
-        return tuple(slice(int(a), int(b)) for a, b in zip(self.offsets[:-1], self.offsets[1:], strict=True))
+        """The vertices of each component, as slices."""
+        return _slices(self.offsets)
+
+    @cached_property
+    def edge_slices(self) -> tuple[slice, ...]:
+        """The edges of each component, as slices."""
+        return _slices(self.edge_offsets)
+
+    @cached_property
+    def ends(self) -> IntArray:
+        """First and last vertex of every open component; shape (open components, 2)."""
+        is_open = ~np.asarray(self.closed)
+        return frozen(np.stack([self.offsets[:-1], self.offsets[1:] - 1], axis=1)[is_open])
 
     @cached_property
     def tails(self) -> IntArray:
-        """Tail vertex I↓ of each edge; shape (n,)."""
-        return frozen(np.arange(self.size))
+        """Tail vertex I↓ of each edge; shape (edges,)."""
+        return frozen(np.delete(np.arange(self.size), self.ends[:, 1]))
 
     @cached_property
     def heads(self) -> IntArray:
-        """Head vertex I↑ of each edge; shape (n,)."""
-        heads = np.arange(1, self.size + 1)
-        heads[self.offsets[1:] - 1] = self.offsets[:-1]
-        return frozen(heads)
+        """Head vertex I↑ of each edge; shape (edges,)."""
+        return frozen(self.cycle[self.tails])
+
+    @cached_property
+    def cycle(self) -> IntArray:
+        """The vertex after each vertex, after the last one of a component its first, closed or not; shape (n,)."""
+        after = np.arange(1, self.size + 1)
+        after[self.offsets[1:] - 1] = self.offsets[:-1]
+        return frozen(after)
+
+    @cached_property
+    def anticycle(self) -> IntArray:
+        """The vertex before each vertex, before the first one of a component its last, closed or not; shape (n,)."""
+        return frozen(_with(np.empty(self.size, dtype=np.intp), self.cycle))
+
+    @cached_property
+    def outgoing(self) -> IntArray:
+        """The edge that begins at each vertex; where an arc ends, the one that ends there.  Shape (n,)."""
+        return frozen(_with(_with(np.empty(self.size, dtype=np.intp), self.heads), self.tails))
+
+    @cached_property
+    def incoming(self) -> IntArray:
+        """The edge that ends at each vertex; where an arc begins, the one that begins there.  Shape (n,)."""
+        return frozen(_with(_with(np.empty(self.size, dtype=np.intp), self.tails), self.heads))
+
+    @cached_property
+    def next(self) -> IntArray:
+        """The edge after each edge; the last one of an arc itself.  Shape (edges,)."""
+        return frozen(self.outgoing[self.heads])
 
     @cached_property
     def previous(self) -> IntArray:
-        """The edge before each edge (whose head is this edge's tail); shape (n,)."""
-        previous = np.empty(self.size, dtype=np.intp)
-        previous[self.heads] = np.arange(self.size)
-        return frozen(previous)
+        """The edge before each edge; the first one of an arc itself.  Shape (edges,)."""
+        return frozen(self.incoming[self.tails])
+
+    @cached_property
+    def inner(self) -> IntArray:
+        """The vertices where two edges meet: all but the ends of arcs."""
+        return frozen(np.delete(np.arange(self.size), self.ends.ravel()))
 
     @cached_property
     def component(self) -> IntArray:
-        """Component of each vertex (and edge); shape (n,)."""
+        """Component of each vertex; shape (n,)."""
         return frozen(np.repeat(np.arange(len(self.component_sizes)), self.component_sizes))
 
     @cached_property
+    def edge_component(self) -> IntArray:
+        """Component of each edge; shape (edges,)."""
+        return frozen(np.repeat(np.arange(len(self.component_sizes)), self.edge_counts))
+
+    @cached_property
     def difference(self) -> sp.csr_array:
-        """Sparse matrix D of edge differences, (D U)_I = U(I↑) − U(I↓); shape (n, n)."""
+        """Sparse matrix D of edge differences, (D U)_I = U(I↑) − U(I↓); shape (edges, n)."""
         return self._incidence(-1.0, 1.0)
 
     @cached_property
     def average(self) -> sp.csr_array:
-        """Sparse matrix of midpoint values, (U(I↑) + U(I↓))/2; shape (n, n)."""
+        """Sparse matrix of midpoint values, (U(I↑) + U(I↓))/2; shape (edges, n)."""
         return self._incidence(0.5, 0.5)
 
     def interpolation(self, t: float) -> sp.csr_array:
@@ -105,28 +181,63 @@ class Mesh:
         return self._incidence(1.0 - t, t)
 
     def _incidence(self, tail: float, head: float) -> sp.csr_array:
-        edges = np.arange(self.size)
+        edges = np.arange(self.edges)
         return sp.csr_array(
             (
-                np.concatenate([np.full(self.size, tail), np.full(self.size, head)]),
+                np.concatenate([np.full(self.edges, tail), np.full(self.edges, head)]),
                 (np.concatenate([edges, edges]), np.concatenate([self.tails, self.heads])),
             ),
-            shape=(self.size, self.size),
+            shape=(self.edges, self.size),
         )
 
     def index_distance(self, i: IntArray, j: IntArray) -> IntArray:
-        """Number of edges from edge ``i`` to edge ``j`` along the curve, either way round.
+        """Number of edges from edge ``i`` to edge ``j`` along the curve, the shorter way round where there are two.
 
         Edges of different components are further apart than any two of the same: they get the mesh's size.
         """
         gap = np.abs(i - j)
-        length = np.asarray(self.component_sizes)[self.component[i]]
-        return np.where(self.component[i] == self.component[j], np.minimum(gap, length - gap), self.size)
+        length = self._periods[self.edge_component[i]]
+        together = self.edge_component[i] == self.edge_component[j]
+        return np.where(together, np.minimum(gap, length - gap), self.size)
+
+    @cached_property
+    def _periods(self) -> IntArray:
+        """Edges once round each component; twice the mesh's size where there is no way round."""
+        return np.where(self.closed, self.edge_counts, 2 * self.size)
 
     def disjoint(self, i: IntArray, j: IntArray) -> BoolArray:
         """Whether the closures of edges ``i`` and ``j`` are disjoint: no vertex in common."""
         return np.asarray(self.index_distance(i, j) > 1)
 
     def scatter(self, at_tails: FloatArray, at_heads: FloatArray) -> FloatArray:
-        """Add values given at the tail and the head of each edge up at the vertices; shapes (n,) or (n, m)."""
-        return np.asarray(at_tails + at_heads[self.previous])  # edge I begins at vertex I
+        """Add values given at the tail and the head of each edge up at the vertices; (edges, …) to (n, …)."""
+        total = self.at_tails(at_tails)
+        total[self.heads] += at_heads  # no vertex is the head of two edges
+        return total
+
+    def at_tails(self, values: FloatArray, elsewhere: FloatArray | float = 0.0) -> FloatArray:
+        """Values of the edges at the vertices where they begin, others where an arc ends; (edges, …) to (n, …)."""
+        placed = np.empty((self.size, *values.shape[1:]))
+        placed[...] = elsewhere
+        placed[self.tails] = values
+        return placed
+
+
+def _flags(closed: object, components: int) -> tuple[bool, ...]:
+    """Whether each component is closed, all of them where nothing is said."""
+    flags = tuple(closed) if isinstance(closed, tuple | list | np.ndarray) else None
+    if flags == ():
+        return (True,) * components
+    if flags is None or len(flags) != components or not all(isinstance(flag, bool | np.bool_) for flag in flags):
+        raise CurveError(f"closed is {closed!r:.60}; it must have True or False for each of {components} components")
+    return tuple(map(bool, flags))
+
+
+def _slices(offsets: IntArray) -> tuple[slice, ...]:
+    return tuple(slice(int(a), int(b)) for a, b in pairwise(offsets))
+
+
+def _with(edge_at: IntArray, vertices: IntArray) -> IntArray:
+    """Enter each edge, or vertex, at a vertex of its own."""
+    edge_at[vertices] = np.arange(len(vertices))
+    return edge_at

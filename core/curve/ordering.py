@@ -7,17 +7,17 @@ from .mesh import Mesh
 
 
 def component_order(mesh: Mesh, points: FloatArray) -> IntArray:
-    """Edges in curve order, the components sorted along a Z-curve through their centres; shape (n,).
+    """Edges in curve order, the components sorted along a Z-curve through their centres; shape (edges,).
 
     ``points`` are the vertices, shape (m, n).
     """
     if len(mesh.component_sizes) < 3:
-        return mesh.tails
+        return np.arange(mesh.edges)
     starts = mesh.offsets[:-1]
     centres = 0.5 * (np.minimum.reduceat(points, starts, axis=1) + np.maximum.reduceat(points, starts, axis=1))
     rank = np.empty(len(starts), dtype=np.intp)
     rank[z_order(centres)] = np.arange(len(starts))
-    return np.argsort(rank[mesh.component], kind="stable")
+    return np.argsort(rank[mesh.edge_component], kind="stable")
 
 
 def z_order(points: FloatArray) -> IntArray:

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from ..errors import CurveOptionError
 from ..types import BoolArray, FloatArray, IntArray
 from .curve import Curve, check_is_curve
-from .distances import arc_distance_of_pairs, arc_positions, points_along
+from .distances import arc_distance_of_vertices, points_along, vertex_positions
 from .mesh import Mesh
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
@@ -67,48 +67,54 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
         )
     spacing = target_spacing(curve, Resolution())
     if vertices is not None:
-        return subdivide(curve, apportion(curve.edge_lengths / spacing, vertices))
+        edges = vertices - len(curve.mesh.ends)
+        return subdivide(curve, apportion(curve.edge_lengths / spacing, edges))
     most = min(max(2 * len(curve), MAX_PER_COMPONENT * _sharers(curve)), MAX_ALTOGETHER)
     return subdivide(curve, affordable_pieces(curve, spacing, most))
 
 
 def subdivide(curve: Curve, pieces: IntArray) -> Curve:
     """Cut every edge I into ``pieces[I]`` equal parts; the original vertices stay as they are."""
-    edge = np.repeat(np.arange(len(curve)), pieces)
+    edge = np.repeat(np.arange(curve.mesh.edges), pieces)
     first = np.concatenate([[0], np.cumsum(pieces)[:-1]])
     t = (np.arange(len(edge)) - first[edge]) / pieces[edge]
-    vertices = curve.vertices[curve.mesh.tails[edge]] + t[:, None] * curve.edge_vectors[edge]
-    return Curve(vertices, Mesh(tuple(int(pieces[s].sum()) for s in curve.mesh.slices)))
+    points = curve.vertices[curve.mesh.tails[edge]] + t[:, None] * curve.edge_vectors[edge]
+    mesh = Mesh.of_edges(np.array([pieces[s].sum() for s in curve.mesh.edge_slices]), curve.mesh.closed)
+    vertices = np.empty((mesh.size, curve.dimension))
+    vertices[mesh.tails] = points
+    vertices[mesh.ends[:, 1]] = curve.vertices[curve.mesh.ends[:, 1]]
+    return Curve(vertices, mesh)
 
 
 def subdivision(coarse: Curve, fine: Curve) -> IntArray | None:
     """The pieces of which `subdivide` makes one polygon from the other; None if there are none."""
     place = {tuple(vertex): k for k, vertex in enumerate(fine.vertices.tolist())}
     at = [place.get(tuple(vertex), -1) for vertex in coarse.vertices.tolist()]
-    if len(coarse.mesh.component_sizes) != len(fine.mesh.component_sizes):
+    if coarse.mesh.closed != fine.mesh.closed:
         return None
-    pairs = zip(coarse.mesh.slices, fine.mesh.slices, strict=True)
-    pieces = np.concatenate([np.diff([*at[old], new.stop]) for old, new in pairs])
-    if pieces.min() < 1 or pieces.sum() != len(fine):
+    ends = zip(coarse.mesh.slices, fine.mesh.slices, coarse.mesh.closed, strict=True)
+    pieces = np.concatenate([np.diff([*at[old], new.stop] if closed else at[old]) for old, new, closed in ends])
+    if pieces.min() < 1 or pieces.sum() != fine.mesh.edges:
         return None
     again = subdivide(coarse, pieces)
     return pieces if again.mesh == fine.mesh and np.array_equal(again.vertices, fine.vertices) else None
 
 
 def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
-    """Largest edge length wanted on every edge: that of the count, or what gaps to other strands allow; shape (n,).
+    """Largest edge length wanted on every edge: that of the count, or what gaps to other strands allow; shape (edges,).
 
     Gaps that allow edges longer than that, or than the longest there is, do not matter and are not looked for.
     """
     base = curve.length / (resolution.vertices or DEFAULT_VERTICES * _sharers(curve))
     pieces = np.ceil(SAMPLES_PER_SPACING * curve.edge_lengths / base).astype(np.intp)
     samples = subdivide(curve, pieces)
-    spacing = np.full(len(curve), base)
+    spacing = np.full(curve.mesh.edges, base)
     longest = min(base, float(curve.edge_lengths.max()))
     allowed = _strand_gaps(samples, resolution.edges_per_gap * longest) / resolution.edges_per_gap
     allowed = np.maximum(allowed, np.finfo(np.float64).eps * base)  # rounded sample points may coincide
     near = allowed < np.inf
-    np.minimum.at(spacing, np.repeat(np.arange(len(curve)), pieces)[near], allowed[near])
+    edge = np.repeat(np.arange(curve.mesh.edges), pieces)[samples.mesh.outgoing]
+    np.minimum.at(spacing, edge[near], allowed[near])
     return spacing
 
 
@@ -118,10 +124,11 @@ def _strand_gaps(curve: Curve, radius: float) -> FloatArray:
     pairs = tree.query_pairs(radius, output_type="ndarray")
     i, j = np.concatenate([pairs, pairs[:, ::-1]]).T  # seen from either end
     distance = _distances(curve, i, j)
-    passing = (distance <= _distances(curve, i, curve.mesh.heads[j])) & (
-        distance <= _distances(curve, i, curve.mesh.previous[j])
+    mesh = curve.mesh
+    passing = (distance <= _distances(curve, i, mesh.heads[mesh.outgoing[j]])) & (
+        distance <= _distances(curve, i, mesh.tails[mesh.incoming[j]])
     )
-    passing &= arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance
+    passing &= arc_distance_of_vertices(curve, i, j) > STRAND_RATIO * distance
     i, j, distance = i[passing], j[passing], distance[passing]
     strands = ~_sides_of_corners(curve, i, j)
     gaps = np.full(len(curve), np.inf)
@@ -138,26 +145,28 @@ def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
 
     A corner, however sharp, looks the same at every scale: shorter edges do not bring neighbours nearer than its sides.
     """
-    start, end = arc_positions(curve, 0.0)[i], _feet(curve, i, j)
+    start, end = vertex_positions(curve)[i], _feet(curve, i, j)
     component = curve.mesh.component[i]
-    length = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])[component]
+    closed, length = np.asarray(curve.mesh.closed)[component], curve.component_lengths[component]
 
     def apart(arc: FloatArray, fraction: float) -> FloatArray:
         """The distance of the ends of the arc's middle part."""
         ends = [points_along(curve, component, start + 0.5 * (1.0 + s * fraction) * arc) for s in (-1, 1)]
         return np.asarray(np.linalg.norm(ends[1] - ends[0], axis=1))
 
-    forward = (end - start) % length
-    closing = [apart(arc, 0.25) < CLOSING_IN * apart(arc, 1.0) for arc in (forward, forward - length)]
+    forward = np.where(closed, (end - start) % length, end - start)
+    other_way = np.where(closed, forward - length, forward)
+    closing = [apart(arc, 0.25) < CLOSING_IN * apart(arc, 1.0) for arc in (forward, other_way)]
     return np.asarray((component == curve.mesh.component[j]) & (closing[0] | closing[1]))
 
 
 def _feet(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
-    """Arc length to the point nearest to vertex ``i`` on the two edges that meet at vertex ``j``, elementwise."""
-    position, found = arc_positions(curve, 0.0)[j], []
-    for edge, base in ((j, position), (curve.mesh.previous[j], position - curve.edge_lengths[curve.mesh.previous[j]])):
+    """Arc length to the point nearest to vertex ``i`` on the edges that meet at vertex ``j``, elementwise."""
+    mesh, found, position = curve.mesh, [], vertex_positions(curve)[j]
+    for edge in (mesh.outgoing[j], mesh.incoming[j]):
         e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
-        chord = curve.vertices[i] - curve.vertices[edge]
+        base = position - np.where(mesh.tails[edge] == j, 0.0, ell)
+        chord = curve.vertices[i] - curve.vertices[mesh.tails[edge]]
         t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
         found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
     (after, ahead), (before, behind) = found
@@ -173,7 +182,7 @@ def affordable_pieces(curve: Curve, spacing: FloatArray, most: int) -> IntArray:
 
     One piece each where the curve has as many already.
     """
-    most, floor = max(len(curve), most), 0.0
+    most, floor = max(len(curve), most) - len(curve.mesh.ends), 0.0
     while True:
         # a little slack, so that a curve that already has the requested spacing stays as it is
         pieces = np.maximum(1.0, np.ceil(curve.edge_lengths / np.maximum(spacing, floor) - 0.1))

@@ -21,24 +21,24 @@ MIN_VERTICES = 16  # edges that a component, or an arc between pins, keeps, if i
 
 
 def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
-    """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (n,)."""
+    """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (edges,)."""
     spacing = target_spacing(curve, resolution)
-    for part in curve.mesh.slices:
-        # one sweep each way, twice round, spreads every minimum as far as it reaches
+    for part, closed in zip(curve.mesh.edge_slices, curve.mesh.closed, strict=True):
+        # one sweep each way, twice round where there is a way round, spreads every minimum as far as it reaches
         for direction in (1, -1):
-            local = np.tile(spacing[part][::direction], 2)
+            local = np.tile(spacing[part][::direction], 2 if closed else 1)
             steps = np.log(GRADING) * np.arange(len(local))
             local = np.exp(np.minimum.accumulate(np.log(local) - steps) + steps)
-            spacing[part] = local[len(local) // 2 :][::direction]
+            spacing[part] = local[part.start - part.stop :][::direction]
     return spacing
 
 
 def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> IntArray:
-    """Vertices that may be removed, no two of them neighbours or next to neighbours, and none of those to be kept."""
-    mesh, ell = curve.mesh, curve.edge_lengths
-    before = mesh.previous  # the edge whose head is the vertex; the vertex's own edge starts there
-    short = (ell[before] < COLLAPSE * spacing[before]) & (ell < COLLAPSE * spacing) & ~holds(mesh, kept)
-    arc_of, room = np.empty(len(ell), dtype=np.intp), []
+    """Vertices that may be removed, no two of them neighbours or next to them, and no ends or those to be kept."""
+    mesh, before, after = curve.mesh, curve.mesh.incoming, curve.mesh.outgoing
+    joined = curve.edge_lengths < COLLAPSE * spacing
+    short = joined[before] & joined[after] & (before != after) & ~holds(mesh, kept)
+    arc_of, room = np.empty(mesh.edges, dtype=np.intp), []
     for number, arc in enumerate(arcs(mesh, kept)):
         arc_of[arc] = number
         room.append(len(arc) - min(len(arc), MIN_VERTICES))
@@ -47,7 +47,7 @@ def superfluous(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) -> 
         size, last, first = part.stop - part.start, -3, None
         for k in np.flatnonzero(short[part]):
             wraps = first is not None and first + size - k < 3
-            arc = arc_of[part.start + k]
+            arc = arc_of[after[part.start + k]]
             if room[arc] > 0 and k - last >= 3 and not wraps:
                 chosen.append(part.start + int(k))
                 first = int(k) if first is None else first
@@ -60,7 +60,8 @@ def onto_chords(curve: Curve, vertices: IntArray) -> FloatArray:
     """All vertices after the given ones have moved onto the chords of their neighbours; shape (n, m)."""
     mesh = curve.mesh
     moved = curve.vertices.copy()
-    before, after = curve.vertices[mesh.tails[mesh.previous[vertices]]], curve.vertices[mesh.heads[vertices]]
+    before = curve.vertices[mesh.tails[mesh.incoming[vertices]]]
+    after = curve.vertices[mesh.heads[mesh.outgoing[vertices]]]
     chord = after - before
     along = np.einsum("ij,ij->i", curve.vertices[vertices] - before, chord) / np.einsum("ij,ij->i", chord, chord)
     moved[vertices] = before + np.clip(along, 0.2, 0.8)[:, None] * chord
@@ -78,7 +79,7 @@ class Remeshed:
     curve
         The new polygon: the same set of points as ``moved``, up to rounding.
     lengths
-        Edge lengths wanted on the new mesh, adding up to the total length of each arc between pins; shape (n',).
+        Edge lengths wanted on the new mesh, adding up to the total of each arc between pins; shape (edges',).
     pins
         Those of the old mesh, on the new one.
     """
@@ -95,7 +96,8 @@ def remesh(curve: Curve, resolution: Resolution, removable: IntArray, spacing: F
     keep = np.ones(len(curve), dtype=bool)
     keep[removable] = False
     coarse = _without(moved, keep)
-    pieces = np.where(coarse.edge_lengths > SPLIT * spacing[keep], np.ceil(coarse.edge_lengths / spacing[keep]), 1.0)
+    wanted = spacing[keep[curve.mesh.tails]]
+    pieces = np.where(coarse.edge_lengths > SPLIT * wanted, np.ceil(coarse.edge_lengths / wanted), 1.0)
     fine = subdivide(coarse, pieces.astype(np.intp))
     held = pins.on(fine)
     return Remeshed(moved, fine, normalised(fine, graded_spacing(fine, resolution), held.vertices), held)
@@ -109,7 +111,7 @@ def needs_remesh(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) ->
 
 def _without(curve: Curve, keep: BoolArray) -> Curve:
     sizes = tuple(int(np.count_nonzero(keep[part])) for part in curve.mesh.slices)
-    return Curve(curve.vertices[keep], Mesh(sizes))
+    return Curve(curve.vertices[keep], Mesh(sizes, curve.mesh.closed))
 
 
 def normalised(curve: Curve, spacing: FloatArray, pins: IntArray) -> FloatArray:

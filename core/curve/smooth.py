@@ -12,7 +12,7 @@ SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its 
 
 
 def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArray = NOWHERE) -> Curve:
-    """The polygon with vertices at equal distances along the periodic cubic splines through those of each component.
+    """The polygon with vertices at equal distances along the cubic splines through those of each component.
 
     Parameters
     ----------
@@ -20,27 +20,29 @@ def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArra
         Its numbers of vertices, for as many components as the curve has.
     pins, places
         Vertices of the curve, ascending, and which ones of the polygon they are; shape (k,).  Distances are equal from
-        one of them to the next; a component without any has its first vertex at the same place.
+        one of them to the next; a closed component without any has its first vertex at the same place, arcs their ends.
     """
     pieces = []
-    for old, new in zip(curve.mesh.slices, mesh.slices, strict=True):
+    for old, new, closed in zip(curve.mesh.slices, mesh.slices, mesh.closed, strict=True):
         own = (pins >= old.start) & (pins < old.stop)
-        anchors = (pins[own] - old.start, places[own] - new.start) if own.any() else (np.zeros(1, dtype=np.intp),) * 2
-        pieces.append(_resampled(curve.vertices[old], new.stop - new.start, *anchors))
+        ends = [] if closed else [[0, 0], [old.stop - old.start - 1, new.stop - new.start - 1]]
+        held = np.stack([pins[own] - old.start, places[own] - new.start], axis=1).tolist()
+        anchors = np.unique([*ends, *held] or [[0, 0]], axis=0)
+        pieces.append(_resampled(curve.vertices[old], closed, new.stop - new.start, *anchors.T))
     return Curve(np.concatenate(pieces), mesh)
 
 
-def _resampled(points: FloatArray, size: int, pins: IntArray, places: IntArray) -> FloatArray:
+def _resampled(points: FloatArray, closed: bool, size: int, pins: IntArray, places: IntArray) -> FloatArray:
     """Points on the spline, as many as wanted, between the given ones that come to be at ``places``; shape (size, m)."""
-    spline = periodic_spline(points)
+    spline = periodic_spline(points) if closed else open_spline(points)
     parameter = sample_parameters(spline)
     arc = arc_lengths(spline(parameter))
-    wanted, at = np.empty(size), arc[SAMPLES * pins]
-    for k, start in enumerate(places):
-        following = (k + 1) % len(places)
-        count = int(places[following] - start - 1) % size + 1
-        length = at[following] - at[k] + (arc[-1] if at[following] <= at[k] else 0.0)
-        wanted[(start + np.arange(count)) % size] = (at[k] + length * np.arange(count) / count) % arc[-1]
+    at, numbers = arc[SAMPLES * pins], places[0] + np.arange(size)
+    if closed:
+        at, places = np.append(at, at[0] + arc[-1]), np.append(places, places[0] + size)
+    wanted = np.empty(size)
+    wanted[numbers % size] = np.interp(numbers, places, at)
+    wanted[wanted > arc[-1]] -= arc[-1]
     return np.asarray(spline(np.interp(wanted, arc, parameter)))
 
 
@@ -48,6 +50,11 @@ def periodic_spline(points: FloatArray) -> CubicSpline:
     """The periodic cubic spline through the vertices of a closed polygon, shape (n, m), by its arc length."""
     closed = np.concatenate([points, points[:1]])
     return CubicSpline(arc_lengths(closed), closed, bc_type="periodic")
+
+
+def open_spline(points: FloatArray) -> CubicSpline:
+    """The natural cubic spline through the vertices of an arc, shape (n, m), by its arc length."""
+    return CubicSpline(arc_lengths(points), points, bc_type="natural")
 
 
 def sample_parameters(spline: CubicSpline) -> FloatArray:

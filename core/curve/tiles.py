@@ -37,7 +37,7 @@ EdgePairIndices = tuple[IntArray, IntArray]
 
 def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None) -> Iterator[Tile]:
     """Cover every unordered pair of edges with disjoint closures exactly once, but for some that are left out."""
-    n = mesh.size
+    n = mesh.edges
     left_out = np.sort(np.empty((2, 0), dtype=np.intp) if without is None else np.stack(without), axis=0)
     left_out = left_out[:, np.argsort(left_out[0])]
     begins = np.searchsorted(left_out[0], np.arange(n + 1))
@@ -53,11 +53,11 @@ def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None) -> Iterator[T
 
 def row_tiles(mesh: Mesh, rows: IntArray, without: EdgePairIndices | None = None) -> Iterator[RowTile]:
     """Cover the pairs of some edges with all others, each edge's in one row, but for pairs that are left out."""
-    height = max(1, ROWS_TIMES_COLUMNS // mesh.size)
+    height = max(1, ROWS_TIMES_COLUMNS // mesh.edges)
     for first in range(0, len(rows), height):
         own = rows[first : first + height]
-        excluded = np.zeros((len(own), mesh.size), dtype=np.bool_)
-        for neighbour in (own, mesh.heads[own], mesh.previous[own]):
+        excluded = np.zeros((len(own), mesh.edges), dtype=np.bool_)
+        for neighbour in (own, mesh.next[own], mesh.previous[own]):
             excluded[np.arange(len(own)), neighbour] = True
         for i, j in () if without is None else (without, without[::-1]):
             row, pair = np.nonzero(own[:, None] == i)
@@ -67,9 +67,9 @@ def row_tiles(mesh: Mesh, rows: IntArray, without: EdgePairIndices | None = None
 
 def _excluded(mesh: Mesh, first: int, last: int) -> BoolArray:
     rows = np.arange(first, last)
-    columns = np.arange(first, mesh.size)
+    columns = np.arange(first, mesh.edges)
     excluded: BoolArray = columns[None, :] <= rows[:, None]
-    for neighbour in (mesh.heads[rows], mesh.previous[rows]):
+    for neighbour in (mesh.next[rows], mesh.previous[rows]):
         inside = neighbour >= first
         excluded[rows[inside] - first, neighbour[inside] - first] = True
     return excluded

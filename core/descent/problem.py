@@ -82,6 +82,11 @@ class Problem:
         return Point(self, self.units.from_user(curve.vertices), curve.vertices)
 
     @property
+    def unconfined(self) -> bool:
+        """Whether every shape of the curves is allowed: they are closed, and no pins hold them, nor do obstacles."""
+        return self.mesh.all_closed and not len(self.constraints.pins) and not self.obstacles
+
+    @property
     def certifiable(self) -> bool:
         """Whether contact is tested: in R² and R³; in more dimensions nothing is knotted."""
         return len(self.units.offset) <= 3

@@ -152,10 +152,11 @@ def with_parts_of(problem: Problem, other: Problem, curve: Curve) -> Point:
 def _target_lengths(start: Curve, options: RelaxOptions, scale: float, pins: IntArray) -> FloatArray:
     """In the program's units, of which one is ``scale`` of the user's."""
     if not isinstance(options.edge_lengths, str):
-        if len(options.edge_lengths) != len(start):
+        given, edges = len(options.edge_lengths), start.mesh.edges
+        if given != edges:
             raise OptionError(
-                f"edge_lengths has {len(options.edge_lengths)} numbers, but the refined curve has {len(start)} edges; "
-                f"give one for each edge, and vertices={len(options.edge_lengths)}"
+                f"edge_lengths has {given} numbers, but the refined curve has {edges} edges; "
+                f"give one for each edge, and vertices={given + len(start) - edges}"
             )
         lengths = np.array(options.edge_lengths) / scale
         _check_spans(start, lengths, pins)

@@ -144,7 +144,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
 
 def _remedy(curve: Curve) -> str:
     """What to do about a singular matrix: parts too small for their distances, or else strands that are too near."""
-    lengths = np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices])
+    lengths = curve.component_lengths
     shortest, width = int(lengths.argmin()), float(np.ptp(curve.vertices, axis=0).max())
     if width < WIDTHS * lengths[shortest]:
         return "move near strands apart"

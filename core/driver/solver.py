@@ -46,7 +46,8 @@ class Solver:
         OptionError
             If an option names something unknown, or does not go together with the solver that is asked for.
         """
-        return cls(options, _may_be_hierarchical(options) and (options.solver == "hierarchical" or _pays(curve)))
+        hierarchical = _may_be_hierarchical(options) and (options.solver == "hierarchical" or _pays(curve))
+        return cls(options, hierarchical and curve.mesh.all_closed)
 
     @classmethod
     def of_problem(cls, options: RelaxOptions, problem: Problem) -> "Solver":

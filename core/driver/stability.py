@@ -52,11 +52,9 @@ def stability(point: Point, count: int = 20) -> Stability:
 
 def _tangent_basis(constraints: ConstraintDerivative) -> FloatArray:
     """Orthonormal basis of ker DΦ, 0 at pins, as columns; shape (n·m, unknowns that are free less the rows of DΦ)."""
-    n, m, count = len(constraints.masses), constraints.tangents.shape[1], constraints.count
+    (n, m), count = constraints.shape, constraints.count
     free = np.flatnonzero(np.repeat(~holds(constraints.mesh, constraints.pins), m))
-    transposed = np.empty((n * m, count))
-    for k, unit in enumerate(np.eye(count)):
-        transposed[:, k] = constraints.apply_transpose(unit).ravel()
+    transposed = np.stack([constraints.apply_transpose(unit).ravel() for unit in np.eye(count)], axis=1)
     basis = np.zeros((n * m, len(free) - count))
     basis[free] = qr(transposed[free])[0][:, count:]
     return basis

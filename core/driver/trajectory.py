@@ -8,21 +8,22 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..curve import Curve
+from ..curve import Curve, Mesh
 from ..errors import MobiusFlowError, OutputError
 from ..obstacle import Obstacle
 from ..system.files import atomic_write
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 from .iterate import Iterate
 
 
 class Trajectory:
     """Frames between which all vertices move on straight lines, collected from iterates.
 
-    Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, …; a new stage begins
-    where the mesh changes.  What was avoided is in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``,
-    shape (f, 3) or (f, 2), ….  Coordinates are the user's, in double: what was proved is about exactly these numbers.
-    Where the run came from is kept as JSON in ``provenance``, an array of one string, which `verify` does not look at.
+    Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, … and, unless all
+    components are closed, ``component_closed_000``, … of truth values; a new stage begins where the mesh changes.
+    What was avoided is in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``, shape (f, 3) or (f, 2),
+    ….  Coordinates are the user's, in double: what was proved is about exactly these numbers.  Where the run came from
+    is kept as JSON in ``provenance``, an array of one string, which `verify` does not look at.
 
     Parameters
     ----------
@@ -34,7 +35,7 @@ class Trajectory:
 
     def __init__(self, provenance: Mapping[str, object] | None = None, obstacles: Sequence[Obstacle] = ()) -> None:
         self._provenance, self._obstacles = provenance, obstacles
-        self._stages: list[tuple[tuple[int, ...], list[FloatArray]]] = []
+        self._stages: list[tuple[Mesh, list[FloatArray]]] = []
         self._last: Curve | None = None
         self._last_index = -1
 
@@ -57,7 +58,7 @@ class Trajectory:
         if iterate.path:
             self._stages[-1][1].extend(iterate.path)
         else:  # the start, or the same curve on another mesh
-            self._stages.append((iterate.curve.mesh.component_sizes, [iterate.curve.vertices]))
+            self._stages.append((iterate.curve.mesh, [iterate.curve.vertices]))
         self._last, self._last_index = iterate.curve, iterate.index
 
     def _follows(self, iterate: Iterate) -> bool:
@@ -65,17 +66,19 @@ class Trajectory:
         fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
         return iterate.index == self._last_index + 1 and fits
 
-    def arrays(self) -> dict[str, FloatArray | IntArray | NDArray[np.str_]]:
+    def arrays(self) -> dict[str, FloatArray | IntArray | BoolArray | NDArray[np.str_]]:
         """The arrays of the file, by name."""
-        named: dict[str, FloatArray | IntArray | NDArray[np.str_]] = {}
+        named: dict[str, FloatArray | IntArray | BoolArray | NDArray[np.str_]] = {}
         if self._provenance is not None:
             named["provenance"] = np.array(json.dumps(self._provenance))
         for k, obstacle in enumerate(self._obstacles):
             named[f"obstacle_{k:03d}_vertices"] = obstacle.vertices
             named[f"obstacle_{k:03d}_faces"] = obstacle.faces
-        for k, (sizes, frames) in enumerate(self._stages):
+        for k, (mesh, frames) in enumerate(self._stages):
             named[f"stage_{k:03d}"] = np.stack(frames)
-            named[f"component_sizes_{k:03d}"] = np.array(sizes, dtype=np.intp)
+            named[f"component_sizes_{k:03d}"] = np.array(mesh.component_sizes, dtype=np.intp)
+            if not mesh.all_closed:  # so that files of closed curves are as they have always been
+                named[f"component_closed_{k:03d}"] = np.array(mesh.closed)
         return named
 
     def save(self, path: str | os.PathLike[str]) -> None:

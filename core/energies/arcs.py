@@ -1,15 +1,15 @@
 """Distances along the curve between quadrature points, and the derivatives of functions of them by edge lengths.
 
-ϱ of points on the edges I < J of one component is the shorter of the two arcs between them.  Its derivative by
-the length of an edge is 1 where the edge lies on that arc, a fraction for I and J themselves, else 0; at the
-kink, where both arcs are equally long, the mean of the two.  Summed over N² pairs with weights this needs only
-the weights' sums over rows and columns and running sums along the curve.
+ϱ of points on the edges I < J of one component is the shorter of the two arcs between them; where a component is open
+the other one counts as infinitely long.  Its derivative by the length of an edge is 1 where the edge lies on that arc,
+a fraction for I and J themselves, else 0; at the kink, where both arcs are equally long, the mean of the two.  Summed
+over N² pairs with weights this needs only the weights' sums over rows and columns and running sums along the curve.
 """
 
 import numpy as np
 
 from ..curve import Curve
-from ..curve.distances import arc_positions
+from ..curve.distances import arc_positions, periods
 from ..curve.tiles import Tile
 from ..types import BoolArray, FloatArray
 
@@ -22,9 +22,9 @@ class Arcs:
     def __init__(self, curve: Curve) -> None:
         mesh, ell = curve.mesh, curve.edge_lengths
         self.ell = ell
-        self.component = mesh.component
+        self.component = mesh.edge_component
         self.start = arc_positions(curve, 0.0)
-        self.total = np.array([ell[s].sum() for s in mesh.slices])
+        self.total = periods(curve)
 
     def distances(self, tile: Tile, t_row: float, t_column: float) -> FloatArray:
         """ϱ between points at ``t_row`` of the tile's rows and ``t_column`` of its columns; inf between components."""
@@ -38,7 +38,7 @@ class Arcs:
         """1 where the arc from row to column in the direction of the curve is the shorter one, 0 where the other is."""
         gap, _ = self._gaps(tile, t_row, t_column)
         total = self.total[self.component[tile.rows], None]
-        excess = (total - 2.0 * gap) / total
+        excess = 1.0 - 2.0 * gap / total
         return np.where(np.abs(excess) < KINK, 0.5, np.where(excess > 0.0, 1.0, 0.0))
 
     def _gaps(self, tile: Tile, t_row: float, t_column: float) -> tuple[FloatArray, BoolArray]:
@@ -80,5 +80,5 @@ class ArcDerivative:
         self._at_edges[columns] += (1.0 - t_column) * around_columns
 
     def by_length(self) -> FloatArray:
-        """The sums, shape (n,)."""
+        """The sums, shape (edges,)."""
         return np.asarray(self._at_edges + np.cumsum(self._steps)[:-1] + self._around[self._arcs.component])

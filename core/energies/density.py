@@ -21,8 +21,8 @@ class PointSet(NamedTuple):
     """One quadrature point per edge."""
 
     t: float  # parameter on the edge, from 0 at its tail to 1 at its head
-    x: FloatArray  # the points, taken from the curve's centre so that their products keep their digits; (n, m)
-    tau: FloatArray  # unit tangents, (n, m)
+    x: FloatArray  # the points, taken from the curve's centre so that their products keep their digits; (edges, m)
+    tau: FloatArray  # unit tangents, (edges, m)
 
 
 class PointPairs:
@@ -87,7 +87,7 @@ class Density(Protocol):
 
     @property
     def constant(self) -> float:
-        """What the energy has besides the integral, per component."""
+        """What the energy has besides the integral, per closed component; arcs have shares of it (`components`)."""
 
     @property
     def scale_exponent(self) -> float:

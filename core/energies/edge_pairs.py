@@ -75,7 +75,7 @@ def _polar_form(a: Combination, b: Combination, m: int) -> FloatArray:
 def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> FloatArray:
     """Derivative by the vertices, shape (n, m), from those by (Δ, e, f) of pairs (i, j) of edges, shape (k, 3m)."""
     by_delta, by_e, by_f = np.split(first, 3, axis=1)
-    by_midpoint, by_edge = (np.zeros((mesh.size, by_delta.shape[1])) for _ in range(2))
+    by_midpoint, by_edge = (np.zeros((mesh.edges, by_delta.shape[1])) for _ in range(2))
     np.add.at(by_midpoint, i, by_delta)
     np.subtract.at(by_midpoint, j, by_delta)
     np.add.at(by_edge, i, by_e)

@@ -1,6 +1,6 @@
 """Energies ∬ F by k-point quadrature on pairs of edges, eq. (40) of [RS21].
 
-E = constant · components + Σ W_IJ over ordered pairs of edges with disjoint closures,
+E = constant · components + Σ W_IJ over ordered pairs of edges with disjoint closures (arcs count as in `components`),
 W_IJ = ℓ_I ℓ_J Σ_ij ω_i ω_j F(x_I(t_i), x_J(t_j)),  x_I(t) = (1 − t) P(I↓) + t P(I↑).
 """
 
@@ -14,6 +14,7 @@ from ..curve.distances import points_at
 from ..curve.tiles import Tile, pair_tiles
 from ..quadrature import Rule
 from ..types import FloatArray
+from .components import ComponentShares
 from .density import Density, PointPairs, PointSet
 from .kpoint_sums import KPointSums
 
@@ -61,11 +62,12 @@ class KPointEnergy:
         total = 0.0
         for tile, x, y, area in self._pairs(curve, sums):
             total += sums.add(tile, x, y, area, self.density)
-        return self._energy(curve, total), 2.0 * sums.at_vertices(self.arc_derivative)
+        of_components = self.density.constant * ComponentShares(curve).derivative()
+        return self._energy(curve, total), 2.0 * sums.at_vertices(self.arc_derivative) + of_components
 
     def _energy(self, curve: Curve, total: float) -> float:
         """The energy from the sum over unordered pairs."""
-        return self.density.constant * len(curve.mesh.component_sizes) + 2.0 * total
+        return self.density.constant * ComponentShares(curve).value() + 2.0 * total
 
     def _pairs(self, curve: Curve, sums: KPointSums) -> Iterator[tuple[Tile, PointSet, PointSet, FloatArray]]:
         """All pairs of quadrature points, with their weights ω_i ω_j ℓ_I ℓ_J, 0 for edges with a common vertex."""

@@ -16,8 +16,8 @@ class KPointSums:
         self.arcs = Arcs(curve)
         self.tau = curve.edge_vectors / curve.edge_lengths[:, None]
         self._mesh = curve.mesh
-        self._by_tail, self._by_head, self._by_tau = (np.zeros_like(curve.vertices) for _ in range(3))
-        self._by_length = np.zeros(len(curve))
+        self._by_tail, self._by_head, self._by_tau = (np.zeros_like(curve.edge_vectors) for _ in range(3))
+        self._by_length = np.zeros_like(curve.edge_lengths)
         self._by_arc = ArcDerivative(self.arcs)
 
     def add(self, tile: Tile, x: PointSet, y: PointSet, area: FloatArray, density: Density) -> float:

@@ -1,6 +1,6 @@
 """The Möbius energy without arc distances, by the midpoint rule (Section 6.1.1 of [RS21]).
 
-E = 4·components + Σ W_IJ over ordered pairs of edges with disjoint closures, with
+E = 4·components + Σ W_IJ over ordered pairs of edges with disjoint closures (an arc counts as in `components`), with
 
     W_IJ = (ℓ_I ℓ_J + ⟨e_I, e_J⟩) s − 2 ⟨Δ, e_I⟩ ⟨Δ, e_J⟩ s²,   Δ = m_I − m_J,  s = 1/|Δ|²,
 
@@ -15,9 +15,12 @@ from ..curve import Curve
 from ..curve.tiles import EdgePairIndices, pair_tiles, row_tiles
 from ..quadrature import MIDPOINT
 from ..types import FloatArray, IntArray
+from .components import ComponentShares
 from .moebius_hessian import hessian
 from .moebius_hessian_product import hessian_product
 from .moebius_pairs import DerivativeSums, Edges, Pairs
+
+CONSTANT = 4.0  # of a closed component
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,15 +53,16 @@ class MoebiusEnergy:
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
         edges = Edges.of(curve)
-        total, sums = 0.0, DerivativeSums.zeros(*curve.vertices.shape)
+        total, sums = 0.0, DerivativeSums.zeros(*curve.edge_vectors.shape)
         for tile in pair_tiles(curve.mesh, self.without):
             pairs = Pairs.of(edges, tile)
             total += pairs.energy()
             sums.add(tile.rows, tile.columns, pairs.coefficients(), edges.vectors)
-        return energy_of_pairs(curve, total), 2.0 * sums.at_vertices(curve.mesh, edges.tau)
+        derivative = 2.0 * sums.at_vertices(curve.mesh, edges.tau) + CONSTANT * ComponentShares(curve).derivative()
+        return energy_of_pairs(curve, total), derivative
 
     def row_energies(self, curve: Curve, rows: IntArray) -> FloatArray:
-        """Σ_J W_IJ for some edges I, shape (rows,): over all edges these add up to E − 4·components."""
+        """Σ_J W_IJ for some edges I, shape (rows,): over all edges these add up to E without the components' shares."""
         edges = Edges.of(curve)
         return np.concatenate(
             [Pairs.of(edges, tile).row_energies() for tile in row_tiles(curve.mesh, rows, self.without)]
@@ -66,13 +70,17 @@ class MoebiusEnergy:
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative D²E, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
-        return hessian(curve, self.without)
+        matrix = hessian(curve, self.without)
+        columns, shares = ComponentShares(curve).hessian_columns()
+        matrix[:, columns] += CONSTANT * shares
+        return matrix
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
-        return hessian_product(curve, v, self.without)
+        shares = ComponentShares(curve).second_derivative(v)
+        return hessian_product(curve, v, self.without) + CONSTANT * shares
 
 
 def energy_of_pairs(curve: Curve, pairs: float) -> float:
     """The energy from the sum over unordered pairs."""
-    return 4.0 * len(curve.mesh.component_sizes) + 2.0 * pairs
+    return CONSTANT * ComponentShares(curve).value() + 2.0 * pairs

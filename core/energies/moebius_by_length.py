@@ -9,12 +9,12 @@ from .moebius_pairs import Edges, Pairs
 
 
 def moebius_by_length(curve: Curve) -> FloatArray:
-    """Energy of each edge with all others per unit of length, (Σ_J W_IJ)/ℓ_I, shape (n,); in 1/length.
+    """Energy of each edge with all others per unit of length, (Σ_J W_IJ)/ℓ_I, shape (edges,); in 1/length.
 
-    Times the lengths it sums up to the energy less 4 for each component, see `moebius`.
+    Times the lengths it sums up to the energy less what the components add, see `components`.
     """
     edges = Edges.of(curve)
-    energy = np.zeros(len(curve))
+    energy = np.zeros(curve.mesh.edges)
     for tile in pair_tiles(curve.mesh):
         g, p, q, s = Pairs.of(edges, tile)
         w = g * s - 2.0 * p * q

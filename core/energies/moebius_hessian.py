@@ -24,11 +24,11 @@ from .moebius_pairs import Edges, Pairs
 
 
 def hessian(curve: Curve, without: EdgePairIndices | None = None) -> FloatArray:
-    """D²E of the default energy without some pairs, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
+    """D² of Σ W_IJ without some pairs, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
     edges = Edges.of(curve)
     coupling = CouplingPlanes(curve)
-    own = OwnBlocks.zeros(*curve.vertices.shape)
-    lengths = np.zeros(len(curve))  # Σ_J s_IJ ℓ_J
+    own = OwnBlocks.zeros(*curve.edge_vectors.shape)
+    lengths = np.zeros(curve.mesh.edges)  # Σ_J s_IJ ℓ_J
     for tile in pair_tiles(curve.mesh, without):
         pairs = Pairs.of(edges, tile)
         lengths[tile.rows] += pairs.s @ edges.vectors.ell[tile.columns]

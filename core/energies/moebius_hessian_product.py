@@ -20,8 +20,8 @@ def hessian_product(curve: Curve, v: FloatArray, without: EdgePairIndices | None
     """D²E v for ``v`` of shape (n, m), E without some pairs; shape (n, m)."""
     edges = Edges.of(curve)
     motion = _Motion.of(curve, edges, v)
-    sums = DerivativeSums.zeros(*v.shape)
-    lengths = np.zeros(len(v))  # Σ_J s ℓ_J
+    sums = DerivativeSums.zeros(*curve.edge_vectors.shape)
+    lengths = np.zeros(curve.mesh.edges)  # Σ_J s ℓ_J
     for tile in pair_tiles(curve.mesh, without):
         pairs = Pairs.of(edges, tile)
         lengths[tile.rows] += pairs.s @ edges.vectors.ell[tile.columns]
@@ -35,7 +35,7 @@ def hessian_product(curve: Curve, v: FloatArray, without: EdgePairIndices | None
 
 
 class _Motion(NamedTuple):
-    """Derivatives along v of the edges' vectors, and factors of the pairs' scalars, each (n, 2m + 1) or (n, 2m + 2)."""
+    """Derivatives along v of the edges' vectors, and factors of the pairs' scalars, of 2m + 1 or 2m + 2 columns."""
 
     vectors: Vectors
     delta: tuple[FloatArray, FloatArray]  # their product is ⟨Δ, Δ̇⟩
@@ -45,7 +45,7 @@ class _Motion(NamedTuple):
     @classmethod
     def of(cls, curve: Curve, edges: Edges, v: FloatArray) -> "_Motion":
         tails, heads = v[curve.mesh.tails], v[curve.mesh.heads]
-        still, one = edges.vectors, np.ones((len(v), 1))
+        still, one = edges.vectors, np.ones((len(tails), 1))
         vectors = Vectors.of(heads - tails, _dot(edges.tau, heads - tails)[:, 0], 0.5 * (heads + tails))
         e, m = vectors.e, vectors.m
         outward, along = _dot(still.m, m), _dot(still.m, e) + _dot(m, still.e)

@@ -10,7 +10,7 @@ from .kpoint import KPointEnergy
 
 @dataclass(frozen=True)
 class IshizekiNagasawaDensity:
-    """F = (1 + ⟨τ_x, τ_y⟩ − 2 ⟨d, τ_x⟩⟨d, τ_y⟩/r²)/r² = (1 − cos α)/r² ≥ 0, so E = 4 + ∬ F."""
+    """F = (1 + ⟨τ_x, τ_y⟩ − 2 ⟨d, τ_x⟩⟨d, τ_y⟩/r²)/r² = (1 − cos α)/r² ≥ 0, so E = 4 + ∬ F on a closed curve."""
 
     constant = 4.0
     scale_exponent = -2.0

@@ -11,14 +11,14 @@ from ..types import FloatArray
 
 
 class Vectors(NamedTuple):
-    """What the derivative is linear in: edge vectors with lengths, midpoints with ones; each of shape (n, m + 1)."""
+    """What the derivative is linear in: edge vectors with lengths, midpoints with ones; each (edges, m + 1)."""
 
     e_ell: FloatArray
     m_one: FloatArray
 
     @classmethod
     def of(cls, e: FloatArray, ell: FloatArray, m: FloatArray) -> "Vectors":
-        """Stack edge vectors (n, m), lengths (n,) and midpoints (n, m), these taken from their mean.
+        """Stack edge vectors (edges, m), lengths (edges,) and midpoints (edges, m), these taken from their mean.
 
         Products of coordinates lose digits far from the origin, so the origin comes to the curve.
         """
@@ -26,17 +26,17 @@ class Vectors(NamedTuple):
 
     @property
     def e(self) -> FloatArray:
-        """Edge vectors; shape (n, m)."""
+        """Edge vectors; shape (edges, m)."""
         return self.e_ell[:, :-1]
 
     @property
     def m(self) -> FloatArray:
-        """Midpoints from their mean; shape (n, m)."""
+        """Midpoints from their mean; shape (edges, m)."""
         return self.m_one[:, :-1]
 
     @property
     def ell(self) -> FloatArray:
-        """Lengths; shape (n,)."""
+        """Lengths; shape (edges,)."""
         return self.e_ell[:, -1]
 
 
@@ -44,8 +44,8 @@ class Edges(NamedTuple):
     """The edges of a curve."""
 
     vectors: Vectors
-    tau: FloatArray  # unit tangents, (n, m)
-    foot: FloatArray  # (−e, ⟨m, e⟩), (n, m + 1): times (m_J, 1) it is ⟨m_I − m_J, e_I⟩
+    tau: FloatArray  # unit tangents, (edges, m)
+    foot: FloatArray  # (−e, ⟨m, e⟩), (edges, m + 1): times (m_J, 1) it is ⟨m_I − m_J, e_I⟩
 
     @classmethod
     def of(cls, curve: Curve) -> "Edges":
@@ -119,9 +119,9 @@ class DerivativeSums(NamedTuple):
     by_length: FloatArray
 
     @classmethod
-    def zeros(cls, n: int, m: int) -> "DerivativeSums":
+    def zeros(cls, edges: int, m: int) -> "DerivativeSums":
         """Sums to be added to."""
-        return cls(np.zeros((n, m)), np.zeros((n, m)), np.zeros(n))
+        return cls(np.zeros((edges, m)), np.zeros((edges, m)), np.zeros(edges))
 
     def add(self, rows: slice, columns: slice, coefficients: Coefficients, vectors: Vectors) -> None:
         """Add the pairs of some rows and columns, seen from I and seen from J."""
@@ -142,7 +142,7 @@ class DerivativeSums(NamedTuple):
         self.by_length[own] += sl[:, d]
 
     def row_energies(self, vectors: Vectors) -> FloatArray:
-        """Σ_J W_IJ for each edge I, shape (n,): the derivative itself tells, W_IJ being linear in (e_I, ℓ_I)."""
+        """Σ_J W_IJ for each edge I, shape (edges,): the derivative itself tells, W_IJ being linear in (e_I, ℓ_I)."""
         return np.asarray(np.einsum("ij,ij->i", self.by_edge, vectors.e) + self.by_length * vectors.ell)
 
     def at_vertices(self, mesh: Mesh, tau: FloatArray) -> FloatArray:

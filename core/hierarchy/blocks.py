@@ -72,7 +72,7 @@ class BlockList:
         """How many of all pairs of edges are near ones, neighbours among them; they are not listed for that."""
         first, second = ((self.tree.stop - self.tree.start)[side] for side in self.leaves)
         count = float(np.where(self.leaves[0] == self.leaves[1], 0.5, 1.0) @ (first * second))
-        return count / (0.5 * self.tree.mesh.size**2)
+        return count / (0.5 * self.tree.mesh.edges**2)
 
     @property
     def mostly_near(self) -> bool:
@@ -89,7 +89,7 @@ class BlockList:
         """
         if without is None or not without[0].size:
             return self.i, self.j
-        n = self.tree.mesh.size
+        n = self.tree.mesh.edges
         code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
         place = np.searchsorted(code, left_out)
         if not np.array_equal(code[place[place < len(code)]], left_out):
@@ -166,7 +166,7 @@ def _edge_pairs(tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
     count = np.maximum(end - begin, 0)
     i, j = tree.order[np.repeat(row, count)], tree.order[_ranges(begin, count)]
     if np.any(np.diff(tree.order) < 0):
-        i, j = np.divmod(np.sort(_code(i, j, tree.mesh.size)), tree.mesh.size)
+        i, j = np.divmod(np.sort(_code(i, j, tree.mesh.edges)), tree.mesh.edges)
     return i, j
 
 
@@ -191,7 +191,7 @@ def _without_neighbours(
     position = np.empty_like(order)
     position[order] = np.arange(len(order))
     # of two neighbours the later one comes right after, or is the last of the component whose first the other one is
-    begin = begin + (begin == position[mesh.heads[order]][row])
+    begin = begin + (begin == position[mesh.next[order]][row])
     last = position[mesh.previous[order]][row]
     cut = np.flatnonzero((begin <= last) & (last < end))
     return (

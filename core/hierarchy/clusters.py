@@ -16,14 +16,14 @@ class ClusterTree:
 
     The order follows the curve, one component after the other; only their succession is changed where there are three
     or more, so that neighbours in space come next to each other.  A cluster is a part of one component, or several
-    whole ones: however many small components there are, the tree has O(n) clusters and O(log n) levels.
+    whole ones: however many small components there are, the tree of n edges has O(n) clusters and O(log n) levels.
 
     Attributes
     ----------
     mesh
         Connectivity.
     order
-        Edge at each position; shape (n,).
+        Edge at each position; shape (edges,).
     start, stop
         Cluster c holds the edges ``order[start[c]:stop[c]]``; shape (clusters,).
     child
@@ -94,7 +94,7 @@ class ClusterTree:
         return 0.5 * (low + high), 0.5 * np.sqrt(np.einsum("ij,ij->i", diagonal, diagonal))
 
     def _reduced(self, function: np.ufunc, values: FloatArray) -> FloatArray:
-        """A function of two numbers taken over all edges of each cluster; from values (n, k) at the positions."""
+        """A function of two numbers taken over all edges of each cluster; from values (edges, k) at the positions."""
         reduced = np.empty((self.size, values.shape[1]))
         leaves = self.leaves()
         reduced[leaves] = function.reduceat(values, self.start[leaves])
@@ -105,7 +105,7 @@ class ClusterTree:
 
 def _component_ends(mesh: Mesh, order: IntArray) -> IntArray:
     """Positions at which components end."""
-    return np.append(np.flatnonzero(np.diff(mesh.component[order])) + 1, mesh.size)
+    return np.append(np.flatnonzero(np.diff(mesh.edge_component[order])) + 1, mesh.edges)
 
 
 def _middle(start: IntArray, stop: IntArray, ends: IntArray) -> IntArray:

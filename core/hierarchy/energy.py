@@ -10,8 +10,9 @@ import numpy as np
 
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices
+from ..energies.components import ComponentShares
 from ..energies.energy import Energy
-from ..energies.moebius import MoebiusEnergy, energy_of_pairs
+from ..energies.moebius import CONSTANT, MoebiusEnergy, energy_of_pairs
 from ..energies.moebius_pairs import DerivativeSums, Edges
 from ..errors import OptionError
 from ..quadrature import MIDPOINT
@@ -107,14 +108,14 @@ class HierarchicalMoebiusEnergy:
         unit, exponent = _unit_sized(curve)
         near, far = self._fields(blocks, unit)
         value, sums = _value_and_sums(near, far)
-        derivative = np.ldexp(2.0 * sums.at_vertices(curve.mesh, near.edges.tau), -exponent)
-        return energy_of_pairs(curve, value), derivative
+        derivative = 2.0 * sums.at_vertices(curve.mesh, near.edges.tau) + CONSTANT * ComponentShares(unit).derivative()
+        return energy_of_pairs(curve, value), np.ldexp(derivative, -exponent)
 
     def row_energies(self, curve: Curve) -> FloatArray:
-        """What `MoebiusEnergy.row_energies` gives for all edges; shape (n,)."""
+        """What `MoebiusEnergy.row_energies` gives for all edges; shape (edges,)."""
         blocks = self.block_list(curve)
         if blocks.mostly_near:
-            return self.exact.row_energies(curve, np.arange(len(curve)))
+            return self.exact.row_energies(curve, np.arange(curve.mesh.edges))
         near, far = self._fields(blocks, _unit_sized(curve)[0])
         return _value_and_sums(near, far)[1].row_energies(near.edges.vectors)
 

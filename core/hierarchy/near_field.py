@@ -59,11 +59,11 @@ class NearField:
 
     @cached_property
     def _columns(self) -> FloatArray:
-        """Midpoint, edge vector and length of each edge, one below the other; shape (2m + 1, n)."""
+        """Midpoint, edge vector and length of each edge, one below the other; shape (2m + 1, edges)."""
         return np.ascontiguousarray(np.column_stack([self.edges.vectors.m, self.edges.vectors.e_ell]).T)
 
     def _matrix(self, entries: FloatArray) -> sp.csr_array:
-        """Numbers of the pairs as a sparse matrix; shape (n, n)."""
+        """Numbers of the pairs as a sparse matrix; shape (edges, edges)."""
         n = len(self.edges.tau)
         return sp.csr_array((entries, self.pairs[1], self._row_ends), shape=(n, n))
 

@@ -51,7 +51,7 @@ class PairForms:
         return self._blocks.middles
 
     def of_slopes(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
-        """The matrix of Σ w ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|², shape (n, n)."""
+        """The matrix of Σ w ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|², shape (n, n); for closed components."""
         mesh, b, order = self._curve.mesh, self._blocks, self._blocks.tree.order
         # the slopes of whole components add up to 0
         weights = np.where(self._in_components, far, 0.0)

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Curve
+from ..energies.components import ComponentShares
+from ..energies.moebius import CONSTANT, energy_of_pairs
 from ..types import FloatArray, IntArray
 from .energy import HierarchicalMoebiusEnergy
 
@@ -64,8 +66,8 @@ def energy_error(energy: HierarchicalMoebiusEnergy, curve: Curve, count: int = E
     rows = energy.row_energies(curve)
     off = rows[sample] - energy.exact.row_energies(curve, sample)
     # the value is computed without the sums of single edges
-    rest = energy.value(curve) - (4.0 * len(curve.mesh.component_sizes) + float(rows.sum()))
-    return Estimate.of_sum(off, len(curve), rest)
+    rest = energy.value(curve) - energy_of_pairs(curve, 0.5 * float(rows.sum()))
+    return Estimate.of_sum(off, curve.mesh.edges, rest)
 
 
 def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, count: int = EDGES_ALONG) -> Estimate:
@@ -78,9 +80,9 @@ def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, 
     ends = [curve.with_vertices(curve.vertices + way * u) for way in (t, -t)]
     rows = [energy.row_energies(end) for end in ends]
     off = [each[sample] - energy.exact.row_energies(end, sample) for each, end in zip(rows, ends, strict=True)]
-    slope = float(np.sum(energy.value_and_derivative(curve)[1] * u))
+    slope = float(np.sum((energy.value_and_derivative(curve)[1] - CONSTANT * ComponentShares(curve).derivative()) * u))
     rest = slope - float(np.sum(rows[0] - rows[1])) / (2.0 * t)
-    return Estimate.of_sum((off[0] - off[1]) / (2.0 * t), len(curve), rest)
+    return Estimate.of_sum((off[0] - off[1]) / (2.0 * t), curve.mesh.edges, rest)
 
 
 def _relative_change(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray) -> float:
@@ -94,7 +96,7 @@ def _relative_change(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatAr
 
 def sampled_edges(curve: Curve, count: int) -> IntArray:
     """One edge of each of so many stretches with equal numbers of edges, at random but always the same; all if few."""
-    n = len(curve)
+    n = curve.mesh.edges
     if n <= count:
         return np.arange(n)
     ends = np.arange(count + 1) * n // count

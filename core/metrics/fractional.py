@@ -22,7 +22,7 @@ class FractionalMetric(WithoutRule):
 
     def at(self, curve: Curve) -> InnerProduct:
         """Dense: every pair of edges weighs in."""
-        ell, slope = curve.edge_lengths, Stencil.slope(curve)
+        ell, slope = curve.mesh.at_tails(curve.edge_lengths), Stencil.slope(curve)
         form = DifferenceForm(curve.mesh)
         for stripe in stripes(curve.mesh):
             rho = arc_distances(curve, 0.5, 0.5, stripe.rows, stripe.columns)

@@ -7,6 +7,7 @@ which a component is 4 to 8 long, so that the two terms weigh alike.
 from dataclasses import dataclass
 from typing import Self
 
+import numpy as np
 import scipy.sparse as sp
 
 from ..curve import Curve
@@ -27,6 +28,13 @@ def stiffness(curve: Curve) -> sp.csr_array:
     """Matrix of ∫ u' v' for piecewise linear u, v; shape (n, n)."""
     difference = curve.mesh.difference
     return sp.csr_array(difference.T @ sp.diags_array(1.0 / curve.edge_lengths) @ difference)
+
+
+def arc_stiffness(curve: Curve) -> sp.csr_array:
+    """Matrix of ∫ u' v' over the open components alone; shape (n, n)."""
+    on_arcs = ~np.asarray(curve.mesh.closed)[curve.mesh.edge_component]
+    difference = curve.mesh.difference[on_arcs]
+    return sp.csr_array(difference.T @ sp.diags_array(1.0 / curve.edge_lengths[on_arcs]) @ difference)
 
 
 def lumped_mass(curve: Curve) -> FloatArray:

@@ -1,12 +1,15 @@
 """The inner product J_C of Theorem 4.1 in [RS21], discretised as in Section 6.1.2.
 
 For functions U on the vertices, u their piecewise linear interpolation and ΔU_I = U(I↑) − U(I↓),
-⟨U, U⟩ is the sum over ordered pairs of edges with disjoint closures of
+⟨U, U⟩ is the sum over ordered pairs of edges with disjoint closures, ϱ the distance along the curve, of
 
 1. ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|² Σ_ij ω_i ω_j / r_ij²
 2. ℓ_I ℓ_J Σ_ij ω_i ω_j |u_I(t_i) − u_J(t_j)|² / r_ij² · (1/r_ij² − 1/ϱ_ij²)
 
-and of 3. |∫ u ds|².  The Gram matrix is A ⊗ Id_m (footnote 6): only A, of shape (n, n), is assembled.
+and of 3. |∫ u ds|².  Where an arc is straight all three vanish for affine functions of mean 0, and where it has a few
+edges for others too, so there is 4. ∫ |u'|² ds over all arcs, of lower order.
+
+The Gram matrix is A ⊗ Id_m (footnote 6): only A, of shape (n, n), is assembled.
 """
 
 from dataclasses import dataclass
@@ -22,7 +25,7 @@ from ..curve.distances import arc_distance_of_pairs, arc_distances, points_at
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray, IntArray
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
-from .local import lumped_mass
+from .local import arc_stiffness, lumped_mass
 from .pairs import DifferenceForm, Stencil, Stripe, stripes
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
@@ -64,8 +67,9 @@ class MoebiusMetric:
                 density *= omega_i * omega_j
                 form.add(stripe, inverse, slope, slope)
                 form.add(stripe, density, Stencil.value(mesh, t_i), Stencil.value(mesh, t_j))
-        mass = lumped_mass(curve)
-        return DenseInnerProduct(blas.dsyr(1.0, mass, a=form.assembled(), lower=1, overwrite_a=1))
+        gram, stiffness = form.assembled(), arc_stiffness(curve).tocoo()
+        gram[stiffness.coords] += stiffness.data
+        return DenseInnerProduct(blas.dsyr(1.0, lumped_mass(curve), a=gram, lower=1, overwrite_a=1))
 
 
 class PairKernels(NamedTuple):
@@ -94,13 +98,15 @@ def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
 
 def _weights(curve: Curve, t_i: float, t_j: float, stripe: Stripe) -> tuple[FloatArray, FloatArray]:
     """ℓ_I ℓ_J/r² and ℓ_I ℓ_J/r² (1/r² − 1/ϱ²), 0 where closures meet; shapes (rows, columns)."""
-    rows, columns, ell = stripe.rows, stripe.columns, curve.edge_lengths
+    rows, columns, mesh = stripe.rows, stripe.columns, curve.mesh
     rho = arc_distances(curve, t_i, t_j, rows, columns)
-    r2 = cdist(points_at(curve, t_i)[rows], points_at(curve, t_j)[columns], "sqeuclidean")
-    nearest = MIN_DISTANCE * np.add.outer(ell[rows], ell[columns])
+    start, end = (mesh.at_tails(points_at(curve, t), curve.vertices) for t in (t_i, t_j))
+    r2 = cdist(start[rows], end[columns], "sqeuclidean")
+    ell, width = mesh.at_tails(curve.edge_lengths), mesh.at_tails(curve.edge_lengths, 1.0)
+    nearest = MIN_DISTANCE * np.add.outer(width[rows], width[columns])
     np.maximum(rho, nearest, out=rho)
     np.maximum(r2, np.square(nearest, out=nearest), out=r2)
-    stripe.exclude_neighbours(curve.mesh, r2)
+    stripe.exclude_neighbours(mesh, r2)
     s = np.divide(1.0, r2, out=r2)
     inverse = np.multiply.outer(ell[rows], ell[columns])
     inverse *= s

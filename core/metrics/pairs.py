@@ -11,7 +11,11 @@ from ..types import FloatArray, IntArray
 
 
 class Stencil(NamedTuple):
-    """A linear map from vertices to edges, (B U)_I = tail_I U(I↓) + head_I U(I↑); both of shape (n,)."""
+    """A linear map from vertices to edges, (B U)_I = tail_I U(I↓) + head_I U(I↑); both of shape (n,).
+
+    Here an edge has the number of its tail.  The vertex where an arc ends stands for an edge from there to the arc's
+    first vertex, which makes every component a cycle: its length, and with it its weight in all sums, is 0.
+    """
 
     tail: FloatArray
     head: FloatArray
@@ -24,7 +28,8 @@ class Stencil(NamedTuple):
     @classmethod
     def slope(cls, curve: Curve) -> "Stencil":
         """ΔU_I/ℓ_I."""
-        return cls(-1.0 / curve.edge_lengths, 1.0 / curve.edge_lengths)
+        slope = curve.mesh.at_tails(1.0 / curve.edge_lengths)
+        return cls(-slope, slope)
 
 
 class Stripe(NamedTuple):
@@ -46,7 +51,7 @@ class Stripe(NamedTuple):
 
     def exclude_neighbours(self, mesh: Mesh, distance: FloatArray) -> None:
         """Set the distances, shape (rows, columns), of edges that share a vertex to inf."""
-        for partner in (self.rows, mesh.heads[self.rows], mesh.previous[self.rows]):
+        for partner in (self.rows, mesh.cycle[self.rows], mesh.anticycle[self.rows]):
             row = np.flatnonzero(partner >= self.columns.start)
             distance[row, partner[row] - self.columns.start] = np.inf
 
@@ -57,7 +62,7 @@ def stripes(mesh: Mesh) -> Iterator[Stripe]:
         first = component.start
         while first < component.stop:
             last = min(component.stop, first + max(1, ROWS_TIMES_COLUMNS // (mesh.size - first)))
-            before = int(mesh.previous[first])
+            before = int(mesh.anticycle[first])
             columns = slice(min(first, before), mesh.size)
             yield Stripe(slice(first, last), np.concatenate([[before], np.arange(first, last)]), columns)
             first = last
@@ -90,7 +95,7 @@ class DifferenceForm:
         at_vertices += weights[:-1]
         at_tails = at_vertices[:, own:] * right.tail[vertices.start :]
         at_vertices *= right.head[columns]
-        at_tails += at_vertices.take(self._mesh.previous[vertices.start :] - columns.start, axis=1)
+        at_tails += at_vertices.take(self._mesh.anticycle[vertices.start :] - columns.start, axis=1)
         self._cross[vertices, vertices.start :] += at_tails
 
     def assembled(self) -> FloatArray:
@@ -98,10 +103,10 @@ class DifferenceForm:
         mesh = self._mesh
         tail, head, mixed = self._squares
         form = np.multiply(self._cross, -2.0, out=self._cross)
-        np.add.at(form, (mesh.tails, mesh.tails), 2.0 * tail)
-        np.add.at(form, (mesh.heads, mesh.heads), 2.0 * head)
-        ends = np.minimum(mesh.tails, mesh.heads), np.maximum(mesh.tails, mesh.heads)
-        np.add.at(form, ends, 2.0 * mixed)
+        tails, heads = np.arange(mesh.size), mesh.cycle
+        np.add.at(form, (tails, tails), 2.0 * tail)
+        np.add.at(form, (heads, heads), 2.0 * head)
+        np.add.at(form, (np.minimum(tails, heads), np.maximum(tails, heads)), 2.0 * mixed)
         return form.T
 
     def _add_squares(self, edges: slice, stencil: Stencil, weights: FloatArray) -> None:

@@ -47,7 +47,7 @@ class DenseTangentSpace(TangentSpace):
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve the Schur complement's system for λ, then for u."""
         c = self.constraints
-        free = np.zeros((len(c.masses), c.tangents.shape[1])) if eta is None else self._inner.solve(eta)
+        free = np.zeros(c.shape) if eta is None else self._inner.solve(eta)
         right = c.apply(free)
         if xi is not None:
             right -= xi
@@ -87,19 +87,19 @@ def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray
 
     D A⁻¹ Dᵀ comes from differences of rows and columns, block by block in the processor's cache.
     """
-    n, rows = len(c.tangents), len(c.edges)
-    schur = np.zeros((n + c.count - rows,) * 2, order="F")
-    inverse, upper, heads = inner.inverse.T, schur.T, c.mesh.heads
-    width = max(1, ROWS_TIMES_COLUMNS // n)
-    for first in range(0, n, width):
-        block = slice(first, min(n, first + width))
+    edges, rows = len(c.tangents), len(c.edges)
+    schur = np.zeros((edges + c.count - rows,) * 2, order="F")
+    inverse, upper, tails, heads = inner.inverse.T, schur.T, c.mesh.tails, c.mesh.heads
+    width = max(1, ROWS_TIMES_COLUMNS // edges)
+    for first in range(0, edges, width):
+        block = slice(first, min(edges, first + width))
         change = inverse[heads[block]]
-        change -= inverse[block]
-        part = upper[block, first:n]
-        np.subtract(change.take(heads[first:], axis=1), change[:, first:], out=part)
+        change -= inverse[tails[block]]
+        part = upper[block, first:edges]
+        np.subtract(change.take(heads[first:], axis=1), change.take(tails[first:], axis=1), out=part)
         part *= c.tangents[block] @ c.tangents[first:].T
-    if rows < n:
-        kept = np.concatenate([c.edges, np.arange(n, len(schur))])
+    if rows < edges:
+        kept = np.concatenate([c.edges, np.arange(edges, len(schur))])
         schur = np.asfortranarray(schur[np.ix_(kept, kept)])
     for k, row in enumerate(c.barycenter_rows(), rows):
         schur[k, :] = c.apply(inner.solve(row))

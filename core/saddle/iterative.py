@@ -96,8 +96,7 @@ class IterativeTangentSpace(TangentSpace):
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve for each of the two right sides, to its own tolerance."""
-        c = self.constraints
-        u, multipliers = np.zeros((len(c.masses), c.tangents.shape[1])), np.zeros(c.count)
+        u, multipliers = np.zeros(self.constraints.shape), np.zeros(self.constraints.count)
         for part in (None if eta is None else self._projected(eta), None if xi is None else self._shortest(xi)):
             if part is not None:
                 u, multipliers = u + part[0], multipliers + part[1]

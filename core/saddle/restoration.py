@@ -22,13 +22,13 @@ def euclidean_correction(constraints: Constraints, curve: Curve, residual: Float
     Returns
     -------
     u
-        Too large to be of any use if all edges of a component, or of an arc between two pins, are collinear.
+        Too large to be of any use if all edges of a closed component, or of an arc between two pins, are collinear.
     """
     ell, mesh, pins = curve.edge_lengths, curve.mesh, constraints.pins.vertices
     rows, free = free_edges(mesh, pins), np.where(holds(mesh, pins), 0.0, 1.0)
     tau, stretch = curve.edge_vectors / ell[:, None], np.zeros_like(ell)
     stretch[rows] = -ell[rows] * residual[: len(rows)]
-    cosines = free[mesh.heads] * np.einsum("ij,ij->i", tau, tau[mesh.heads])
+    cosines = free[mesh.heads] * np.einsum("ij,ij->i", tau, tau[mesh.next])
     diagonal = np.maximum(free[mesh.tails] + free[mesh.heads], 1.0)  # 1 where there is no row, and nothing to solve
     tension = _solve_gram(mesh, diagonal, cosines, stretch)
     pull = tension[:, None] * tau
@@ -38,19 +38,20 @@ def euclidean_correction(constraints: Constraints, curve: Curve, residual: Float
     shifts = -residual[len(rows) :].reshape(-1, curve.dimension)
     for member, missing in zip(constraints.memberships(mesh), shifts, strict=True):
         own = member > 0.0
-        u[own] += (missing - moments[own].sum(axis=0)) / ell[own].sum()
+        moved = np.isin(mesh.component, mesh.edge_component[own])
+        u[moved] += (missing - moments[own].sum(axis=0)) / ell[own].sum()
     return u
 
 
 def _solve_gram(mesh: Mesh, diagonal: FloatArray, cosines: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve T x = right, T having ``diagonal`` and −cosines[I] between edge I and the one after it; shape (n,).
+    """Solve T x = right, T having ``diagonal`` and −cosines[I] between edge I and the one after it; shape (edges,).
 
-    Each component's block is T₀ − |c| w wᵀ, c its corners and w supported on its first and last edge: T₀ is tridiagonal
-    and positive definite, the rest is the formula of Sherman and Morrison.
+    Each component's block is T₀ − |c| w wᵀ, c its corners, 0 on arcs, and w supported on its first and last edge: T₀ is
+    tridiagonal and positive definite, the rest is the formula of Sherman and Morrison.
     """
-    first, last = mesh.offsets[:-1], mesh.offsets[1:] - 1
-    corner, sign = np.abs(cosines[last]), np.copysign(1.0, cosines[last])
-    beside, w = -cosines[:-1], np.zeros(mesh.size)
+    first, last = mesh.edge_offsets[:-1], mesh.edge_offsets[1:] - 1
+    corner, sign = np.where(mesh.closed, np.abs(cosines[last]), 0.0), np.copysign(1.0, cosines[last])
+    beside, w = -cosines[:-1], np.zeros(mesh.edges)
     beside[last[:-1]] = 0.0
     diagonal[first] += corner
     diagonal[last] += corner
@@ -59,4 +60,4 @@ def _solve_gram(mesh: Mesh, diagonal: FloatArray, cosines: FloatArray, right: Fl
     x, z = np.asarray(solutions).T
     rest = np.maximum(1.0 - corner * (z[first] + sign * z[last]), np.finfo(np.float64).eps)  # 0 if all is collinear
     share = corner * (x[first] + sign * x[last]) / rest
-    return np.asarray(x + share[mesh.component] * z)
+    return np.asarray(x + share[mesh.edge_component] * z)

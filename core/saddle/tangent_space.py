@@ -78,8 +78,7 @@ class WholeSpace(TangentSpace):
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """The same without constraints: ξ is of no consequence, multipliers are 0."""
-        c = self.constraints
-        u = np.zeros((len(c.masses), c.tangents.shape[1])) if eta is None else self.riesz(eta)
+        u = np.zeros(self.constraints.shape) if eta is None else self.riesz(eta)
         return u, np.zeros(self.constraints.count)
 
     def project(self, u: FloatArray) -> FloatArray:

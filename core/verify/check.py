@@ -1,8 +1,10 @@
 """Check that a trajectory is an isotopy: no two non-neighbour edges ever meet, nor any obstacle, and stages fit.
 
 Why this is enough: if two neighbour edges fold onto each other, or an edge shrinks to a point, then an edge meets the
-one after its neighbour at the same moment, in every polygon of 4 or more vertices. A triangle, which has no such edges,
-is one as long as no vertex lies on the opposite edge. So a motion free of such contact is a motion through embedded
+one after its neighbour at the same moment, in every closed polygon of 4 or more vertices. A triangle, which has no such
+edges, is one as long as no vertex lies on the opposite edge. Of an open polygon the first edge can fold onto the second
+one with no edge before it that would meet this; so its first vertex must not lie on the second edge, or on its other
+end if there is none, and likewise at the last edge. A motion free of such contact is a motion through embedded
 polygons, all frames included.
 
 This package shares no code with ``core.collision``, which the program uses to find its steps.
@@ -22,7 +24,7 @@ from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .obstacles import Obstacles
 from .segments import Point, meet
-from .trajectory import TrajectoryError, count_legs, stages, still_parts
+from .trajectory import Components, TrajectoryError, count_legs, stages, still_parts
 from .transition import DifferentCurveError, common_vertices, straightened
 from .triangles import meet_triangle
 
@@ -69,22 +71,31 @@ class Verdict:
 
 
 class ContactError(Exception):
-    """Edges, given by the numbers of their tails, meet, or one of them an obstacle; the message says so."""
+    """Edges meet, or one of them an obstacle; the message says so."""
 
     def __init__(self, message: str, edges: tuple[int, ...], obstacle: int | None = None) -> None:
         super().__init__(message)
         self.edges, self.obstacle = edges, obstacle
 
     @classmethod
-    def between(cls, x0: int, x1: int, y0: int, _y1: int) -> "ContactError":
-        """Two edges, or a vertex x₀ = x₁ of a triangle and the opposite edge."""
-        edges = f"edges {x0 + 1} and {y0 + 1} (counted from 1) meet"
-        return cls(f"a triangle collapses at vertex {x0 + 1}" if x0 == x1 else edges, (x0, y0))
+    def between(cls, heads: IntArray, x0: int, x1: int, y0: int, y1: int) -> "ContactError":
+        """Two edges, or a vertex x₀ = x₁ of a triangle or at the end of an open polygon and an edge."""
+        first, second = _edge_number(heads, x0, x1), _edge_number(heads, y0, y1)
+        edges = f"edges {first + 1} and {second + 1} (counted from 1) meet"
+        kind = "a triangle" if heads[heads[heads[x0]]] == x0 != heads[x0] else "an open polygon"
+        return cls(f"{kind} collapses at vertex {x0 + 1}" if x0 == x1 else edges, (first, second))
 
     @classmethod
-    def with_obstacle(cls, x0: int, obstacle: int) -> "ContactError":
+    def with_obstacle(cls, heads: IntArray, x0: int, x1: int, obstacle: int) -> "ContactError":
         """An edge and an obstacle."""
-        return cls(f"edge {x0 + 1} meets obstacle {obstacle + 1} (counted from 1)", (x0,), obstacle)
+        edge = _edge_number(heads, x0, x1)
+        return cls(f"edge {edge + 1} meets obstacle {obstacle + 1} (counted from 1)", (edge,), obstacle)
+
+
+def _edge_number(heads: IntArray, a: int, b: int) -> int:
+    """Number of the edge between two vertices, or of one at a vertex given twice; ends of open polygons begin none."""
+    tail = b if heads[b] == a != b else a - int(heads[a] == a)
+    return int(np.count_nonzero(heads[:tail] != np.arange(tail)))
 
 
 @dataclass
@@ -122,20 +133,20 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
 
 def _check_file(path: Path | str, progress: _Progress) -> None:
     last: FloatArray | None = None
-    sizes: tuple[int, ...] = ()
+    before: Components = ()
     obstacles = Obstacles.of(still_parts(path))
     progress.obstacles = len(obstacles)
     for stage in stages(path):
         progress.stages, progress.frame = progress.stages + 1, None
-        heads = _heads(stage.component_sizes)
+        heads = _heads(stage.components)
         first = next(stage.frames)
         if len(obstacles) and first.shape[1] != 3:
             raise TrajectoryError(f"{stage.name} is not in space, as obstacles are")
         if last is not None:
-            _check_transition(last, sizes, first, stage.component_sizes, obstacles)
+            _check_transition(last, before, first, stage.components, obstacles)
         progress.frame = 0
         _check_leg(first, first, heads, obstacles)  # a single frame is a polygon, too
-        last, sizes = first, stage.component_sizes
+        last, before = first, stage.components
         for frame in stage.frames:
             progress.legs += 1
             _check_leg(last, frame, heads, obstacles)
@@ -143,76 +154,85 @@ def _check_file(path: Path | str, progress: _Progress) -> None:
             progress.tell(progress.legs)
 
 
-def _heads(sizes: Sequence[int]) -> IntArray:
-    """Head vertex of each edge; its tail has the edge's number."""
-    heads = np.arange(1, sum(sizes) + 1)
-    after = np.cumsum(sizes)
-    heads[after - 1] = after - np.asarray(sizes)
-    return heads
+def _heads(components: Components) -> IntArray:
+    """The vertex that the edge from each vertex leads to: the vertex itself where an open polygon ends."""
+    after = np.arange(1, sum(each.size for each in components) + 1)
+    for part, each in zip(_parts(components), components, strict=True):
+        after[part.stop - 1] = part.start if each.closed else part.stop - 1
+    return after
 
 
 def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray, obstacles: Obstacles) -> None:
     """Raise if edges meet, or an edge an obstacle, while the vertices go from start to end."""
     first, last = _exact_points(start), _exact_points(end)
-    _check_pairs(doubtful_pairs(start, end, heads), first, last)
-    _check_obstacles(obstacles, obstacles.doubtful(start, end, heads), first, last)
+    _check_pairs(heads, doubtful_pairs(start, end, heads), first, last)
+    _check_obstacles(heads, obstacles, obstacles.doubtful(start, end, heads), first, last)
 
 
 def _check_transition(
-    old: FloatArray, old_sizes: Sequence[int], new: FloatArray, new_sizes: Sequence[int], obstacles: Obstacles
+    old: FloatArray, before: Components, new: FloatArray, after: Components, obstacles: Obstacles
 ) -> None:
-    """Raise unless two polygons differ only by vertices on edges."""
-    if len(old_sizes) != len(new_sizes) or old.shape[1] != new.shape[1]:
+    """Raise unless two curves differ only by vertices on edges."""
+    if len(before) != len(after) or old.shape[1] != new.shape[1]:
         raise DifferentCurveError("the stage before has another number of components or another dimension")
+    closed = [each.closed for each in before]
+    if closed != [each.closed for each in after]:
+        raise DifferentCurveError("a component is closed in one of two stages and open in the other")
     kept = []
-    for a, b in zip(_parts(old_sizes), _parts(new_sizes), strict=True):
-        kept.append(common_vertices(old[a], new[b]))
-    _check_straightening(old, old_sizes, [here for here, _ in kept], obstacles)
-    _check_straightening(new, new_sizes, [sorted(there) for _, there in kept], obstacles)
+    for a, b, is_closed in zip(_parts(before), _parts(after), closed, strict=True):
+        kept.append(common_vertices(old[a], new[b], is_closed))
+    _check_straightening(old, before, [here for here, _ in kept], obstacles)
+    _check_straightening(new, after, [sorted(there) for _, there in kept], obstacles)
 
 
 def _check_straightening(
-    points: FloatArray, sizes: Sequence[int], kept: Sequence[Sequence[int]], obstacles: Obstacles
+    points: FloatArray, components: Components, kept: Sequence[Sequence[int]], obstacles: Obstacles
 ) -> None:
     """Raise unless the vertices that are not kept can move onto the edges between the others without contact."""
     moved: dict[int, Point] = {}
     change = 0.0
-    for part, vertices in zip(_parts(sizes), kept, strict=True):
-        places, largest = straightened(points[part], vertices)
+    for part, each, vertices in zip(_parts(components), components, kept, strict=True):
+        places, largest = straightened(points[part], vertices, each.closed)
         moved |= {part.start + k: place for k, place in places.items()}
         change = max(change, largest)
     if change > 0:
-        heads, here = _heads(sizes), _exact_points(points)
+        heads, here = _heads(components), _exact_points(points)
 
         def there(k: int) -> Point:
             return moved.get(k) or here(k)
 
-        _check_pairs(doubtful_pairs(points, points, heads, clearance=change), here, there)
-        _check_obstacles(obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)
+        _check_pairs(heads, doubtful_pairs(points, points, heads, clearance=change), here, there)
+        _check_obstacles(heads, obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)
 
 
-def _check_pairs(batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]) -> None:
+def _check_pairs(
+    heads: IntArray, batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]
+) -> None:
     """Decide pairs, given by their vertices, shapes (4, pairs), exactly; raise at the first that meets."""
     for corners in chain.from_iterable(batch.T.tolist() for batch in batches):
         if meet([first(k) for k in corners], [last(k) for k in corners]):
-            raise ContactError.between(*corners)
+            raise ContactError.between(heads, *corners)
 
 
 def _check_obstacles(
-    obstacles: Obstacles, batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]
+    heads: IntArray,
+    obstacles: Obstacles,
+    batches: Iterable[IntArray],
+    first: Callable[[int], Point],
+    last: Callable[[int], Point],
 ) -> None:
     """The same for edges and triangles, shapes (5, pairs)."""
     still = _exact_points(obstacles.vertices)
     for x0, x1, *triangle in chain.from_iterable(batch.T.tolist() for batch in batches):
         corners = [still(k) for k in triangle]
         if meet_triangle([first(x0), first(x1), *corners], [last(x0), last(x1), *corners]):
-            raise ContactError.with_obstacle(x0, obstacles.number_of(triangle[0]))
+            raise ContactError.with_obstacle(heads, x0, x1, obstacles.number_of(triangle[0]))
 
 
 def _exact_points(points: FloatArray) -> Callable[[int], Point]:
     return lambda k: [Fraction(x) for x in points[k].tolist()]
 
 
-def _parts(sizes: Sequence[int]) -> list[slice]:
-    ends = np.cumsum(sizes).tolist()
-    return [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]
+def _parts(components: Components) -> list[slice]:
+    ends = np.cumsum([each.size for each in components]).tolist()
+    return [slice(end - each.size, end) for each, end in zip(components, ends, strict=True)]

@@ -21,15 +21,15 @@ _HALVINGS = 5
 def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float = 0.0) -> Iterator[IntArray]:
     """Yield the pairs of edges that are not proved apart while vertices go from start to end.
 
-    Edges that are no neighbours, and in triangles, which have none of these, each vertex, as an edge of no length, with
-    the opposite edge.
+    Edges that are no neighbours; in triangles, which have none of these, each vertex, as an edge of no length, with the
+    opposite edge; and each end of an open polygon with the edge after its neighbour.
 
     Parameters
     ----------
     start, end
         Vertices, shape (n, m) with m = 2 or 3.
     heads
-        Head vertex of each edge, shape (n,); tail and edge have the same number.
+        The vertex that the edge from each vertex leads to, shape (n,): the vertex itself where an open polygon ends.
     clearance
         Stay apart even if every coordinate of every vertex is wrong by this much.
 
@@ -38,7 +38,7 @@ def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearanc
     The vertices x₀, x₁, y₀, y₁ of a bounded number of pairs; shape (4, pairs).
     """
     start, end, clearance = scaled(start, end, clearance)
-    for vertices in chain([_triangles(heads)], _overlapping(start, end, heads, clearance)):
+    for vertices in chain([_triangles(heads), _ends(heads)], _overlapping(start, end, heads, clearance)):
         leg = Leg(start, end, vertices, clearance)
         # Cheap things first; each looks at what is left over by the one before.
         leg.drop(leg.apart_along_axis)
@@ -59,13 +59,28 @@ def scaled(start: FloatArray, end: FloatArray, clearance: float) -> tuple[FloatA
 
 def _triangles(heads: IntArray) -> IntArray:
     """Each vertex of a triangle, twice, and the ends of the opposite edge; shape (4, pairs)."""
-    k = np.flatnonzero(heads[heads[heads]] == np.arange(len(heads)))
+    here = np.arange(len(heads))
+    k = np.flatnonzero((heads[heads[heads]] == here) & (heads != here))
     return np.stack([k, k, heads[k], heads[heads[k]]])
+
+
+def _ends(heads: IntArray) -> IntArray:
+    """Each end of an open polygon, twice, and the two vertices after it, the same one if it is the last; (4, ends)."""
+    here = np.arange(len(heads))
+    before = here.copy()
+    goes_on = heads != here
+    before[heads[goes_on]] = here[goes_on]
+    pairs = []
+    for way in (heads, before):
+        k = np.flatnonzero((heads if way is before else before) == here)
+        pairs.append(np.stack([k, k, way[k], way[way[k]]]))
+    return np.concatenate(pairs, axis=1)
 
 
 def _overlapping(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float) -> Iterator[IntArray]:
     """Edges that are no neighbours and whose ranges of coordinates during the leg overlap; shapes (4, pairs)."""
-    ends = np.stack([start, end, start[heads], end[heads]])
+    tails = np.flatnonzero(heads != np.arange(len(heads)))
+    ends = np.stack([start[tails], end[tails], start[heads[tails]], end[heads[tails]]])
     low, high = ends.min(axis=0) - 4 * clearance, ends.max(axis=0)
     low, high = (np.roll(x, -int(np.ptp(low, axis=0).argmax()), axis=1) for x in (low, high))  # the widest axis first
     order = np.argsort(low[:, 0], kind="stable")
@@ -77,10 +92,10 @@ def _overlapping(start: FloatArray, end: FloatArray, heads: IntArray, clearance:
         position = np.arange(first, min(first + _PAIRS_AT_ONCE, int(total[-1])))
         k = np.searchsorted(total, position, side="right") - 1
         i, j = order[k], order[k + 1 + position - total[k]]
-        keep = (heads[i] != j) & (heads[j] != i)
+        keep = (heads[tails[i]] != tails[j]) & (heads[tails[j]] != tails[i])
         for axis in range(1, start.shape[1]):
             keep &= (low[i, axis] <= high[j, axis]) & (low[j, axis] <= high[i, axis])
-        i, j = i[keep], j[keep]
+        i, j = tails[i[keep]], tails[j[keep]]
         yield np.stack([i, heads[i], j, heads[j]])
 
 

@@ -1,7 +1,8 @@
 """Read trajectory files frame by frame, trusting nothing in them.
 
 A file is a zip archive of .npy arrays, as numpy.savez writes it: ``stage_000``, ``stage_001``, … each (k, n, m) and
-float64, and ``component_sizes_000``, … with the numbers of vertices of the components; perhaps obstacles,
+float64, and ``component_sizes_000``, … with the numbers of vertices of the components. Where some of them are open
+polygons, ``component_closed_000``, … tells which are closed; without it all are. There may be obstacles,
 ``obstacle_000_vertices``, … each (k, 3) and float64, and ``obstacle_000_faces``, … each (f, 3) or (f, 2), of whole
 numbers. Of the stages only one frame is in memory at a time (in Fortran order, one stage of bounded size), and memory
 is taken only for data that the file really has.
@@ -12,7 +13,7 @@ import operator
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -35,12 +36,23 @@ class TrajectoryError(ValueError):
     """A file that is no trajectory; the message says why."""
 
 
+@dataclass(frozen=True)
+class Component:
+    """The number of vertices of a polygon, and whether an edge leads from the last to the first."""
+
+    size: int
+    closed: bool
+
+
+Components = Sequence[Component]
+
+
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """One stage: the name of its array, the components' sizes, and the frames, each (n, m), to be read once."""
+    """One stage: the name of its array, the components, and the frames, each (n, m), to be read once."""
 
     name: str
-    component_sizes: tuple[int, ...]
+    components: Components
     frames: Iterator[FloatArray]
 
 
@@ -105,15 +117,16 @@ def _count(archive: zipfile.ZipFile) -> int:
 
 
 def _stage(archive: zipfile.ZipFile, number: int) -> Stage:
-    sizes = _component_sizes(archive, f"component_sizes_{number:03d}")
+    components = _components(archive, number)
     name = f"stage_{number:03d}"
     file = _member(archive, name)
     shape, dtype, fortran = _header(file, name)
     if dtype != np.dtype("<f8") or len(shape) != 3:
         raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be (k, n, m) of float64")
     k, n, m = shape
-    if n != sum(sizes):
-        raise TrajectoryError(f"{name} has {n} vertices, but its components have {sum(sizes)}")
+    count = sum(each.size for each in components)
+    if n != count:
+        raise TrajectoryError(f"{name} has {n} vertices, but its components have {count}")
     if k < 1 or m not in (2, 3):
         raise TrajectoryError(f"{name} has shape {shape}; frames there must be, in dimension 2 or 3")
     if n * m * 8 > _MAX_FRAME:
@@ -121,20 +134,33 @@ def _stage(archive: zipfile.ZipFile, number: int) -> Stage:
     if fortran and k * n * m * 8 > _MAX_FORTRAN:
         raise TrajectoryError(f"{name} is in Fortran order and large; write it with numpy.ascontiguousarray")
     frames = _scattered_frames(file, name, (k, n, m)) if fortran else _frames(file, name, k, (n, m))
-    return Stage(name, sizes, frames)
+    return Stage(name, components, frames)
 
 
-def _component_sizes(archive: zipfile.ZipFile, name: str) -> tuple[int, ...]:
+def _components(archive: zipfile.ZipFile, number: int) -> Components:
+    name, flags = f"component_sizes_{number:03d}", f"component_closed_{number:03d}"
+    sizes = _list(archive, name, "iu", "whole numbers")
+    closed = [True] * len(sizes)
+    if f"{flags}.npy" in archive.namelist():
+        closed = list(map(bool, _list(archive, flags, "b", "truth values")))
+    if len(closed) != len(sizes):
+        raise TrajectoryError(f"{flags} tells of {len(closed)} components, {name} of {len(sizes)}")
+    for size, is_closed in zip(sizes, closed, strict=True):
+        if size < (least := 3 if is_closed else 2):
+            kind = "a closed polygon" if is_closed else "an open polygon"
+            raise TrajectoryError(f"{name} has a component with {size} vertices; {kind} has {least} or more")
+    return [Component(*each) for each in zip(sizes, closed, strict=True)]
+
+
+def _list(archive: zipfile.ZipFile, name: str, kinds: str, what: str) -> list[int]:
+    """A one-dimensional array of some kinds of numbers."""
     with _member(archive, name) as file:
         shape, dtype, _ = _header(file, name)
-        if dtype.kind not in "iu" or len(shape) != 1 or not 0 < shape[0] * dtype.itemsize <= _MAX_SIZES:
-            raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be a list of whole numbers")
+        if dtype.kind not in kinds or len(shape) != 1 or not 0 < shape[0] * dtype.itemsize <= _MAX_SIZES:
+            raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be a list of {what}")
         data = _exactly(file, shape[0] * dtype.itemsize, name)
         _check_end(file, name)
-    sizes = tuple(np.frombuffer(data, dtype).tolist())
-    if min(sizes) < 3:
-        raise TrajectoryError(f"{name} has a component with {min(sizes)} vertices; a closed polygon has 3 or more")
-    return sizes
+    return list(map(int, np.frombuffer(data, dtype).tolist()))
 
 
 def _obstacle_names(archive: zipfile.ZipFile) -> list[str]:

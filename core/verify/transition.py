@@ -1,6 +1,7 @@
 """Whether two polygons are the same curve with vertices inserted and removed on edges.
 
-Vertices that both have, with exactly the same coordinates and in the same cyclic order, span a third polygon. Each
+Vertices that both have, with exactly the same coordinates and in the same cyclic order (in the same order, and with the
+ends among them, where the polygons are open), span a third polygon. Each
 other vertex has to lie on the edge of that polygon between its neighbours, up to the rounding of its coordinates, and
 in the same order. Moving it exactly onto the edge must then be free of contact: this is checked like any other leg, in
 rational numbers where necessary. So each of the two is isotopic to the common polygon, hence to the other.
@@ -9,6 +10,7 @@ rational numbers where necessary. So each of the two is isotopic to the common p
 import math
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -23,8 +25,8 @@ class DifferentCurveError(Exception):
     """Two polygons are not the same curve; the message says where."""
 
 
-def common_vertices(first: FloatArray, second: FloatArray) -> tuple[list[int], list[int]]:
-    """Return the indices, in the first and in the second closed polygon, of the vertices they share.
+def common_vertices(first: FloatArray, second: FloatArray, closed: bool) -> tuple[list[int], list[int]]:
+    """Return the indices, in the first and in the second polygon, both closed or both open, of the vertices they share.
 
     Parameters
     ----------
@@ -34,28 +36,33 @@ def common_vertices(first: FloatArray, second: FloatArray) -> tuple[list[int], l
     Raises
     ------
     DifferentCurveError
-        If there are fewer than 3, or not in the same cyclic order.
+        If there are too few, or not in the same order.
     """
     places = {tuple(p): k for k, p in enumerate(second.tolist())}
     here = [k for k, p in enumerate(first.tolist()) if tuple(p) in places]
     there = [places[tuple(first[k].tolist())] for k in here]
-    if len(there) < 3:
+    if len(there) < (3 if closed else 2):
         raise DifferentCurveError(f"only {len(there)} vertices are kept")
+    ends = [here[0], here[-1], there[0], there[-1]]
+    if not closed and ends != [0, len(first) - 1, 0, len(second) - 1]:
+        raise DifferentCurveError("an end of an open component is not kept")
     turns = sum(b <= a for a, b in zip(there, there[1:] + there[:1], strict=True))
     if turns != 1:
         raise DifferentCurveError("the vertices that are kept are not in the same order")
     return here, there
 
 
-def straightened(polygon: FloatArray, kept: Sequence[int]) -> tuple[dict[int, Point], float]:
-    """Move the vertices of a closed polygon that are not kept onto the edges between those that are.
+def straightened(polygon: FloatArray, kept: Sequence[int], closed: bool = True) -> tuple[dict[int, Point], float]:
+    """Move the vertices of a polygon that are not kept onto the edges between those that are.
 
     Parameters
     ----------
     polygon
         Vertices, shape (n, m).
     kept
-        Indices of the vertices that stay, in ascending order.
+        Indices of the vertices that stay, in ascending order; the ends of an open polygon are among them.
+    closed
+        Whether an edge leads from the last vertex to the first.
 
     Returns
     -------
@@ -69,7 +76,7 @@ def straightened(polygon: FloatArray, kept: Sequence[int]) -> tuple[dict[int, Po
     moved: dict[int, Point] = {}
     largest = Fraction(0)
     n = len(polygon)
-    for a, b in zip(kept, [*kept[1:], kept[0] + n], strict=True):
+    for a, b in pairwise([*kept, kept[0] + n] if closed else kept):
         parameter = Fraction(0)
         for k in range(a + 1, b):
             place, at = _onto_edge(polygon[k % n], polygon[a % n], polygon[b % n])

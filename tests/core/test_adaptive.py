@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Objective, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
 from mobius_flow.core.curve.distances import arc_distance_of_pairs
+from mobius_flow.core.curve.pins import Pins
 from mobius_flow.core.curve.refine import STRAND_RATIO, Resolution
 from mobius_flow.core.curve.remesh import (
     COLLAPSE,
@@ -54,7 +55,7 @@ def test_remesh_reaches_the_rule():
     curve = near_strands(0.01)
     spacing = graded_spacing(curve, RULE)
     assert needs_remesh(curve, spacing)
-    fine = remesh(curve, RULE, superfluous(curve, spacing), spacing).curve
+    fine = remesh(curve, RULE, superfluous(curve, spacing), spacing, Pins()).curve
     assert (fine.edge_lengths <= SPLIT * 1.01 * graded_spacing(fine, RULE)).all()
     assert fine.length == pytest.approx(curve.length)
 

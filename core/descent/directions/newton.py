@@ -59,7 +59,8 @@ def _curvature_weights(point: Point) -> FloatArray:
     vanish if it is that of the whole curve, because the energy does not change under translations.
     """
     ell, constraints = point.curve.edge_lengths, point.tangent_space.constraints
-    along = np.einsum("ij,ij->i", constraints.forces(point.multipliers), point.curve.midpoints)
+    forces = constraints.forces(point.multipliers)[point.curve.mesh.tails]
+    along = np.einsum("ij,ij->i", forces, point.curve.midpoints)
     return np.asarray(constraints.tensions(point.multipliers) / ell**2 + along / ell)
 
 

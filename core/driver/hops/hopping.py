@@ -42,7 +42,7 @@ class Hops:
     def led_lower(self, outcome: Outcome) -> bool:
         """Try until a hop leads lower, which the run then takes; False if none does, or there is nothing lower."""
         run = self._run
-        if not outcome.may_be_left or is_circle(run.iterate.curve):
+        if not outcome.may_be_left or (run.problem.unconfined and is_circle(run.iterate.curve)):
             return False
         while self._tried < run.options.hops and run.iterations_left > 0:
             below = (1.0 - GAIN) * run.iterate.energy
@@ -69,7 +69,8 @@ class Hops:
         """The outcome with what hops were good for, or may be."""
         if self._tried:
             outcome = outcome.adding(HOPS.format(taken=self._taken, tried=counted(self._tried, "hop")))
-        found = told_of_unknot(self._run.iterate.curve) if outcome.may_be_left else None
+        run = self._run
+        found = told_of_unknot(run.iterate.curve) if outcome.may_be_left and run.problem.unconfined else None
         if found is None:
             return outcome
         return outcome.adding(f"{found}: {MORE_MAY_HELP if self._run.options.hops else MAY_HELP}")

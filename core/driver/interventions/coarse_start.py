@@ -77,7 +77,7 @@ class CoarseStart:
     def _finest(self) -> Change | None:
         """The same curve with all vertices, in the problem of the start; None if doubles do not tell them apart."""
         self._coarse = curve = self._run.iterate.curve
-        pieces = np.empty(len(curve), dtype=np.intp)
+        pieces = np.empty(curve.mesh.edges, dtype=np.intp)
         coarse, fine = (arcs(each.mesh, _kept(each)) for each in (self._run.problem, self._problem))
         for arc, again in zip(coarse, fine, strict=True):
             pieces[arc] = apportion(curve.edge_lengths[arc], len(again))

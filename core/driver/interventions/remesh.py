@@ -52,8 +52,9 @@ class Remesh:
         pins = problem.constraints.pins.vertices
         spacing = graded_spacing(curve, resolution)
         if stuck is not None:
+            edges = np.arange(curve.mesh.edges)
             for edge in stuck.edges:
-                near = curve.mesh.index_distance(np.full(len(curve), edge), np.arange(len(curve))) <= 2
+                near = curve.mesh.index_distance(np.full_like(edges, edge), edges) <= 2
                 spacing[near] = np.minimum(spacing[near], 0.5 * curve.edge_lengths[near])
         elif not needs_remesh(curve, spacing, pins):
             return None
