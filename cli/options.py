@@ -2,9 +2,11 @@
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from ..core import RelaxOptions
+from ..core.curve.io import CurveFile
 from ..core.option import Option, declared
 
 
@@ -23,6 +25,11 @@ def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     """The options; raises OptionError if one is out of range."""
     given, names = vars(arguments), [option.name for option in declared(RelaxOptions)]
     return RelaxOptions(**{name: given[name] for name in names if name in given})
+
+
+def about(file: CurveFile, options: RelaxOptions) -> RelaxOptions:
+    """The options with the vertices that a file's own numbers stand for; raises CurveFileError if it has none such."""
+    return replace(options, pins=tuple(map(file.index_of, options.pins)))
 
 
 def flag(option: Option) -> str:
@@ -48,11 +55,11 @@ class _Ordinals(argparse.Action):
 
     def __call__(self, _parser: Any, namespace: argparse.Namespace, text: Any, _flag: str | None = None) -> None:
         words = [word.strip() for word in text.split(",")]
-        wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and 0 < int(word[:20]))), None)
+        wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and int(word[:20]) > 0)), None)
         if wrong is not None:
             raise argparse.ArgumentError(self, f"{wrong!r:.40} is no vertex; give numbers from 1, such as 12,40")
         given = getattr(namespace, self.dest)
-        setattr(namespace, self.dest, (*given, *(int(word[:20]) - 1 for word in words)))
+        setattr(namespace, self.dest, (*given, *(int(word[:18]) - 1 for word in words)))
 
 
 class _Farther(argparse.Action):

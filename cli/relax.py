@@ -50,8 +50,8 @@ exit status:
 
 In the report "energy" is the objective at every iterate, "final_energy" the Möbius energy of the result, exact up to
 30,000 vertices and beyond with a relative "final_energy_error" at most, and "sampled_errors" what the hierarchical
-solver's errors are by the last sample of edges. "pins" are the vertices of the result that were held, counted from 0, as
-they are in "options".
+solver's errors are by the last sample of edges. "pins" are the vertices of the result that were held, counted from 0
+as in "options".
 What cannot be written in the end is kept in a temporary directory that the message names.
 """
 
@@ -95,6 +95,7 @@ def run(options: argparse.Namespace) -> int:
         wanted = wanted.keyed
     check_places(options.input, {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory})
     file = curves.read(options.input, options.format)
+    wanted = relax_options.about(file, wanted)
     admit(output, options.output, file.curve)
     origin = provenance(wanted, file)
     with curves.refusals(file):

@@ -9,14 +9,14 @@ and the length of an edge between two pins, which cannot change, is no row eithe
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
 from .curve import Curve, Mesh
-from .curve.pins import NOWHERE, Pins, free_edges
+from .curve.pins import NO_PINS, NOWHERE, Pins, free_edges
 from .types import FloatArray, IntArray
 
 Parts = tuple[int, ...]
@@ -41,7 +41,7 @@ class Constraints:
     lengths: FloatArray
     barycenter: FloatArray
     parts: Parts | None = None
-    pins: Pins = field(default_factory=Pins)
+    pins: Pins = NO_PINS
 
     def of_parts(self, curve: Curve, parts: Parts) -> "Constraints":
         """The same lengths and pins, with the barycenter of each part kept where it is in ``curve``."""
@@ -127,7 +127,7 @@ class ConstraintDerivative:
 
     @classmethod
     def of_lengths(cls, curve: Curve, pins: IntArray = NOWHERE) -> "ConstraintDerivative":
-        """The rows of all lengths alone, those between pins with them: where they weigh, they need not be of full rank."""
+        """The rows of all lengths alone, those between pins with them: what is a weight need not have full rank."""
         return cls._of(curve, sp.csr_array((0, len(curve))), np.arange(len(curve.mesh.tails)), pins)
 
     @classmethod
@@ -144,9 +144,14 @@ class ConstraintDerivative:
         return cls(mesh, tangents, 0.5 * mesh.scatter(ell, ell), moments, membership, edges, pins)
 
     @property
+    def shape(self) -> tuple[int, int]:
+        """(n, m), the shape of u."""
+        return len(self.masses), self.tangents.shape[1]
+
+    @property
     def count(self) -> int:
         """Number of rows, r + p·m."""
-        return len(self.edges) + int(self.membership.shape[0]) * self.tangents.shape[1]
+        return len(self.edges) + int(self.membership.shape[0]) * self.shape[1]
 
     def barycenter_rows(self) -> Iterator[FloatArray]:
         """The rows of the barycenters one by one, part by part and coordinate by coordinate; shape (n, m) each."""
@@ -157,7 +162,7 @@ class ConstraintDerivative:
 
     def length_rows(self) -> sp.csr_array:
         """The rows of the lengths as a sparse matrix, 0 at pins; shape (r, n·m)."""
-        tangents, n, m = self.tangents[self.edges], len(self.masses), self.tangents.shape[1]
+        tangents, (n, m) = self.tangents[self.edges], self.shape
         row, coordinate = np.indices(tangents.shape)
         free = np.where(np.isin(np.arange(n), self.pins), 0.0, 1.0)
         ends = [end[self.edges] for end in (self.mesh.tails, self.mesh.heads)]
@@ -187,8 +192,7 @@ class ConstraintDerivative:
 
     def forces(self, multipliers: FloatArray) -> FloatArray:
         """The multiplier of its part's barycenter for each vertex and edge, 0 without; shape (n, m)."""
-        each = multipliers[len(self.edges) :].reshape(-1, self.tangents.shape[1])
-        return np.asarray(self._parts_to_vertices @ each)
+        return np.asarray(self._parts_to_vertices @ multipliers[len(self.edges) :].reshape(-1, self.shape[1]))
 
     @cached_property
     def _parts_to_vertices(self) -> sp.csr_array:

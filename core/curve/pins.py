@@ -12,7 +12,7 @@ from ..types import BoolArray, FloatArray, IntArray, frozen
 from .curve import Curve
 from .mesh import Mesh
 
-TAUT = 1e-9  # slack of an arc, relative to the distance of its ends, up to which it is straight: rounding leaves far less
+TAUT = 1e-9  # slack of an arc, relative to its ends' distance, up to which it is straight: rounding leaves far less
 NOWHERE: IntArray = frozen(np.empty(0, dtype=np.intp))
 
 
@@ -66,6 +66,9 @@ class Pins:
         return frozen(placed)
 
 
+NO_PINS = Pins()
+
+
 def holds(mesh: Mesh, vertices: IntArray) -> BoolArray:
     """Whether each vertex of a mesh is one of these; shape (n,)."""
     held = np.zeros(mesh.size, dtype=bool)
@@ -93,7 +96,7 @@ def arcs(mesh: Mesh, pins: IntArray) -> list[IntArray]:
 
 def ends_of(mesh: Mesh, edges: IntArray) -> IntArray:
     """The ends of edges, each once."""
-    return np.unique(np.concatenate([mesh.tails[edges], mesh.heads[edges]]))
+    return np.asarray(np.unique(np.concatenate([mesh.tails[edges], mesh.heads[edges]])))
 
 
 class Span(NamedTuple):

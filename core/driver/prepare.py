@@ -9,7 +9,7 @@ from ..checks import named
 from ..collision import check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
 from ..curve import Curve, Mesh, check_is_curve, refine
-from ..curve.pins import TAUT, Pins, arcs, spans
+from ..curve.pins import NO_PINS, TAUT, Pins, arcs, spans
 from ..curve.refine import Resolution
 from ..curve.remesh import graded_spacing, normalised
 from ..descent import METHODS, Point, Problem
@@ -70,7 +70,7 @@ def pins_of(curve: Curve, refined: Curve, options: RelaxOptions) -> Pins:
         If the curve has no such vertex.
     """
     if not options.pins:
-        return Pins()
+        return NO_PINS
     last = max(options.pins)
     if last >= len(curve):
         raise CurveOptionError(f"pins asks for vertex {last + 1}, but the curve has {len(curve)} vertices")
@@ -181,7 +181,8 @@ def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray) -> None:
         if len(span.edges) == 1 and abs(wanted - span.length) > TAUT * span.length:
             raise OptionError(f"edge_lengths changes the edge between vertices {i} and {j}, which are both pinned")
         if len(span.edges) > 1 and wanted <= (1.0 + TAUT) * span.distance:
+            ratio = wanted / span.distance
             raise OptionError(
-                f"edge_lengths makes the arc between the pinned vertices {i} and {j} {wanted / span.distance:.6g} times as "
-                "long as they are far apart; give it more than that"
+                f"edge_lengths makes the arc between vertices {i} and {j}, which are pinned, {ratio:.6g} times as long "
+                "as their distance; give it more than that"
             )

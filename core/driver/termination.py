@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .outcome import UNEVEN, Outcome, converged, out_of_iterations
+from .outcome import FROZEN, UNEVEN, Outcome, converged, out_of_iterations
 from .run import Run
 
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
@@ -14,7 +14,8 @@ def termination(run: Run) -> Outcome | None:
     if run.point.gradient_norm <= bound and _feasible(run):
         norm = run.point.with_own_metric().gradient_norm
         if norm <= bound:
-            return converged(norm, bound)
+            outcome = converged(norm, bound)
+            return outcome.adding(FROZEN) if run.frozen else outcome
     return at_limit(run) if run.iterations_left <= 0 else None
 
 

@@ -47,7 +47,7 @@ class DenseTangentSpace(TangentSpace):
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve the Schur complement's system for λ, then for u."""
         c = self.constraints
-        free = np.zeros((len(c.masses), c.tangents.shape[1])) if eta is None else self._inner.solve(eta)
+        free = np.zeros(c.shape) if eta is None else self._inner.solve(eta)
         right = c.apply(free)
         if xi is not None:
             right -= xi

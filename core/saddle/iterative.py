@@ -14,8 +14,8 @@ from ..constraints import ConstraintDerivative, Constraints
 from ..curve import Curve
 from ..types import FloatArray
 from .krylov import conjugate_gradients, flexible_conjugate_gradients, relative
-from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
 from .pinned import vanishing_at
+from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
 from .tangent_space import TangentSpace, WholeSpace
 
 MIN_FORCING = 1e-4  # relative residual of Newton's method for the constraints
@@ -87,7 +87,7 @@ class IterativeTangentSpace(TangentSpace):
         super().__init__(constraints)
         self._inner = inner
         self._tolerances = tolerances
-        self._model = vanishing_at(constraints.pins, inner.model, len(constraints.masses))
+        self._model = vanishing_at(constraints.pins, inner.model, constraints.mesh)
         self._preconditioner = ConstraintPreconditioner(self._model, constraints)
 
     def apply(self, u: FloatArray) -> FloatArray:
@@ -96,8 +96,7 @@ class IterativeTangentSpace(TangentSpace):
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve for each of the two right sides, to its own tolerance."""
-        c = self.constraints
-        u, multipliers = np.zeros((len(c.masses), c.tangents.shape[1])), np.zeros(c.count)
+        u, multipliers = np.zeros(self.constraints.shape), np.zeros(self.constraints.count)
         for part in (None if eta is None else self._projected(eta), None if xi is None else self._shortest(xi)):
             if part is not None:
                 u, multipliers = u + part[0], multipliers + part[1]
@@ -167,7 +166,7 @@ class IterativeWholeSpace(WholeSpace):
     ) -> None:
         super().__init__(constraints, weights)
         self._inner, self._tolerances = inner, tolerances
-        self._model = vanishing_at(constraints.pins, inner.model, len(constraints.masses))
+        self._model = vanishing_at(constraints.pins, inner.model, constraints.mesh)
 
     def riesz(self, eta: FloatArray) -> FloatArray:
         """To the tolerance of gradients."""

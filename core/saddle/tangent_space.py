@@ -18,8 +18,8 @@ class TangentSpace(ABC):
         [ J  Cᵀ ] (u)   (η)
         [ C  0  ] (λ) = (ξ),
 
-    whose rows of J, and columns of C, at pins are left out, for three right sides: (DE, 0) gives the projected gradient, (0, ξ) the pseudo-inverse C^† ξ, (J v, 0) the
-    projection of v.
+    with the rows and columns of pins left out, for three right sides: (DE, 0) gives the projected gradient, (0, ξ) the
+    pseudo-inverse C^† ξ, (J v, 0) the projection of v.
     """
 
     def __init__(self, constraints: ConstraintDerivative) -> None:
@@ -78,8 +78,7 @@ class WholeSpace(TangentSpace):
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """The same without constraints: ξ is of no consequence, multipliers are 0."""
-        c = self.constraints
-        u = np.zeros((len(c.masses), c.tangents.shape[1])) if eta is None else self.riesz(eta)
+        u = np.zeros(self.constraints.shape) if eta is None else self.riesz(eta)
         return u, np.zeros(self.constraints.count)
 
     def project(self, u: FloatArray) -> FloatArray:

@@ -30,10 +30,10 @@ def test_every_option_stands_in_the_help(capsys):
     shown = capsys.readouterr().out
     words = " ".join(shown.split()).replace("- ", "-")
     for each in declared(RelaxOptions):
-        assert f"\n  --{each.name.replace('_', '-')} " in shown
+        assert f"\n  {relax_options.flag(each)} " in shown
         assert each.help.replace("- ", "-") in words
         if each.kind is not bool:
-            assert f"(default: {each.automatic or each.default})" in words
+            assert f"(default: {each.automatic or each.default or 'none'})" in words
         for name in each.choices or ():
             assert name in words
 
@@ -45,7 +45,8 @@ def test_defaults_are_the_librarys():
 @pytest.mark.parametrize("each", declared(RelaxOptions), ids=lambda each: each.name)
 def test_every_option_can_be_given(each):
     value = unlike_default(each)
-    words = [relax_options.flag(each), *([] if value is True else [str(value)])]
+    text = ",".join(str(index + 1) for index in value) if each.ordinals else str(value)
+    words = [relax_options.flag(each), *([] if value is True else [text])]
     assert asdict(parsed(*words)) == asdict(RelaxOptions()) | {each.name: value}
 
 

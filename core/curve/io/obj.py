@@ -45,11 +45,11 @@ def read(source: Source) -> list[Polygon]:
             raise source.error(reason, link.line)
     if content.faces:
         _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, content.faces)
-    chains = _chains(source, content)
-    return [
-        Polygon([content.points[i] for i in chain], lambda i, chain=chain: content.lines[chain[i]])  # type: ignore[misc]
-        for chain in chains
-    ]
+    return [_polygon(content, chain) for chain in _chains(source, content)]
+
+
+def _polygon(content: _Content, chain: list[int]) -> Polygon:
+    return Polygon([content.points[i] for i in chain], lambda i: content.lines[chain[i]], chain)
 
 
 def _chains(source: Source, content: _Content) -> list[list[int]]:
