@@ -87,13 +87,16 @@ def weighted_barycenter(curve: Curve, parts: Parts | None = None, pins: IntArray
 
 
 def _memberships(mesh: Mesh, parts: Parts | None, pins: IntArray) -> Iterator[FloatArray]:
+    if parts is None and not len(pins):
+        yield np.ones(mesh.size)
+        return
     part = np.asarray(parts or (0,) * len(mesh.component_sizes))[mesh.component]
     yield from (np.where(part == k, 1.0, 0.0) for k in _without_pins(part, pins))
 
 
 def _without_pins(part: IntArray, pins: IntArray) -> IntArray:
     """The parts that have no pin, from the part of each vertex."""
-    return np.setdiff1d(np.arange(part.max() + 1), part[pins])
+    return np.flatnonzero(np.bincount(part[pins], minlength=part.max() + 1) == 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +138,8 @@ class ConstraintDerivative:
         """DΦ at the curve."""
         part = np.asarray(parts or (0,) * len(curve.mesh.component_sizes))[curve.mesh.component]
         own = sp.csr_array((np.ones(len(curve)), (part, np.arange(len(curve)))), shape=(part.max() + 1, len(curve)))
-        return cls._of(curve, own[_without_pins(part, pins)], free_edges(curve.mesh, pins), pins)
+        held = own[_without_pins(part, pins)] if len(pins) else own
+        return cls._of(curve, held, free_edges(curve.mesh, pins), pins)
 
     @classmethod
     def _of(cls, curve: Curve, membership: sp.csr_array, edges: IntArray, pins: IntArray) -> "ConstraintDerivative":

@@ -168,7 +168,7 @@ class RelaxOptions:
         if times > 1:
             raise OptionError(f"pins names vertex {pin + 1} more than once")
         if self.balance and self.pins:
-            raise OptionError("balance would move pins, as Möbius maps do; leave one of the two options out")
+            raise OptionError("balance would move pins, as Möbius maps do; leave one of the two out")
 
     @property
     def ends_finer(self) -> bool:

@@ -1,5 +1,6 @@
 """From a curve and options to the problem that is solved."""
 
+import logging
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -19,6 +20,8 @@ from ..types import FloatArray, IntArray
 from ..units import Units, check_units
 from .options import RelaxOptions
 from .solver import Solver, max_vertices
+
+_log = logging.getLogger(__name__)
 
 EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
 
@@ -75,6 +78,9 @@ def pins_of(curve: Curve, refined: Curve, options: RelaxOptions) -> Pins:
     if last >= len(curve):
         raise CurveOptionError(f"pins asks for vertex {last + 1}, but the curve has {len(curve)} vertices")
     pins = Pins.at(refined, curve.vertices[list(options.pins)])
+    if len(pins) > len(options.pins):
+        more = len(pins) - len(options.pins)
+        _log.warning("%d of %d vertices are on straight arcs between pins, and held as well", more, len(refined))
     return pins.with_neighbours(refined) if options.pin_tangents else pins
 
 

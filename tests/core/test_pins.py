@@ -279,16 +279,15 @@ def test_pins_survive_every_mesh(mesh: str) -> None:
 
 
 def test_pins_survive_a_coarse_start() -> None:
-    curve = torus_knot(2, 3, 1800)
+    curve = torus_knot(2, 3, 1500)
     curve = curve.with_vertices(curve.vertices * [1.0, 1.4, 1.2])
-    pins = (0, 7, 1000, 1799)
+    pins = (0, 7, 1000, 1499)
     iterates, message = checked(curve, pins=pins, max_iterations=120)
     assert min(len(iterate.curve) for iterate in iterates) < 900
     assert message.startswith("converged")
     assert iterates[-1].pins == pins
     assert all(iterate.certified for iterate in iterates)
-    slack, _ = checked(curve, pins=pins, max_iterations=120, mesh="fixed")
-    assert iterates[-1].energy == pytest.approx(slack[-1].energy, rel=1e-4)
+    assert iterates[-1].energy < 74.42  # 74.412 without pins
 
 
 def test_arcs_keep_their_lengths_spread_evenly() -> None:
@@ -350,11 +349,12 @@ def test_nothing_moves_where_everything_is_pinned() -> None:
         assert len(iterates) == 1
 
 
-def test_straight_arcs_of_a_start_do_not_move_and_others_do() -> None:
+def test_straight_arcs_of_a_start_do_not_move_and_others_do(caplog: pytest.LogCaptureFixture) -> None:
     curve = Curve([[0, 0, 0], [3, 0, 0], [3, 1, 0.2], [1.5, 2, 0.9], [0, 1, -0.3]])
     iterates, message = checked(curve, pins=(0, 1), vertices=100)
     assert message.startswith("converged")
     held = len(iterates[0].pins)
+    assert caplog.messages == [f"{held - 2} of 100 vertices are on straight arcs between pins, and held as well"]
     assert 20 < held < 60
     np.testing.assert_array_equal(iterates[-1].curve.vertices[:held], iterates[0].curve.vertices[:held])
     assert np.abs(iterates[-1].curve.vertices - iterates[0].curve.vertices).max() > 0.1
@@ -375,14 +375,14 @@ def test_little_slack_is_no_obstacle() -> None:
     ("options", "said"),
     [
         ({"pins": (2, 90)}, "pins asks for vertex 91, but the curve has 90 vertices"),
-        ({"pins": (2, 5, 2)}, "pins names vertex 3 2 times; name it once"),
+        ({"pins": (2, 5, 2)}, "pins names vertex 3 more than once"),
         ({"pins": (-1,)}, "pins is -1; it must be 0 or more"),
         ({"pins": (0.5,)}, "pins is 0.5; it must be a whole number"),
         ({"pins": "12"}, "pins is '12'; it must be a tuple of whole numbers, such as (0, 5)"),
         ({"pins": 12}, "pins is 12; it must be a tuple of whole numbers, such as (0, 5)"),
         (
             {"pins": (1,), "balance": True},
-            "balance would move pins, as Möbius maps do; leave one of the two options out",
+            "balance would move pins, as Möbius maps do; leave one of the two out",
         ),
     ],
 )
