@@ -79,7 +79,7 @@ def test_compare_takes_pins() -> None:
         (["--pin", "61"], "bent.obj: there is no vertex 61 on the curve"),
         (["--pin", "5,7,5"], "pins names vertex 5 more than once"),
         (["--pin", "5", "--pin", "5"], "pins names vertex 5 more than once"),
-        (["--pin", "5", "--balance"], "balance would move pins, as Möbius maps do; leave one of the two options out"),
+        (["--pin", "5", "--balance"], "balance would move pins, as Möbius maps do; leave one of the two out"),
     ],
 )
 def test_pins_that_cannot_be_are_refused_in_one_line(
