@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     check_places(relax_options.inputs(options), {"OUT": options.output})
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
-        wanted = relax_options.from_arguments(options)
+        wanted = relax_options.about(file, relax_options.from_arguments(options))
         planned = compare(file.curve, names, wanted, options.time_limit)
         options.notes.show()
         runs, ended_by = _collected(planned)

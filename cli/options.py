@@ -2,9 +2,11 @@
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from ..core import RelaxOptions
+from ..core.curve.io import CurveFile
 from ..core.option import Option, declared
 
 
@@ -34,6 +36,11 @@ def inputs(arguments: argparse.Namespace) -> dict[str, str]:
 def _value(option: Option, given: Any) -> Any:
     """What is given, with words turned into the items of a tuple."""
     return tuple(item for word in given for item in option.read(word)) if option.repeated else given
+
+
+def about(file: CurveFile, options: RelaxOptions) -> RelaxOptions:
+    """The options with the vertices that a file's own numbers stand for; raises CurveFileError if it has none such."""
+    return replace(options, pins=tuple(map(file.index_of, options.pins)))
 
 
 def flag(option: Option) -> str:

@@ -41,6 +41,7 @@ examples:
   mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
   mobius-flow relax knot.txt film.mp4 --method trust-region
   mobius-flow relax knot.txt relaxed.txt --avoid bunny.obj --trajectory path.npz
+  mobius-flow relax loop.obj relaxed.obj --pin 12,40
   mobius-flow knot 8_19 - | mobius-flow relax - - --format txt | mobius-flow energy -
 
 exit status:
@@ -52,8 +53,8 @@ exit status:
 
 In the report "energy" is the objective at every iterate, "final_energy" the Möbius energy of the result, exact up to
 30,000 vertices and beyond with a relative "final_energy_error" at most, and "sampled_errors" what the hierarchical
-solver's errors are by the last sample of edges. "pins" are the vertices of the result that were held, counted from 0, as
-they are in "options".
+solver's errors are by the last sample of edges. "pins" are the vertices of the result that were held, counted from 0
+as in "options".
 What cannot be written in the end is kept in a temporary directory that the message names.
 """
 
@@ -98,6 +99,7 @@ def run(options: argparse.Namespace) -> int:
     outputs = {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
     check_places(relax_options.inputs(options), outputs)
     file = curves.read(options.input, options.format)
+    wanted = relax_options.about(file, wanted)
     admit(output, options.output, file.curve)
     origin = provenance(wanted, file)
     with curves.refusals(file):

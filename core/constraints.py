@@ -9,14 +9,14 @@ and the length of an edge between two pins, which cannot change, is no row eithe
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 
 from .curve import Curve, Mesh
-from .curve.pins import NOWHERE, Pins, free_edges
+from .curve.pins import NO_PINS, NOWHERE, Pins, free_edges
 from .types import FloatArray, IntArray
 
 Parts = tuple[int, ...]
@@ -41,7 +41,7 @@ class Constraints:
     lengths: FloatArray
     barycenter: FloatArray
     parts: Parts | None = None
-    pins: Pins = field(default_factory=Pins)
+    pins: Pins = NO_PINS
 
     def of_parts(self, curve: Curve, parts: Parts) -> "Constraints":
         """The same lengths and pins, with the barycenter of each part kept where it is in ``curve``."""
@@ -87,13 +87,16 @@ def weighted_barycenter(curve: Curve, parts: Parts | None = None, pins: IntArray
 
 
 def _memberships(mesh: Mesh, parts: Parts | None, pins: IntArray) -> Iterator[FloatArray]:
+    if parts is None and not len(pins):
+        yield np.ones(mesh.edges)
+        return
     part = np.asarray(parts or (0,) * len(mesh.component_sizes))
     yield from (np.where(part[mesh.edge_component] == k, 1.0, 0.0) for k in _without_pins(part[mesh.component], pins))
 
 
 def _without_pins(part: IntArray, pins: IntArray) -> IntArray:
     """The parts that have no pin, from the part of each vertex."""
-    return np.setdiff1d(np.arange(part.max() + 1), part[pins])
+    return np.flatnonzero(np.bincount(part[pins], minlength=part.max() + 1) == 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +130,7 @@ class ConstraintDerivative:
 
     @classmethod
     def of_lengths(cls, curve: Curve, pins: IntArray = NOWHERE) -> "ConstraintDerivative":
-        """The rows of all lengths alone, those between pins with them: where they weigh, they need not be of full rank."""
+        """The rows of all lengths alone, those between pins with them: what is a weight need not have full rank."""
         return cls._of(curve, sp.csr_array((0, len(curve))), np.arange(len(curve.mesh.tails)), pins)
 
     @classmethod
@@ -135,7 +138,8 @@ class ConstraintDerivative:
         """DΦ at the curve."""
         part = np.asarray(parts or (0,) * len(curve.mesh.component_sizes))[curve.mesh.component]
         own = sp.csr_array((np.ones(len(curve)), (part, np.arange(len(curve)))), shape=(part.max() + 1, len(curve)))
-        return cls._of(curve, own[_without_pins(part, pins)], free_edges(curve.mesh, pins), pins)
+        held = own[_without_pins(part, pins)] if len(pins) else own
+        return cls._of(curve, held, free_edges(curve.mesh, pins), pins)
 
     @classmethod
     def _of(cls, curve: Curve, membership: sp.csr_array, edges: IntArray, pins: IntArray) -> "ConstraintDerivative":
@@ -144,14 +148,14 @@ class ConstraintDerivative:
         return cls(mesh, tangents, 0.5 * mesh.scatter(ell, ell), moments, membership, edges, pins)
 
     @property
-    def count(self) -> int:
-        """Number of rows, r + p·m."""
-        return len(self.edges) + int(self.membership.shape[0]) * self.tangents.shape[1]
+    def shape(self) -> tuple[int, int]:
+        """(n, m), the shape of u."""
+        return len(self.masses), self.tangents.shape[1]
 
     @property
-    def shape(self) -> tuple[int, int]:
-        """Shape (n, m) of displacements."""
-        return self.mesh.size, self.tangents.shape[1]
+    def count(self) -> int:
+        """Number of rows, r + p·m."""
+        return len(self.edges) + int(self.membership.shape[0]) * self.shape[1]
 
     def barycenter_rows(self) -> Iterator[FloatArray]:
         """The rows of the barycenters one by one, part by part and coordinate by coordinate; shape (n, m) each."""
@@ -193,8 +197,7 @@ class ConstraintDerivative:
 
     def forces(self, multipliers: FloatArray) -> FloatArray:
         """The multiplier of its part's barycenter for each vertex and edge, 0 without; shape (n, m)."""
-        each = multipliers[len(self.edges) :].reshape(-1, self.tangents.shape[1])
-        return np.asarray(self._parts_to_vertices @ each)
+        return np.asarray(self._parts_to_vertices @ multipliers[len(self.edges) :].reshape(-1, self.shape[1]))
 
     @cached_property
     def _parts_to_vertices(self) -> sp.csr_array:

@@ -9,6 +9,8 @@ def unlike_default(option: Option) -> object:
     """An allowed value that is not the default, and is the same in 32 bits."""
     if option.kind is bool:
         return not option.default
+    if option.repeated:
+        return (4, 0, 7)
     if option.choices is not None:
         return next(name for name in reversed(list(option.choices)) if name != option.default)
     if math.isfinite(option.high):

@@ -12,9 +12,7 @@ from ..types import BoolArray, FloatArray, IntArray, frozen
 from .curve import Curve
 from .mesh import Mesh
 
-TAUT = (
-    1e-9  # slack of an arc, relative to the distance of its ends, up to which it is straight: rounding leaves far less
-)
+TAUT = 1e-9  # slack of an arc, relative to its ends' distance, up to which it is straight: rounding leaves far less
 NOWHERE: IntArray = frozen(np.empty(0, dtype=np.intp))
 
 
@@ -40,7 +38,7 @@ class Pins:
 
     @classmethod
     def of(cls, curve: Curve, vertices: IntArray) -> "Pins":
-        """Some vertices of a curve, and those of taut arcs between them: there is no motion that these have left."""
+        """Some vertices of a curve, and those of taut arcs between them, to which no motion is left either."""
         taut = [ends_of(curve.mesh, span.edges) for span in spans(curve, vertices) if span.taut]
         held = np.unique(np.concatenate([vertices, *taut]))
         return cls(frozen(held), frozen(curve.vertices[held]))
@@ -68,6 +66,9 @@ class Pins:
         return frozen(placed)
 
 
+NO_PINS = Pins()
+
+
 def holds(mesh: Mesh, vertices: IntArray) -> BoolArray:
     """Whether each vertex of a mesh is one of these; shape (n,)."""
     held = np.zeros(mesh.size, dtype=bool)
@@ -77,15 +78,21 @@ def holds(mesh: Mesh, vertices: IntArray) -> BoolArray:
 
 def free_edges(mesh: Mesh, pins: IntArray) -> IntArray:
     """The edges of which not both ends are pinned."""
+    if not len(pins):
+        return np.arange(len(mesh.tails))
     held = holds(mesh, pins)
     return np.flatnonzero(~(held[mesh.tails] & held[mesh.heads]))
 
 
 def arcs(mesh: Mesh, pins: IntArray) -> list[IntArray]:
-    """The edges of each arc from pin to pin, or to an end of the curve, and of each component without pins."""
+    """The edges, ascending, of each arc from pin to pin or to an end of the curve, and of each component without pins.
+
+    Edges are on the same arc if they meet in a vertex that is no pin: connected components of the graph with edges and
+    free vertices as its nodes.
+    """
     edges, free = np.arange(len(mesh.tails)), ~holds(mesh, pins)
     edge, vertex = np.concatenate([edges, edges]), np.concatenate([mesh.tails, mesh.heads])
-    joined, nodes = free[vertex], len(edges) + mesh.size  # edges and vertices, for an edge ends at a pin
+    joined, nodes = free[vertex], len(edges) + mesh.size
     places = edge[joined], len(edges) + vertex[joined]
     graph = sp.coo_array((np.ones(len(places[0])), places), shape=(nodes, nodes))
     label = connected_components(graph, directed=False)[1][: len(edges)]
@@ -95,7 +102,7 @@ def arcs(mesh: Mesh, pins: IntArray) -> list[IntArray]:
 
 def ends_of(mesh: Mesh, edges: IntArray) -> IntArray:
     """The ends of edges, each once."""
-    return np.unique(np.concatenate([mesh.tails[edges], mesh.heads[edges]]))
+    return np.asarray(np.unique(np.concatenate([mesh.tails[edges], mesh.heads[edges]])))
 
 
 class Span(NamedTuple):
@@ -129,7 +136,7 @@ def spans(curve: Curve, pins: IntArray) -> Iterator[Span]:
     held = holds(curve.mesh, pins)
     for arc in arcs(curve.mesh, pins) if len(pins) else []:
         ends = ends_of(curve.mesh, arc)
-        first, *more = ends[held[ends]].tolist() or [0]
-        if more:
-            distance = float(np.linalg.norm(curve.vertices[more[0]] - curve.vertices[first]))
-            yield Span(arc, (first, more[0]), distance, float(curve.edge_lengths[arc].sum()))
+        ends = ends[held[ends]]
+        if len(ends) == 2:
+            distance = float(np.linalg.norm(np.diff(curve.vertices[ends], axis=0)))
+            yield Span(arc, (int(ends[0]), int(ends[1])), distance, float(curve.edge_lengths[arc].sum()))

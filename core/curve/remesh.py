@@ -11,7 +11,7 @@ import numpy as np
 from ..types import BoolArray, FloatArray, IntArray
 from .curve import Curve
 from .mesh import Mesh
-from .pins import NOWHERE, Pins, arcs, holds
+from .pins import NO_PINS, NOWHERE, Pins, arcs, holds
 from .refine import Resolution, subdivide, target_spacing
 
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
@@ -90,7 +90,9 @@ class Remeshed:
     pins: Pins
 
 
-def remesh(curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray, pins: Pins) -> Remeshed:
+def remesh(
+    curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray, pins: Pins = NO_PINS
+) -> Remeshed:
     """Remove the given vertices after moving them onto their chords, and split edges that are too long."""
     moved = curve.with_vertices(onto_chords(curve, removable))
     keep = np.ones(len(curve), dtype=bool)
@@ -115,7 +117,7 @@ def _without(curve: Curve, keep: BoolArray) -> Curve:
 
 
 def normalised(curve: Curve, spacing: FloatArray, pins: IntArray) -> FloatArray:
-    """Edge lengths as the spacing, scaled so that every arc between pins, or component, keeps its length; shape (n,)."""
+    """Edge lengths as the spacing, scaled with the length of every arc between pins, or component, kept; shape (n,)."""
     lengths = spacing.copy()
     for arc in arcs(curve.mesh, pins):
         lengths[arc] *= curve.edge_lengths[arc].sum() / spacing[arc].sum()

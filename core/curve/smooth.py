@@ -33,7 +33,7 @@ def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArra
 
 
 def _resampled(points: FloatArray, closed: bool, size: int, pins: IntArray, places: IntArray) -> FloatArray:
-    """Points on the spline, as many as wanted, between the given ones that come to be at ``places``; shape (size, m)."""
+    """Points on the spline, the given ones that are pins among them at their places; shape (size, m)."""
     spline = periodic_spline(points) if closed else open_spline(points)
     parameter = sample_parameters(spline)
     arc = arc_lengths(spline(parameter))

@@ -70,7 +70,7 @@ class Problem:
     obstacles: tuple[Obstacle, ...] = ()
 
     def at(self, vertices: FloatArray) -> "Point":
-        """The point with these vertices, in the program's units; those that are pinned are put back to the last digit."""
+        """The point with these vertices, in the program's units; pinned ones are put back to their last digits."""
         pins, placed = self.constraints.pins, self.units.to_user(vertices)
         if not len(pins):
             return Point(self, vertices, placed)

@@ -178,8 +178,8 @@ class RelaxOptions:
     pins: tuple[int, ...] = _scripted(
         (),
         "Pins",
-        "vertices of the input that stay exactly where they are, counted from 0 in Python and from 1 on the command line; "
-        "where an arc between two of them is straight, or pulled taut, nothing on it can move",
+        "vertices of the input that stay exactly where they are, counted from 0 in Python and from 1 on the command "
+        "line; nothing can move on an arc that is straight from one of them to the next",
         low=0,
         example="(0, 5)",
         flag="pin",
@@ -189,7 +189,7 @@ class RelaxOptions:
     pin_tangents: bool = _scripted(
         False,
         "Pin Tangents",
-        "pin the neighbours of pinned vertices in the refined start too: the directions of the edges in between stay",
+        "pin the neighbours that pinned vertices have in the refined start too, and so the curve's direction there",
     )
 
     def __post_init__(self) -> None:
@@ -206,11 +206,9 @@ class RelaxOptions:
     def _check_pins(self) -> None:
         pin, times = max(Counter(self.pins).items(), key=itemgetter(1), default=(0, 0))
         if times > 1:
-            raise OptionError(f"pins names vertex {pin + 1} {times} times; name it once")
-        if self.pin_tangents and not self.pins:
-            raise OptionError("pin_tangents is about pins, of which there are none; name some in pins")
+            raise OptionError(f"pins names vertex {pin + 1} more than once")
         if self.balance and self.pins:
-            raise OptionError("balance would move pins, as Möbius maps do; leave one of the two options out")
+            raise OptionError("balance would move pins, as Möbius maps do; leave one of the two out")
 
     @property
     def ends_finer(self) -> bool:

@@ -88,6 +88,7 @@ HELD = (
     "parts that are not linked, which would drift apart without limit, are held in place; "
     "the sum of their own energies is {energy:.6g}"
 )
+FROZEN = "nothing can move: all vertices are pinned, or on straight arcs between pins"
 SADDLE, MINIMUM = "a saddle with index {index}", "a minimum"
 NO_WAY_DOWN = "no way down was found"
 COMPOSITE = (

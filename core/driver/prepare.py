@@ -1,5 +1,6 @@
 """From a curve and options to the problem that is solved."""
 
+import logging
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -9,7 +10,7 @@ from ..checks import named
 from ..collision import check_clear, check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
 from ..curve import Curve, Mesh, check_is_curve, refine
-from ..curve.pins import TAUT, Pins, arcs, spans
+from ..curve.pins import NO_PINS, TAUT, Pins, arcs, spans
 from ..curve.refine import Resolution
 from ..curve.remesh import graded_spacing, normalised
 from ..descent import METHODS, Point, Problem
@@ -20,6 +21,8 @@ from ..types import FloatArray, IntArray
 from ..units import Units, check_units
 from .options import RelaxOptions
 from .solver import Solver, max_vertices
+
+_log = logging.getLogger(__name__)
 
 EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between edges, up to which they are evened out
 
@@ -73,11 +76,14 @@ def pins_of(curve: Curve, refined: Curve, options: RelaxOptions) -> Pins:
         If the curve has no such vertex.
     """
     if not options.pins:
-        return Pins()
+        return NO_PINS
     last = max(options.pins)
     if last >= len(curve):
         raise CurveOptionError(f"pins asks for vertex {last + 1}, but the curve has {len(curve)} vertices")
     pins = Pins.at(refined, curve.vertices[list(options.pins)])
+    if len(pins) > len(options.pins):
+        more = len(pins) - len(options.pins)
+        _log.warning("%d of %d vertices are on straight arcs between pins, and held as well", more, len(refined))
     return pins.with_neighbours(refined) if options.pin_tangents else pins
 
 
@@ -185,7 +191,8 @@ def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray) -> None:
         if len(span.edges) == 1 and abs(wanted - span.length) > TAUT * span.length:
             raise OptionError(f"edge_lengths changes the edge between vertices {i} and {j}, which are both pinned")
         if len(span.edges) > 1 and wanted <= (1.0 + TAUT) * span.distance:
+            ratio = wanted / span.distance
             raise OptionError(
-                f"edge_lengths makes the arc between the pinned vertices {i} and {j} {wanted / span.distance:.6g} times as "
-                "long as they are far apart; give it more than that"
+                f"edge_lengths makes the arc between vertices {i} and {j}, which are pinned, {ratio:.6g} times as long "
+                "as their distance; give it more than that"
             )

@@ -61,6 +61,11 @@ class Run:
         return self.point.problem
 
     @property
+    def frozen(self) -> bool:
+        """Whether all vertices are held."""
+        return len(self.iterate.pins) == self.problem.mesh.size
+
+    @property
     def iterations_left(self) -> int:
         """How many more iterations there may be."""
         return self.options.max_iterations - self.iterations

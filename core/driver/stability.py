@@ -42,6 +42,8 @@ def stability(point: Point, count: int = 20) -> Stability:
     """
     n, m = point.vertices.shape
     tangent = _tangent_basis(point.tangent_space.constraints)
+    if not tangent.size:  # pins leave nothing to move
+        return Stability(np.empty(0), np.empty((0, n, m)))
     hessian = tangent.T @ lagrangian_hessian_matrix(point) @ tangent
     # the metric acts coordinate by coordinate, on all basis vectors at once
     gram = tangent.T @ point.tangent_space.apply(tangent.reshape(n, -1)).reshape(tangent.shape)
@@ -52,9 +54,10 @@ def stability(point: Point, count: int = 20) -> Stability:
 
 def _tangent_basis(constraints: ConstraintDerivative) -> FloatArray:
     """Orthonormal basis of ker DΦ, 0 at pins, as columns; shape (n·m, unknowns that are free less the rows of DΦ)."""
-    (n, m), count = constraints.shape, constraints.count
-    free = np.flatnonzero(np.repeat(~holds(constraints.mesh, constraints.pins), m))
-    transposed = np.stack([constraints.apply_transpose(unit).ravel() for unit in np.eye(count)], axis=1)
-    basis = np.zeros((n * m, len(free) - count))
-    basis[free] = qr(transposed[free])[0][:, count:]
-    return basis
+    (n, m), count, free = constraints.shape, constraints.count, ~holds(constraints.mesh, constraints.pins)
+    size = m * np.count_nonzero(free) - count
+    basis = np.zeros((n, m, size))
+    if size:
+        rows = [constraints.apply_transpose(unit)[free].ravel() for unit in np.eye(count)]
+        basis[free] = qr(np.stack(rows, axis=1))[0][:, count:].reshape(-1, m, size)
+    return basis.reshape(n * m, size)

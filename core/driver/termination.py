@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .outcome import UNEVEN, Outcome, converged, out_of_iterations
+from .outcome import FROZEN, UNEVEN, Outcome, converged, out_of_iterations
 from .run import Run
 
 LEAST = 4.0  # energy of a closed component
@@ -19,7 +19,8 @@ def termination(run: Run) -> Outcome | None:
     if run.point.gradient_norm <= bound and _feasible(run):
         norm = run.point.with_own_metric().gradient_norm
         if norm <= bound:
-            return converged(norm, bound)
+            outcome = converged(norm, bound)
+            return outcome.adding(FROZEN) if run.frozen else outcome
     return at_limit(run) if run.iterations_left <= 0 else None
 
 

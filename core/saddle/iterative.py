@@ -87,7 +87,7 @@ class IterativeTangentSpace(TangentSpace):
         super().__init__(constraints)
         self._inner = inner
         self._tolerances = tolerances
-        self._model = vanishing_at(constraints.pins, inner.model, len(constraints.masses))
+        self._model = vanishing_at(constraints.pins, inner.model, constraints.mesh)
         self._preconditioner = ConstraintPreconditioner(self._model, constraints)
 
     def apply(self, u: FloatArray) -> FloatArray:
@@ -166,7 +166,7 @@ class IterativeWholeSpace(WholeSpace):
     ) -> None:
         super().__init__(constraints, weights)
         self._inner, self._tolerances = inner, tolerances
-        self._model = vanishing_at(constraints.pins, inner.model, len(constraints.masses))
+        self._model = vanishing_at(constraints.pins, inner.model, constraints.mesh)
 
     def riesz(self, eta: FloatArray) -> FloatArray:
         """To the tolerance of gradients."""

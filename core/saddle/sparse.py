@@ -24,7 +24,7 @@ class SparseTangentSpace(TangentSpace):
     def __init__(self, gram: sp.csr_array, constraints: ConstraintDerivative) -> None:
         super().__init__(constraints)
         self._gram = gram
-        (_, m), rows = constraints.shape, len(constraints.edges)
+        rows, m = len(constraints.edges), constraints.shape[1]
         self._free = _free(constraints)
         lengths, full = constraints.length_rows(), sp.kron(_vanishing(gram, constraints), sp.eye_array(m))
         self._factor = factorised(sp.block_array([[full, lengths.T], [lengths, None]]))
@@ -35,7 +35,7 @@ class SparseTangentSpace(TangentSpace):
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Solve without barycenters, then hold these."""
-        (n, m), rows = self.constraints.shape, len(self.constraints.edges)
+        rows, (n, m) = len(self.constraints.edges), self.constraints.shape
         eta = np.zeros((n, m)) if eta is None else self._free * eta
         xi = np.zeros(self.constraints.count) if xi is None else xi
         free = self._factor.solve(np.concatenate([eta.ravel(), xi[:rows]]))
@@ -69,7 +69,7 @@ class SparseWholeSpace(WholeSpace):
 
 def _free(constraints: ConstraintDerivative) -> FloatArray:
     """0 at pins, 1 elsewhere; shape (n, 1)."""
-    free = np.ones((len(constraints.masses), 1))
+    free = np.ones((constraints.shape[0], 1))
     free[constraints.pins] = 0.0
     return free
 

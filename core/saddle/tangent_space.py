@@ -18,8 +18,8 @@ class TangentSpace(ABC):
         [ J  Cᵀ ] (u)   (η)
         [ C  0  ] (λ) = (ξ),
 
-    whose rows of J, and columns of C, at pins are left out, for three right sides: (DE, 0) gives the projected gradient, (0, ξ) the pseudo-inverse C^† ξ, (J v, 0) the
-    projection of v.
+    with the rows and columns of pins left out, for three right sides: (DE, 0) gives the projected gradient, (0, ξ) the
+    pseudo-inverse C^† ξ, (J v, 0) the projection of v.
     """
 
     def __init__(self, constraints: ConstraintDerivative) -> None:

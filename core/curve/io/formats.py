@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import BinaryIO, TextIO
@@ -67,6 +68,21 @@ class CurveFile:
         """The line in which a vertex of the curve (index from 0) was read."""
         part = int(self.curve.mesh.component[vertex])
         return self._polygons[part].line_of(vertex - int(self.curve.mesh.offsets[part]))
+
+    def index_of(self, number: int) -> int:
+        """The index on the curve of what the file counts as this vertex, from 0; raises CurveFileError."""
+        if number not in self._indices:
+            raise self.source.error(f"there is no vertex {number + 1} on the curve")
+        return self._indices[number]
+
+    @cached_property
+    def _indices(self) -> dict[int, int]:
+        sizes, starts = self.curve.mesh.component_sizes, self.curve.mesh.offsets[:-1].tolist()
+        indices: dict[int, int] = {}  # a last vertex that repeats the first is that
+        for polygon, start, size in zip(self._polygons, starts, sizes, strict=True):
+            numbers = range(start, start + size) if polygon.numbers is None else polygon.numbers
+            indices |= {number: start + k % size for k, number in enumerate(numbers)}
+        return indices
 
     def refusal(self, error: CurveError) -> CurveFileError:
         """The same error with the file's name and, where it is about vertices, the line of the first."""

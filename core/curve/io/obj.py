@@ -74,11 +74,11 @@ def read(source: Source) -> list[Polygon]:
     content = parsed(source)
     if content.faces:
         _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, len(content.faces))
-    chains = _chains(source, content)
-    return [
-        Polygon([content.points[i] for i in chain], lambda i, chain=chain: content.lines[chain[i]])  # type: ignore[misc]
-        for chain in chains
-    ]
+    return [_polygon(content, chain) for chain in _chains(source, content)]
+
+
+def _polygon(content: Content, chain: list[int]) -> Polygon:
+    return Polygon([content.points[i] for i in chain], lambda i: content.lines[chain[i]], chain)
 
 
 def _chains(source: Source, content: Content) -> list[list[int]]:

@@ -23,10 +23,13 @@ class Polygon:
         Its vertices, each a sequence of m coordinates.
     line_of
         Gives the line where the vertex of an index (from 0) was read.
+    numbers
+        What the file counts its vertices as, from 0, where these can be in another order than along the curve.
     """
 
     points: Sequence[Sequence[float]]
     line_of: Callable[[int], int | None]
+    numbers: Sequence[int] | None = None
 
 
 def assemble(source: Source, polygons: Sequence[Polygon]) -> Curve:

@@ -30,7 +30,7 @@ class FinerMesh:
     def __call__(self, event: Event) -> Event | Change:
         """Look at converged curves."""
         curve = self._run.iterate.curve
-        if not (isinstance(event, Outcome) and event.converged and _unresolved(curve)):
+        if not (isinstance(event, Outcome) and event.converged and _unresolved(curve)) or self._run.frozen:
             return event
         return (self._finer(curve) if self._is_wanted else None) or event.adding(UNRESOLVED)
 
