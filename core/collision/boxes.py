@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -93,13 +94,22 @@ class BoxTree:
             # The last part is taken up first, so the stack stays short: depth first in chunks.
             stack += [(depth + 1, a[k : k + CHUNK], b[k : k + CHUNK]) for k in range(0, len(a), CHUNK)]
 
+    @cached_property
+    def _ends(self) -> IntArray:
+        """The vertices of the edge at each position; shape (2, edges)."""
+        return np.stack([self.mesh.tails, self.mesh.heads])[:, self.order]
+
+    def corners(self, a: IntArray, b: IntArray) -> IntArray:
+        """The vertices x₀, x₁, y₀, y₁ of the edges at positions ``a`` and ``b``; shape (4, pairs)."""
+        tails, heads = self._ends
+        return np.stack([tails[a], heads[a], tails[b], heads[b]])
+
     def _strangers(self, a: IntArray, b: IntArray) -> tuple[IntArray, IntArray]:
         """Drop padding, equal and neighbouring edges from pairs of positions."""
         real = b < len(self.order)
         a, b = a[real], b[real]
-        i, j = self.order[a], self.order[b]
-        tails, heads = self.mesh.tails, self.mesh.heads
-        apart = (i != j) & (heads[i] != tails[j]) & (heads[j] != tails[i])
+        tails, heads = self._ends
+        apart = (a != b) & (heads[a] != tails[b]) & (heads[b] != tails[a])
         return a[apart], b[apart]
 
 

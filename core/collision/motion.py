@@ -3,15 +3,14 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
-from typing import NamedTuple
 
 import numpy as np
 
 from ..curve import Mesh
 from ..types import BoolArray, FloatArray, IntArray
-from .boxes import BoxTree, Level, contact_window, corners
+from .boxes import BoxTree, Level, contact_window
 from .exact import first_contact
-from .folds import Folds
+from .folds import folds
 from .march import march
 
 _BATCH = 1 << 13  # pairs marched together, so that their arrays stay in the cache
@@ -93,29 +92,11 @@ def _search(mesh: Mesh, start: FloatArray, end: FloatArray, *, exhaustive: bool)
     # by less than the planes' margins: exact decisions are about the numbers as they were given.
     unit = -np.frexp(size)[1]
     search = _Search(mesh, np.ldexp(start.T, unit, order="C"), np.ldexp(end.T, unit, order="C"), (start, end))
-    for batch in search.batches():
-        search.take(*batch)
+    for vertices, reached in search.batches():
+        search.take(vertices, reached)
         if search.pair is not None and not exhaustive:
             break
     return search.result()
-
-
-class _Batch(NamedTuple):
-    """Pairs of edges that may meet before the limit.
-
-    Attributes
-    ----------
-    edges
-        The two edges of each pair; shape (2, pairs).
-    vertices
-        The vertices x₀, x₁, y₀, y₁ of the segments to be kept apart; shape (4, pairs).
-    reached
-        The time until which each pair is surely free; shape (pairs,).
-    """
-
-    edges: IntArray
-    vertices: IntArray
-    reached: FloatArray
 
 
 class _Search:
@@ -132,9 +113,10 @@ class _Search:
             return FreeMotion(1.0)
         return FreeMotion(self.limit, self.pair, Limit.CONTACT if self.limit > 0 else Limit.TOUCHING_START)
 
-    def batches(self) -> Iterator[_Batch]:
-        """Yield pairs of edges that can meet before the limit."""
-        yield self._folds()
+    def batches(self) -> Iterator[tuple[IntArray, FloatArray]]:
+        """Yield pairs of edges that can meet before the limit: their vertices and the time each is surely free."""
+        corners = folds(self.mesh)
+        yield corners, np.zeros(corners.shape[1])
         tree = BoxTree.build(self.mesh, self.start, self.end)
         soon = self._soon()
         for after, until in ((-1.0, soon), (soon, 1.0)) if soon < 1 else ((-1.0, 1.0),):
@@ -149,7 +131,7 @@ class _Search:
         length = float(np.sqrt(np.einsum("mn,mn->n", edges, edges)).mean())
         return 1.0 if 2 * length >= fastest else length / fastest
 
-    def _windows(self, tree: BoxTree, after: float, until: float) -> Iterator[_Batch]:
+    def _windows(self, tree: BoxTree, after: float, until: float) -> Iterator[tuple[IntArray, FloatArray]]:
         """Pairs whose boxes meet first at a time in (after, until]."""
 
         def near(level: Level, a: IntArray, b: IntArray) -> BoolArray:
@@ -161,15 +143,9 @@ class _Search:
             for k in range(0, len(i), _BATCH):
                 a, b = i[k : k + _BATCH], j[k : k + _BATCH]
                 enter, _ = contact_window(tree.levels[-1].gaps(a, b))
-                edges = tree.order[np.stack([a, b])]
-                yield _Batch(edges, corners(self.mesh, *edges), _EARLY_START * enter)
+                yield tree.corners(a, b), _EARLY_START * enter
 
-    def _folds(self) -> _Batch:
-        """Vertices, as edges of no length, against the edges that they would lie on."""
-        edges, vertices = Folds.of(self.mesh)
-        return _Batch(edges, vertices, np.zeros(edges.shape[1]))
-
-    def take(self, edges: IntArray, vertices: IntArray, reached: FloatArray) -> None:
+    def take(self, vertices: IntArray, reached: FloatArray) -> None:
         """March pairs and lower the limit to the earliest time that cannot be passed."""
         reached = march(self.start, self.end, vertices, reached, self.limit)
         stopped = np.flatnonzero(reached < self.limit)
@@ -180,7 +156,8 @@ class _Search:
             if time < _SHARPNESS * self.contact:
                 time = self._decide(vertices[:, k], time)
             if time < self.limit:
-                self.limit, self.pair = time, (int(edges[0, k]), int(edges[1, k]))
+                i, j = self.mesh.outgoing[vertices[[0, 2], k]].tolist()
+                self.limit, self.pair = time, (i, j)
 
     def _decide(self, vertices: IntArray, reached: float) -> float:
         """The time up to which one pair is free by exact arithmetic, infinite if it never meets."""

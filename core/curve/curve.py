@@ -103,6 +103,12 @@ class Curve:
         return float(self.edge_lengths.sum())
 
     @cached_property
+    def arc_starts(self) -> FloatArray:
+        """Arc length from its component's first vertex to the tail of every edge; shape (edges,)."""
+        each = [self.edge_lengths[s] for s in self.mesh.edge_slices]
+        return frozen(np.concatenate([np.cumsum(ell) - ell for ell in each]))
+
+    @cached_property
     def component_lengths(self) -> FloatArray:
         """Length of each component; shape (components,)."""
         return frozen(np.array([self.edge_lengths[s].sum() for s in self.mesh.edge_slices]))
