@@ -1,8 +1,8 @@
 """Wavefront OBJ (.obj): vertices ``v`` joined by polylines ``l``.
 
 A polyline may run over many indices, also negative ones (counted back from the last vertex read), and
-pieces in any order are joined where they share a vertex. Vertices on no line are dropped. A file with
-vertices alone is one closed polygon. Faces and everything else that OBJ knows are ignored.
+pieces in any order are joined where they share a vertex. Polylines that do not come back to their first vertex are open
+polygons. Vertices on no line are dropped. A file with vertices alone is one closed polygon. Faces and everything else that OBJ knows are ignored.
 """
 
 import logging
@@ -13,7 +13,7 @@ from typing import TextIO
 
 from ...errors import CurveError
 from ..curve import Curve
-from .chains import Link, closed_chains
+from .chains import Chain, Link, chains
 from .polygons import Polygon
 from .source import Source, shown
 
@@ -35,7 +35,7 @@ class _Content:
 
 
 def read(source: Source) -> list[Polygon]:
-    """Read the polygons; raises CurveFileError naming the line, also where a polyline is open."""
+    """Read the polygons; raises CurveFileError naming the line."""
     content = _Content()
     for line, words in _statements(source):
         _take(source, content, words, line)
@@ -45,16 +45,17 @@ def read(source: Source) -> list[Polygon]:
             raise source.error(reason, link.line)
     if content.faces:
         _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, content.faces)
-    chains = _chains(source, content)
-    return [
-        Polygon([content.points[i] for i in chain], lambda i, chain=chain: content.lines[chain[i]])  # type: ignore[misc]
-        for chain in chains
-    ]
+    return [_polygon(content, chain) for chain in _chains(source, content)]
 
 
-def _chains(source: Source, content: _Content) -> list[list[int]]:
+def _polygon(content: _Content, chain: Chain) -> Polygon:
+    points = [content.points[i] for i in chain.vertices]
+    return Polygon(points, lambda i: content.lines[chain.vertices[i]], chain.closed)
+
+
+def _chains(source: Source, content: _Content) -> list[Chain]:
     if content.links:
-        return closed_chains(source, content.links, content.points)
+        return chains(source, content.links)
     if content.faces:
         raise source.error("there are faces (f) but no polylines (l); export the curve as edges")
     if not content.points:
@@ -62,7 +63,7 @@ def _chains(source: Source, content: _Content) -> list[list[int]]:
     _log.warning(
         "%s: no polyline (l); all %d vertices are taken as one closed polygon", source.path, len(content.points)
     )
-    return [list(range(len(content.points)))]
+    return [Chain(list(range(len(content.points))), closed=True)]
 
 
 def _statements(source: Source) -> Iterator[tuple[int, list[str]]]:
@@ -117,6 +118,6 @@ def write(curve: Curve, stream: TextIO) -> None:
         raise CurveError(f"OBJ holds curves of dimension 3, not {curve.dimension}; use .json")
     padding = [0.0] * (3 - curve.dimension)
     stream.writelines(f"v {' '.join(map(repr, point + padding))}\n" for point in curve.vertices.tolist())
-    for part in curve.mesh.slices:
-        indices = [*range(part.start + 1, part.stop + 1), part.start + 1]
+    for part, closed in zip(curve.mesh.slices, curve.mesh.closed, strict=True):
+        indices = [*range(part.start + 1, part.stop + 1), *([part.start + 1] if closed else [])]
         stream.write(f"l {' '.join(map(str, indices))}\n")
