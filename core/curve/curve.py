@@ -122,6 +122,13 @@ def check_is_curve(value: object) -> None:
         )
 
 
+def check_closed(curve: Curve, what: str) -> None:
+    """Raise a CurveError, which says what is for closed components alone, if one is open."""
+    if not curve.mesh.all_closed:
+        number = curve.mesh.closed.index(False) + 1
+        raise CurveError(f"component {number} is open; {what} are for closed components")
+
+
 def _numbers(values: npt.ArrayLike, name: str) -> FloatArray:
     try:
         array = np.array(values)

@@ -8,7 +8,7 @@ import numpy as np
 from ..checks import named
 from ..collision import check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
-from ..curve import Curve, Mesh, check_is_curve, refine
+from ..curve import Curve, Mesh, check_closed, check_is_curve, refine
 from ..curve.refine import Resolution
 from ..curve.remesh import graded_spacing
 from ..descent import METHODS, Point, Problem
@@ -103,6 +103,8 @@ def start_problem(curve: Curve, options: RelaxOptions) -> Problem:
     if options.balance and objective.energy.scale_exponent != 0.0:
         name = objective.energy.name
         raise OptionError(f"balance takes Möbius images for curves of equal energy; that is not so for energy {name}")
+    if options.balance:
+        check_closed(curve, "Möbius images of equal energy, which balance takes,")
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     return Problem(curve.mesh, objective, solver.metric, constraints, units, geometry)
 

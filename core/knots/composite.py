@@ -53,9 +53,9 @@ def knotted_ball(curve: Curve) -> Ball | None:
     Parameters
     ----------
     curve
-        Closed polygons in space; None is returned for more than four components.
+        Polygons in space; None is returned for more than four components, and where some are open, which are no knots.
     """
-    if curve.dimension != 3 or len(curve.mesh.component_sizes) > _MAX_COMPONENTS:
+    if curve.dimension != 3 or len(curve.mesh.closed) > _MAX_COMPONENTS or not curve.mesh.all_closed:
         return None
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())

@@ -34,7 +34,11 @@ class Format:
     write: Callable[[Curve, TextIO], None]
 
 
-_COLUMNS = Format("x y z per line, a blank line between components, # comments, the line # open before an open one", xyz.read, xyz.write)
+_COLUMNS = Format(
+    "x y z per line, a blank line between components, # comments, the line # open before an open one",
+    xyz.read,
+    xyz.write,
+)
 
 FORMATS: Mapping[str, Format] = MappingProxyType(
     {
@@ -42,7 +46,11 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
         ".xyz": _COLUMNS,
         ".obj": Format("Wavefront OBJ, vertices (v) and polylines (l)", obj.read, obj.write),
         ".vect": Format("Geomview VECT, polylines", vect.read, vect.write),
-        ".json": Format('{"components": [[[x, y, z], ...], ...], "closed": [true, ...]}, "closed" only if some are open', json_lists.read, json_lists.write),
+        ".json": Format(
+            '{"components": [[[x, y, z], ...], ...], "closed": [true, ...]}, "closed" only if some are open',
+            json_lists.read,
+            json_lists.write,
+        ),
     }
 )
 

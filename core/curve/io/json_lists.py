@@ -1,7 +1,8 @@
 """JSON lists of coordinates (.json): ``{"components": [[[x, y, z], ...], ...]}``, our own form.
 
-The key "closed" has true or false for each component; without it all are closed. The object may have other keys, which
-are ignored. A bare list of components, or a bare list of points (one component), is read too. Any dimension from 2 on is allowed; NaN and Infinity are not.
+The key "closed" has true or false for each component; without it all are closed. Other keys are ignored. A bare list of
+components, or a bare list of points (one component), is read too. Any dimension from 2 on is allowed; NaN and Infinity
+are not.
 """
 
 import json

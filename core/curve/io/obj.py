@@ -2,7 +2,8 @@
 
 A polyline may run over many indices, also negative ones (counted back from the last vertex read), and
 pieces in any order are joined where they share a vertex. Polylines that do not come back to their first vertex are open
-polygons. Vertices on no line are dropped. A file with vertices alone is one closed polygon. Faces and everything else that OBJ knows are ignored.
+polygons. Vertices on no line are dropped. A file with vertices alone is one closed polygon. Faces and everything else
+that OBJ knows are ignored.
 """
 
 import logging

@@ -1,7 +1,8 @@
 """Geomview VECT (.vect), as ridgerunner and KnotPlot use it: polylines with their numbers of vertices ahead.
 
 ``VECT``, then the numbers of polylines, vertices and colours; the vertices of each polyline, negative where
-it is closed, else positive; the colours of each polyline; the points; the colours (which are read over). ``#`` comments.
+it is closed, else positive; the colours of each polyline; the points; the colours (which are read over). ``#`` begins a
+comment.
 Source: the Geomview manual, section "VECT".
 """
 

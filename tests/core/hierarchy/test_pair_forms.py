@@ -54,7 +54,7 @@ def test_values(curve: Curve) -> None:
     u = np.random.default_rng(23).normal(size=len(curve))
     expected = by_pairs(curve, weighted_pairs(blocks, near, far), curve.mesh.average @ u)
     local, sums = PairForms(curve, blocks).of_values(near, far)
-    z = RunningSum(curve, blocks.tree.order).apply(u[:, None])[:, 0]
+    z = RunningSum.of_values(curve, blocks.tree.order).apply(u[:, None])[:, 0]
     assert u @ local @ u + z @ sums @ z == pytest.approx(expected, rel=1e-11)
 
 
@@ -73,7 +73,7 @@ def test_components(curve: Curve) -> None:
 @CURVE
 def test_running_sum(curve: Curve) -> None:
     order = BlockList.of(curve, 0.5, 4).tree.order
-    running, n = RunningSum(curve, order), len(curve)
+    running, n = RunningSum.of_values(curve, order), len(curve)
     u = np.random.default_rng(29).normal(size=(n, 2))
     steps = (curve.edge_lengths[:, None] * (curve.mesh.average @ u))[order]
     np.testing.assert_allclose(
