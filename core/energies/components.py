@@ -12,8 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curve import Curve
+from ..curve import Curve, Mesh
 from ..types import FloatArray, IntArray
+
+
+def energy_scale(mesh: Mesh, energy: float) -> float:
+    """What errors and gradients are to be compared with: |E|, and for each arc, whose energy may be 0, the circle's."""
+    return abs(energy) + 4.0 * len(mesh.ends)
 
 
 @dataclass(frozen=True, eq=False)

@@ -45,7 +45,7 @@ def _solve_gram(mesh: Mesh, cosines: FloatArray, right: FloatArray) -> FloatArra
     """
     first, last = mesh.edge_offsets[:-1], mesh.edge_offsets[1:] - 1
     corner, sign = np.where(mesh.closed, np.abs(cosines[last]), 0.0), np.copysign(1.0, cosines[last])
-    diagonal, beside, w = np.full(mesh.edges, 2.0), -cosines[:-1], np.zeros(mesh.edges)
+    diagonal, beside, w = np.full(mesh.edges, 2.0), -cosines[: max(mesh.edges - 1, 1)], np.zeros(mesh.edges)
     beside[last[:-1]] = 0.0
     diagonal[first] += corner
     diagonal[last] += corner
