@@ -37,7 +37,9 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     """Describe the subcommand."""
     parser.description = "Compare methods on a curve: energy against iterations and seconds, like Figure 3 of [RS21]."
     parser.epilog = _EPILOG
-    parser.add_argument("input", metavar="IN", help=f"closed polygons: {', '.join(FORMATS)}, or - for standard input")
+    parser.add_argument(
+        "input", metavar="IN", help=f"polygons, closed or open: {', '.join(FORMATS)}, or - for standard input"
+    )
     curves.add_format(parser)
     parser.add_argument(
         "--methods", metavar="A,B,…", help=f"names, comma separated (default: all: {','.join(METHODS)})"

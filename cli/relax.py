@@ -62,7 +62,9 @@ What cannot be written in the end is kept in a temporary directory that the mess
 def add_to(parser: argparse.ArgumentParser) -> None:
     """Describe the subcommand."""
     parser.description, parser.epilog = _DESCRIPTION, _EPILOG
-    parser.add_argument("input", metavar="IN", help=f"closed polygons: {', '.join(FORMATS)}, or - for standard input")
+    parser.add_argument(
+        "input", metavar="IN", help=f"polygons, closed or open: {', '.join(FORMATS)}, or - for standard input"
+    )
     parser.add_argument(
         "output", metavar="OUT", help=f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
     )

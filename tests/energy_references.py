@@ -38,14 +38,15 @@ def pair_sum(curve: Curve, density: Callable[..., float], points: list[float], w
 
 def arc_distance(curve: Curve, ell: np.ndarray, i: int, t: float, j: int, u: float) -> float:
     """Length of the shorter way from one point to the other, walking edge by edge; inf if there is none."""
-    if curve.mesh.component[i] != curve.mesh.component[j]:
+    if curve.mesh.edge_component[i] != curve.mesh.edge_component[j]:
         return float("inf")
     lengths = []
     for a, s, b, v in ((i, t, j, u), (j, u, i, t)):
-        walked, edge = (1 - s) * ell[a], int(curve.mesh.heads[a])
-        while edge != b:
-            walked, edge = walked + ell[edge], int(curve.mesh.heads[edge])
-        lengths.append(walked + v * ell[b])
+        after = {int(tail): edge for edge, tail in enumerate(curve.mesh.tails)}
+        walked, edge = (1 - s) * ell[a], after.get(int(curve.mesh.heads[a]))
+        while edge not in (b, None):
+            walked, edge = walked + ell[edge], after.get(int(curve.mesh.heads[edge]))
+        lengths.append(float("inf") if edge is None else walked + v * ell[b])
     return float(min(lengths))
 
 

@@ -1,7 +1,7 @@
 """Curves that several tests need."""
 
 import numpy as np
-from mobius_flow.core import Curve
+from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.knots import braid_word, lattice_closure
 
 
@@ -10,6 +10,24 @@ def regular_polygon(n: int, dimension: int = 3) -> Curve:
     vertices = np.zeros((n, dimension))
     vertices[:, 0], vertices[:, 1] = np.cos(t), np.sin(t)
     return Curve(vertices)
+
+
+def opened(curve: Curve, *components: int) -> Curve:
+    """The same vertices without the last edge of some components."""
+    closed = [k not in components for k in range(len(curve.mesh.component_sizes))]
+    return Curve(curve.vertices, Mesh(curve.mesh.component_sizes, tuple(closed)))
+
+
+def half_circle(edges: int, dimension: int = 3) -> Curve:
+    vertices = np.zeros((edges + 1, dimension))
+    t = np.pi * np.arange(edges + 1) / edges
+    vertices[:, 0], vertices[:, 1] = np.cos(t), np.sin(t)
+    return opened(Curve(vertices), 0)
+
+
+def straight_arc(edges: int) -> Curve:
+    vertices = np.linspace(0.0, 1.0, edges + 1)[:, None] * np.array([1.0, 2.0, -2.0])
+    return Curve(vertices, Mesh((edges + 1,), (False,)))
 
 
 def torus_trefoil(n: int) -> Curve:

@@ -7,41 +7,21 @@ edge shrinks to a point.  So a polygon is embedded if no two non-neighbour edges
 the opposite edge, and no end of an arc lies on the edge after its neighbour, or, if that is the other end, on that.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..curve import Mesh
 from ..types import IntArray
 
 
-class Folds(NamedTuple):
-    """Vertices and the segments that they must not lie on.
+def folds(mesh: Mesh) -> IntArray:
+    """Vertices and the segments that they must not lie on, as the ends x₀ = x₁ and y₀, y₁; shape (4, folds).
 
-    Attributes
-    ----------
-    edges
-        The edge that leads to the vertex, and that of the segment; shape (2, folds).
-    corners
-        The vertex, twice, and the ends of the segment, as those of two edges one of which has no length; (4, folds).
+    Segments begin at the tails of their edges.
     """
-
-    edges: IntArray
-    corners: IntArray
-
-    @classmethod
-    def of(cls, mesh: Mesh) -> "Folds":
-        """Those of triangles, and of the ends of arcs."""
-        is_triangle = np.asarray(mesh.closed) & (np.asarray(mesh.component_sizes) == 3)
-        triangles = mesh.offsets[:-1][is_triangle]
-        first, last = mesh.ends.T
-        forward = cls._seen(np.concatenate([triangles, triangles + 1, triangles + 2, first]), mesh.outgoing, mesh.heads)
-        backward = cls._seen(last, mesh.incoming, mesh.tails)
-        return cls(*(np.concatenate(both, axis=1) for both in zip(forward, backward, strict=True)))
-
-    @classmethod
-    def _seen(cls, u: IntArray, edge_at: IntArray, end_of: IntArray) -> "Folds":
-        """Vertices and the edges after their neighbours, in one of the two directions."""
-        v = end_of[edge_at[u]]
-        w = end_of[edge_at[v]]
-        return cls(np.stack([edge_at[u], edge_at[v]]), np.stack([u, u, v, w]))
+    triangles = mesh.offsets[:-1][np.asarray(mesh.closed) & (np.asarray(mesh.component_sizes) == 3)]
+    after, before = mesh.heads[mesh.outgoing], mesh.tails[mesh.incoming]
+    first, last = mesh.ends.T
+    u = np.concatenate([triangles, triangles + 1, triangles + 2, first])
+    forward = np.stack([u, u, after[u], after[after[u]]])
+    backward = np.stack([last, last, before[before[last]], before[last]])
+    return np.concatenate([forward, backward], axis=1)

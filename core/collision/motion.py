@@ -13,7 +13,7 @@ from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, contact_window
 from .exact import first_contact
 from .exact_triangle import first_contact_with_triangle
-from .folds import Folds
+from .folds import folds
 from .march import march
 from .still import still_triangles
 
@@ -203,8 +203,8 @@ class _Search:
 
     def _folds(self) -> _Candidates:
         """Vertices, as edges of no length, against the edges that they would lie on."""
-        edges, vertices = Folds.of(self.mesh)
-        return _Candidates(vertices, edges, np.zeros(edges.shape[1]))
+        vertices = folds(self.mesh)
+        return _Candidates(vertices, self.mesh.outgoing[vertices[[0, 2]]], np.zeros(vertices.shape[1]))
 
     def take(self, candidates: _Candidates) -> None:
         """March pairs and lower the limit to the earliest time that cannot be passed."""

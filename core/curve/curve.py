@@ -103,6 +103,12 @@ class Curve:
         return float(self.edge_lengths.sum())
 
     @cached_property
+    def arc_starts(self) -> FloatArray:
+        """Arc length from its component's first vertex to the tail of every edge; shape (edges,)."""
+        each = [self.edge_lengths[s] for s in self.mesh.edge_slices]
+        return frozen(np.concatenate([np.cumsum(ell) - ell for ell in each]))
+
+    @cached_property
     def component_lengths(self) -> FloatArray:
         """Length of each component; shape (components,)."""
         return frozen(np.array([self.edge_lengths[s].sum() for s in self.mesh.edge_slices]))
@@ -114,6 +120,13 @@ def check_is_curve(value: object) -> None:
         raise CurveError(
             f"a Curve is wanted, not an object of type {type(value).__name__}; make one by Curve(vertices)"
         )
+
+
+def check_closed(curve: Curve, what: str) -> None:
+    """Raise a CurveError, which says what is for closed components alone, if one is open."""
+    if not curve.mesh.all_closed:
+        number = curve.mesh.closed.index(False) + 1
+        raise CurveError(f"component {number} is open; {what} are for closed components")
 
 
 def _numbers(values: npt.ArrayLike, name: str) -> FloatArray:

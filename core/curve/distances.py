@@ -13,15 +13,13 @@ def points_at(curve: Curve, t: float) -> FloatArray:
 
 def arc_positions(curve: Curve, t: float) -> FloatArray:
     """Arc length from its component's first vertex to the point at parameter t of every edge; shape (edges,)."""
-    ell = curve.edge_lengths
-    position = np.concatenate([np.cumsum(ell[s]) - ell[s] for s in curve.mesh.edge_slices])
-    return np.asarray(position + t * ell)
+    return np.asarray(curve.arc_starts + t * curve.edge_lengths)
 
 
 def vertex_positions(curve: Curve) -> FloatArray:
     """Arc length from its component's first vertex to every vertex; shape (n,)."""
     mesh, last = curve.mesh, curve.mesh.ends[:, 1]
-    position = mesh.at_tails(arc_positions(curve, 0.0))
+    position = mesh.at_tails(curve.arc_starts)
     position[last] = curve.component_lengths[mesh.component[last]]
     return position
 

@@ -110,6 +110,11 @@ class Mesh:
         return frozen(np.stack([self.offsets[:-1], self.offsets[1:] - 1], axis=1)[is_open])
 
     @cached_property
+    def arc_edges(self) -> IntArray:
+        """The edges of the open components."""
+        return frozen(np.flatnonzero(~np.asarray(self.closed)[self.edge_component]))
+
+    @cached_property
     def tails(self) -> IntArray:
         """Tail vertex I↓ of each edge; shape (edges,)."""
         return frozen(np.delete(np.arange(self.size), self.ends[:, 1]))

@@ -9,7 +9,7 @@ import numpy as np
 from ..checks import named
 from ..collision import check_clear, check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
-from ..curve import Curve, Mesh, check_is_curve, refine
+from ..curve import Curve, Mesh, check_closed, check_is_curve, refine
 from ..curve.pins import NO_PINS, TAUT, Pins, arcs, spans
 from ..curve.refine import Resolution
 from ..curve.remesh import graded_spacing, normalised
@@ -137,6 +137,8 @@ def start_problem(curve: Curve, options: RelaxOptions, pins: Pins | None = None)
     if options.balance and objective.energy.scale_exponent != 0.0:
         name = objective.energy.name
         raise OptionError(f"balance takes Möbius images for curves of equal energy; that is not so for energy {name}")
+    if options.balance:
+        check_closed(curve, "Möbius images of equal energy, which balance takes,")
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     return Problem(curve.mesh, objective, solver.metric, constraints, units, geometry, options.avoid)
 

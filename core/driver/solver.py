@@ -46,8 +46,7 @@ class Solver:
         OptionError
             If an option names something unknown, or does not go together with the solver that is asked for.
         """
-        hierarchical = _may_be_hierarchical(options) and (options.solver == "hierarchical" or _pays(curve))
-        return cls(options, hierarchical and curve.mesh.all_closed)
+        return cls(options, _may_be_hierarchical(options) and (options.solver == "hierarchical" or _pays(curve)))
 
     @classmethod
     def of_problem(cls, options: RelaxOptions, problem: Problem) -> "Solver":

@@ -2,20 +2,16 @@
 
 import numpy as np
 
+from ..energies.components import energy_scale
 from .outcome import FROZEN, UNEVEN, Outcome, converged, out_of_iterations
 from .run import Run
 
-LEAST = 4.0  # energy of a closed component
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
 
 
 def termination(run: Run) -> Outcome | None:
-    """How the run ends where it stands; None if it goes on.
-
-    An arc counts with as much energy more as a closed component has at least, because its own may go to 0.
-    """
-    energy = abs(run.point.energy) + LEAST * len(run.problem.mesh.ends)
-    bound = run.options.tolerance * float(np.sqrt(energy))
+    """How the run ends where it stands; None if it goes on."""
+    bound = run.options.tolerance * float(np.sqrt(energy_scale(run.problem.mesh, run.point.energy)))
     if run.point.gradient_norm <= bound and _feasible(run):
         norm = run.point.with_own_metric().gradient_norm
         if norm <= bound:

@@ -12,8 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curve import Curve
+from ..curve import Curve, Mesh
 from ..types import FloatArray, IntArray
+
+
+def energy_scale(mesh: Mesh, energy: float) -> float:
+    """What errors and gradients are to be compared with: |E|, and for each arc, whose energy may be 0, the circle's."""
+    return abs(energy) + 4.0 * len(mesh.ends)
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,27 +35,29 @@ class ComponentShares:
 
     def value(self) -> float:
         """The sum."""
-        mesh = self.curve.mesh
-        lengths = self.curve.component_lengths[~np.asarray(mesh.closed)]
-        chords = np.linalg.norm(self._chords(self.curve.vertices), axis=1)
-        return float(sum(mesh.closed) + 0.5 * np.sum(np.log(lengths / chords)))
+        chords = self._chords(self.curve.vertices)
+        squares = np.einsum("ij,ij->i", chords, chords)
+        return float(sum(self.curve.mesh.closed) + 0.5 * np.sum(np.log(self._lengths / np.sqrt(squares))))
 
     def derivative(self) -> FloatArray:
         """Its derivative with respect to the vertices; shape (n, m)."""
+        if self.curve.mesh.all_closed:  # as most are: not worth a dozen operations
+            return np.zeros_like(self.curve.vertices)
         chord = self._chords(self.curve.vertices)
         square = np.einsum("ij,ij->i", chord, chord)[:, None]
         return self._at_vertices(self._weights[:, None] * self._tangents, chord / square)
 
     def second_derivative(self, v: FloatArray) -> FloatArray:
         """Its second derivative times one vector or more, shape (n, m) or (n, m, k); the same shape."""
-        mesh, tau = self.curve.mesh, self._tangents
+        mesh, tau, edges = self.curve.mesh, self._tangents, self.curve.mesh.arc_edges
         shape, v = v.shape, v.reshape(*self.curve.vertices.shape, -1)
-        change, weights = v[mesh.heads] - v[mesh.tails], self._weights[:, None, None]
+        change, weights = v[mesh.heads[edges]] - v[mesh.tails[edges]], self._weights[:, None, None]
         along = np.einsum("ij,ijk->ik", tau, change)
-        turning = (change - tau[:, :, None] * along[:, None, :]) / self.curve.edge_lengths[:, None, None]
-        growth = np.add.reduceat(along, mesh.edge_offsets[:-1])[mesh.edge_component]
+        turning = (change - tau[:, :, None] * along[:, None, :]) / self.curve.edge_lengths[edges, None, None]
+        growth = np.zeros((len(mesh.ends), along.shape[1]))
+        np.add.at(growth, self._arc, along)
         # D²(log L)/2 is D²L/(2L) − DL DLᵀ/(2L²)
-        pull = weights * (turning - 2.0 * weights * tau[:, :, None] * growth[:, None, :])
+        pull = weights * (turning - 2.0 * weights * tau[:, :, None] * growth[self._arc][:, None, :])
         chord, swing = self._chords(self.curve.vertices), self._chords(v)
         square = np.einsum("ij,ij->i", chord, chord)[:, None, None]
         along = np.einsum("ij,ijk->ik", chord, swing)[:, None, :]
@@ -66,14 +73,27 @@ class ComponentShares:
         return columns, self.second_derivative(units.reshape(n, m, -1)).reshape(n * m, -1)
 
     @property
+    def _arc(self) -> IntArray:
+        """The arc that each edge of arcs is on, counted from 0."""
+        mesh = self.curve.mesh
+        return np.asarray((np.cumsum(~np.asarray(mesh.closed)) - 1)[mesh.edge_component[mesh.arc_edges]])
+
+    @property
+    def _lengths(self) -> FloatArray:
+        """Length of each arc."""
+        return self.curve.component_lengths[~np.asarray(self.curve.mesh.closed)]
+
+    @property
     def _tangents(self) -> FloatArray:
-        return self.curve.edge_vectors / self.curve.edge_lengths[:, None]
+        """Unit tangents of the edges of arcs."""
+        edges = self.curve.mesh.arc_edges
+        return self.curve.edge_vectors[edges] / self.curve.edge_lengths[edges, None]
 
     @property
     def _weights(self) -> FloatArray:
-        """1/(2L) on the edges of arcs, 0 on others: the derivative by their lengths; shape (edges,)."""
+        """1/(2L) for the edges of arcs: the derivative of ½ log L by their lengths."""
         mesh = self.curve.mesh
-        return np.asarray(np.where(mesh.closed, 0.0, 0.5 / self.curve.component_lengths)[mesh.edge_component])
+        return np.asarray(0.5 / self.curve.component_lengths[mesh.edge_component[mesh.arc_edges]])
 
     def _chords(self, at_vertices: FloatArray) -> FloatArray:
         """From the first to the last vertex of each arc; (n, …) to (arcs, …)."""
@@ -82,8 +102,11 @@ class ComponentShares:
 
     def _at_vertices(self, by_edge: FloatArray, by_chord: FloatArray) -> FloatArray:
         """Derivatives by the vertices, from those by edge vectors and by the chords of −½ log |b − a|."""
-        total = self.curve.mesh.scatter(-by_edge, by_edge)
-        first, last = self.curve.mesh.ends.T
+        mesh, edges = self.curve.mesh, self.curve.mesh.arc_edges
+        total = np.zeros((mesh.size, *by_edge.shape[1:]))
+        total[mesh.tails[edges]] -= by_edge
+        total[mesh.heads[edges]] += by_edge
+        first, last = mesh.ends.T
         total[first] += 0.5 * by_chord
         total[last] -= 0.5 * by_chord
         return total

@@ -15,7 +15,7 @@ from ..constraints import ConstraintDerivative
 from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs
 from ..metrics.inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
-from ..metrics.local import lumped_mass, mass
+from ..metrics.local import arc_stiffness, lumped_mass, mass
 from ..metrics.moebius import pair_kernels
 from ..saddle import TangentSpace
 from ..saddle.circulant import Circulants
@@ -28,6 +28,7 @@ from .blocks import BlockList
 from .pair_forms import PairForms
 from .running_sum import RunningSum
 
+FarForm = tuple[RunningSum, sp.csr_array]
 SEPARATION = 0.5  # θ of the block list
 LEAF = 4
 EVEN_RATIO = 20.0  # of the longest edge of a component to its shortest, up to which Fourier transforms are faster
@@ -37,7 +38,7 @@ MAX_ITERATIONS = 1000
 
 @dataclass(frozen=True, eq=False)
 class CompressedInnerProduct:
-    """A = S + Bᵀ Q B + V Vᵀ.
+    """A = S + Σ Bᵀ Q B + V Vᵀ.
 
     Attributes
     ----------
@@ -45,28 +46,29 @@ class CompressedInnerProduct:
         The curve on which functions are.
     local
         S, sparse, shape (n, n).
-    running, sums
-        B, running sums, and Q, sparse, shape (n + 1, n + 1).
+    far
+        Each B, running sums, and its Q, sparse, shape (edges + 1, edges + 1).
     vectors
         V, shape (n, r) for a small r.
     coupling
-        S + Bᵀ Q B on functions constant on each component, or near it; sparse, shape (components, components).
+        S + Σ Bᵀ Q B on functions constant on each component, or near it; sparse, shape (components, components).
     tolerances
         Of all that is solved with it.
     """
 
     curve: Curve
     local: sp.csr_array
-    running: RunningSum
-    sums: sp.csr_array
+    far: tuple[FarForm, ...]
     vectors: FloatArray
     coupling: sp.csr_array
     tolerances: Tolerances
 
     def apply(self, u: FloatArray) -> FloatArray:
         """A u."""
-        far = self.running.apply_transpose(self.sums @ self.running.apply(u))
-        return np.asarray(self.local @ u + far + self.vectors @ (self.vectors.T @ u))
+        product = self.local @ u
+        for running, form in self.far:
+            product += running.apply_transpose(form @ running.apply(u))
+        return np.asarray(product + self.vectors @ (self.vectors.T @ u))
 
     def solve(self, f: FloatArray) -> FloatArray:
         """A⁻¹ f, to ten digits."""
@@ -82,7 +84,7 @@ class CompressedInnerProduct:
             return replace(
                 self,
                 local=self.local + weight * other.local,
-                sums=self.sums + weight * other.sums,
+                far=self.far + tuple((running, weight * form) for running, form in other.far),
                 vectors=np.hstack([self.vectors, np.sqrt(weight) * other.vectors]),
                 coupling=self.coupling + weight * other.coupling,
             )
@@ -105,9 +107,9 @@ class CompressedInnerProduct:
     def model(self) -> TwoLevel:
         """A function of the Laplacian along the components, and the coupling of whole components."""
         mesh, ell = self.curve.mesh, self.curve.edge_lengths
-        starts = mesh.offsets[:-1]
+        starts = mesh.edge_offsets[:-1]
         even = np.all(np.maximum.reduceat(ell, starts) <= EVEN_RATIO * np.minimum.reduceat(ell, starts))
-        along = Circulants if even else Resolvents
+        along = Circulants if even and mesh.all_closed else Resolvents
         return TwoLevel(mesh, along(mesh, ell, self.apply), self.coupling, _indicators(self.curve).T @ self.vectors)
 
 
@@ -120,9 +122,8 @@ def moebius_inner_product(curve: Curve, tolerances: Tolerances | None = None) ->
     values, sums = forms.of_values(near.density, far.density)
     return CompressedInnerProduct(
         curve,
-        slopes + values,
-        RunningSum(curve, blocks.tree.order),
-        sums,
+        slopes + values + arc_stiffness(curve),
+        ((RunningSum.of_values(curve, blocks.tree.order), sums), *_long_slopes(curve, forms, blocks, far.inverse)),
         lumped_mass(curve)[:, None],
         forms.of_components(near.density, far.density),
         tolerances or Tolerances(),
@@ -143,12 +144,18 @@ def fractional_inner_product(curve: Curve, tolerances: Tolerances | None = None)
     return CompressedInnerProduct(
         curve,
         forms.of_slopes(near, far) + weight,
-        RunningSum(curve, blocks.tree.order),
-        sp.csr_array((n + 1, n + 1)),
+        (),
         np.zeros((n, 0)),
         indicators.T @ weight @ indicators,
         tolerances or Tolerances(),
     )
+
+
+def _long_slopes(curve: Curve, forms: PairForms, blocks: BlockList, far: FloatArray) -> tuple[FarForm, ...]:
+    """Blocks of clusters of several components, where some of these are open."""
+    if curve.mesh.all_closed:
+        return ()
+    return ((RunningSum.of_slopes(curve, blocks.tree.order), forms.of_long_slopes(far)),)
 
 
 def _indicators(curve: Curve) -> sp.csr_array:

@@ -51,27 +51,34 @@ class PairForms:
         return self._blocks.middles
 
     def of_slopes(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
-        """The matrix of Σ w ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|², shape (n, n); for closed components."""
+        """The matrix of Σ w ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|², shape (n, n), but for what `of_long_slopes` adds."""
         mesh, b, order = self._curve.mesh, self._blocks, self._blocks.tree.order
-        # the slopes of whole components add up to 0
         weights = np.where(self._in_components, far, 0.0)
-        c = order[b.a], mesh.heads[order[b.b - 1]]
-        d = order[b.c], mesh.heads[order[b.d - 1]]
+        c = mesh.tails[order[b.a]], mesh.heads[order[b.b - 1]]
+        d = mesh.tails[order[b.c]], mesh.heads[order[b.d - 1]]
         slope = sp.diags_array(1.0 / self._curve.edge_lengths) @ mesh.difference
         return sp.csr_array(slope.T @ self._on_edges(near, far) @ slope - _products(weights, c, d, mesh.size))
 
+    def of_long_slopes(self, far: FloatArray) -> sp.csr_array:
+        """The part of blocks that are not within components, on running sums of ΔU; shape (edges + 1, edges + 1).
+
+        Where all components are closed it vanishes, because the slopes of a whole one add up to 0.
+        """
+        b, weights = self._blocks, np.where(self._in_components, 0.0, far)
+        return -_products(weights, (b.a, b.b), (b.c, b.d), self._curve.mesh.edges + 1)
+
     def of_values(self, near: FloatArray, far: FloatArray) -> tuple[sp.csr_array, sp.csr_array]:
-        """The matrices of Σ w ℓ_I ℓ_J |u_I − u_J|², u at midpoints: on U, shape (n, n), and on z, (n + 1, n + 1)."""
+        """The matrices of Σ w ℓ_I ℓ_J |u_I − u_J|², u at midpoints: on U, shape (n, n), and on z, (edges + 1) twice."""
         b, average = self._blocks, self._curve.mesh.average
         local = sp.csr_array(average.T @ self._on_edges(near, far) @ average)
-        return local, -_products(far, (b.a, b.b), (b.c, b.d), self._curve.mesh.size + 1)
+        return local, -_products(far, (b.a, b.b), (b.c, b.d), self._curve.mesh.edges + 1)
 
     def of_components(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
         """`of_values` for functions constant on each component, but for far components; shape (components,) twice.
 
         Left out are blocks of clusters that hold several components, which would couple all with all.
         """
-        ell, component = self._curve.edge_lengths, self._curve.mesh.component
+        ell, component = self._curve.edge_lengths, self._curve.mesh.edge_component
         (i, j), (c, d), single = self.near, self.middles, self._in_components
         first = component[np.concatenate([i, c[single]])]
         second = component[np.concatenate([j, d[single]])]
@@ -83,17 +90,17 @@ class PairForms:
     @cached_property
     def _in_components(self) -> BoolArray:
         """Whether each of the two clusters of a block is within one component; shape (blocks,)."""
-        b, component = self._blocks, self._curve.mesh.component[self._blocks.tree.order]
+        b, component = self._blocks, self._curve.mesh.edge_component[self._blocks.tree.order]
         return np.asarray((component[b.a] == component[b.b - 1]) & (component[b.c] == component[b.d - 1]))
 
     def _on_edges(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
-        """Near pairs, and the diagonal of the blocks, in edge values; shape (n, n)."""
+        """Near pairs, and the diagonal of the blocks, in edge values; shape (edges, edges)."""
         ell, (i, j) = self._curve.edge_lengths, self.near
         off = _symmetric(2.0 * near * ell[i] * ell[j], i, j, len(ell))
         return sp.csr_array(sp.diags_array(off.sum(axis=1) + 2.0 * ell * self._opposite(far)) - off)
 
     def _opposite(self, far: FloatArray) -> FloatArray:
-        """Σ w L_d for each edge over the blocks with a cluster c that holds it; shape (n,)."""
+        """Σ w L_d for each edge over the blocks with a cluster c that holds it; shape (edges,)."""
         b, tree = self._blocks, self._blocks.tree
         total = np.bincount(b.first, far * self._length_d, tree.size)
         total += np.bincount(b.second, far * self._length_c, tree.size)

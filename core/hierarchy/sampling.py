@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Curve
-from ..energies.components import ComponentShares
+from ..energies.components import ComponentShares, energy_scale
 from ..energies.moebius import CONSTANT, energy_of_pairs
 from ..types import FloatArray, IntArray
 from .energy import HierarchicalMoebiusEnergy
@@ -131,8 +131,9 @@ class SampledErrors:
         To first order an error δ of the derivative changes the norm by δ·u/|u|.
         """
         along = slope_error(energy, curve, u).relative(norm) if norm > 0.0 else Estimate(0.0, 0.0)
-        unit = max(norm, float(np.sqrt(abs(value))))
-        return cls(energy_error(energy, curve).relative(abs(value)), along.relative(unit), energy.order)
+        scale = energy_scale(curve.mesh, value)
+        unit = max(norm, float(np.sqrt(scale)))
+        return cls(energy_error(energy, curve).relative(scale), along.relative(unit), energy.order)
 
     def within(self, accuracy: float) -> bool:
         """Whether the bounds are: for the norm, to whose error that of the solution is added, half of it."""

@@ -1,5 +1,8 @@
-"""Knots and links to start from: the named table and its relaxed shapes, torus knots, braids, drawings, satellites."""
+"""Knots and links to start from: the named table and its relaxed shapes, torus knots, braids, drawings, satellites,
+arcs.
+"""
 
+from .arcs import ARCS, overhand
 from .closures import braid_closure
 from .contacts import rope, spiral
 from .drawings import Drawing
@@ -16,6 +19,7 @@ from .unknots import hard_unknot, unknot_word
 
 __all__ = [
     "ALIASES",
+    "ARCS",
     "HARD_UNKNOTS",
     "KNOTS",
     "Drawing",
@@ -30,6 +34,7 @@ __all__ = [
     "knot_names",
     "lattice_closure",
     "lissajous_knot",
+    "overhand",
     "rope",
     "scramble",
     "smooth_knot",

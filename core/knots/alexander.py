@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curve import Curve
+from ..curve import Curve, check_closed
 from ..types import BoolArray, FloatArray, IntArray
 from .crossings import plane_crossings
 
@@ -40,7 +40,8 @@ class Signature:
 
 
 def signature(curve: Curve) -> Signature:
-    """The signature of a closed polygon in space, from a generic projection."""
+    """The signature of closed polygons in space, from a generic projection; a CurveError if some are open."""
+    check_closed(curve, "knot types")
     crossings = _Crossings.of(curve)
     component = curve.mesh.component
     over, under = component[crossings.over], component[crossings.under]
@@ -50,7 +51,8 @@ def signature(curve: Curve) -> Signature:
 
 
 def linking_numbers(curve: Curve) -> tuple[int, ...]:
-    """Linking numbers of all pairs of components of a link in space."""
+    """Linking numbers of all pairs of components of a link in space; a CurveError if some are open."""
+    check_closed(curve, "linking numbers")
     return _linking_numbers(curve, _Crossings.of(curve))
 
 

@@ -54,9 +54,9 @@ def knotted_ball(curve: Curve) -> Ball | None:
     Parameters
     ----------
     curve
-        Closed polygons; only in space there are knots.
+        Polygons; only closed ones in space can be knots.
     """
-    if curve.dimension != 3 or not is_searchable(curve):
+    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve):
         return None
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..collision import check_embedded
-from ..curve import Curve
+from ..curve import Curve, check_closed
 from ..curve.distances import arc_distance_of_pairs
 from ..curve.refine import subdivide
 from ..errors import CurveError, Place
@@ -61,6 +61,7 @@ class Drawing:
         """
         if curve.dimension != 2:
             raise CurveError(f"the drawing has dimension {curve.dimension}; it must lie in the plane")
+        check_closed(curve, "drawings")
         if len(curve) > MAX_POINTS:
             raise CurveError(f"the drawing has {len(curve)} points; at most {MAX_POINTS} are allowed")
         if not _size(curve):

@@ -1,10 +1,11 @@
-"""Knots by name: one small grammar for the table, torus knots, braids, mirror images, sums and hard unknots."""
+"""Knots by name: one small grammar for the table, torus knots, braids, mirror images, sums, hard unknots and arcs."""
 
 import difflib
 import re
 
 from ..curve import Curve
 from ..errors import CurveError, MobiusFlowError
+from .arcs import ARCS
 from .braids import Word, connected_sum, mirror
 from .closures import braid_closure
 from .planar import diagram_knot
@@ -25,8 +26,8 @@ class UnknownKnotError(MobiusFlowError):
 
 
 def knot_names() -> list[str]:
-    """The names of the table with its links, other words for them, and the hard unknots."""
-    return [*KNOTS, *(name.replace(" ", "-") for name in ALIASES), *HARD_UNKNOTS]
+    """The names of the table with its links, other words for them, the hard unknots, and arcs."""
+    return [*KNOTS, *(name.replace(" ", "-") for name in ALIASES), *HARD_UNKNOTS, *ARCS]
 
 
 def knot(name: str, vertices: int | None = None) -> Curve:
@@ -34,7 +35,8 @@ def knot(name: str, vertices: int | None = None) -> Curve:
 
     Names: the table's (``3_1`` to ``10_165``, ``L5a1``), the words of :data:`ALIASES` (``trefoil``,
     ``figure-eight``), torus knots ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, mirror images
-    ``m3_1``, and connected sums ``3_1#m3_1``; also the diagrams of :data:`HARD_UNKNOTS` (``goeritz``), by themselves.
+    ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, the diagrams of
+    :data:`HARD_UNKNOTS` (``goeritz``) and the open polygons of :data:`ARCS` (``overhand``).
     Letter case, spaces, hyphens and a last word "knot", "unknot" or "link" don't matter.
 
     Parameters
@@ -59,7 +61,10 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     (50, 50)
     """
     name = str(name)  # a number is no name either, and is told so
-    hard = _HARD.get(_unspaced(_plain(name)))
+    by_itself = _unspaced(_plain(name))
+    if by_itself in ARCS:
+        return ARCS[by_itself](vertices)
+    hard = _HARD.get(by_itself)
     if hard is not None:
         return diagram_knot(HARD_UNKNOTS[hard], vertices)
     call = _call(_squeezed(name), name)

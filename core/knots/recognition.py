@@ -41,11 +41,11 @@ def names_alike(curve: Curve, crossings: int) -> list[str]:
     Parameters
     ----------
     curve
-        One closed polygon in space; there are no names for links.
+        One closed polygon in space; there are no names for links, nor for arcs.
     crossings
         Number of crossings of a diagram of it.
     """
-    if len(curve.mesh.component_sizes) > 1:
+    if curve.mesh.closed != (True,):
         return []
     found = signature(curve)
     return [name for name in shapes() if _crossings(name) <= crossings and _signature(name) == found]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curve import Curve
+from ..curve import Curve, check_closed
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
 from .sweeps import angle_to_sector, triangle_distances
@@ -59,6 +59,7 @@ def certified_moves(
     """Give one after the other the vertices that :func:`scramble` moves, and where each moves to."""
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; only curves in space can be scrambled")
+    check_closed(curve, "scrambles")
     center = curve.vertices.mean(axis=0)
     radius = float(np.linalg.norm(curve.vertices - center, axis=1).max())
     moves = 20 * len(curve) if moves is None else moves

@@ -46,7 +46,7 @@ class Tube:
         CurveError
             If the curve is not one closed component in space.
         """
-        if curve.dimension != 3 or len(curve.mesh.component_sizes) != 1:
+        if curve.dimension != 3 or curve.mesh.closed != (True,):
             raise CurveError("satellites are drawn around a knot, one closed curve in space")
         closed = np.concatenate([curve.vertices, curve.vertices[:1]])
         spline = CubicSpline(np.append(arc_steps(curve.vertices), 1.0), closed, bc_type="periodic")

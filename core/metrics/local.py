@@ -7,7 +7,6 @@ which a component is 4 to 8 long, so that the two terms weigh alike.
 from dataclasses import dataclass
 from typing import Self
 
-import numpy as np
 import scipy.sparse as sp
 
 from ..curve import Curve
@@ -32,9 +31,9 @@ def stiffness(curve: Curve) -> sp.csr_array:
 
 def arc_stiffness(curve: Curve) -> sp.csr_array:
     """Matrix of ∫ u' v' over the open components alone; shape (n, n)."""
-    on_arcs = ~np.asarray(curve.mesh.closed)[curve.mesh.edge_component]
-    difference = curve.mesh.difference[on_arcs]
-    return sp.csr_array(difference.T @ sp.diags_array(1.0 / curve.edge_lengths[on_arcs]) @ difference)
+    edges = curve.mesh.arc_edges
+    difference = curve.mesh.difference[edges]
+    return sp.csr_array(difference.T @ sp.diags_array(1.0 / curve.edge_lengths[edges]) @ difference)
 
 
 def lumped_mass(curve: Curve) -> FloatArray:

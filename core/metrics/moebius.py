@@ -25,7 +25,7 @@ from ..curve.distances import arc_distance_of_pairs, arc_distances, points_at
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray, IntArray
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
-from .local import arc_stiffness, lumped_mass
+from .local import lumped_mass
 from .pairs import DifferenceForm, Stencil, Stripe, stripes
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
@@ -57,18 +57,18 @@ class MoebiusMetric:
 
     def at(self, curve: Curve) -> InnerProduct:
         """Dense: every pair of edges weighs in."""
-        mesh, slope = curve.mesh, Stencil.slope(curve)
+        mesh, slope, weights = curve.mesh, Stencil.slope(curve), _PairWeights(curve, self.rule)
         points = list(zip(self.rule.points, self.rule.weights, strict=True))
         form = DifferenceForm(mesh)
         for stripe in stripes(mesh):
             for (t_i, omega_i), (t_j, omega_j) in product(points, repeat=2):
-                inverse, density = _weights(curve, t_i, t_j, stripe)
+                inverse, density = weights.at(t_i, t_j, stripe)
                 inverse *= omega_i * omega_j
                 density *= omega_i * omega_j
                 form.add(stripe, inverse, slope, slope)
                 form.add(stripe, density, Stencil.value(mesh, t_i), Stencil.value(mesh, t_j))
-        gram, stiffness = form.assembled(), arc_stiffness(curve).tocoo()
-        gram[stiffness.coords] += stiffness.data
+        gram = form.assembled()
+        _add_arc_stiffness(gram, curve)
         return DenseInnerProduct(blas.dsyr(1.0, lumped_mass(curve), a=gram, lower=1, overwrite_a=1))
 
 
@@ -96,20 +96,36 @@ def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
     return PairKernels(inverse, inverse * (inverse - 1.0 / np.maximum(rho * rho, nearest)))
 
 
-def _weights(curve: Curve, t_i: float, t_j: float, stripe: Stripe) -> tuple[FloatArray, FloatArray]:
-    """ℓ_I ℓ_J/r² and ℓ_I ℓ_J/r² (1/r² − 1/ϱ²), 0 where closures meet; shapes (rows, columns)."""
-    rows, columns, mesh = stripe.rows, stripe.columns, curve.mesh
-    rho = arc_distances(curve, t_i, t_j, rows, columns)
-    start, end = (mesh.at_tails(points_at(curve, t), curve.vertices) for t in (t_i, t_j))
-    r2 = cdist(start[rows], end[columns], "sqeuclidean")
-    ell, width = mesh.at_tails(curve.edge_lengths), mesh.at_tails(curve.edge_lengths, 1.0)
-    nearest = MIN_DISTANCE * np.add.outer(width[rows], width[columns])
-    np.maximum(rho, nearest, out=rho)
-    np.maximum(r2, np.square(nearest, out=nearest), out=r2)
-    stripe.exclude_neighbours(mesh, r2)
-    s = np.divide(1.0, r2, out=r2)
-    inverse = np.multiply.outer(ell[rows], ell[columns])
-    inverse *= s
-    s -= np.divide(1.0, np.square(rho, out=rho), out=rho)
-    s *= inverse  # 0 for neighbours
-    return inverse, s
+def _add_arc_stiffness(gram: FloatArray, curve: Curve) -> None:
+    """Add ∫ |u'|² over the arcs, `arc_stiffness`, to the lower triangle."""
+    edges = curve.mesh.arc_edges
+    tails, heads, slope = curve.mesh.tails[edges], curve.mesh.heads[edges], 1.0 / curve.edge_lengths[edges]
+    gram[tails, tails] += slope
+    gram[heads, heads] += slope
+    gram[heads, tails] -= slope  # along an arc numbers grow
+
+
+class _PairWeights:
+    """ℓ_I ℓ_J/r² and ℓ_I ℓ_J/r² (1/r² − 1/ϱ²), 0 where closures meet and where no edge begins."""
+
+    def __init__(self, curve: Curve, rule: Rule) -> None:
+        mesh = curve.mesh
+        self._curve = curve
+        self._ell, self._width = mesh.at_tails(curve.edge_lengths), mesh.at_tails(curve.edge_lengths, 1.0)
+        self._points = {t: mesh.at_tails(points_at(curve, t), curve.vertices) for t in rule.points}
+
+    def at(self, t_i: float, t_j: float, stripe: Stripe) -> tuple[FloatArray, FloatArray]:
+        """Both for a stripe, taken at t_i of edges I and t_j of edges J; shapes (rows, columns)."""
+        rows, columns = stripe.rows, stripe.columns
+        rho = arc_distances(self._curve, t_i, t_j, rows, columns)
+        r2 = cdist(self._points[t_i][rows], self._points[t_j][columns], "sqeuclidean")
+        nearest = MIN_DISTANCE * np.add.outer(self._width[rows], self._width[columns])
+        np.maximum(rho, nearest, out=rho)
+        np.maximum(r2, np.square(nearest, out=nearest), out=r2)
+        stripe.exclude_neighbours(self._curve.mesh, r2)
+        s = np.divide(1.0, r2, out=r2)
+        inverse = np.multiply.outer(self._ell[rows], self._ell[columns])
+        inverse *= s
+        s -= np.divide(1.0, np.square(rho, out=rho), out=rho)
+        s *= inverse  # 0 for neighbours
+        return inverse, s

@@ -21,7 +21,7 @@ class Circulants:
     Parameters
     ----------
     mesh
-        Connectivity.
+        Connectivity; all components are closed.
     lengths
         Edge lengths, positive, shape (n,).
     apply

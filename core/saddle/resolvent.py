@@ -28,7 +28,7 @@ class Resolvents:
     mesh
         Connectivity.
     lengths
-        Edge lengths ℓ, positive, shape (n,).
+        Edge lengths ℓ, positive, shape (edges,).
     apply
         The product A u that M is a model of, (n, k) to (n, k).
 
@@ -39,8 +39,8 @@ class Resolvents:
     """
 
     def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
-        mass, d = 0.5 * (lengths + lengths[mesh.previous]), mesh.difference
-        parameter = Parameter.of_steps(mesh, lengths)
+        mass, d = 0.5 * mesh.scatter(lengths, lengths), mesh.difference
+        parameter = Parameter.of_steps(mesh, mesh.at_tails(lengths))
         symbol = parameter.symbol(apply, mass, np.pi / float(np.quantile(lengths, RESOLVED)))
         least, largest = (2.0 * np.pi / float(parameter.periods.max())) ** 2, 4.0 / float(lengths.min()) ** 2
         sigma = np.exp(np.arange(np.log(least), np.log(largest) + SPACING, SPACING))

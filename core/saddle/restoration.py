@@ -51,7 +51,7 @@ def _solve_gram(mesh: Mesh, diagonal: FloatArray, cosines: FloatArray, right: Fl
     """
     first, last = mesh.edge_offsets[:-1], mesh.edge_offsets[1:] - 1
     corner, sign = np.where(mesh.closed, np.abs(cosines[last]), 0.0), np.copysign(1.0, cosines[last])
-    beside, w = -cosines[:-1], np.zeros(mesh.edges)
+    beside, w = -cosines[: max(mesh.edges - 1, 1)], np.zeros(mesh.edges)
     beside[last[:-1]] = 0.0
     diagonal[first] += corner
     diagonal[last] += corner

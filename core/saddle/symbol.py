@@ -97,9 +97,9 @@ def modulated(symbol: Symbol, tau: FloatArray, lengths: FloatArray) -> Symbol:
     Parameters
     ----------
     tau
-        Unit tangents, shape (n, m).
+        Unit tangents, shape (edges, m).
     lengths
-        Edge lengths, shape (n,).
+        Edge lengths, shape (edges,).
     """
     ends, count = np.cumsum(lengths), 2 * len(lengths)
     spacing = ends[-1] / count

@@ -11,7 +11,7 @@ from mobius_flow.core.metrics.pairs import DifferenceForm, Stencil, stripes
 from mobius_flow.core.quadrature import ENDS, TAIL, Rule
 from scipy.integrate import quad
 from scipy.special import sici
-from shapes import hopf_link, regular_polygon, torus_trefoil
+from shapes import hopf_link, opened, regular_polygon, straight_arc, torus_trefoil
 
 
 def term_2(k: int) -> float:
@@ -73,7 +73,11 @@ def test_quadrature_rules_agree_in_the_limit(points):
 
 
 @pytest.mark.parametrize("metric", METRICS.values(), ids=list(METRICS))
-@pytest.mark.parametrize("curve", [torus_trefoil(80), hopf_link(40)], ids=["trefoil", "link"])
+@pytest.mark.parametrize(
+    "curve",
+    [torus_trefoil(80), hopf_link(40), opened(hopf_link(40), 1), *map(straight_arc, (1, 2, 3, 60))],
+    ids=["trefoil", "link", "arc through a ring", "one edge", "two edges", "three edges", "straight"],
+)
 def test_symmetric_positive_definite(metric, curve):
     matrix = metric.at(curve).dense()
     np.testing.assert_allclose(matrix, matrix.T, atol=1e-12 * np.abs(matrix).max())
@@ -83,14 +87,15 @@ def test_symmetric_positive_definite(metric, curve):
 RULES = {"midpoint": Rule.gauss(1), "Gauss": Rule.gauss(2), "tails": TAIL, "ends": ENDS}
 
 
+@pytest.mark.parametrize("arcs", [(), (0,), (0, 1)])
 @pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
-def test_moebius_metric_against_its_definition(rule):
-    """The three terms summed pair by pair, on an uneven link two strands of which nearly touch."""
+def test_moebius_metric_against_its_definition(rule, arcs):
+    """The terms summed pair by pair, on an uneven link two strands of which nearly touch."""
     rng = np.random.default_rng(17)
     curve = hopf_link(9)
     vertices = curve.vertices + 0.1 * rng.normal(size=curve.vertices.shape)
     vertices[9:] += vertices[2] - vertices[12] + 1e-6
-    curve = curve.with_vertices(vertices)
+    curve = opened(curve.with_vertices(vertices), *arcs)
     u = rng.normal(size=len(curve))
     assert u @ MoebiusMetric(rule).at(curve).dense() @ u == pytest.approx(_by_definition(curve, u, rule), rel=1e-12)
 
@@ -98,10 +103,12 @@ def test_moebius_metric_against_its_definition(rule):
 def _by_definition(curve, u, rule):
     mesh, ell = curve.mesh, curve.edge_lengths
     t, omega = rule.points, rule.weights
-    at = np.concatenate([np.cumsum(ell[s]) - ell[s] for s in mesh.slices])
+    at = np.concatenate([np.cumsum(ell[s]) - ell[s] for s in mesh.edge_slices])
     total = float(np.sum(ell * (u[mesh.tails] + u[mesh.heads]) / 2)) ** 2
-    for i in range(len(curve)):
-        for j in range(len(curve)):
+    for i in range(mesh.edges):
+        if not mesh.closed[mesh.edge_component[i]]:
+            total += (u[mesh.heads[i]] - u[mesh.tails[i]]) ** 2 / ell[i]
+        for j in range(mesh.edges):
             if {mesh.tails[i], mesh.heads[i]} & {mesh.tails[j], mesh.heads[j]}:
                 continue
             slope = (u[mesh.heads[i]] - u[mesh.tails[i]]) / ell[i] - (u[mesh.heads[j]] - u[mesh.tails[j]]) / ell[j]
@@ -114,8 +121,8 @@ def _by_definition(curve, u, rule):
                     nearest = MIN_DISTANCE * (ell[i] + ell[j])
                     s = 1 / max(np.sum((x - y) ** 2), nearest**2)
                     density = s
-                    if mesh.component[i] == mesh.component[j]:
-                        length = ell[mesh.slices[mesh.component[i]]].sum()
+                    if (own := mesh.edge_component[i]) == mesh.edge_component[j]:
+                        length = ell[mesh.edge_slices[own]].sum() if mesh.closed[own] else np.inf
                         gap = abs(at[i] + t[a] * ell[i] - at[j] - t[b] * ell[j])
                         density -= 1 / max(min(gap, length - gap), nearest) ** 2
                     weight = ell[i] * ell[j] * omega[a] * omega[b]

@@ -12,7 +12,7 @@ from mobius_flow.core.descent.constrained import Constrained
 from mobius_flow.core.saddle import TangentSpace
 from mobius_flow.core.saddle.restoration import euclidean_correction
 from mobius_flow.core.types import FloatArray
-from shapes import chain_of_rings, hopf_link, regular_polygon, torus_trefoil
+from shapes import chain_of_rings, hopf_link, opened, regular_polygon, straight_arc, torus_trefoil
 
 
 def rough(curve: Curve) -> Curve:
@@ -29,6 +29,12 @@ CURVES = {
     "triangles": (rough(TRIANGLES), None),
     "plane": (rough(regular_polygon(30, dimension=2)), None),
     "4-space": (rough(regular_polygon(30, dimension=4)), None),
+    "arcs": (
+        opened(rough(Curve.from_components([*SQUARES.components, regular_polygon(7).vertices])), 0, 3),
+        (0, 1, 0, 1),
+    ),
+    "straight": (straight_arc(12), None),
+    "one edge": (straight_arc(1), None),
 }
 
 
@@ -42,7 +48,7 @@ def test_corrections_solve_the_linearised_constraints_by_the_shortest_way(name: 
     residual = np.random.default_rng(43).normal(size=derivative.count)
     u = euclidean_correction(constraints, curve, residual)
     np.testing.assert_allclose(derivative.apply(u), -residual, atol=1e-11 * np.abs(u).max() / curve.edge_lengths.min())
-    shortest = -np.linalg.pinv(derivative.length_rows().toarray()) @ residual[:n]
+    shortest = -np.linalg.pinv(derivative.length_rows().toarray()) @ residual[: curve.mesh.edges]
     part = np.asarray(parts or [0] * len(curve.mesh.component_sizes))[curve.mesh.component]
     for k in range(max(part) + 1):
         translation = (u - shortest.reshape(n, m))[part == k]

@@ -1,4 +1,4 @@
-"""Curve files: read and write closed polygons as .txt/.xyz, .obj, .vect and .json.
+"""Curve files: read and write polygons, closed or open, as .txt/.xyz, .obj, .vect and .json.
 
 To add a format, write one module with ``read(source) -> list[Polygon]`` and ``write(curve, stream)`` and
 give it a line in :data:`FORMATS`; reading, error messages and the atomic replacement are shared.

@@ -1,4 +1,4 @@
-"""Join edges given in any order into closed chains of vertices."""
+"""Join edges given in any order into chains of vertices, closed or open."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,30 +15,35 @@ class Link:
     line: int
 
 
-def closed_chains(source: Source, links: Sequence[Link], points: Sequence[Sequence[float]]) -> list[list[int]]:
-    """Join edges into closed chains of vertex indices.
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """Indices of the vertices of a polygon, and whether an edge leads from the last to the first."""
 
-    Each chain starts at its smallest index and follows the direction of the edges there, so a file that
-    lists its polygon in order keeps that order. A chain whose two ends lie at the same point is closed; it
-    keeps both vertices.
+    vertices: list[int]
+    closed: bool
+
+
+def chains(source: Source, links: Sequence[Link]) -> list[Chain]:
+    """Join edges into chains of vertex indices.
+
+    Each closed chain starts at its smallest index and follows the direction of the edges there, so a file that lists
+    its polygon in order keeps that order. An open chain starts at the end with the smaller index.
 
     Raises
     ------
     CurveFileError
-        If an edge joins a vertex to itself, more than two edges meet, or a chain is open.
+        If an edge joins a vertex to itself, or more than two edges meet.
     """
     at = _links_at_vertices(source, links)
     ends = [vertex for vertex in sorted(at) if len(at[vertex]) == 1]
-    chains = []
+    found = []
     done: set[int] = set()
     for vertex in ends + sorted(at):
         if vertex not in done:
             chain = _walk(at, vertex)
-            if len(at[vertex]) == 1:
-                _check_ends_meet(source, at, chain, points)
             done.update(chain)
-            chains.append(chain)
-    return sorted(chains, key=min)
+            found.append(Chain(chain, closed=len(at[vertex]) == 2))
+    return sorted(found, key=lambda chain: min(chain.vertices))
 
 
 def _links_at_vertices(source: Source, links: Sequence[Link]) -> dict[int, list[Link]]:
@@ -71,14 +76,3 @@ def _walk(at: dict[int, list[Link]], start: int) -> list[int]:
 
 def _other_end(link: Link, vertex: int) -> int:
     return link.head if link.tail == vertex else link.tail
-
-
-def _check_ends_meet(
-    source: Source, at: dict[int, list[Link]], chain: list[int], points: Sequence[Sequence[float]]
-) -> None:
-    if points[chain[0]] != points[chain[-1]]:
-        reason = (
-            f"the polyline from vertex {chain[0] + 1} to vertex {chain[-1] + 1} is open; "
-            f"only closed polygons can be used, so add the edge 'l {chain[-1] + 1} {chain[0] + 1}'"
-        )
-        raise source.error(reason, at[chain[-1]][0].line)

@@ -35,15 +35,23 @@ class Format:
     write: Callable[[Curve, TextIO], None]
 
 
-_COLUMNS = Format("x y z per line, a blank line between components, # comments", xyz.read, xyz.write)
+_COLUMNS = Format(
+    "x y z per line, a blank line between components, # comments, the line # open before an open one",
+    xyz.read,
+    xyz.write,
+)
 
 FORMATS: Mapping[str, Format] = MappingProxyType(
     {
         ".txt": _COLUMNS,
         ".xyz": _COLUMNS,
         ".obj": Format("Wavefront OBJ, vertices (v) and polylines (l)", obj.read, obj.write),
-        ".vect": Format("Geomview VECT, closed polylines", vect.read, vect.write),
-        ".json": Format('{"components": [[[x, y, z], ...], ...]}', json_lists.read, json_lists.write),
+        ".vect": Format("Geomview VECT, polylines", vect.read, vect.write),
+        ".json": Format(
+            '{"components": [[[x, y, z], ...], ...], "closed": [true, ...]}, "closed" only if some are open',
+            json_lists.read,
+            json_lists.write,
+        ),
     }
 )
 
@@ -91,7 +99,7 @@ class CurveFile:
 
 
 def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream: BinaryIO | None = None) -> CurveFile:
-    """Read closed polygons and keep what errors that come later need.
+    """Read polygons and keep what errors that come later need.
 
     Parameters
     ----------
@@ -117,7 +125,7 @@ def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream:
 
 
 def read_curve(path: str | os.PathLike[str]) -> Curve:
-    """Read closed polygons from a file; the suffix tells the format (see :data:`FORMATS`).
+    """Read polygons, closed or open, from a file; the suffix tells the format (see :data:`FORMATS`).
 
     The order of components and vertices is kept. A vertex at a component's end that repeats its first
     vertex is dropped, with a note in the log.
@@ -136,7 +144,7 @@ def read_curve(path: str | os.PathLike[str]) -> Curve:
 
 
 def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None = None) -> None:
-    """Write closed polygons to a file; the suffix tells the format (see :data:`FORMATS`) unless one is given.
+    """Write polygons to a file; the suffix tells the format (see :data:`FORMATS`) unless one is given.
 
     Coordinates are written with all their digits: reading the file gives the same doubles. The file
     appears whole or not at all.

@@ -1,7 +1,8 @@
 """JSON lists of coordinates (.json): ``{"components": [[[x, y, z], ...], ...]}``, our own form.
 
-The object may have other keys, which are ignored. A bare list of components, or a bare list of points
-(one component), is read too. Any dimension from 2 on is allowed; NaN and Infinity are not.
+The key "closed" has true or false for each component; without it all are closed. Other keys are ignored. A bare list of
+components, or a bare list of points (one component), is read too. Any dimension from 2 on is allowed; NaN and Infinity
+are not.
 """
 
 import json
@@ -18,14 +19,26 @@ def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line."""
     value = _parse(source)
     at: Path = ()
+    flags: object = None
     if isinstance(value, dict):
         if "components" not in value:
             raise source.error('the object has no key "components"', 1)
-        value, at = value["components"], ("components",)
+        value, flags, at = value["components"], value.get("closed"), ("components",)
     if isinstance(value, list) and value and isinstance(value[0], list) and _is_point(value[0]):
-        return [_polygon(source, value, at)]
+        return [_polygon(source, value, at, *_flags(source, flags, 1))]
     parts = _items(source, value, at, "a list of components")
-    return [_polygon(source, part, (*at, k)) for k, part in enumerate(parts)]
+    closed = _flags(source, flags, len(parts))
+    return [_polygon(source, part, (*at, k), closed[k]) for k, part in enumerate(parts)]
+
+
+def _flags(source: Source, flags: object, components: int) -> list[bool]:
+    """Whether each component is closed: all are if nothing is said."""
+    if flags is None:
+        return [True] * components
+    if isinstance(flags, list) and len(flags) == components and all(isinstance(flag, bool) for flag in flags):
+        return flags
+    reason = f'"closed" must be a list of true or false, one for each component, of which there are {components}'
+    raise source.error(reason, line_of(source.text, ("closed",)))
 
 
 def _parse(source: Source) -> object:
@@ -50,11 +63,12 @@ def _items(source: Source, value: object, at: Path, wanted: str) -> list[object]
     return value
 
 
-def _polygon(source: Source, value: object, at: Path) -> Polygon:
+def _polygon(source: Source, value: object, at: Path, closed: bool) -> Polygon:
     points = _items(source, value, at, "a list of points")
     return Polygon(
         [_point(source, point, (*at, i)) for i, point in enumerate(points)],
         lambda i: line_of(source.text, (*at, i)),
+        closed,
     )
 
 
@@ -86,4 +100,5 @@ def _kind(value: object) -> str:
 def write(curve: Curve, stream: TextIO) -> None:
     """Write the documented form, one vertex per line."""
     parts = ("[\n" + ",\n".join(json.dumps(point) for point in part.tolist()) + "\n]" for part in curve.components)
-    stream.write('{"components": [' + ", ".join(parts) + "]}\n")
+    flags = "" if curve.mesh.all_closed else f', "closed": {json.dumps(curve.mesh.closed)}'
+    stream.write('{"components": [' + ", ".join(parts) + f"]{flags}}}\n")

@@ -1,9 +1,9 @@
 """Wavefront OBJ (.obj): vertices ``v`` joined by polylines ``l``.
 
 A polyline may run over many indices, also negative ones (counted back from the last vertex read), and
-pieces in any order are joined where they share a vertex. Vertices on no line are dropped. A file with
-vertices alone is one closed polygon. Everything else that OBJ knows is ignored, and so are faces ``f``, but where an
-obstacle is read.
+pieces in any order are joined where they share a vertex. Polylines that do not come back to their first vertex are open
+polygons. Vertices on no line are dropped. A file with vertices alone is one closed polygon. Everything else that OBJ
+knows is ignored, and so are faces ``f``, but where an obstacle is read.
 """
 
 import logging
@@ -14,7 +14,7 @@ from typing import NamedTuple, TextIO
 
 from ...errors import CurveError
 from ..curve import Curve
-from .chains import Link, closed_chains
+from .chains import Chain, Link, chains
 from .polygons import Polygon
 from .source import Source, shown
 
@@ -70,20 +70,21 @@ def check_known(source: Source, index: int, known: int, line: int) -> None:
 
 
 def read(source: Source) -> list[Polygon]:
-    """Read the polygons; raises CurveFileError naming the line, also where a polyline is open."""
+    """Read the polygons; raises CurveFileError naming the line."""
     content = parsed(source)
     if content.faces:
         _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, len(content.faces))
     return [_polygon(content, chain) for chain in _chains(source, content)]
 
 
-def _polygon(content: Content, chain: list[int]) -> Polygon:
-    return Polygon([content.points[i] for i in chain], lambda i: content.lines[chain[i]], chain)
+def _polygon(content: Content, chain: Chain) -> Polygon:
+    points = [content.points[i] for i in chain.vertices]
+    return Polygon(points, lambda i: content.lines[chain.vertices[i]], chain.closed, chain.vertices)
 
 
-def _chains(source: Source, content: Content) -> list[list[int]]:
+def _chains(source: Source, content: Content) -> list[Chain]:
     if content.links:
-        return closed_chains(source, content.links, content.points)
+        return chains(source, content.links)
     if content.faces:
         raise source.error("there are faces (f) but no polylines (l); export the curve as edges")
     if not content.points:
@@ -91,7 +92,7 @@ def _chains(source: Source, content: Content) -> list[list[int]]:
     _log.warning(
         "%s: no polyline (l); all %d vertices are taken as one closed polygon", source.path, len(content.points)
     )
-    return [list(range(len(content.points)))]
+    return [Chain(list(range(len(content.points))), closed=True)]
 
 
 def _statements(source: Source) -> Iterator[tuple[int, list[str]]]:
@@ -152,6 +153,6 @@ def write(curve: Curve, stream: TextIO) -> None:
         raise CurveError(f"OBJ holds curves of dimension 3, not {curve.dimension}; use .json")
     padding = [0.0] * (3 - curve.dimension)
     stream.writelines(f"v {' '.join(map(repr, point + padding))}\n" for point in curve.vertices.tolist())
-    for part in curve.mesh.slices:
-        indices = [*range(part.start + 1, part.stop + 1), part.start + 1]
+    for part, closed in zip(curve.mesh.slices, curve.mesh.closed, strict=True):
+        indices = [*range(part.start + 1, part.stop + 1), *([part.start + 1] if closed else [])]
         stream.write(f"l {' '.join(map(str, indices))}\n")

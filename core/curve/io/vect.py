@@ -1,7 +1,8 @@
 """Geomview VECT (.vect), as ridgerunner and KnotPlot use it: polylines with their numbers of vertices ahead.
 
 ``VECT``, then the numbers of polylines, vertices and colours; the vertices of each polyline, negative where
-it is closed; the colours of each polyline; the points; the colours (which are read over). ``#`` comments.
+it is closed, else positive; the colours of each polyline; the points; the colours (which are read over). ``#`` begins a
+comment.
 Source: the Geomview manual, section "VECT".
 """
 
@@ -54,7 +55,7 @@ class _Words:
 
 
 def read(source: Source) -> list[Polygon]:
-    """Read the polygons; raises CurveFileError naming the line, also where a polyline is open."""
+    """Read the polygons; raises CurveFileError naming the line."""
     words = _Words(source, _split(source))
     _check_magic(words)
     polylines, vertices, colours = words.integers(3, "numbers of polylines, vertices and colours")
@@ -67,10 +68,10 @@ def read(source: Source) -> list[Polygon]:
     if min(colour_sizes, default=0) < 0 or sum(colour_sizes) != colours:
         raise words.error(f"the polylines have {sum(colour_sizes)} colours together, the header says {colours}")
     for k, size in enumerate(sizes, start=1):
-        if size >= 0:
-            raise words.error(f"polyline {k} is open ({size}); only closed ones, such as {-size or -3}, can be used")
+        if size == 0:
+            raise words.error(f"polyline {k} has no vertices; leave it out")
     words.demand(3 * vertices, "coordinates")
-    polygons = [_polygon(words, -size) for size in sizes]
+    polygons = [_polygon(words, abs(size), closed=size < 0) for size in sizes]
     words.demand(4 * colours, "colour values")
     words.numbers(4 * colours)
     if words.left:
@@ -97,19 +98,19 @@ def _check_magic(words: _Words) -> None:
         raise words.error("binary VECT is not read; write it as text")
 
 
-def _polygon(words: _Words, size: int) -> Polygon:
+def _polygon(words: _Words, size: int, closed: bool) -> Polygon:
     first = words.position
     values = words.numbers(3 * size)
     points = list(zip(values[::3], values[1::3], values[2::3], strict=True))
-    return Polygon(points, lambda i: words.words[first + 3 * i][1])
+    return Polygon(points, lambda i: words.words[first + 3 * i][1], closed)
 
 
 def write(curve: Curve, stream: TextIO) -> None:
-    """Write closed polylines without colours; a plane curve gets z = 0. Raises CurveError beyond three dimensions."""
+    """Write polylines without colours; a plane curve gets z = 0. Raises CurveError beyond three dimensions."""
     if curve.dimension > 3:
         raise CurveError(f"VECT holds curves of dimension 3, not {curve.dimension}; use .json")
-    sizes = curve.mesh.component_sizes
+    sizes = [-n if closed else n for n, closed in zip(curve.mesh.component_sizes, curve.mesh.closed, strict=True)]
     stream.write(f"VECT\n{len(sizes)} {len(curve)} 0\n")
-    stream.write(" ".join(str(-size) for size in sizes) + "\n" + " ".join("0" for _ in sizes) + "\n")
+    stream.write(" ".join(map(str, sizes)) + "\n" + " ".join("0" for _ in sizes) + "\n")
     padding = [0.0] * (3 - curve.dimension)
     stream.writelines(" ".join(map(repr, point + padding)) + "\n" for point in curve.vertices.tolist())

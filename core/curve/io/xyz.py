@@ -1,10 +1,12 @@
 """Columns of coordinates (.txt, .xyz): one vertex per line, a blank line between components.
 
 ``#`` starts a comment, alone or after the numbers; columns are separated by spaces, tabs, commas or
-semicolons. Three columns make a curve in space, two a plane curve.
+semicolons. Three columns make a curve in space, two a plane curve. Components are closed; the line ``# open`` begins an
+open one.
 """
 
 import re
+from dataclasses import dataclass, field
 from typing import TextIO
 
 from ...errors import CurveError
@@ -13,26 +15,37 @@ from .polygons import Polygon
 from .source import Source
 
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
+_OPEN = "open"  # the comment that begins an open component
+
+
+@dataclass
+class _Block:
+    """One component: its points and their lines."""
+
+    closed: bool
+    points: list[tuple[float, ...]] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
 
 
 def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line."""
-    blocks: list[tuple[list[tuple[float, ...]], list[int]]] = []
+    blocks: list[_Block] = []
     columns: int | None = None
-    apart = True
+    apart, closed = True, True
     for number, line in enumerate(source.lines, start=1):
-        content, comment, _ = line.partition("#")
+        content, sign, comment = line.partition("#")
         if not content.strip():
-            apart = apart or not comment
+            begins_open = comment.strip() == _OPEN
+            apart, closed = apart or not sign or begins_open, closed and not begins_open
             continue
         point = _point(source, content.strip(), number, columns)
         columns = len(point)
         if apart:
-            blocks.append(([], []))
-        blocks[-1][0].append(point)
-        blocks[-1][1].append(number)
-        apart = False
-    return [Polygon(points, lines.__getitem__) for points, lines in blocks]
+            blocks.append(_Block(closed))
+        blocks[-1].points.append(point)
+        blocks[-1].lines.append(number)
+        apart, closed = False, True
+    return [Polygon(block.points, block.lines.__getitem__, block.closed) for block in blocks]
 
 
 def _point(source: Source, content: str, line: int, columns: int | None) -> tuple[float, ...]:
@@ -52,4 +65,5 @@ def write(curve: Curve, stream: TextIO) -> None:
     if curve.dimension > 3:
         raise CurveError(f"columns hold curves of dimension 2 or 3, not {curve.dimension}; use .json")
     blocks = ("\n".join(" ".join(map(repr, point)) for point in part.tolist()) for part in curve.components)
-    stream.write("\n\n".join(blocks) + "\n")
+    heads = ("" if closed else f"# {_OPEN}\n" for closed in curve.mesh.closed)
+    stream.write("\n\n".join(head + block for head, block in zip(heads, blocks, strict=True)) + "\n")

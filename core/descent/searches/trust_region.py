@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from ...checks import check_fields
+from ...energies.components import energy_scale
 from ...errors import OptionError
 from ...metrics import Metric
 from ...types import FloatArray
@@ -141,7 +142,7 @@ class _Model:
         """The model at a point."""
         hessian = lagrangian_hessian(point)
         vectors = [-point.gradient]
-        threshold = newton_threshold * math.sqrt(abs(point.energy))
+        threshold = newton_threshold * math.sqrt(energy_scale(point.problem.mesh, point.energy))
         if point.gradient_norm < threshold:
             # superlinear: the inner tolerance goes to 0 with the gradient
             vectors.append(newton_direction(point, hessian, min(0.1, point.gradient_norm / threshold)))

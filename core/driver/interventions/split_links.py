@@ -60,10 +60,9 @@ def split(curve: Curve, parts: Parts | None) -> list[Curve]:
     """The parts as curves of their own."""
     if parts is None:
         return [curve]
-    components = curve.components
+    own = [np.flatnonzero(np.asarray(parts) == k) for k in range(max(parts) + 1)]
     return [
-        Curve.from_components([c for c, part in zip(components, parts, strict=True) if part == k])
-        for k in range(max(parts) + 1)
+        Curve.from_components([curve.components[c] for c in each], [curve.mesh.closed[c] for c in each]) for each in own
     ]
 
 

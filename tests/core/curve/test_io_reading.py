@@ -63,6 +63,32 @@ def test_understood(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture)
     assert np.array_equal(curve.vertices, np.concatenate(expected))
 
 
+OPEN = {
+    "marked.txt": ("# open\n0 0 0\n1 0 0\n0 1 0\n", (False,)),
+    "second.txt": ("0 0 0\n1 0 0\n0 1 0\n\n#  open \n0 0 5\n1 0 5\n1 1 5\n0 1 5\n", (True, False)),
+    "no_blank_line.txt": ("0 0 0\n1 0 0\n0 1 0\n# open\n0 0 5\n1 0 5\n1 1 5\n0 1 5\n", (True, False)),
+    "first.txt": ("# open\n# of course\n0 0 0\n1 0 0\n0 1 0\n\n0 0 5\n1 0 5\n1 1 5\n0 1 5\n", (False, True)),
+    "path.obj": (TRIANGLE_V + "l 2 3\nl 1 2\n", (False,)),
+    "both.obj": (TRIANGLE_V + SQUARE_V + "l 1 2 3 1\nl 7 6 5 4\n", (True, False)),
+    "path.vect": ("VECT 1 3 0 3 0 0 0 0 1 0 0 0 1 0", (False,)),
+    "both.vect": ("VECT 2 7 0 -3 4 0 0 0 0 0 1 0 0 0 1 0  0 0 5 1 0 5 1 1 5 0 1 5", (True, False)),
+    "path.json": (f'{{"components": [{TRIANGLE}], "closed": [false]}}', (False,)),
+    "points.json": (f'{{"closed": [false], "components": {TRIANGLE}}}', (False,)),
+    "both.json": (f'{{"components": [{TRIANGLE}, {SQUARE}], "closed": [true, false]}}', (True, False)),
+}
+
+
+@pytest.mark.parametrize("name", OPEN)
+def test_open_components(tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture) -> None:
+    text, closed = OPEN[name]
+    with caplog.at_level(logging.WARNING):
+        curve = read_curve(_write(tmp_path, name, text))
+    assert not caplog.records
+    assert curve.mesh.closed == closed
+    rows = sorted(map(tuple, curve.vertices.tolist()))
+    assert rows == sorted(map(tuple, (TRIANGLE + SQUARE)[: len(curve)]))
+
+
 NOTED = {
     "closing.txt": ("0 0 0\n1 0 0\n0 1 0\n0 0 0\n", "repeats its first"),
     "closing.json": (f"[{[*TRIANGLE, TRIANGLE[0]]}]", "repeats its first"),

@@ -30,7 +30,6 @@ REFUSED: dict[str, tuple[str, int | None, str]] = {
     "comments.txt": ("# nothing\n", None, "no vertex"),
     "comments.vect": ("# nothing\n", None, "comments only"),
     "chemistry.xyz": ("3\nwater\nO 0 0 0\n", 1, "1 column"),
-    "open.obj": (V + "l 1 2 3\n", 4, "polyline from vertex 1 to vertex 3 is open"),
     "branch.obj": (V + "v 1 1 1\nl 1 2 3 1\nl 1 4\n", 6, "third edge meets vertex 1"),
     "loop.obj": (V + "l 1 2 2 3 1\n", 4, "vertex 2 to itself"),
     "twice.obj": (V + "l 1 2\nl 2 1\n", 1, "component 1 has 2 vertices"),
@@ -57,7 +56,10 @@ REFUSED: dict[str, tuple[str, int | None, str]] = {
     "colours.vect": ("VECT\n1 3 1000000000\n-3\n1000000000\n0 0 0\n1 0 0\n0 1 0\n", 7, "colour values announced"),
     "sum.vect": ("VECT\n1 4 0\n-3\n0\n", 4, "3 vertices together, the header says 4"),
     "colour_sum.vect": ("VECT\n1 3 2\n-3\n1\n0 0 0\n", 4, "1 colours together"),
-    "open.vect": ("VECT\n1 3 0\n3\n0\n0 0 0 1 0 0 0 1 0", 4, "polyline 1 is open"),
+    "hollow.vect": ("VECT\n2 3 0\n3 0\n0 0\n0 0 0 1 0 0 0 1 0", 4, "polyline 2 has no vertices"),
+    "one_point.vect": ("VECT\n1 1 0\n1\n0\n0 0 0", 5, "an open polygon needs at least 2 different vertices"),
+    "one_open_point.txt": ("# open\n1 1 1\n", 2, "an open polygon needs at least 2"),
+    "tree.obj": (V + "v 1 1 1\nl 1 2 3\nl 2 4\n", 6, "third edge meets vertex 2"),
     "cut.vect": ("VECT\n1 3 0\n-3\n0\n0 0 0 1 0 0\n 0 1", 6, "9 coordinates announced, 8 found"),
     "more.vect": ("VECT\n1 3 0\n-3\n0\n0 0 0 1 0 0 0 1 0\n7", 6, "more words"),
     "none.vect": ("VECT\n0 0 0\n", None, "no vertex"),
@@ -78,6 +80,8 @@ REFUSED: dict[str, tuple[str, int | None, str]] = {
     "none.json": ("[]", 1, "an empty list"),
     "hollow.json": ('{"components": [[[0,0,0],[1,0,0],[0,1,0]],\n[]]}', 2, "an empty list where a list of points"),
     "flat.json": ("[0, 1, 2]", 1, "a number where a list of points"),
+    "flags.json": ('{"components": [[[0,0,0],[1,0,0]]],\n"closed": [false, true]}', 2, "of which there are 1"),
+    "words.json": ('{"closed": "no",\n"components": [[[0,0,0],[1,0,0]]]}', 1, '"closed" must be a list'),
     "thin.json": ("[[[0],[1],[2]]]", 1, "at least 2"),
     "ragged.json": ("[[[0,0,0],[1,0,0],\n[0,1]]]", 2, "component 1, vertex 3 has 2 coordinates"),
 }
@@ -138,7 +142,8 @@ def test_any_bytes_give_a_curve_or_one_sentence(tmp_path: Path, suffix: str, dat
     path.write_bytes(data)
     message = None
     try:
-        assert min(read_curve(path).mesh.component_sizes) >= 3
+        mesh = read_curve(path).mesh
+        assert all(size >= (3 if closed else 2) for size, closed in zip(mesh.component_sizes, mesh.closed, strict=True))
     except CurveFileError as error:
         message = str(error)
     assert message is None or message.startswith(str(path))

@@ -7,7 +7,7 @@ from mobius_flow.core.energies import ENERGIES, Barrier, Energy, TwiceDifferenti
 from mobius_flow.core.energies.near_pairs import near_pairs
 from mobius_flow.core.knots import knot
 from mobius_flow.core.taylor import derivative_slope, hessian_slope, taylor_slope
-from shapes import lattice_knot, regular_polygon
+from shapes import lattice_knot, opened, regular_polygon
 from smooth_curves import dual_circles, random_polygon
 
 ENERGY = pytest.mark.parametrize("energy", [*ENERGIES.values(), moebius_kpoint(1)], ids=lambda e: e.name)
@@ -25,6 +25,7 @@ CURVES = {
     "knot": random_polygon(3, (13,), 3),
     "link": random_polygon(5, (3, 4, 5), 3),
     "fourfold": random_polygon(7, (6, 7), 4),
+    "open": opened(random_polygon(5, (3, 4, 5), 3), 0, 2),
 }
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 

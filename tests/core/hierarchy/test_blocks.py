@@ -6,7 +6,7 @@ from mobius_flow.core import Curve
 from mobius_flow.core.energies.near_pairs import near_pairs
 from mobius_flow.core.hierarchy import BlockList, ClusterTree
 from mobius_flow.core.knots import knot
-from shapes import hopf_link, regular_polygon, scattered_rings, torus_trefoil
+from shapes import hopf_link, opened, regular_polygon, scattered_rings, torus_trefoil
 from smooth_curves import random_polygon
 
 CURVES = {
@@ -18,6 +18,7 @@ CURVES = {
     "small": random_polygon(5, (3, 4, 5, 3, 11, 6), 3),
     "fourfold": random_polygon(7, (26, 37), 4),
     "rings": scattered_rings(150, 3),
+    "arcs": opened(scattered_rings(150, 3), *range(0, 150, 4)),
     "planar rings": scattered_rings(40, 7, dimension=2),
     "uneven": Curve.from_components([*scattered_rings(30, 3).components, torus_trefoil(101).vertices]),
 }
@@ -39,7 +40,7 @@ def multiplicity(blocks: BlockList) -> np.ndarray:
 @CURVE
 @LIST
 def test_every_pair_of_edges_exactly_once(curve: Curve, theta: float, leaf: int) -> None:
-    edge = np.arange(len(curve))
+    edge = np.arange(curve.mesh.edges)
     expected = curve.mesh.disjoint(edge[:, None], edge[None, :])
     np.testing.assert_array_equal(multiplicity(BlockList.of(curve, theta, leaf)), expected)
 
@@ -53,8 +54,8 @@ def test_near_pairs_are_sorted(curve: Curve) -> None:
 
 @CURVE
 def test_share_of_near_pairs(curve: Curve) -> None:
-    blocks, n = BlockList.of(curve, 0.25, 4), len(curve)
-    neighbours_and_halves = 1.5 * n
+    blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
+    neighbours_and_halves = len(curve.mesh.inner) + 0.5 * n
     assert blocks.near_share * n**2 / 2 == pytest.approx(len(blocks.i) + neighbours_and_halves, abs=1e-9)
 
 
@@ -95,11 +96,11 @@ def test_pairs_of_the_barrier_are_near(name: str) -> None:
 @CURVE
 def test_clusters_are_parts_of_a_component_or_whole_ones(curve: Curve) -> None:
     tree = ClusterTree.of(curve, 4)
-    assert sorted(tree.order) == list(range(len(curve)))
-    component = curve.mesh.component[tree.order]
+    assert sorted(tree.order) == list(range(curve.mesh.edges))
+    component = curve.mesh.edge_component[tree.order]
     for start, stop in zip(tree.start, tree.stop, strict=True):
         held, count = np.unique(component[start:stop], return_counts=True)
-        assert len(held) == 1 or np.array_equal(count, np.asarray(curve.mesh.component_sizes)[held])
+        assert len(held) == 1 or np.array_equal(count, curve.mesh.edge_counts[held])
 
 
 @CURVE
@@ -111,7 +112,7 @@ def test_children_halve_their_parent_and_leaves_are_small(curve: Curve) -> None:
         np.testing.assert_array_equal(tree.stop[inner], tree.stop[child + 1])
     leaves = tree.leaves()
     assert np.all((tree.stop - tree.start)[leaves] <= 4)
-    np.testing.assert_array_equal(np.append(tree.start[leaves], len(curve)), np.append(0, tree.stop[leaves]))
+    np.testing.assert_array_equal(np.append(tree.start[leaves], curve.mesh.edges), np.append(0, tree.stop[leaves]))
 
 
 def test_size_of_the_list_is_linear() -> None:

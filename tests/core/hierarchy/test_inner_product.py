@@ -10,7 +10,7 @@ from mobius_flow.core.hierarchy.inner_product import fractional_inner_product, m
 from mobius_flow.core.knots import HARD_UNKNOTS, knot, torus_knot
 from mobius_flow.core.metrics import METRICS, DenseInnerProduct, SparseInnerProduct
 from scipy.linalg import eigvalsh
-from shapes import chain_of_rings, graded_trefoil, hopf_link, regular_polygon, torus_trefoil
+from shapes import chain_of_rings, graded_trefoil, hopf_link, opened, regular_polygon, torus_trefoil
 from smooth_curves import random_polygon
 
 COMPRESSED = {"moebius": moebius_inner_product, "h3-2": fractional_inner_product}
@@ -22,6 +22,8 @@ CURVES = {
     "4-space": random_polygon(3, (61,), 4),
     "hopf": hopf_link(50),
     "chain": chain_of_rings(9, (15, 30)),
+    "arc": opened(torus_trefoil(200), 0),
+    "arcs": opened(chain_of_rings(9, (15, 30)), 0, 2, 3, 4, 8),
 }
 METRIC = pytest.mark.parametrize("name", COMPRESSED)
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)

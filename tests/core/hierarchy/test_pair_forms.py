@@ -8,7 +8,7 @@ from mobius_flow.core import Curve
 from mobius_flow.core.hierarchy import BlockList
 from mobius_flow.core.hierarchy.pair_forms import PairForms
 from mobius_flow.core.hierarchy.running_sum import RunningSum
-from shapes import chain_of_rings, hopf_link, torus_trefoil
+from shapes import chain_of_rings, hopf_link, opened, torus_trefoil
 from smooth_curves import random_polygon
 
 CURVES = {
@@ -17,6 +17,7 @@ CURVES = {
     "plane": random_polygon(3, (61,), 2),
     "hopf": hopf_link(37),
     "chain": chain_of_rings(7, (5, 3, 12)),
+    "arcs": opened(chain_of_rings(7, (5, 3, 12)), 0, 1, 2, 5),
 }
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
@@ -45,7 +46,9 @@ def test_slopes(curve: Curve) -> None:
     blocks, near, far = forms_with_weights(curve)
     u = np.random.default_rng(23).normal(size=len(curve))
     expected = by_pairs(curve, weighted_pairs(blocks, near, far), (curve.mesh.difference @ u) / curve.edge_lengths)
-    assert u @ PairForms(curve, blocks).of_slopes(near, far) @ u == pytest.approx(expected, rel=1e-11)
+    forms, y = PairForms(curve, blocks), RunningSum.of_slopes(curve, blocks.tree.order).apply(u[:, None])[:, 0]
+    found = u @ forms.of_slopes(near, far) @ u + y @ forms.of_long_slopes(far) @ y
+    assert found == pytest.approx(expected, rel=1e-11)
 
 
 @CURVE
@@ -54,7 +57,7 @@ def test_values(curve: Curve) -> None:
     u = np.random.default_rng(23).normal(size=len(curve))
     expected = by_pairs(curve, weighted_pairs(blocks, near, far), curve.mesh.average @ u)
     local, sums = PairForms(curve, blocks).of_values(near, far)
-    z = RunningSum(curve, blocks.tree.order).apply(u[:, None])[:, 0]
+    z = RunningSum.of_values(curve, blocks.tree.order).apply(u[:, None])[:, 0]
     assert u @ local @ u + z @ sums @ z == pytest.approx(expected, rel=1e-11)
 
 
@@ -62,7 +65,7 @@ def test_values(curve: Curve) -> None:
 def test_components(curve: Curve) -> None:
     """Only clusters of several components are left out, which some curves do not have."""
     blocks, near, far = forms_with_weights(curve)
-    component = curve.mesh.component
+    component = curve.mesh.edge_component
     u = np.random.default_rng(23).normal(size=len(curve.mesh.component_sizes))
     order = component[blocks.tree.order]
     several = (order[blocks.a] != order[blocks.b - 1]) | (order[blocks.c] != order[blocks.d - 1])
@@ -73,10 +76,12 @@ def test_components(curve: Curve) -> None:
 @CURVE
 def test_running_sum(curve: Curve) -> None:
     order = BlockList.of(curve, 0.5, 4).tree.order
-    running, n = RunningSum(curve, order), len(curve)
+    running, n = RunningSum.of_values(curve, order), len(curve)
     u = np.random.default_rng(29).normal(size=(n, 2))
     steps = (curve.edge_lengths[:, None] * (curve.mesh.average @ u))[order]
     np.testing.assert_allclose(
         running.apply(u), np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)]), atol=1e-14
     )
-    np.testing.assert_allclose(running.apply_transpose(np.eye(n + 1)), running.apply(np.eye(n)).T, atol=1e-14)
+    for each in (running, RunningSum.of_slopes(curve, order)):
+        ones = np.eye(curve.mesh.edges + 1)
+        np.testing.assert_allclose(each.apply_transpose(ones), each.apply(np.eye(n)).T, atol=1e-14)
