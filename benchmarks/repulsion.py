@@ -2,8 +2,8 @@
 
 One line per obstacle, a sphere of triangles or the net of their sides, and curve, a torus knot well inside or one that
 comes near: the simplices, those that an edge sees one by one and the clusters it sees, then the tree, the schedule of a
-curve, the test whether it still suits, and R with its derivative in milliseconds of processor time; up to 1,000 vertices
-also the relative error. Run it with one BLAS thread on a quiet machine.
+curve, the test whether it still suits, and R with its derivative, all in milliseconds of processor time; up to 1,000
+vertices also the relative error. Run it with one BLAS thread on a quiet machine.
 """
 
 import sys
