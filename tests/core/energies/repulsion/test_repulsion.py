@@ -181,6 +181,8 @@ def test_weight() -> None:
     value, derivative = term.value_and_derivative(curve)
     assert heavy.value(curve) == pytest.approx(2.5 * value)
     np.testing.assert_allclose(heavy.value_and_derivative(curve)[1], 2.5 * derivative)
+    objective = Objective.of(MoebiusEnergy(), [BALL], weight=2.5)
+    assert [each.weight for each in objective.potentials] == [2.5]
 
 
 def test_thin_triangles_give_numbers() -> None:
