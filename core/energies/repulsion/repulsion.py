@@ -3,8 +3,8 @@
     R(P) = Σ_I ∫_I Φ ds,   Φ(x) = ∫_triangles dA(y)/|x − y|³ + 2 ∫_segments ds(y)/|x − y|²
 
 is scale-invariant, as the Möbius energy is, and each exponent is the least with which every contact, a transversal one
-too, has infinite energy.  Planes and straight lines alike have Φ = 2π/h at the distance h, which is the Möbius energy per
-length of two parallel strands.
+too, has infinite energy.  Planes and straight lines alike have Φ = 2π/h at the distance h, which is the Möbius energy
+per length of two parallel strands.
 """
 
 from collections.abc import Iterable
