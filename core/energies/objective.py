@@ -38,15 +38,15 @@ class Objective:
     potentials: tuple[LocalTerm, ...] = ()
 
     name = "objective"
-    description = "moebius + barrier, what relax descends on"
+    description = "moebius + barrier + repulsion of obstacles, what relax descends on"
 
     @classmethod
-    def of(cls, energy: Energy, obstacles: Iterable[Obstacle] = ()) -> "Objective":
-        """The objective of any energy among obstacles, in the units of curves.
+    def of(cls, energy: Energy, obstacles: Iterable[Obstacle] = (), weight: float = 1.0) -> "Objective":
+        """The objective of any energy among obstacles, in the units of curves, whose repulsion has some weight.
 
         The barrier takes the place of what the energy has of it, or stands beside it.
         """
-        return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs), Repulsion.of(obstacles))
+        return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs), Repulsion.of(obstacles, weight))
 
     def frozen_at(self, curve: Curve) -> "Objective":
         """What a search from a curve should see: approximations that stay the same for all that is near."""

@@ -2,9 +2,9 @@
 
     R(P) = Σ_I ∫_I Φ ds,   Φ(x) = ∫_triangles dA(y)/|x − y|³ + 2 ∫_segments ds(y)/|x − y|²
 
-has no unit of length, as the Möbius energy has none, and each exponent is the least with which every contact, the
-transversal one too, takes infinitely much.  A plane at the distance h has Φ = 2π/h, and so has a straight line: that is
-the force per length, too, with which a parallel strand at that distance repels by its Möbius energy.
+is scale-invariant, as the Möbius energy is, and each exponent is the least with which every contact, a transversal one
+too, has infinite energy.  Planes and straight lines alike have Φ = 2π/h at the distance h, which is the Möbius energy
+per length of two parallel strands.
 """
 
 from collections.abc import Iterable
@@ -24,7 +24,7 @@ from .schedule import Schedule
 
 THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
 KEPT = 0.9  # slack up to which a schedule is as good as a new one
-OUTDATED = 0.75  # slack from which on it is not even good enough for a line search
+OUTDATED = 0.75  # slack up to which it is good enough for a line search
 
 
 @dataclass(frozen=True, eq=False)

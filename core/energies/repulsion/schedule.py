@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...curve import Curve, Mesh
-from ...types import FloatArray
+from ...curve import Curve
+from ...types import BoolArray, FloatArray
 from .clusters import Clusters
 from .panels import MAX_POINTS, Edges, Panels, least_ratios
 from .vectors import norm
@@ -34,8 +34,8 @@ class Schedule:
 
     Attributes
     ----------
-    mesh
-        Connectivity of the curve.
+    curve
+        The curve that it was made for.
     single
         Panels that see simplices.
     clustered
@@ -44,7 +44,7 @@ class Schedule:
         The separation parameter θ.
     """
 
-    mesh: Mesh
+    curve: Curve
     single: tuple[Group, ...]
     clustered: tuple[Group, ...]
     theta: float
@@ -57,7 +57,7 @@ class Schedule:
         found = [_traverse(Panels.whole(chunk), edges, clusters, theta) for chunk in chunks]
         single, clustered = (Panels.joined(list(kind)) for kind in zip(*found, strict=True))
         return cls(
-            curve.mesh,
+            curve,
             _grouped(single, _analytic_ratios(single, edges, clusters), EXACT),
             _grouped(clustered, _clear_ratios(clustered, edges, clusters), CLUSTERED),
             theta,
@@ -65,20 +65,22 @@ class Schedule:
 
     def suits(self, curve: Curve, clusters: Clusters, slack: float) -> bool:
         """Whether another curve can be integrated by it, if radii and distances may be that factor ≤ 1 too small."""
-        if curve.mesh != self.mesh:
+        if curve.mesh != self.curve.mesh:
             return False
+        if np.array_equal(curve.vertices, self.curve.vertices):
+            return True
         edges = Edges.of(curve.mesh, curve.vertices)
         return all(
             np.all(_analytic_ratios(panels, edges, clusters) >= slack * EXACT[points - 1])
             for points, panels in self.single
-        ) and all(np.all(slack * _openings(panels, edges, clusters) < self.theta) for _, panels in self.clustered)
+        ) and all(np.all(_are_far(panels, edges, clusters, self.theta / slack)) for _, panels in self.clustered)
 
 
 def _traverse(panels: Panels, edges: Edges, clusters: Clusters, theta: float) -> tuple[Panels, Panels]:
     """Panels that see simplices and panels that see clusters, from whole edges that see the root."""
     single, clustered = [], []
     while len(panels):
-        far = _openings(panels, edges, clusters) < theta
+        far = _are_far(panels, edges, clusters, theta)
         clustered.append(panels[far])
         panels = panels[~far]
         leaf = clusters.child[panels.source] == 0
@@ -101,8 +103,8 @@ def _split(panels: Panels, edges: Edges, clusters: Clusters) -> Panels:
 
 def _grouped(panels: Panels, ratio: FloatArray, least: FloatArray) -> tuple[Group, ...]:
     """The panels by the number of points that they need."""
-    points = np.searchsorted(-least, -ratio) + 1
-    return tuple(Group(k, panels[points == k]) for k in np.unique(np.minimum(points, MAX_POINTS)).tolist())
+    points = np.minimum(np.searchsorted(-least, -ratio) + 1, MAX_POINTS)
+    return tuple(Group(k, panels[points == k]) for k in np.unique(points).tolist())
 
 
 def _analytic_ratios(panels: Panels, edges: Edges, clusters: Clusters) -> FloatArray:
@@ -118,10 +120,10 @@ def _clear_ratios(panels: Panels, edges: Edges, clusters: Clusters) -> FloatArra
     return np.asarray(clear / panels.half_lengths(edges))
 
 
-def _openings(panels: Panels, edges: Edges, clusters: Clusters) -> FloatArray:
-    """(Radius + half length)/(distance of the centres), for panels that see clusters."""
+def _are_far(panels: Panels, edges: Edges, clusters: Clusters, theta: float) -> BoolArray:
+    """Whether the clusters that panels see may count by their moments."""
     extent = clusters.radius[panels.source] + panels.half_lengths(edges)
-    return np.asarray(extent / _distances(panels, edges, clusters))
+    return np.asarray(extent < theta * _distances(panels, edges, clusters))
 
 
 def _distances(panels: Panels, edges: Edges, clusters: Clusters) -> FloatArray:

@@ -3,6 +3,8 @@
 import mpmath as mp
 import numpy as np
 import pytest
+from mobius_flow.core.energies.contributions import Contributions
+from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.energies.repulsion.simplices import Simplices
 from mobius_flow.core.taylor import taylor_slope
 from repulsion_references import potential_by_quadrature, solid_angle_potential
@@ -58,9 +60,16 @@ def test_derivatives(corners: np.ndarray, x: np.ndarray) -> None:
     assert taylor_slope(lambda t: potential(corners, x + t * v)[1], terms, largest) == pytest.approx(2, abs=0.05)
 
 
+def test_parallel_strands_repel_like_walls() -> None:
+    """Two of them have the Möbius energy 2π/h on each unit of length, both orders counted."""
+    gap, along = 1e-5, np.array([[1.0, 0.0, 0.0]])
+    for other in (along, -along):
+        pair = EdgePairs(np.array([[0.0, 0.0, gap]]), along, other, np.empty((1, 9, 0)))
+        assert 2 * Contributions(pair).exact().value[0] == pytest.approx(2 * np.pi / gap, rel=1e-3)
+
+
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
 def test_a_wide_plane_and_a_long_line_repel_alike(gap: float) -> None:
-    """2π/h, which for a parallel strand is its Möbius energy per length."""
     middle = TRIANGLE.mean(axis=0)
     assert potential(TRIANGLE, middle + gap * NORMAL / np.linalg.norm(NORMAL))[0] == pytest.approx(
         2 * np.pi / gap, rel=10 * gap + 1e-15 / gap

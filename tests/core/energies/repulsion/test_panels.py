@@ -72,10 +72,20 @@ def test_the_work_grows_with_the_logarithm_of_the_gap(shape: str) -> None:
 
 
 def test_contact_ends_the_halving() -> None:
-    value, derivative = repulsion(Obstacle(TRIANGLE, [[0, 1, 2]])).value_and_derivative(
-        curve_of([0.3, 0.3, -0.5], [0.3, 0.3, 0.5])
-    )
-    near = repulsion(Obstacle(TRIANGLE, [[0, 1, 2]])).value(curve_of([0.3, 0.3, 1e-9], [0.3, 0.3, 0.5]))
+    obstacle, crossing = Obstacle(TRIANGLE, [[0, 1, 2]]), curve_of([0.3, 0.3, -0.5], [0.3, 0.3, 0.4])
+    value, derivative = repulsion(obstacle).value_and_derivative(crossing)
     assert np.isfinite(value)
     assert np.isfinite(derivative).all()
-    assert value > near
+    assert value > repulsion(obstacle).value(curve_of([0.3, 0.3, 1e-9], [0.3, 0.3, 0.4]))
+    _, schedule = integrated(obstacle, crossing)
+    widths = [panels.width[panels.edge == 0] for _, panels in schedule.single]
+    assert sum(np.sum(each) for each in widths) == 1.0
+    assert min(np.min(each, initial=1.0) for each in widths) == 2.0**-48
+
+
+def test_an_edge_may_be_in_the_middle_of_an_obstacle() -> None:
+    """Where its midpoint is the centre of a cluster."""
+    box = np.array([[2.0, 2, 2], [2, -2, -2], [-2, 2, -2], [-2, -2, 2]])
+    obstacle = Obstacle(box, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])
+    curve = Curve([[-0.1, 0, 0], [0.1, 0, 0], [0, 0.3, 0.1]])
+    assert repulsion(obstacle, 0.4).value(curve) == pytest.approx(repulsion(obstacle).value(curve), rel=1e-3)

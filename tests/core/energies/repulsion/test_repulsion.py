@@ -130,12 +130,13 @@ def test_a_search_sees_one_smooth_function(obstacle: Obstacle) -> None:
     term = repulsion(obstacle, THETA)
     frozen = term.frozen_at(curve)
     assert frozen.value(curve) == term.value(curve)
+    assert frozen.frozen_at(curve.with_vertices(curve.vertices)) is frozen
     near = curve.with_vertices(curve.vertices * 1.001)
     assert frozen.frozen_at(near) is frozen
     assert frozen.value(near) == pytest.approx(term.value(near), rel=1e-5)
     far = wavy(40, 0.3)
     assert frozen.frozen_at(far) is not frozen or frozen.schedule.suits(far, term.clusters, OUTDATED)
-    assert frozen.frozen_at(wavy(41)).schedule.mesh.size == 41
+    assert len(frozen.frozen_at(wavy(41)).schedule.curve) == 41
 
 
 def test_a_schedule_that_does_not_suit_is_not_used() -> None:
@@ -180,6 +181,8 @@ def test_weight() -> None:
     value, derivative = term.value_and_derivative(curve)
     assert heavy.value(curve) == pytest.approx(2.5 * value)
     np.testing.assert_allclose(heavy.value_and_derivative(curve)[1], 2.5 * derivative)
+    objective = Objective.of(MoebiusEnergy(), [BALL], weight=2.5)
+    assert [each.weight for each in objective.potentials] == [2.5]
 
 
 def test_thin_triangles_give_numbers() -> None:
