@@ -11,6 +11,7 @@ ARGUMENTS = {
     "collision": ["60"],
     "hierarchy": ["60"],
     "metric": ["100"],
+    "obstacles": ["--vertices", "60"],
     "resolution": ["3_1"],
     "soak": ["--flows", "2"],
 }
