@@ -64,8 +64,8 @@ def best(task: Callable[[], object]) -> float:
 
 def timings(obstacle: Obstacle, n: int) -> None:
     print(f"{obstacle.name}, {len(obstacle.faces)} triangles; {n} vertices")
-    own = ("clear", "verify", "obstacle")
-    titles = ("share", "contact at", "alone", "avoiding", "proof alone", "avoiding", *own)
+    last = ("clear", "verify", "obstacle")
+    titles = ("share", "contact at", "alone", "avoiding", "proof alone", "avoiding", *last)
     print("".join(f"{title:>13}" for title in titles))
     for share in SHARES:
         curve = knot_inside(obstacle, share, n)

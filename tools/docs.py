@@ -120,6 +120,8 @@ def _is_one_of(name: str, patterns: Iterable[str]) -> bool:
 def _default(option: Option) -> str:
     if option.kind is bool:
         return "on" if option.default else "off"
+    if option.kind is tuple:
+        return "none"
     return option.automatic or f"{option.default}"
 
 

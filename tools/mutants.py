@@ -246,6 +246,13 @@ MUTANTS = (
         OBSTACLES,
     ),
     Mutant(
+        "edges within a triangle",
+        "core/collision/exact_triangle.py",
+        "or not any(normal):",
+        "or from_first == from_last:",
+        f"{VERIFY}/test_obstacles.py::test_a_segment_meets_a_triangle_if_it_does_so_at_some_time",
+    ),
+    Mutant(
         "vertices rounded onto obstacles",
         "core/collision/rounding.py",
         " and clears(curve, obstacles, float(1.1 * rounding))",
