@@ -3,7 +3,7 @@
 A motion has the rows x₀, x₁ of the segment and y₀, y₁, y₂ of the triangle, which are the same at both times.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
@@ -51,6 +51,18 @@ def in_plane(rng: Rng) -> Motion:
     start[:, 2] = end[:, 2] = 0.0
     height = rng.choice([0.0, 0.0, 1.0, 2.0], size=2)
     start[:2, 2], end[:2, 2] = height[0], height[1] * rng.choice([-1.0, 1.0])
+    frame = _plane_frame(rng)
+    return still(start @ frame, end @ frame)
+
+
+def inside(rng: Rng) -> Motion:
+    """The segment is small and in the plane of the triangle, at the start or all the time, mostly in its interior."""
+    triangle = np.array([[-6.0, -6.0, 0.0], [12.0, -6.0, 0.0], [-6.0, 12.0, 0.0]])
+    start, end = (np.concatenate([rng.integers(-3, 6, size=(2, 3)) * [1.0, 1.0, 0.0], triangle]) for _ in range(2))
+    end[:2] = start[:2] if rng.random() < 0.3 else end[:2]
+    end[:2, 2] = rng.choice([0.0, 1.0, -1.0]) * np.array([1.0, rng.choice([0.0, 1.0])])
+    if rng.random() < 0.3:
+        start, end = end, start
     frame = _plane_frame(rng)
     return still(start @ frame, end @ frame)
 
@@ -137,6 +149,7 @@ KINDS: tuple[Callable[[Rng], Motion], ...] = (
     gaussian,
     lattice,
     in_plane,
+    inside,
     graze_face,
     graze_edge,
     needle,
@@ -177,6 +190,30 @@ def interval(root: Root) -> tuple[Fraction, Fraction]:
     while root.high - root.low > root.high / 2**70:
         root = root.halved()
     return root.low, root.high
+
+
+def touching(corners: Array) -> bool:
+    """Whether a segment and a triangle that stand still have a common point, in rational arithmetic.
+
+    If so, 0 is in the convex hull of the six differences of their vertices, and then of at most four of these that are
+    affinely independent (Carathéodory).
+    """
+    points = [[Fraction(a) - Fraction(b) for a, b in zip(x, y, strict=True)] for x in corners[:2] for y in corners[2:]]
+    return any(_weights_exist(subset) for size in range(1, 5) for subset in combinations(points, size))
+
+
+def _weights_exist(points: Sequence[Sequence[Fraction]]) -> bool:
+    """Whether 0 = Σ wᵢ pᵢ with Σ wᵢ = 1 has exactly one solution, and w ≥ 0; by Gauss–Jordan elimination."""
+    rows = [[*(p[k] for p in points), Fraction(0)] for k in range(3)] + [[Fraction(1)] * (len(points) + 1)]
+    for column in range(len(points)):
+        pivot = next((row for row in rows[column:] if row[column] != 0), None)
+        if pivot is None:
+            return False
+        rows.remove(pivot)
+        pivot = [x / pivot[column] for x in pivot]
+        rows = [[x - row[column] * y for x, y in zip(row, pivot, strict=True)] for row in rows]
+        rows.insert(column, pivot)
+    return all(row[-1] >= 0 for row in rows[: len(points)]) and all(row[-1] == 0 for row in rows[len(points) :])
 
 
 class OneEdge:

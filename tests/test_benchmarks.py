@@ -12,6 +12,7 @@ ARGUMENTS = {
     "collision": ["60"],
     "hierarchy": ["60"],
     "metric": ["100"],
+    "obstacles": ["--vertices", "60"],
     "repulsion": ["60"],
     "resolution": ["3_1"],
     "soak": ["--flows", "2"],

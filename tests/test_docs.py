@@ -35,7 +35,7 @@ def test_links_lead_somewhere(document):
             assert (document.parent / target).exists(), target
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/energies.md"])
+@pytest.mark.parametrize("document", ["README.md", "docs/energies.md", "docs/obstacles.md"])
 def test_the_examples_run(document):
     text = (ROOT / document).read_text(encoding="utf-8")
     example = re.search(r"```python\n(from .*?)```", text, re.DOTALL)

@@ -20,6 +20,7 @@ SEARCHES, CONDITIONS = "tests/core/descent/test_searches.py", "tests/core/descen
 DIRECTIONS, CLAIMS = "tests/core/descent/test_directions.py", "tests/core/descent/test_claims.py"
 FIRST_TRIAL, METRIC_AGE = "tests/core/descent/test_first_trial.py", "tests/core/descent/test_metric_age.py"
 RESTORATION, ADAPTIVE = "tests/core/test_restoration.py", "tests/core/test_adaptive.py"
+AVOID, OBSTACLES = "tests/core/test_avoid.py", "tests/core/collision/test_obstacles_exactly.py"
 CERTIFICATE, VERIFY = "tests/core/test_certificate.py", "tests/core/verify"
 
 
@@ -222,6 +223,55 @@ MUTANTS = (
         "        if last is not None:\n            _check_transition",
         "        if last is None and sizes:\n            _check_transition",
         f"{VERIFY}/test_forgeries.py::test_forgeries_are_refused",
+    ),
+    Mutant(
+        "legs through obstacles",
+        "core/descent/problem.py",
+        "return free_motion(self.mesh, start, end, self.obstacles)",
+        "return free_motion(self.mesh, start, end)",
+        f"{AVOID}::test_no_method_goes_through_a_wall",
+    ),
+    Mutant(
+        "ends of edges through triangles",
+        "core/collision/exact_triangle.py",
+        "for way in ways if way is not None]",
+        "for way in ways if way is True]",
+        OBSTACLES,
+    ),
+    Mutant(
+        "a start that pierces",
+        "core/collision/exact_triangle.py",
+        "if after <= 0 and crossing(",
+        "if after < 0 and crossing(",
+        OBSTACLES,
+    ),
+    Mutant(
+        "edges within a triangle",
+        "core/collision/exact_triangle.py",
+        "or not any(normal):",
+        "or from_first == from_last:",
+        f"{VERIFY}/test_obstacles.py::test_a_segment_meets_a_triangle_if_it_does_so_at_some_time",
+    ),
+    Mutant(
+        "vertices rounded onto obstacles",
+        "core/collision/rounding.py",
+        " and clears(curve, obstacles, float(1.1 * rounding))",
+        "",
+        "tests/core/collision/test_clearance.py::test_rounding_must_not_reach_an_obstacle",
+    ),
+    Mutant(
+        "a verifier that forgets obstacles",
+        "core/verify/check.py",
+        "_check_obstacles(obstacles, obstacles.doubtful(start, end, heads), first, last)",
+        "pass",
+        f"{VERIFY}/test_obstacles.py::test_refuses_a_leg_through_an_obstacle",
+    ),
+    Mutant(
+        "a verifier that forgets obstacles where the mesh changes",
+        "core/verify/check.py",
+        "_check_obstacles(obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)",
+        "pass",
+        f"{VERIFY}/test_obstacles.py::test_rounding_of_inserted_vertices_is_checked_for_obstacles",
     ),
     Mutant(
         "converged in the metric of another curve",

@@ -3,8 +3,8 @@
 If the two are apart at first, then at their first contact an end of the segment is in the triangle, or the segment
 meets one of the triangle's edges: a segment that pierces it with both ends outside would have done so shortly before.
 So there are three pairs of segments, as for the curve itself, and the ways of the two ends, which are segments too:
-whether one of these crosses the triangle is decided by signs of determinants. Ways in the plane of the triangle need no
-decision, for they lead over its edges; nor does a triangle without area, which is nothing but its edges.
+whether one of these crosses the triangle is decided by signs of determinants. Of those in its plane only the beginning
+matters, for into the triangle they lead over its edges; a triangle without area is nothing but its edges.
 """
 
 from collections.abc import Sequence
@@ -38,15 +38,16 @@ def first_contact_with_triangle(start: FloatArray, end: FloatArray, after: float
 def crossing(p: FloatArray, q: FloatArray, triangle: FloatArray) -> float | None:
     """Return the parameter of the point at which the segment from p to q meets a triangle, shape (3, 3), rounded down.
 
-    None if there is no such point, or if all of the segment is in the triangle's plane.
+    None if there is no such point. Of a segment in the triangle's plane only its first end is looked at: where that is
+    not in the triangle, the segment may still meet its edges.
     """
     first, last, *corners = whole_numbers(np.concatenate([[p, q], triangle]))
     u, v, w = corners
     normal = _cross(_minus(v, u), _minus(w, u))
     from_first, from_last = _dot(normal, _minus(first, u)), _dot(normal, _minus(last, u))
-    height = from_first - from_last
-    if from_first * from_last > 0 or height == 0:
+    if from_first * from_last > 0 or not any(normal):
         return None
+    height = from_first - from_last or 1
     # the point where the segment meets the plane, and the corners, times the height
     point = [height * a + from_first * (b - a) for a, b in zip(first, last, strict=True)]
     for a, b in pairwise([*corners, u]):

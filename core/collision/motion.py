@@ -1,8 +1,6 @@
 """How far all vertices can move along straight lines before two edges meet, or an edge and an obstacle."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +8,7 @@ import numpy as np
 from ..curve import Mesh
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
+from .answer import Contact, FreeMotion, Limit
 from .boxes import BoxTree, Level, contact_window
 from .exact import first_contact
 from .exact_triangle import first_contact_with_triangle
@@ -20,69 +19,6 @@ from .still import still_triangles
 _BATCH = 1 << 13  # pairs marched together, so that their arrays stay in the cache
 _SHARPNESS = 0.985  # a time proved up to this part of a known contact time is near enough to it
 _EARLY_START = 0.875  # part of the time at which boxes meet where marching begins: the pair is clearly apart there
-
-
-class Limit(Enum):
-    """What ends a free motion."""
-
-    NONE = "the whole motion is free of contact"
-    CONTACT = "edges, or an edge and an obstacle, meet, or come too near to each other to be told apart"
-    TOUCHING_START = "edges, or an edge and an obstacle, touch, or cannot be told apart, at the start"
-    NOT_FINITE = "a vertex is not finite"
-    UNTESTED = "in more than three dimensions, where nothing is knotted, contact is not tested"
-
-
-@dataclass(frozen=True)
-class Contact:
-    """What is in the way of a motion.
-
-    Attributes
-    ----------
-    edges
-        The two edges that meet, or the one that meets an obstacle.
-    obstacle
-        What sentences call it; None if edges meet.
-    """
-
-    edges: tuple[int, ...]
-    obstacle: str | None = None
-
-    def __str__(self) -> str:
-        first, *second = (edge + 1 for edge in self.edges)
-        return f"edge {first} and {self.obstacle}" if self.obstacle else f"edges {first} and {second[0]}"
-
-
-@dataclass(frozen=True)
-class FreeMotion:
-    """How much of a motion is proved free of contact.
-
-    Attributes
-    ----------
-    time
-        No two non-neighbour edges, and no edge and obstacle, meet at any time t in [0, time], unless time is 0; 1 if
-        the whole motion is free. If two meet, this is at most 2 % before the contact.
-    contact
-        What limits it, None if nothing does.
-    limit
-        The reason.
-    """
-
-    time: float
-    contact: Contact | None = None
-    limit: Limit = Limit.NONE
-
-    @property
-    def pair(self) -> tuple[int, int] | None:
-        """The two edges that limit it; None if it is not limited, or by an obstacle."""
-        if self.contact is None or self.contact.obstacle is not None:
-            return None
-        i, j = self.contact.edges
-        return i, j
-
-    @property
-    def proved(self) -> bool:
-        """Whether the whole motion is proved free of contact."""
-        return self.limit is Limit.NONE
 
 
 def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Sequence[Obstacle] = ()) -> FreeMotion:

@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import counted
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .obstacles import Obstacles
@@ -27,75 +26,7 @@ from .segments import Point, meet
 from .trajectory import Components, TrajectoryError, count_legs, stages, still_parts
 from .transition import DifferentCurveError, common_vertices, straightened
 from .triangles import meet_triangle
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What was found.
-
-    Attributes
-    ----------
-    accepted
-        True if every leg and every change of stage is proved free of contact.
-    stages, legs
-        How many were checked, including the one that failed.
-    reason
-        Why the trajectory is not accepted; empty if it is.
-    stage, frame
-        Place of the failure: number of the stage and of the frame that the leg begins with, from 0.
-    edges
-        The edges that meet, or the one that meets an obstacle, from 0; None if that is not the reason.
-    obstacles
-        How many there are.
-    obstacle
-        The one that an edge meets, from 0; None if that is not the reason.
-    """
-
-    accepted: bool
-    stages: int
-    legs: int
-    reason: str = ""
-    stage: int | None = None
-    frame: int | None = None
-    edges: tuple[int, ...] | None = None
-    obstacles: int = 0
-    obstacle: int | None = None
-
-    def __str__(self) -> str:
-        if self.accepted:
-            nor = f", nor with {counted(self.obstacles, 'obstacle')}" if self.obstacles else ""
-            return f"accepted: no contact on {counted(self.legs, 'leg')} in {counted(self.stages, 'stage')}{nor}"
-        place = "" if self.stage is None else f"stage {self.stage}"
-        place += "" if self.frame is None else f", frame {self.frame}"
-        return f"rejected: {place}: {self.reason}" if place else f"rejected: {self.reason}"
-
-
-class ContactError(Exception):
-    """Edges meet, or one of them an obstacle; the message says so."""
-
-    def __init__(self, message: str, edges: tuple[int, ...], obstacle: int | None = None) -> None:
-        super().__init__(message)
-        self.edges, self.obstacle = edges, obstacle
-
-    @classmethod
-    def between(cls, heads: IntArray, x0: int, x1: int, y0: int, y1: int) -> "ContactError":
-        """Two edges, or a vertex x₀ = x₁ of a triangle or at the end of an open polygon and an edge."""
-        first, second = _edge_number(heads, x0, x1), _edge_number(heads, y0, y1)
-        edges = f"edges {first + 1} and {second + 1} (counted from 1) meet"
-        kind = "a triangle" if heads[heads[heads[x0]]] == x0 != heads[x0] else "an open polygon"
-        return cls(f"{kind} collapses at vertex {x0 + 1}" if x0 == x1 else edges, (first, second))
-
-    @classmethod
-    def with_obstacle(cls, heads: IntArray, x0: int, x1: int, obstacle: int) -> "ContactError":
-        """An edge and an obstacle."""
-        edge = _edge_number(heads, x0, x1)
-        return cls(f"edge {edge + 1} meets obstacle {obstacle + 1} (counted from 1)", (edge,), obstacle)
-
-
-def _edge_number(heads: IntArray, a: int, b: int) -> int:
-    """Number of the edge between two vertices, or of one at a vertex given twice; ends of open polygons begin none."""
-    tail = b if heads[b] == a != b else a - int(heads[a] == a)
-    return int(np.count_nonzero(heads[:tail] != np.arange(tail)))
+from .verdict import ContactError, Verdict
 
 
 @dataclass

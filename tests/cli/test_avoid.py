@@ -95,7 +95,7 @@ def test_an_obstacle_is_not_overwritten(files, capsys, monkeypatch, words):
     monkeypatch.chdir(files)
     write_curve("ring.json", read_curve("ring.txt"))
     before = (files / "ring.json").read_text()
-    assert run(*words.split(), "--avoid", "ring.json") == 2
+    assert run(*words, "--avoid", "ring.json") == 2
     assert "ring.json: --avoid ring.json and " in one_line(capsys)
     assert (files / "ring.json").read_text() == before
 

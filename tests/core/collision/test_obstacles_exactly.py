@@ -21,7 +21,7 @@ def test_nothing_false_is_claimed(kind: Callable[[Rng], Motion]) -> None:
     print(f"{kind.__name__}: {tally}")
     assert tally.wrong == 0
     assert tally.worst_time > 0.98
-    assert tally.timid == 0
+    assert tally.timid <= COUNT / 1000
 
 
 def test_tame_motions_are_of_both_kinds() -> None:

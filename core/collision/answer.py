@@ -1,0 +1,67 @@
+"""How much of a motion is free of contact, and what ends it."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Limit(Enum):
+    """What ends a free motion."""
+
+    NONE = "the whole motion is free of contact"
+    CONTACT = "edges, or an edge and an obstacle, meet, or come too near to each other to be told apart"
+    TOUCHING_START = "edges, or an edge and an obstacle, touch, or cannot be told apart, at the start"
+    NOT_FINITE = "a vertex is not finite"
+    UNTESTED = "in more than three dimensions, where nothing is knotted, contact is not tested"
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What is in the way of a motion.
+
+    Attributes
+    ----------
+    edges
+        The two edges that meet, or the one that meets an obstacle.
+    obstacle
+        What sentences call it; None if edges meet.
+    """
+
+    edges: tuple[int, ...]
+    obstacle: str | None = None
+
+    def __str__(self) -> str:
+        first, *second = (edge + 1 for edge in self.edges)
+        return f"edge {first} and {self.obstacle}" if self.obstacle else f"edges {first} and {second[0]}"
+
+
+@dataclass(frozen=True)
+class FreeMotion:
+    """How much of a motion is proved free of contact.
+
+    Attributes
+    ----------
+    time
+        No two non-neighbour edges, and no edge and obstacle, meet at any time t in [0, time], unless time is 0; 1 if
+        the whole motion is free. If two meet, this is at most 2 % before the contact.
+    contact
+        What limits it, None if nothing does.
+    limit
+        The reason.
+    """
+
+    time: float
+    contact: Contact | None = None
+    limit: Limit = Limit.NONE
+
+    @property
+    def pair(self) -> tuple[int, int] | None:
+        """The two edges that limit it; None if it is not limited, or by an obstacle."""
+        if self.contact is None or self.contact.obstacle is not None:
+            return None
+        i, j = self.contact.edges
+        return i, j
+
+    @property
+    def proved(self) -> bool:
+        """Whether the whole motion is proved free of contact."""
+        return self.limit is Limit.NONE
