@@ -14,8 +14,8 @@ from ..core import MobiusFlowError, Status, read_curve
 from ..core.driver.balance import balanced
 from ..core.errors import OutputError, wrong_suffix
 from ..core.system.files import atomic_write
-from .batch.job import CURVE, folder_name
-from .batch.table import CSV, FAILED
+from .batch.job import CSV, CURVE, folder_name
+from .batch.table import FAILED
 from .figures import figure_class
 from .places import check_place
 from .progress import bar

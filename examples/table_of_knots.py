@@ -19,7 +19,7 @@ def relaxed(name: str) -> tuple[str, int, float, str]:
 
 def main(names: Sequence[str]) -> None:
     """Print a line for each knot, as they come."""
-    with Client(threads_per_worker=1, dashboard_address=None) as client:
+    with Client(threads_per_worker=1, dashboard_address="127.0.0.1:0") as client:
         for future in as_completed(client.map(relaxed, names)):
             print("{:8} {:5d} {:10.4f}  {}".format(*future.result()), flush=True)
 

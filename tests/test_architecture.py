@@ -1,6 +1,7 @@
 """The house stands: no circles among its rooms, no way up, and the drawing in the documents is of these walls."""
 
 import importlib.util
+import tomllib
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -11,6 +12,7 @@ _SPEC = importlib.util.spec_from_file_location("import_map", ROOT / "tools/impor
 tool = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(tool)
 MAP = tool.import_map()
+CLUSTER = {"dask", "distributed", "pyarrow"}
 
 # from the ground up; a room reaches none of a higher floor, nor of its own, by any chain of imports
 FLOORS = (
@@ -66,8 +68,18 @@ def test_blender_stays_in_the_addon(top):
 
 def test_the_core_needs_nothing_but_numpy_and_scipy():
     names = {name.split(".")[0] for path in (ROOT / "core").rglob("*.py") for name in tool.imports(path, ROOT)}
-    assert not names & {"addon", "cli", "bpy", "tqdm", "matplotlib", "mobius_flow"}
+    assert not names & {"addon", "cli", "bpy", "tqdm", "matplotlib", "mobius_flow", *CLUSTER}
     assert {"numpy", "scipy"} <= names
+
+
+def test_clusters_are_for_the_command_line():
+    paths = [*(ROOT / "addon").rglob("*.py"), *(ROOT / "cli").glob("*.py")]
+    assert not {name.split(".")[0] for path in paths for name in tool.imports(path)} & CLUSTER
+
+
+def test_developers_have_the_cluster_too():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    assert set(extras["cluster"]) <= set(extras["dev"])
 
 
 def test_the_verifier_shares_no_code_with_what_it_checks():

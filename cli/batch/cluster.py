@@ -55,10 +55,10 @@ def _own() -> "Iterator[Client]":
     with (
         dask.config.set({"distributed.dashboard.link": "http://127.0.0.1:{port}/status"}),
         LocalCluster(processes=False, dashboard_address="127.0.0.1:0", **size) as cluster,
-        Client(cluster) as client,
     ):
         try:
-            yield client
+            with Client(cluster) as client:
+                yield client
         finally:
             sandbox.close_all()  # threads that wait for a child would keep the cluster
 

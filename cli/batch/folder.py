@@ -4,7 +4,7 @@ import json
 import os
 import secrets
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -13,13 +13,13 @@ from ...core import MobiusFlowError
 from .job import REPORT, Job
 from .table import Row
 
-_UNFINISHED = ".partial"
+_UNFINISHED = "partial"
 
 
 @contextmanager
 def new_folder(path: Path) -> Iterator[Path]:
     """Give an empty directory to fill; it takes the place of ``path`` when the block ends well, and else vanishes."""
-    room = path.with_name(f".{path.name}.{secrets.token_hex(8)}{_UNFINISHED}")
+    room = _beside(path)
     room.mkdir()
     try:
         yield room
@@ -28,13 +28,18 @@ def new_folder(path: Path) -> Iterator[Path]:
         shutil.rmtree(room, ignore_errors=True)
 
 
+def _beside(path: Path) -> Path:
+    """A new name for what is not, or no longer, in its place."""
+    return path.with_name(f".{path.name}.{secrets.token_hex(8)}.{_UNFINISHED}")
+
+
 def _take_place(room: Path, path: Path) -> None:
     """Move a directory; results that are there give way, and only empty directories do so in a single move."""
     check_replaceable(path)
     try:
         room.rename(path)
     except OSError:
-        old = room.with_name(f".{secrets.token_hex(8)}{_UNFINISHED}")
+        old = _beside(path)
         path.rename(old)
         room.rename(path)
         shutil.rmtree(old, ignore_errors=True)
@@ -46,10 +51,12 @@ def check_replaceable(path: Path) -> None:
         raise MobiusFlowError(f"{path}: is there already, and holds no results; move it, or name another directory")
 
 
-def sweep(directory: Path) -> None:
-    """Remove what killed runs have left behind; only while none is running."""
-    for room in directory.glob(f".*{_UNFINISHED}"):
-        shutil.rmtree(room, ignore_errors=True)
+def sweep(directory: Path, jobs: Iterable[Job]) -> None:
+    """Remove what killed runs of these jobs have left behind; only while none of them is running."""
+    names = {Path(job.folder).name for job in jobs}
+    for room in directory.glob(f".*.{_UNFINISHED}"):
+        if room.name[1:].rsplit(".", 2)[0] in names:
+            shutil.rmtree(room, ignore_errors=True)
 
 
 def finished(job: Job) -> Row | None:

@@ -14,6 +14,7 @@ from ...core.curve.io.source import MAX_BYTES
 from .inputs import Input
 
 CURVE, REPORT, TRAJECTORY = "curve.txt", "report.json", "trajectory.npz"
+CSV, PARQUET = "results.csv", "results.parquet"
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class Job:
     extrapolate: bool
     version: str = __version__
 
-    def __hash__(self) -> int:
+    def __hash__(self) -> int:  # options are in a dictionary, which has none
         return hash(self.folder)
 
     @property
@@ -91,7 +92,7 @@ def _check_folders(made: Iterable[Job]) -> None:
     count = Counter(job.folder.casefold() for job in made)
     for job in made:
         name = Path(job.folder).name
-        if count[job.folder.casefold()] > 1 or name.casefold() in ("results.csv", "results.parquet"):
+        if count[job.folder.casefold()] > 1 or name.casefold() in (CSV, PARQUET):
             raise MobiusFlowError(
                 f"{job.file or job.name}: its results would not be the only ones in {name}; rename it"
             )

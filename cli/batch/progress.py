@@ -19,9 +19,9 @@ class Progress:
 
     def __init__(self, client: "Client", total: int, shown: bool) -> None:
         self._client, self._failed = client, 0
-        self._bar = bar(total=total, unit=" runs", smoothing=0.1) if shown else None
         if shown:
             print(f"mobius-flow: dashboard at {client.dashboard_link}", file=sys.stderr)
+        self._bar = bar(total=total, unit="run", smoothing=0.1) if shown else None
 
     def __enter__(self) -> "Progress":
         return self

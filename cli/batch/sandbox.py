@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
 from dataclasses import asdict
 from weakref import WeakSet
 
@@ -60,7 +61,8 @@ class Sandbox:
     def close(self) -> None:
         """End the child, and the run under way."""
         self._process.kill()
-        self._process.communicate()
+        with suppress(ValueError):  # a thread may be reading, or have closed the pipes
+            self._process.communicate()
 
     @property
     def alive(self) -> bool:
@@ -76,7 +78,7 @@ class Sandbox:
             if line:
                 print(line, file=process.stdin, flush=True)
             answer = process.stdout.readline()
-        except OSError:
+        except (OSError, ValueError):  # a ValueError for a pipe that was closed meanwhile
             answer = ""
         if not answer.endswith("\n"):
             self.close()

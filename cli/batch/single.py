@@ -46,10 +46,10 @@ def _relaxed(job: Job) -> Row:
     with nullcontext() if file is None else curves.refusals(file):
         start = _start(knot(job.name) if file is None else file.curve, job.seed)
         result = minimize(start, options, trajectory.add)
+    found = _findings(job, options, start, result)
     with new_folder(Path(job.folder)) as room:
         write_curve(room / CURVE, result.curve)
         trajectory.save(room / TRAJECTORY)
-        found = _findings(job, options, start, result)
         verified = verify(room / TRAJECTORY).accepted
         row = Row.of(job, **found, verified=verified, seconds=time.perf_counter() - began)
         write_report(room, job, row, result.report() | origin)

@@ -14,10 +14,9 @@ from ...core.errors import OutputError, counted
 from ...core.option import declared
 from ...core.system.files import atomic_write
 from ..streams import one_line
-from .job import Job
+from .job import CSV, PARQUET, Job
 
 FAILED = "failed"
-CSV, PARQUET = "results.csv", "results.parquet"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Iterate, OptionError, RelaxOptions, Status, Trajectory, minimize
+from mobius_flow.core import Curve, Iterate, MoebiusEnergy, OptionError, RelaxOptions, Status, Trajectory, minimize
 from mobius_flow.core.constraints import Constraints
 from mobius_flow.core.curve.bending import bending
 from mobius_flow.core.curve.moebius_map import moebius_image
@@ -31,6 +31,14 @@ def point(curve: Curve, **options: object):
 
 def largest_chord(curve: Curve) -> float:
     return float(np.linalg.norm(curve.vertices[:, None] - curve.vertices[None], axis=2).max())
+
+
+def test_the_balanced_image_by_itself() -> None:
+    given = unbalanced(torus_trefoil(120), 0.3, 0.1, -0.2)
+    image = balance.balanced(given)
+    assert bending(image) < 0.9 * bending(given)
+    assert bending(image) <= 1.001 * bending(torus_trefoil(120))
+    assert MoebiusEnergy().value(image) == pytest.approx(MoebiusEnergy().value(given), rel=5e-3)
 
 
 @pytest.mark.parametrize("curve", [torus_trefoil(120), dual_circles(60)], ids=["trefoil", "Hopf link"])

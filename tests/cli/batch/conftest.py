@@ -16,7 +16,7 @@ def scheduler() -> Iterator[str]:
     """The address of a scheduler in this process, with one worker."""
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, memory_limit=0, dashboard_address=None
+        n_workers=1, threads_per_worker=1, processes=False, memory_limit=0, dashboard_address="127.0.0.1:0"
     ) as cluster:
         yield cluster.scheduler_address
         sandbox.close_all()

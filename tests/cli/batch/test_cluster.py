@@ -2,10 +2,11 @@
 
 import csv
 import socket
+import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
@@ -54,16 +55,14 @@ def port() -> int:
         return int(free.getsockname()[1])
 
 
-@pytest.fixture
-def workers(port: int, tmp_path: Path) -> Iterator[list[object]]:
-    """The processes of two workers, and of their scheduler."""
-    address, one = f"tcp://127.0.0.1:{port}", ("--nthreads", "1", "--no-nanny", "--local-directory", str(tmp_path))
+@contextmanager
+def cluster(port: int, workers: int, room: Path) -> Iterator[list["subprocess.Popen[str]"]]:
+    """The processes of a scheduler and of its workers, which have one thread each."""
+    one = ("--nthreads", "1", "--no-nanny", "--local-directory", str(room))
+    worker = command("dask_worker", f"tcp://127.0.0.1:{port}", *one)
+    scheduler = command("dask_scheduler", "--host", "127.0.0.1", "--port", str(port))
     with ExitStack() as stack:
-        commands = (
-            command("dask_scheduler", "--host", "127.0.0.1", "--port", str(port)),
-            *([command("dask_worker", address, *one)] * 2),
-        )
-        yield [stack.enter_context(running(each)) for each in commands]
+        yield [stack.enter_context(running(each)) for each in [scheduler] + [worker] * workers]
 
 
 def wait_for_one(out: Path) -> None:
@@ -73,12 +72,13 @@ def wait_for_one(out: Path) -> None:
         time.sleep(0.02)
 
 
-def test_a_worker_that_is_killed_costs_no_row(workers: list, port: int, rings: Path, tmp_path: Path) -> None:
+def test_a_worker_that_is_killed_costs_no_row(port: int, rings: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
-    with running([sys.executable, "-m", "mobius_flow", *words, "--vertices", "60", "--tolerance", "1e-9"]) as process:
+    program = [sys.executable, "-m", "mobius_flow", *words, "--vertices", "60", "--tolerance", "1e-9"]
+    with cluster(port, 2, tmp_path) as processes, running(program) as process:
         wait_for_one(out)
-        workers[1].kill()
+        processes[1].kill()
         said, complained = process.communicate()
     assert process.returncode == 0
     assert said.startswith("8 runs: ")
@@ -88,12 +88,13 @@ def test_a_worker_that_is_killed_costs_no_row(workers: list, port: int, rings: P
     assert {path.name for path in out.iterdir()} == {*(f"ring{k}" for k in range(8)), "results.csv", "results.parquet"}
 
 
-def test_a_lost_scheduler_leaves_the_table(workers: list, port: int, rings: Path, tmp_path: Path) -> None:
+def test_a_lost_scheduler_leaves_the_table(port: int, rings: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ["batch", str(rings), "7_1..8_21", "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
-    with running([sys.executable, "-m", "mobius_flow", *words, "--max-iterations", "3"]) as process:
+    program = [sys.executable, "-m", "mobius_flow", *words, "--max-iterations", "3"]
+    with cluster(port, 1, tmp_path) as processes, running(program) as process:
         wait_for_one(out)
-        workers[0].kill()
+        processes[0].kill()
         said = process.communicate()
     assert said[0] == ""
     assert said[1].startswith("mobius-flow: the Dask scheduler is lost")

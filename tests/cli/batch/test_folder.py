@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from mobius_flow.cli.batch.folder import new_folder, sweep
+from mobius_flow.cli.batch.job import Job
 from mobius_flow.core import MobiusFlowError
 
 
@@ -56,10 +57,11 @@ def test_two_at_once_make_one(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_sweeping(tmp_path: Path) -> None:
+def test_sweeping_is_for_one_s_own_runs(tmp_path: Path) -> None:
     fill(tmp_path / "a", "done")
-    left = new_folder(tmp_path / "b")
-    (left.__enter__() / "curve.txt").touch()  # and killed
-    assert len(list(tmp_path.iterdir())) == 2
-    sweep(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+    rooms = [new_folder(tmp_path / name) for name in ("b.x", "b.x-2", "c")]
+    for room in rooms:
+        (room.__enter__() / "curve.txt").touch()  # and killed
+    jobs = [Job(name, 1, None, None, None, str(tmp_path / name), {}, False) for name in ("a", "b.x")]
+    sweep(tmp_path, jobs)
+    assert sorted(path.name.rsplit(".", 2)[0] for path in tmp_path.iterdir()) == [".b.x-2", ".c", "a"]
