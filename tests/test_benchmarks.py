@@ -10,6 +10,7 @@ BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 ARGUMENTS = {
     "collision": ["60"],
     "hierarchy": ["60"],
+    "hops": ["T34", "--hops", "1"],
     "metric": ["100"],
     "resolution": ["3_1"],
     "soak": ["--flows", "2"],
@@ -24,5 +25,5 @@ def test_every_benchmark_is_tried():
 def test_it_runs(name, tmp_path):
     done = finished([sys.executable, str(BENCHMARKS / f"{name}.py"), *ARGUMENTS[name]], cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
-    least = {"soak": 1, "resolution": 3}.get(name, 5)  # a title, and a line for each of four curves
+    least = {"soak": 1, "resolution": 3, "hops": 3}.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least

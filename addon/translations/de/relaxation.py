@@ -124,6 +124,11 @@ _OPTIONS = {
         "Sagen, ob eine konvergierte Kurve ein Minimum ist: die negativen Eigenwerte der Hesse-Matrix der "
         "Lagrange-Funktion zählen"
     ),
+    "Try so many ways on from a minimum, or from where the curve is stuck: a random motion, proved like all others, and a "
+    "relaxation; those that end lower are kept, the iterations of all count": (
+        "So viele Wege aus einem Minimum, oder von wo die Kurve festsitzt, versuchen: eine zufällige Bewegung, bewiesen "
+        "wie alle anderen, und eine Entspannung; wo sie tiefer enden, gelten sie, die Iterationen aller zählen"
+    ),
     "Vertex energy of Kusner and Sullivan: 1/r² − 1/ϱ² at the edges' tails": (
         "Punktenergie von Kusner und Sullivan: 1/r² − 1/ϱ² an den Anfangspunkten der Kanten"
     ),
@@ -132,6 +137,9 @@ _OPTIONS = {
         "Gewicht von Längenfehlern in den Strafmethoden; 0: das der Methode"
     ),
     "What is minimised, with a barrier between strands": "Was minimiert wird, mit einer Barriere zwischen Strängen",
+    "Which random motions hops begin with: equal numbers, equal motions": (
+        "Mit welchen zufälligen Bewegungen Sprünge beginnen: gleiche Zahlen, gleiche Bewegungen"
+    ),
     "the method's own": "die der Methode",
 }
 
