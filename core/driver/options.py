@@ -138,8 +138,8 @@ class RelaxOptions:
     hops: int = _advanced(
         0,
         "Hops",
-        "try so many ways on from a minimum, or from where the curve is stuck: a random motion, proved like all others, "
-        "and a relaxation; those that end lower are kept, the iterations of all count",
+        "number of tries to get on from a minimum, or from where the curve is stuck: a random motion, proved like all "
+        "others, and a relaxation; those that end lower are kept, and the iterations of all count",
         low=0,
         metavar="K",
     )

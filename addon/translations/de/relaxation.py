@@ -98,6 +98,11 @@ _OPTIONS = {
     "Möbius energy without arc distances, midpoint rule (Ishizeki–Nagasawa density)": (
         "Möbius-Energie ohne Bogenabstände, Mittelpunktregel (Dichte von Ishizeki–Nagasawa)"
     ),
+    "Number of tries to get on from a minimum, or from where the curve is stuck: a random motion, proved like all "
+    "others, and a relaxation; those that end lower are kept, and the iterations of all count": (
+        "Anzahl der Versuche, von einem Minimum weiterzukommen, oder von wo die Kurve festsitzt: eine zufällige Bewegung, "
+        "bewiesen wie alle anderen, und eine Entspannung; was tiefer endet, wird behalten, die Iterationen aller zählen"
+    ),
     "Number of vertices to refine to, those of all components together; "
     "0: so many that neighbours are nearer than strands": (
         "Anzahl der Punkte, auf die verfeinert wird, die aller Komponenten zusammen; "
@@ -123,11 +128,6 @@ _OPTIONS = {
     "Tell whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian": (
         "Sagen, ob eine konvergierte Kurve ein Minimum ist: die negativen Eigenwerte der Hesse-Matrix der "
         "Lagrange-Funktion zählen"
-    ),
-    "Try so many ways on from a minimum, or from where the curve is stuck: a random motion, proved like all others, and a "
-    "relaxation; those that end lower are kept, the iterations of all count": (
-        "So viele Wege aus einem Minimum, oder von wo die Kurve festsitzt, versuchen: eine zufällige Bewegung, bewiesen "
-        "wie alle anderen, und eine Entspannung; wo sie tiefer enden, gelten sie, die Iterationen aller zählen"
     ),
     "Vertex energy of Kusner and Sullivan: 1/r² − 1/ϱ² at the edges' tails": (
         "Punktenergie von Kusner und Sullivan: 1/r² − 1/ϱ² an den Anfangspunkten der Kanten"
