@@ -100,8 +100,9 @@ _OPTIONS = {
     ),
     "Number of tries to get on from a minimum, or from where the curve is stuck: a random motion, proved like all "
     "others, and a relaxation; those that end lower are kept, and the iterations of all count": (
-        "Anzahl der Versuche, von einem Minimum weiterzukommen, oder von wo die Kurve festsitzt: eine zufällige Bewegung, "
-        "bewiesen wie alle anderen, und eine Entspannung; was tiefer endet, wird behalten, die Iterationen aller zählen"
+        "Anzahl der Versuche, von einem Minimum weiterzukommen, oder von wo die Kurve festsitzt: eine zufällige "
+        "Bewegung, bewiesen wie alle anderen, und eine Entspannung; was tiefer endet, wird behalten, und die "
+        "Iterationen aller zählen"
     ),
     "Number of vertices to refine to, those of all components together; "
     "0: so many that neighbours are nearer than strands": (
