@@ -45,7 +45,11 @@ class Hops:
         while self._tried < run.options.hops and run.iterations_left > 0:
             below = (1.0 - GAIN) * run.iterate.energy
             found = self._next(below)
-            if found is not None and found.run.iterate.energy < below:
+            if found is None:
+                continue
+            lower = found.run.iterate.energy < below
+            run.count_tried(found.iterations - lower)  # the hop itself is one iterate
+            if lower:
                 run.hop(found.run.point, found.path, found.certified)
                 self._taken += 1
                 return True
@@ -55,11 +59,9 @@ class Hops:
         """The next trial; None if numbers fail on the way."""
         self._tried += 1
         try:
-            found = trial(self._run, self._motion, self._rng, below)
+            return trial(self._run, self._motion, self._rng, below)
         except np.linalg.LinAlgError:
             return None
-        self._run.count_tried(found.iterations)
-        return found
 
     def told(self, outcome: Outcome) -> Outcome:
         """The outcome with what hops were good for, or what they may be good for."""
