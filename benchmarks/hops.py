@@ -3,7 +3,7 @@
     python benchmarks/hops.py                    every case, 5 hops each
     python benchmarks/hops.py T35 --hops 2       one of them
 
-A row tells where a run ends without hops and with how many vertices, the index there (0: a minimum), unless it is stuck,
+A row tells where a run ends without hops and with how many vertices; unless it is stuck, the index there (0: a minimum)
 and what is left of its energy on a mesh with every edge halved; then where it ends with hops, whether the verifier
 accepts the whole way, and the processor time of both runs.
 """
