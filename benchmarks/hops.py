@@ -27,6 +27,7 @@ CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "T34": (partial(torus_knot, 3, 4), RelaxOptions()),
     "T35": (partial(torus_knot, 3, 5), ESCAPING),
     "T45": (partial(torus_knot, 4, 5), RelaxOptions()),
+    "T46": (partial(torus_knot, 4, 6), ESCAPING),
     "4_1-scrambled": (lambda: scramble(smooth_knot("4_1", 120), seed=1), RelaxOptions()),
     "unknot-60-3": (lambda: lattice_closure(unknot_word(60, seed=3)), RelaxOptions()),
     "unknot-60-4": (lambda: lattice_closure(unknot_word(60, seed=4)), RelaxOptions()),
