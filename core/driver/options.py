@@ -169,12 +169,14 @@ class RelaxOptions:
     hops: int = _advanced(
         0,
         "Hops",
-        "try so many ways out of a minimum, or from where the curve is stuck: a random motion, proved like all others, "
-        "and a relaxation from its end; the lowest curve is kept, and its way; iterations of all tries count",
+        "number of tries to get on from a minimum, or from where the curve is stuck: a random motion, proved like all "
+        "others, and a relaxation; those that end lower are kept, and the iterations of all count",
         low=0,
         metavar="K",
     )
-    seed: int = _advanced(0, "Seed", "which random motions the hops begin with", low=0, metavar="S")
+    seed: int = _advanced(
+        0, "Seed", "which random motions hops begin with: equal numbers, equal motions", low=0, metavar="S"
+    )
     pins: tuple[int, ...] = _scripted(
         (),
         "Pins",

@@ -107,4 +107,7 @@ INACCURATE = (
 )
 ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"
 UNEVEN = "edge lengths are still off their targets by up to {percent:.2g} %"
+HOPS = "{taken} of {tried} led lower"
+IS_UNKNOT = "the curve is an unknot, and a circle has less energy"
+MAY_BE_UNKNOT = "the curve may be an unknot, for its Alexander polynomial is trivial, and a circle has less energy"
 REMESHED = "changes of mesh or shape raised the energy: {rises}"

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..curve import Curve
 from ..curve.refine import Resolution
-from ..descent import METHODS, NoStep, Problem, State, Step
+from ..descent import METHODS, NoStep, Point, Problem, State, Step
 from ..hierarchy import SampledErrors
 from ..types import FloatArray
 from .events import Change
@@ -98,13 +98,13 @@ class Run:
         self.iterate = self._described(self.iterate.index + 1, step.size, path)
         return self.iterate
 
-    def tried(self, iterations: int) -> None:
-        """Take iterations of a trial off those that are left."""
+    def count_tried(self, iterations: int) -> None:
+        """Take those of a trial off the iterations that are left."""
         self._tried += iterations
 
-    def hop(self, other: "Run", path: tuple[FloatArray, ...], certified: bool) -> Iterate:
-        """Go in one iterate to where another run on the same mesh has got to, by a way that is ``certified`` or not."""
-        self.point, self.method, self._memory = other.point, METHODS[self.options.method], State()
+    def hop(self, end: Point, path: tuple[FloatArray, ...], certified: bool) -> Iterate:
+        """Go in one iterate to a point on the same mesh, by a way that was found elsewhere."""
+        self.point, self.method, self._memory = end, METHODS[self.options.method], State()
         self._certified &= certified
         self.iterate = self._described(self.iterate.index + 1, path=path)
         return self.iterate

@@ -98,6 +98,12 @@ _OPTIONS = {
     "Möbius energy without arc distances, midpoint rule (Ishizeki–Nagasawa density)": (
         "Möbius-Energie ohne Bogenabstände, Mittelpunktregel (Dichte von Ishizeki–Nagasawa)"
     ),
+    "Number of tries to get on from a minimum, or from where the curve is stuck: a random motion, proved like all "
+    "others, and a relaxation; those that end lower are kept, and the iterations of all count": (
+        "Anzahl der Versuche, von einem Minimum weiterzukommen, oder von wo die Kurve festsitzt: eine zufällige "
+        "Bewegung, bewiesen wie alle anderen, und eine Entspannung; was tiefer endet, wird behalten, und die "
+        "Iterationen aller zählen"
+    ),
     "Number of vertices to refine to, those of all components together; "
     "0: so many that neighbours are nearer than strands": (
         "Anzahl der Punkte, auf die verfeinert wird, die aller Komponenten zusammen; "
@@ -132,6 +138,9 @@ _OPTIONS = {
         "Gewicht von Längenfehlern in den Strafmethoden; 0: das der Methode"
     ),
     "What is minimised, with a barrier between strands": "Was minimiert wird, mit einer Barriere zwischen Strängen",
+    "Which random motions hops begin with: equal numbers, equal motions": (
+        "Mit welchen zufälligen Bewegungen Sprünge beginnen: gleiche Zahlen, gleiche Bewegungen"
+    ),
     "the method's own": "die der Methode",
 }
 

@@ -32,15 +32,18 @@ class Stir:
         Step at which a flow is given up.
     waves
         Number of plane waves that a flow is the sum of.
+    frequency
+        Standard deviation of each component of their wave vectors, in radians per radius of gyration.
     ceilings
         Least and greatest multiple of the energy up to which the curve may be led.
     """
 
-    distance: float = 20.0
+    distance: float = 10.0
     each: float = 1.0
     stride: float = 0.1
-    shortest: float = 2e-3
+    shortest: float = 5e-3
     waves: int = 4
+    frequency: float = 2.0
     ceilings: tuple[float, float] = (2.0, 16.0)
 
     def fits(self, point: Point) -> bool:
@@ -69,13 +72,14 @@ class Stir:
             point, left, stride = leg.end.anchored, left - stride, min(2.0 * stride, self.stride)
 
     def _flow(self, point: Point, rng: np.random.Generator) -> Flow:
-        """A sum of plane waves, each without divergence, about as long as the curve is wide."""
+        """A sum of plane waves, each without divergence, most of them shorter than the curve is wide."""
         center, radius = point.vertices.mean(axis=0), _radius(point.vertices)
         waves, amplitudes = rng.normal(size=(2, self.waves, point.curve.dimension))
         along = np.sum(waves * amplitudes, axis=1) / np.square(waves).sum(axis=1)
         amplitudes -= along[:, None] * waves
+        waves *= self.frequency / radius
         phases = rng.uniform(0.0, 2.0 * np.pi, self.waves)
-        return lambda x: np.asarray(np.sin((x - center) @ waves.T / radius + phases) @ amplitudes)
+        return lambda x: np.asarray(np.sin((x - center) @ waves.T + phases) @ amplitudes)
 
 
 def _between(bounds: tuple[float, float], rng: np.random.Generator) -> float:

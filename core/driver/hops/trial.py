@@ -9,7 +9,7 @@ from ...types import FloatArray
 from ..loop import iterates
 from ..options import RelaxOptions
 from ..run import Run
-from .motions import Motion
+from .stir import Stir
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,15 +34,16 @@ class Trial:
     iterations: int
 
 
-def trial(run: Run, motion: Motion, rng: np.random.Generator, below: float) -> Trial:
-    """Leave the point that a run has reached, and relax, on the same mesh, until the objective is ``below`` a value.
+def trial(run: Run, motion: Stir, rng: np.random.Generator, below: float) -> Trial:
+    """Leave the point that a run has reached, and relax on the same mesh until the objective is ``below`` a value.
 
-    It ends where the relaxation does if that comes first, or where no iterations are left.
+    It ends earlier where the relaxation does, or where no iterations are left.  Raises LinAlgError where a curve on the
+    way is too degenerate to be computed with.
     """
     steps = list(islice(motion(run.point, rng), run.iterations_left))
     path = [leg.end.placed for step in steps for leg in step.legs]
-    start = run.iterate.curve.with_vertices(path[-1] if path else run.iterate.curve.vertices)
-    relaxing = Run(run.problem, start, _plain(run, run.iterations_left - len(steps)))
+    start = run.iterate.curve.with_vertices(path[-1]) if path else run.iterate.curve
+    relaxing = Run(run.problem, start, _plain(run.options, run.iterations_left - len(steps)))
     for iterate in iterates(relaxing):
         path += iterate.path
         if iterate.energy < below:
@@ -51,7 +52,7 @@ def trial(run: Run, motion: Motion, rng: np.random.Generator, below: float) -> T
     return Trial(relaxing, tuple(path), certified, len(steps) + relaxing.iterate.index)
 
 
-def _plain(run: Run, iterations: int) -> RelaxOptions:
-    """What is asked for, but nothing that is looked at in the end or changes the mesh."""
-    changed = {"mesh": "fixed", "vertices": None, "max_iterations": iterations}
-    return replace(run.options, **changed, stability=False, escape_saddles=False, balance=False)
+def _plain(options: RelaxOptions, iterations: int) -> RelaxOptions:
+    """The same without what is looked at in the end or changes the mesh."""
+    options = replace(options, stability=False, escape_saddles=False, balance=False)
+    return replace(options, mesh="fixed", vertices=None, max_iterations=iterations)

@@ -4,11 +4,10 @@ import numpy as np
 
 from ...curve import Curve
 from ...knots.recognition import Unknotted, unknotted
+from ..outcome import IS_UNKNOT, MAY_BE_UNKNOT
 
 ROUND = 0.9  # of the area of the circle of the same length: coarse and uneven ones have that
 MOST_VERTICES = 10_000  # of a curve whose type is looked at: a few seconds
-IS_UNKNOT = "the curve is an unknot, so that the circle has less energy"
-MAY_BE_UNKNOT = "the curve may be an unknot, for its Alexander polynomial is trivial, and the circle have less energy"
 
 
 def is_circle(curve: Curve) -> bool:
@@ -25,7 +24,8 @@ def is_circle(curve: Curve) -> bool:
 
 
 def told_of_unknot(curve: Curve) -> str | None:
-    """Say that a curve at a minimum could become a circle, if it is not one and is or may be an unknot."""
-    if curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):
+    """Say that a curve is or may be an unknot, though it is no circle; None if it is one, or is knotted or a link."""
+    alone = len(curve.mesh.component_sizes) == 1
+    if not alone or curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):
         return None
     return {Unknotted.YES: IS_UNKNOT, Unknotted.MAYBE: MAY_BE_UNKNOT}.get(unknotted(curve))

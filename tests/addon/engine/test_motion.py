@@ -9,6 +9,7 @@ from mobius_flow.addon.engine.placement import Link, Placement
 from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.collision import free_motion, is_free
 from mobius_flow.core.curve.refine import subdivide, subdivision
+from mobius_flow.core.knots import torus_knot
 from shapes import lattice_knot, regular_polygon, torus_trefoil
 
 
@@ -235,3 +236,15 @@ def test_the_common_space_is_the_first_objects():
     link = Link((TURNED, placed(np.eye(3), [1, 2, 3])), (1, 1))
     common = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))
     np.testing.assert_allclose(TURNED.to_world(common), curve.vertices, atol=1e-13)
+
+
+def test_a_hop_is_keyed_like_a_step():
+    """It is one iterate of many legs; only those are keyed that its chord needs."""
+    iterates = list(relax(torus_knot(3, 4, 90), RelaxOptions(vertices=90, hops=1, seed=1).keyed))
+    motion = Motion(at_rest(1))
+    for each in iterates:
+        motion.add(each)
+    assert max(len(each.path) for each in iterates) > 20
+    keys = motion.keys(is_free)
+    assert len(keys.keys) < 2 * len(iterates)
+    assert_proved(keys, iterates[-1].curve.mesh)

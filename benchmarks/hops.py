@@ -1,0 +1,94 @@
+"""What hops lead to from local minima, and from where curves are stuck: the table in docs/energies.md.
+
+    python benchmarks/hops.py                    every case, 5 hops each
+    python benchmarks/hops.py T35 --hops 2       one of them
+
+A row tells where a run ends without hops and with how many vertices; unless it is stuck, the index there (0: a minimum)
+and what is left of its energy on a mesh with every edge halved; then where it ends with hops, whether the verifier
+accepts the whole way, and the processor time of both runs.
+"""
+
+import argparse
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from mobius_flow.core import Curve, RelaxOptions, Result, Trajectory, minimize
+from mobius_flow.core.curve.refine import subdivide
+from mobius_flow.core.knots import knot, lattice_closure, scramble, smooth_knot, torus_knot, unknot_word
+from mobius_flow.core.verify import verify
+
+ESCAPING = RelaxOptions(escape_saddles=True)
+CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
+    "T34": (partial(torus_knot, 3, 4), RelaxOptions()),
+    "T35": (partial(torus_knot, 3, 5), ESCAPING),
+    "T45": (partial(torus_knot, 4, 5), RelaxOptions()),
+    "T46": (partial(torus_knot, 4, 6), ESCAPING),
+    "4_1-scrambled": (lambda: scramble(smooth_knot("4_1", 120), seed=1), RelaxOptions()),
+    "unknot-60-3": (lambda: lattice_closure(unknot_word(60, seed=3)), RelaxOptions()),
+    "unknot-60-4": (lambda: lattice_closure(unknot_word(60, seed=4)), RelaxOptions()),
+    "haken": (partial(knot, "haken"), RelaxOptions()),
+}
+MOST_VERTICES = 500  # of a curve whose index is looked at: dense matrices
+
+
+def at_rest(curve: Curve, **changes: object) -> Result:
+    """The curve relaxed on on its own mesh."""
+    options = RelaxOptions(mesh="fixed", vertices=len(curve), edge_lengths="keep")
+    return minimize(curve, replace(options, **changes))
+
+
+def index(curve: Curve) -> str:
+    """How many ways lead down from a curve at rest; a dash where that takes too long to tell."""
+    if len(curve) > MOST_VERTICES:
+        return "–"
+    return str(at_rest(curve, stability=True).outcome.negative_eigenvalues)
+
+
+def halved(curve: Curve) -> str:
+    """The energy that is left with two edges in place of each."""
+    return f"{at_rest(subdivide(curve, np.full(len(curve), 2))).final_energy:.2f}"
+
+
+def hopped(curve: Curve, options: RelaxOptions) -> tuple[Result, bool]:
+    """The end of a run with hops, and whether the verifier accepts all of its trajectory."""
+    trajectory = Trajectory()
+    result = minimize(curve, options, trajectory.add)
+    with TemporaryDirectory() as directory:
+        path = Path(directory) / "T.npz"
+        trajectory.save(path)
+        return result, result.certified and verify(path).accepted
+
+
+def row(name: str, hops: int) -> str:
+    """What becomes of one case."""
+    make, options = CASES[name]
+    began = time.process_time()
+    plain = minimize(make(), options)
+    result, verified = hopped(make(), replace(options, hops=hops))
+    seconds = time.process_time() - began
+    rests = (index(plain.curve), halved(plain.curve)) if plain.outcome.converged else ("stuck", "–")
+    return (
+        f"| {name} | {len(plain.curve)} | {plain.final_energy:.2f} | {' | '.join(rests)} | {result.final_energy:.2f} | "
+        f"{'yes' if verified else 'NO'} | {seconds:.0f} s |"
+    )
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", help=f"cases: {', '.join(CASES)}")
+    parser.add_argument("--hops", type=int, default=5, metavar="K", help="hops tried (default: 5)")
+    arguments = parser.parse_args()
+    print("| case | vertices | energy | index | edges halved | with hops | verified | time |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for name in arguments.names or CASES:
+        print(row(name, arguments.hops), flush=True)
+
+
+if __name__ == "__main__":
+    main()

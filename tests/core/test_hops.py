@@ -1,0 +1,220 @@
+"""Hops lead lower or nowhere, by proved ways that a seed determines, and an interrupt loses nothing."""
+
+import itertools
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, Iterate, OptionError, RelaxOptions, Result, Status, Trajectory, minimize
+from mobius_flow.core.driver.hops import hopping
+from mobius_flow.core.driver.hops.stir import Stir
+from mobius_flow.core.driver.hops.unknot import is_circle, told_of_unknot
+from mobius_flow.core.driver.loop import WithOutcome, iterates
+from mobius_flow.core.driver.outcome import IS_UNKNOT, MAY_BE_UNKNOT
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.run import Run
+from mobius_flow.core.knots import knot, torus_knot
+from mobius_flow.core.verify import verify
+from shapes import hopf_link, regular_polygon, torus_trefoil
+
+VERTICES = 90
+OPTIONS = RelaxOptions(mesh="fixed", vertices=VERTICES, hops=1, seed=1)
+Recorded = tuple[list[Iterate], Result]
+
+
+def saddle() -> Curve:
+    """The torus knot T(3, 4) in its most symmetric position, where plain descent ends though it is no minimum."""
+    return torus_knot(3, 4, VERTICES)
+
+
+def recorded(**changes: object) -> Recorded:
+    found: list[Iterate] = []
+    return found, minimize(saddle(), replace(OPTIONS, **changes), found.append)
+
+
+@pytest.fixture(scope="module")
+def hopped() -> Recorded:
+    return recorded()
+
+
+@pytest.fixture(scope="module")
+def plain() -> Recorded:
+    return recorded(hops=0)
+
+
+def hop_of(found: list[Iterate]) -> Iterate:
+    """The first hop: the one iterate whose way is longer than any step's."""
+    return max(found, key=lambda iterate: len(iterate.path))
+
+
+def same(a: list[Iterate], b: list[Iterate]) -> bool:
+    return all(np.array_equal(x.curve.vertices, y.curve.vertices) for x, y in zip(a, b, strict=True))
+
+
+def test_a_hop_leads_lower_and_is_told(hopped: Recorded, plain: Recorded) -> None:
+    found, result = hopped
+    assert result.status is Status.CONVERGED
+    assert result.final_energy < 0.99 * plain[1].final_energy
+    assert "1 of 1 hop led lower" in result.message
+    assert "hop" not in plain[1].message
+    assert len(hop_of(found).path) > 20
+
+
+def test_the_energy_never_rises(hopped: Recorded) -> None:
+    energies = [iterate.energy for iterate in hopped[0]]
+    assert all(b <= a for a, b in itertools.pairwise(energies))
+
+
+def test_without_hops_nothing_changes_and_with_them_nothing_before(hopped: Recorded, plain: Recorded) -> None:
+    bare = list(iterates(Run(start_problem(saddle(), OPTIONS), saddle(), OPTIONS)))
+    assert same(plain[0], bare)
+    assert same(hopped[0][: len(bare)], bare)
+
+
+def test_the_same_seed_gives_the_same_bits(hopped: Recorded) -> None:
+    run = Run(start_problem(saddle(), OPTIONS), saddle(), OPTIONS)
+    again = WithOutcome(hopping(run))
+    assert same(hopped[0], list(again))
+    assert again.outcome is not None
+    assert again.outcome.message == hopped[1].message
+    tried = len(hop_of(hopped[0]).path)  # one leg each, since lengths are what they should be
+    assert run.iterations == run.iterate.index + tried - 1, "the hop is one iterate, but all of its steps count"
+
+
+def test_another_seed_gives_another_way(hopped: Recorded) -> None:
+    hop = hop_of(hopped[0])
+    start = Run(start_problem(saddle(), OPTIONS), hopped[0][hop.index - 1].curve, OPTIONS).point
+    first, other = (next(Stir()(start, np.random.default_rng(seed))).point.placed for seed in (1, 2))
+    np.testing.assert_allclose(first, hop.path[0], atol=1e-12)
+    assert np.abs(other - hop.path[0]).max() > 1e-3
+
+
+def test_the_whole_way_is_certified(hopped: Recorded, tmp_path: Path) -> None:
+    found, result = hopped
+    trajectory = Trajectory()
+    for iterate in found:
+        trajectory.add(iterate)
+    trajectory.save(tmp_path / "T.npz")
+    assert result.certified
+    assert verify(tmp_path / "T.npz").accepted
+    assert hop_of(found).edge_length_error < 1e-6
+
+
+def test_more_hops_begin_with_the_same_ones_and_never_end_higher(hopped: Recorded, plain: Recorded) -> None:
+    more, result = recorded(hops=2)
+    assert same(more[: len(hopped[0])], hopped[0])
+    assert plain[1].energies[-1] > hopped[1].energies[-1] >= result.energies[-1]
+
+
+def test_an_interrupt_during_a_trial_keeps_the_lowest_curve(plain: Recorded, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Stir, "__call__", interrupted)
+    result = recorded()[1]
+    assert result.status is Status.INTERRUPTED
+    assert np.array_equal(result.curve.vertices, plain[1].curve.vertices)
+
+
+def test_a_degenerate_trial_is_one_that_leads_nowhere(plain: Recorded, monkeypatch: pytest.MonkeyPatch) -> None:
+    def degenerate(*_: object) -> None:
+        raise np.linalg.LinAlgError
+
+    monkeypatch.setattr(Stir, "__call__", degenerate)
+    found, result = recorded()
+    assert same(found, plain[0])
+    assert result.message.endswith("; 0 of 1 hop led lower")
+
+
+@pytest.mark.parametrize("left", [0, 1, 10])
+def test_iterations_of_trials_count(plain: Recorded, left: int) -> None:
+    """With too few of them for a trial to lead lower, the run stays where it has converged, and says so."""
+    found, result = recorded(max_iterations=plain[1].last.index + left)
+    assert same(found, plain[0])
+    assert result.status is Status.CONVERGED
+    assert ("0 of 1 hop led lower" in result.message) == (left > 0)
+
+
+def test_the_mesh_becomes_finer_before_and_after(tmp_path: Path) -> None:
+    trajectory = Trajectory()
+    result = minimize(saddle(), RelaxOptions(mesh="finer", vertices=VERTICES, hops=1, seed=1), trajectory.add)
+    trajectory.save(tmp_path / "T.npz")
+    assert "1 of 1 hop led lower" in result.message
+    assert verify(tmp_path / "T.npz").accepted
+
+
+def test_at_the_circle_there_is_nothing_to_look_for() -> None:
+    result = minimize(regular_polygon(40), RelaxOptions(hops=3))
+    assert "hop" not in result.message
+
+
+def test_methods_that_penalise_lengths_make_no_hops() -> None:
+    result = minimize(torus_trefoil(60), RelaxOptions(method="penalty-lbfgs", hops=1, tolerance=1e-2))
+    assert "hop" not in result.message
+
+
+def test_composite_knots_make_no_hops() -> None:
+    options = RelaxOptions(hops=1, tolerance=1e-2)
+    result = minimize(knot("3_1#3_1"), options)
+    assert "composite" in result.message
+    assert "hop" not in result.message
+
+
+# -- unknots that are no circles -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("hops", "advice"), [(0, "hops may find the way"), (1, "more hops may find the way")])
+def test_an_unknot_above_the_circle_is_never_called_done(hops: int, advice: str) -> None:
+    at_rest = RelaxOptions(tolerance=1e6, edge_lengths="keep", mesh="fixed", max_iterations=1, hops=hops)
+    result = minimize(knot("culprit"), at_rest)
+    assert result.status is Status.CONVERGED
+    assert result.message.endswith(f"; {IS_UNKNOT}: {advice}")
+
+
+def test_a_diagram_of_many_crossings_may_be_one_of_an_unknot() -> None:
+    assert told_of_unknot(knot("ochiai-3")) == MAY_BE_UNKNOT
+
+
+def test_knots_links_circles_and_what_is_not_in_space_are_no_case_for_it() -> None:
+    for curve in (knot("8_19"), hopf_link(40), regular_polygon(40), Curve(regular_polygon(40).vertices[:, :2])):
+        assert told_of_unknot(curve) is None
+
+
+def test_a_circle_is_told_from_what_is_wound_like_one() -> None:
+    angles = np.sort(np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, 60))
+    uneven = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
+    assert is_circle(Curve(uneven))
+    assert is_circle(Curve(100.0 + uneven @ np.linalg.qr(np.arange(9.0).reshape(3, 3) ** 2)[0]))
+    assert not is_circle(Curve(uneven * [1.0, 0.5, 1.0]))
+    assert not is_circle(torus_knot(9, 2, 400))
+    assert not is_circle(hopf_link(40))
+
+
+# -- stirring --------------------------------------------------------------------------------------------------------
+
+
+def test_stirring_stays_on_the_constraints_below_its_ceiling_and_goes_far() -> None:
+    start = Run(start_problem(saddle(), OPTIONS), saddle(), OPTIONS).point
+    stir = Stir()
+    steps = list(stir(start, np.random.default_rng(0)))
+    assert len(steps) > 20
+    assert all(step.certified for step in steps)
+    assert all(step.point.infeasibility < 1e-9 for step in steps)
+    assert max(step.point.energy for step in steps) < stir.ceilings[1] * start.energy
+    moved = np.linalg.norm(steps[-1].point.vertices - start.vertices, axis=1)
+    assert moved.mean() > 0.5 * np.linalg.norm(start.vertices - start.vertices.mean(axis=0), axis=1).mean()
+
+
+def test_flows_have_no_divergence() -> None:
+    point = Run(start_problem(saddle(), OPTIONS), saddle(), OPTIONS).point
+    flow = Stir()._flow(point, np.random.default_rng(0))
+    x, h = np.array([[0.3, -0.2, 0.1]]), 1e-5
+    divergence = sum((flow(x + h * e)[0] - flow(x - h * e)[0]) @ e for e in np.eye(3)) / (2.0 * h)
+    assert abs(divergence) < 1e-8
+
+
+@pytest.mark.parametrize("change", [{"hops": -1}, {"hops": 1.5}, {"seed": -1}, {"seed": None}])
+def test_bad_values_are_refused(change: dict[str, object]) -> None:
+    with pytest.raises(OptionError, match=next(iter(change))):
+        RelaxOptions(**change)
