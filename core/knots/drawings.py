@@ -16,7 +16,7 @@ from ..curve.distances import arc_distance_of_pairs
 from ..curve.refine import subdivide
 from ..errors import CurveError, Place
 from ..types import BoolArray, FloatArray, IntArray
-from .crossings import plane_crossings
+from ..diagrams.crossings import plane_crossings
 from .lifting import lifted
 
 MAX_POINTS = 20_000  # of a drawing: seconds to compare all its edges
