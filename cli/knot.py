@@ -4,8 +4,7 @@ import argparse
 from typing import Any
 
 from ..core import CurveError
-from ..core.curve.io import FORMATS
-from ..core.knots import knot, knot_names, smooth_knot
+from ..core.knots import FORMATS, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 from .streams import emit

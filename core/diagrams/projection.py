@@ -43,7 +43,9 @@ def _seen(curve: Curve, points: FloatArray) -> Diagram | None:
     heights = points[curve.mesh.tails[edges], 2] * (1.0 - at) + points[curve.mesh.heads[edges], 2] * at
     above = heights[0] > heights[1]
     size = float(np.abs(points).max())
-    margin = min(at.min(initial=1.0), 1.0 - at.max(initial=0.0), np.abs(heights[0] - heights[1]).min(initial=size) / size)
+    margin = min(
+        at.min(initial=1.0), 1.0 - at.max(initial=0.0), np.abs(heights[0] - heights[1]).min(initial=size) / size
+    )
     if margin < _CLEAR:
         return None
     signs = np.sign(np.where(above, found.turn, -found.turn)).astype(int).tolist()

@@ -9,7 +9,7 @@ from .reduction import reduced
 from .rerouting import shortened, shuffled
 
 _WORK = 400_000  # crossings looked at by moves that remove some, all in all: seconds
-_SHUFFLES = 1000  # random moves without any that removes crossings, after which a diagram is given up on
+_SHUFFLES = 150  # random moves without any that removes crossings, after which a diagram is given up on
 _FEW = 60  # crossings, of diagrams that random moves may still improve
 
 

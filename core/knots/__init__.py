@@ -1,8 +1,10 @@
 """Knots and links to start from: the named table and its relaxed shapes, torus knots, braids, drawings, satellites."""
 
 from .closures import braid_closure
+from .coded import FORMATS, coded_knot
 from .contacts import rope, spiral
 from .drawings import Drawing
+from .knot_type import KnotType, knot_type
 from .lattice import lattice_closure
 from .lissajous import lissajous_knot
 from .names import UnknownKnotError, braid_word, knot, knot_names
@@ -16,18 +18,22 @@ from .unknots import hard_unknot, unknot_word
 
 __all__ = [
     "ALIASES",
+    "FORMATS",
     "HARD_UNKNOTS",
     "KNOTS",
     "Drawing",
+    "KnotType",
     "UnknownKnotError",
     "braid_closure",
     "braid_word",
     "cable",
+    "coded_knot",
     "diagram_knot",
     "double",
     "hard_unknot",
     "knot",
     "knot_names",
+    "knot_type",
     "lattice_closure",
     "lissajous_knot",
     "rope",

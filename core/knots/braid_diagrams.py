@@ -22,5 +22,7 @@ def braid_diagram(word: Sequence[int]) -> Diagram:
         passes[at[place]].append((crossing, letter > 0))  # in a positive crossing the one that moves outwards is over
         passes[at[place + 1]].append((crossing, letter < 0))
         at[place], at[place + 1] = at[place + 1], at[place]
-    parts = (tuple(each for strand in cycle for each in passes[strand]) for cycle in cycles(permutation(letters, strands)))
+    parts = (
+        tuple(each for strand in cycle for each in passes[strand]) for cycle in cycles(permutation(letters, strands))
+    )
     return Diagram(tuple(parts), tuple(1 if letter > 0 else -1 for letter in letters))

@@ -21,8 +21,32 @@ _SEVERAL = 2  # least number of factors of a sum
 
 # The knots that are their own mirror images, whatever their orientation (KnotInfo: "symmetry type"), and such links.
 AMPHICHEIRAL = frozenset(
-    "0_1 4_1 6_3 8_3 8_9 8_12 8_17 8_18 10_17 10_33 10_37 10_43 10_45 10_79 10_81 10_88 10_99 10_109 10_115 10_118 "
-    "10_123 L2a1 L6a2 L6a4".split()
+    [
+        "0_1",
+        "4_1",
+        "6_3",
+        "8_3",
+        "8_9",
+        "8_12",
+        "8_17",
+        "8_18",
+        "10_17",
+        "10_33",
+        "10_37",
+        "10_43",
+        "10_45",
+        "10_79",
+        "10_81",
+        "10_88",
+        "10_99",
+        "10_109",
+        "10_115",
+        "10_118",
+        "10_123",
+        "L2a1",
+        "L6a2",
+        "L6a4",
+    ]
 )
 
 

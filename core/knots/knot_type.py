@@ -34,7 +34,7 @@ from .catalogue import (
 )
 
 MAX_VERTICES = 20_000  # seconds to find the crossings
-_VIEWS = 4  # a curve of many crossings simplifies better in some
+_VIEWS = 12  # a curve of many crossings simplifies better in some
 _DOUBLED_TO = 14  # crossings of knots whose doubles are looked at
 _MAX_NAMES = 16  # in a list of names one of which is the right one
 

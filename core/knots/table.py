@@ -6,9 +6,9 @@ Handedness is the braid word's, positive letters being right-handed crossings: 3
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
+from ..diagrams import PlanarCrossing as Crossing
 from . import hard_codes, words_8, words_9, words_10
 from .braids import Word
-from .planar import Crossing
 
 _LINKS: dict[str, Word] = {
     "L2a1": (1, 1),
