@@ -12,6 +12,7 @@ from .streams import emit, one_line
 COMMANDS = {
     "relax": "relax a curve",
     "energy": "print the energy of a curve",
+    "info": "tell the knot type of curves, and measure them",
     "verify": "check a trajectory for contact",
     "compare": "compare descent methods on a curve",
     "knot": "write a named knot",

@@ -33,8 +33,8 @@ def writhe_and_crossings(curve: Curve) -> tuple[float, float]:
 def _areas(curve: Curve, first: int) -> FloatArray:
     """Signed areas for a block of edges with all later ones but their neighbours; shape (rows, n − first).
 
-    Each is that of two triangles between the directions of chords (van Oosterom and Strackee, *IEEE Trans. Biomed. Eng.*
-    30, 1983), whose triple products are equal.
+    Each is that of two triangles between the directions of chords (van Oosterom and Strackee, *IEEE Trans. Biomed.
+    Eng.* 30, 1983), whose triple products are equal.
     """
     mesh, tails = curve.mesh, curve.vertices
     heads = tails[mesh.heads]

@@ -119,10 +119,8 @@ def _gauss(text: str) -> Diagram:
 def _signed_gauss(text: str) -> Diagram:
     parts, signs = [], dict[int, str]()
     for word in filter(None, re.split(r"[\[\](){}|/;,\n]+\s*", text)):
-        if _SIGNED.sub("", word).strip():
-            raise CurveError(
-                f"{_SIGNED.sub('', word).strip()[:30]!r} is no part of a Gauss code such as O1+U2+O3+U1+O2+U3+"
-            )
+        if foreign := _SIGNED.sub("", word).strip():
+            raise CurveError(f"{foreign[:30]!a} is no part of a Gauss code such as O1+U2+O3+U1+O2+U3+")
         parts.append([(int(number), level in "Oo") for level, number, _ in _SIGNED.findall(word)])
         for _, number, sign in _SIGNED.findall(word):
             if signs.setdefault(int(number), sign) != sign:
@@ -142,9 +140,7 @@ def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[list[list[Pass]], list[i
         levels.setdefault(old, []).append(over)
     for old, found in levels.items():
         if sorted(found) != [False, True]:
-            raise CurveError(
-                f"crossing {old} of the Gauss code must be there twice, above (positive) and below (negative)"
-            )
+            raise CurveError(f"crossing {old} of the Gauss code must be there once above (positive) and once below")
     number = {old: k for k, old in enumerate(levels)}
     return [[(number[old], over) for old, over in part] for part in parts], list(number)
 

@@ -1,4 +1,4 @@
-"""Diagrams from planar diagram codes: the four edges at each crossing, counterclockwise from the lower one coming in."""
+"""Diagrams from planar diagram codes: edges at each crossing, counterclockwise from the lower one coming in."""
 
 from collections.abc import Hashable, Sequence
 

@@ -1,6 +1,7 @@
 """Diagrams of polygons in space: what is seen of them from some direction."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def _seen(curve: Curve, points: FloatArray) -> Diagram | None:
     order = np.argsort(along)
     ends = np.searchsorted(along[order], curve.mesh.offsets)
     passes: list[tuple[Pass, ...]] = []
-    for a, b in zip(ends[:-1], ends[1:], strict=True):
+    for a, b in pairwise(ends.tolist()):
         part = order[a:b]
         passes.append(tuple(zip(crossing[part].tolist(), upper[part].tolist(), strict=True)))
     diagram = Diagram(tuple(passes), tuple(signs))

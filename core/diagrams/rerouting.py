@@ -1,7 +1,7 @@
 """Moves of whole strands: one that only passes over (or under) others may take any other way over (under) them.
 
-Reidemeister's first two moves are the shortest of these.  Those that remove crossings undo nearly all of the famous hard
-diagrams of the unknot, which Reidemeister's moves do not.
+Reidemeister's first two moves are the shortest of these.  Those that remove crossings undo, in some view or
+other, all the famous hard diagrams of the unknot, which Reidemeister's moves do not.
 """
 
 from collections import deque

@@ -61,7 +61,7 @@ def drawn(diagram: Diagram) -> Curve:
     parts: list[FloatArray] = []
     for k, piece in enumerate(without_nugatory(diagram).pieces()):
         curve = diagram_knot(piece.planar_code) if piece.crossings else _circle()
-        parts += [part + [(2.0 + _GAP) * k, 0.0, 0.0] for part in curve.components]
+        parts += [part + (2.0 + _GAP) * k * np.eye(3)[0] for part in curve.components]
     curve = Curve.from_components(parts)
     check_embedded(curve)
     return curve

@@ -70,7 +70,7 @@ class KnotType:
 
     @cached_property
     def alexander(self) -> tuple[int, ...] | None:
-        """Coefficients of the Alexander polynomial, positive at t = 1; None for links, and where it was not computed."""
+        """Coefficients of the Alexander polynomial, positive at t = 1; None for links and large diagrams."""
         diagram = self.diagram
         return alexander(diagram) if diagram is not None and len(diagram.passes) == 1 else None
 

@@ -37,8 +37,8 @@ def knot(name: str, vertices: int | None = None) -> Curve:
 
     Names: the table's (``3_1`` to ``10_165``, ``L5a1``), the words of :data:`ALIASES` (``trefoil``,
     ``figure-eight``), torus knots ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, mirror images
-    ``m3_1``, and connected sums ``3_1#m3_1``; also the diagrams of :data:`HARD_UNKNOTS` (``goeritz``), by themselves, and
-    codes of diagrams (``DT: [4 6 2]``, ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``).
+    ``m3_1``, and connected sums ``3_1#m3_1``; also the diagrams of :data:`HARD_UNKNOTS` (``goeritz``), by themselves,
+    and codes of diagrams (``DT: [4 6 2]``, ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``).
     Letter case, spaces, hyphens and a last word "knot", "unknot" or "link" don't matter.
 
     Parameters
