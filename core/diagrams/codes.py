@@ -20,7 +20,8 @@ from .realize import realized
 
 MAX_CROSSINGS = 1000  # seconds to draw
 _MAX_LENGTH = 100_000  # characters
-_TOKEN = re.compile(r"[\[({]|[\])}]|[+-]?\d{1,9}(?![\d.])|[\s,;]+|.", re.ASCII | re.DOTALL)
+_TOKEN = re.compile(r"[\[({]|[\])}]|[+-]?\d+|[\s,;]+|.", re.ASCII | re.DOTALL)
+_MAX_DIGITS = 9
 _LETTERS = re.compile(r"[A-Za-z]+")
 _SIGNED = re.compile(r"([OU])(\d{1,9})([+-])\s*", re.ASCII | re.IGNORECASE)
 _PREFIX = re.compile(r"\s*(PD|DT|Gauss(?:\s?code)?)\b\s*(?:code\b\s*)?[:=]?\s*(?=\S)", re.IGNORECASE)
@@ -177,10 +178,10 @@ def _nested(text: str) -> Nested:
                 raise CurveError("the code has a closing bracket too many")
             done = stack.pop()
             stack[-1].append(done)
-        elif token.lstrip("+-").isdigit():
+        elif token.lstrip("+-").isdigit() and len(token) <= _MAX_DIGITS:
             stack[-1].append(int(token))
         elif not re.fullmatch(r"[\s,;]+", token):
-            raise CurveError(f"{token!a} in the code is neither a bracket nor a whole number of up to 9 digits")
+            raise CurveError(f"{token[:30]!a} in the code is neither a bracket nor a whole number of at most 9 digits")
     if len(stack) > 1:
         raise CurveError("the code has no closing bracket")
     return cast(Nested, stack[0])

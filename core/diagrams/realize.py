@@ -49,7 +49,7 @@ def realized(passes: Sequence[Sequence[Pass]]) -> Diagram:
     if not count:
         return whole
     visits = _simple_curve(whole)
-    left = _sides(visits, count)
+    left, groups = _sides(visits, count)
     signs = [0] * count
     for crossing, (first, second) in enumerate(_pairs(visits, count)):
         around = [visits[first].come, visits[first].leave, visits[second].come, visits[second].leave]
@@ -61,6 +61,10 @@ def realized(passes: Sequence[Sequence[Pass]]) -> Diagram:
     diagram = Diagram(whole.passes, tuple(sign * signs[0] for sign in signs))
     if not Faces(diagram).is_planar:
         raise CurveError(_NOT_PLANAR)
+    if groups > 1:
+        raise CurveError(
+            "the code is of a composite knot or link, whose parts it leaves free to be mirror images; give a PD code"
+        )
     return diagram
 
 
@@ -108,8 +112,11 @@ def _pairs(visits: list[_Visit], count: int) -> list[list[int]]:
     return places
 
 
-def _sides(visits: list[_Visit], count: int) -> list[bool]:
-    """Whether each crossing's chord lies on the left of the curve; it is the other way for chords that cross."""
+def _sides(visits: list[_Visit], count: int) -> tuple[list[bool], int]:
+    """Whether each crossing's chord lies on the left of the curve, chords that cross on different sides.
+
+    Also how many groups of chords that cross there are, each of which might as well change sides.
+    """
     chords = _pairs(visits, count)
     side: dict[int, bool] = {}
     several = 0
@@ -129,8 +136,4 @@ def _sides(visits: list[_Visit], count: int) -> list[bool]:
                 elif side[other] == side[here]:
                     raise CurveError(_NOT_PLANAR)
         several += len(side) > known
-    if several > 1:
-        raise CurveError(
-            "the code is of a composite knot or link, whose parts it leaves free to be mirror images; give a PD code"
-        )
-    return [side[crossing] for crossing in range(count)]
+    return [side[crossing] for crossing in range(count)], several

@@ -13,6 +13,8 @@ def knot_signature(knot: Diagram) -> int:
     It is that of the Goeritz matrix of the white regions of a chessboard colouring, corrected by the crossings at which
     both strands run the same way along the black surface.
     """
+    if not knot.crossings:
+        return 0
     faces = Faces(knot)
     white = _white(faces)
     goeritz, correction = np.zeros((faces.count, faces.count)), 0
