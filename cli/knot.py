@@ -4,8 +4,7 @@ import argparse
 from typing import Any
 
 from ..core import CurveError
-from ..core.curve.io import FORMATS
-from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
+from ..core.knots import FORMATS, UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 from .streams import emit
@@ -16,6 +15,8 @@ examples:
   mobius-flow knot "T(3,5)" - --format obj
   mobius-flow knot 7_4 smooth.obj --smooth
   mobius-flow knot overhand arc.txt
+  mobius-flow knot "DT: [4 8 10 2 6]" coded.txt
+  mobius-flow knot "PD[X[1,5,2,4],X[3,1,4,6],X[5,3,6,2]]" coded.txt
   mobius-flow knot --list
 
 exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
@@ -26,7 +27,9 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     """Describe the subcommand."""
     parser.description, parser.epilog = "Write a named knot as a curve.", _EPILOG
     parser.add_argument(
-        "name", metavar="NAME", help='such as 3_1, goeritz, hopf, overhand, "T(3,5)" or "braid(1,-2,1,-2)"'
+        "name",
+        metavar="NAME",
+        help='such as 3_1, L7a3, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)" or a code, "DT: [4 6 2]"',
     )
     parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(FORMATS)}, or - for standard output")
     curves.add_format(parser)

@@ -8,8 +8,9 @@ from types import MappingProxyType
 
 from ..addon.pictures import export, film
 from ..core import Curve, Iterate, MobiusFlowError, Result
-from ..core.curve.io import FORMATS, Format
+from ..core.curve.io import Format
 from ..core.errors import wrong_suffix
+from ..core.knots import FORMATS
 from . import curves
 from .progress import show_frames
 

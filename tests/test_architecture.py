@@ -19,7 +19,7 @@ FLOORS = (
     {"core.types", "core.errors"},
     {"core.verify", "core.system", "core.quadrature"},
     {"core.curve"},
-    {"core.energies", "core.collision", "core.constraints"},
+    {"core.energies", "core.collision", "core.constraints", "core.diagrams"},
     {"core.saddle", "core.knots"},
     {"core.metrics"},
     {"core.hierarchy"},

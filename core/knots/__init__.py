@@ -4,8 +4,10 @@ arcs.
 
 from .arcs import ARCS, overhand
 from .closures import braid_closure
+from .coded import FORMATS, coded_knot
 from .contacts import rope, spiral
 from .drawings import Drawing
+from .knot_type import KnotType, knot_type
 from .lattice import lattice_closure
 from .lissajous import lissajous_knot
 from .names import UnknownKnotError, braid_word, knot, knot_names
@@ -20,18 +22,22 @@ from .unknots import hard_unknot, unknot_word
 __all__ = [
     "ALIASES",
     "ARCS",
+    "FORMATS",
     "HARD_UNKNOTS",
     "KNOTS",
     "Drawing",
+    "KnotType",
     "UnknownKnotError",
     "braid_closure",
     "braid_word",
     "cable",
+    "coded_knot",
     "diagram_knot",
     "double",
     "hard_unknot",
     "knot",
     "knot_names",
+    "knot_type",
     "lattice_closure",
     "lissajous_knot",
     "overhand",

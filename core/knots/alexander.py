@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Curve, check_closed
+from ..diagrams.crossings import plane_crossings
 from ..types import BoolArray, FloatArray, IntArray
-from .crossings import plane_crossings
 
 _PRIME = 2_147_482_681  # below 2³¹, so that products fit 64 bits; 1 more than a multiple of 2·3·5·7
 _ORDERS = (2, 3, 5, 7)

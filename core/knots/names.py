@@ -4,16 +4,19 @@ import difflib
 import re
 
 from ..curve import Curve
+from ..diagrams.codes import is_code
 from ..errors import CurveError, MobiusFlowError
 from .arcs import ARCS
 from .braids import Word, connected_sum, mirror
 from .closures import braid_closure
+from .coded import coded_knot
 from .planar import diagram_knot
 from .table import ALIASES, HARD_UNKNOTS, KNOTS
 from .torus import torus_knot
 
 _CALL = re.compile(r"(t|torus|braid)\(([^()#]*)(\)?)")
 _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
+_BEYOND = re.compile(r"[kl]?1[1-9]_?[an]_?\d+|l([89]|10)[an]\d+|1[1-9]_\d+", re.ASCII)  # names of larger tables
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
@@ -35,8 +38,9 @@ def knot(name: str, vertices: int | None = None) -> Curve:
 
     Names: the table's (``3_1`` to ``10_165``, ``L5a1``), the words of :data:`ALIASES` (``trefoil``,
     ``figure-eight``), torus knots ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, mirror images
-    ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, the diagrams of
-    :data:`HARD_UNKNOTS` (``goeritz``) and the open polygons of :data:`ARCS` (``overhand``).
+    ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, the diagrams of :data:`HARD_UNKNOTS`
+    (``goeritz``), the open polygons of :data:`ARCS` (``overhand``), and codes of diagrams (``DT: [4 6 2]``,
+    ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``).
     Letter case, spaces, hyphens and a last word "knot", "unknot" or "link" don't matter.
 
     Parameters
@@ -61,6 +65,8 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     (50, 50)
     """
     name = str(name)  # a number is no name either, and is told so
+    if is_code(name):
+        return coded_knot(name, vertices)
     by_itself = _unspaced(_plain(name))
     if by_itself in ARCS:
         return ARCS[by_itself](vertices)
@@ -137,6 +143,11 @@ def _call(part: str, name: str) -> tuple[str, Word] | None:
 
 def _unknown(name: str) -> UnknownKnotError:
     plain = _plain(name)
+    if _BEYOND.fullmatch(_squeezed(name)):
+        return UnknownKnotError(
+            f"{name[:60]!r} has more crossings than the table here, 10 for knots and 7 for links; give its code, "
+            'such as "DT: [4 6 2]", "PD[X[1,5,2,4], ...]" or "Gauss: 1 -2 3 -1 2 -3"'
+        )
     alike = [key for key in _TABLE if "_" in plain and key.startswith(plain.partition("_")[0] + "_")]
     close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES, *HARD_UNKNOTS], n=3, cutoff=0.5)
     advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""

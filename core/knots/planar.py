@@ -1,4 +1,4 @@
-"""Knots from planar diagram codes: the diagram drawn with straight lines, its crossings lifted into space.
+"""Knots and links from planar diagram codes: the diagram drawn with straight lines, its crossings lifted into space.
 
 A code lists for every crossing its four edges, counterclockwise from the one that comes in below.  Crossings, edges
 and faces become nodes of a triangulated disk, which Tutte's theorem (*How to draw a graph*, 1963) draws without
@@ -8,13 +8,15 @@ overlaps for any positive weights; weights that grow with lengths make the drawi
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import spsolve
 
 from ..curve import Curve, refine
+from ..diagrams import PlanarCrossing as Crossing
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
 from .rings import MAX_VERTICES, check_whole
 
-Crossing = tuple[int, int, int, int]
 _Dart = tuple[int, int]  # a crossing, and the place from 0 to 3 of an edge that leaves it
 
 _ROUNDS = 4  # in which weights grow with the square roots of lengths; with many more some lines collapse
@@ -22,12 +24,12 @@ _LIFT = 0.5  # of the shortest line from a crossing: the height of its strands a
 
 
 def diagram_knot(code: Sequence[Crossing], vertices: int | None = None) -> Curve:
-    """Make the knot of a planar diagram code as a polygon with four vertices for every crossing, or more.
+    """Make the knot or link of a planar diagram code as a polygon with four vertices for every crossing, or more.
 
     Parameters
     ----------
     code
-        Of a knot, with no crossing that could be undone by turning over what is on one side of it.
+        Of a diagram that hangs together, with no crossing that could be undone by turning over one side of it.
     vertices
         Total number of vertices.
 
@@ -44,13 +46,16 @@ def diagram_knot(code: Sequence[Crossing], vertices: int | None = None) -> Curve
     diagram = _Diagram(code)
     points = diagram.drawing()
     count = len(code)
-    path: list[tuple[float, float, float]] = []
-    for crossing, place in diagram.passes():
-        near = points[[count + diagram.edges[label] for label in code[crossing]]]
-        lift = _LIFT * float(np.linalg.norm(near - points[crossing], axis=1).min())
-        x, y = points[crossing]
-        path += [(x, y, lift if place % 2 else -lift), (*near[(place + 2) % 4], 0.0)]
-    curve = Curve(path)
+    parts: list[list[tuple[float, float, float]]] = []
+    for passes in diagram.components():
+        path: list[tuple[float, float, float]] = []
+        for crossing, place in passes:
+            near = points[[count + diagram.edges[label] for label in code[crossing]]]
+            lift = _LIFT * float(np.linalg.norm(near - points[crossing], axis=1).min())
+            x, y = points[crossing]
+            path += [(x, y, lift if place % 2 else -lift), (*near[(place + 2) % 4], 0.0)]
+        parts.append(path)
+    curve = Curve.from_components(parts)
     if vertices is None:
         return curve
     check_whole(vertices)
@@ -69,8 +74,8 @@ class _Diagram:
             for place, label in enumerate(crossing):
                 darts.setdefault(label, []).append((c, place))
         self._code, self.edges = code, {label: k for k, label in enumerate(darts)}
-        if len(code) < 3 or any(len(crossing) != 4 for crossing in code) or any(len(d) != 2 for d in darts.values()):
-            raise CurveError("a planar diagram code has 3 or more crossings of 4 edges, and every edge twice")
+        if len(code) < 2 or any(len(crossing) != 4 for crossing in code) or any(len(d) != 2 for d in darts.values()):
+            raise CurveError("a planar diagram code has 2 or more crossings of 4 edges, and every edge twice")
         self._mate = {dart: other for pair in darts.values() for dart, other in (pair, pair[::-1])}
         faces = list(self._faces())
         if len(faces) != len(code) + 2:
@@ -82,15 +87,19 @@ class _Diagram:
         self._outer = max(faces, key=len)
         self._inner = [face for face in faces if face is not self._outer]
 
-    def passes(self) -> Iterator[_Dart]:
-        """Follow the knot: each crossing it comes to and the place where it comes in."""
-        dart = start = (0, 2)
-        for count in range(1, len(self.edges) + 1):
-            crossing, place = self._mate[dart]
-            yield crossing, place
-            dart = crossing, (place + 2) % 4
-            if dart == start and count < len(self.edges):
-                raise CurveError("the planar diagram code is of a link of several components; give that of a knot")
+    def components(self) -> Iterator[list[_Dart]]:
+        """Follow each component: the crossings that it comes to, and the places where it comes in."""
+        left = dict.fromkeys((crossing, place) for place in (2, 1) for crossing in range(len(self._code)))
+        while left:
+            passes: list[_Dart] = []
+            dart = start = next(iter(left))
+            while not passes or dart != start:
+                crossing, place = self._mate[dart]
+                passes.append((crossing, place))
+                dart = crossing, (place + 2) % 4
+                for seen in (dart, (crossing, place)):
+                    left.pop(seen, None)
+            yield passes
 
     def drawing(self) -> FloatArray:
         """Positions of all nodes in the plane, the outer face's on a circle; shape (nodes, 2)."""
@@ -105,16 +114,17 @@ class _Diagram:
     def _balanced(self, tails: IntArray, heads: IntArray, weights: FloatArray) -> FloatArray:
         """Put every inner node into the weighted mean of its neighbours."""
         size = 3 * len(self._code) + len(self._inner)
-        laplacian = np.zeros((size, size))
-        np.add.at(laplacian, (np.r_[tails, heads], np.r_[heads, tails]), -np.r_[weights, weights])
-        laplacian[np.diag_indices(size)] = -laplacian.sum(axis=1)
+        adjacency = sp.coo_array(
+            (np.r_[weights, weights], (np.r_[tails, heads], np.r_[heads, tails])), shape=(size, size)
+        )
+        laplacian = (sp.diags_array(adjacency.sum(axis=1)) - adjacency).tocsc()
         inner = np.ones(size, dtype=bool)
         inner[self._outer] = False
         angles = -2 * np.pi * np.arange(len(self._outer)) / len(self._outer)  # the outer face is on its left
         points = np.zeros((size, 2))
         points[self._outer] = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        right = -laplacian[np.ix_(inner, ~inner)] @ points[~inner]
-        points[inner] = np.linalg.solve(laplacian[np.ix_(inner, inner)], right)
+        rows = laplacian[inner]
+        points[inner] = spsolve(rows[:, inner], -rows[:, ~inner] @ points[~inner])
         return points
 
     def _lines(self) -> IntArray:

@@ -9,7 +9,11 @@ from curve_checks import strand_distance
 from jones import Laurent, jones
 from knot_diagrams import pairwise_linking, simplified
 from knot_type import UNKNOT, knot_invariants
+from mobius_flow.core.diagrams import diagram_of, normalized_bracket
 from mobius_flow.core.knots import ALIASES, KNOTS, knot
+from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from mobius_flow.core.knots.table import ROLFSEN
+from spherogram import Link
 
 _LINES = (Path(__file__).parent / "known_knots.txt").read_text().splitlines()
 KNOWN = {line.split()[0]: line.split()[1:] for line in _LINES if not line.startswith("#")}
@@ -17,14 +21,31 @@ KNOWN = {line.split()[0]: line.split()[1:] for line in _LINES if not line.starts
 # Pairs with the same knot Floer homology and the same Jones polynomial; everything else is told apart.
 TWINS = [{"8_8", "10_129"}, {"8_16", "10_156"}, {"10_25", "10_56"}, {"10_40", "10_103"}]
 
+# Linking numbers and Jones polynomials of the braid words, which are of Spherogram's links (see below).
 LINKS: dict[str, tuple[dict[tuple[int, int], int], Laurent]] = {
     "L2a1": ({(0, 1): 1}, {1: -1, 5: -1}),
     "L4a1": ({(0, 1): 2}, {3: -1, 7: -1, 9: 1, 11: -1}),
     "L5a1": ({(0, 1): 0}, {-7: 1, -5: -2, -3: 1, -1: -2, 1: 1, 3: -1}),
+    "L6a1": ({(0, 1): -2}, {-15: -1, -13: 2, -11: -2, -9: 2, -7: -3, -5: 1, -3: -1}),
+    "L6a2": ({(0, 1): 3}, {3: -1, 5: 1, 7: -2, 9: 2, 11: -2, 13: 1, 15: -1}),
     "L6a3": ({(0, 1): 3}, {5: -1, 9: -1, 11: 1, 13: -1, 15: 1, 17: -1}),
     "L6a4": ({(0, 1): 0, (0, 2): 0, (1, 2): 0}, {-6: -1, -4: 3, -2: -2, 0: 4, 2: -2, 4: 3, 6: -1}),
+    "L6a5": ({(0, 1): 1, (0, 2): -1, (1, 2): -1}, {-10: 1, -8: -2, -6: 3, -4: -1, -2: 3, 0: -1, 2: 1}),
     "L6n1": ({(0, 1): 1, (0, 2): 1, (1, 2): 1}, {4: 1, 8: 1, 12: 2}),
+    "L7a1": ({(0, 1): 0}, {-9: -1, -7: 3, -5: -4, -3: 4, -1: -5, 1: 3, 3: -3, 5: 1}),
+    "L7a2": ({(0, 1): -2}, {-9: -1, -7: 2, -5: -4, -3: 3, -1: -4, 1: 3, 3: -2, 5: 1}),
+    "L7a3": ({(0, 1): 0}, {-13: 1, -11: -2, -9: 3, -7: -3, -5: 2, -3: -3, -1: 1, 1: -1}),
+    "L7a4": ({(0, 1): 0}, {-11: 1, -9: -2, -7: 2, -5: -3, -3: 3, -1: -3, 1: 1, 3: -1}),
+    "L7a5": ({(0, 1): -1}, {-9: -1, -7: 2, -5: -3, -3: 3, -1: -4, 1: 2, 3: -2, 5: 1}),
+    "L7a6": ({(0, 1): -1}, {-13: 1, -11: -2, -9: 2, -7: -3, -5: 2, -3: -2, -1: 1, 1: -1}),
+    "L7a7": (
+        {(0, 1): -1, (0, 2): -1, (1, 2): -1},
+        {-18: -1, -16: 3, -14: -3, -12: 4, -10: -3, -8: 4, -6: -1, -4: 1},
+    ),
+    "L7n1": ({(0, 1): 2}, {5: -1, 9: -1, 13: -1, 15: 1}),
+    "L7n2": ({(0, 1): 0}, {1: -2, 3: 1, 5: -2, 7: 1, 9: -1, 11: 1}),
 }
+KNOTTED = {"L7a3", "L7n1"}  # links with a trefoil among their components
 
 
 def _integers(text: str) -> tuple[int, ...]:
@@ -76,7 +97,30 @@ def test_links(name: str) -> None:
     link = knot(name)
     assert pairwise_linking(link.components) == linking
     assert jones(simplified(link.components)) == polynomial
-    assert all(knot_invariants(part) == UNKNOT for part in link.components)
+    knotted = [part for part in link.components if knot_invariants(part) != UNKNOT]
+    assert len(knotted) == (name in KNOTTED)
+
+
+@pytest.mark.parametrize("name", LINKS)
+def test_links_are_those_of_spherogram(name: str) -> None:
+    ours, theirs = braid_diagram(KNOTS[name]), diagram_of(Link(name).PD_code())
+    assert normalized_bracket(ours, ours.own_writhe) == normalized_bracket(theirs, theirs.own_writhe)
+    assert sorted(map(abs, ours.linking_numbers)) == sorted(map(abs, theirs.linking_numbers))
+    assert len(ours.passes) == len(theirs.passes)
+
+
+def test_rolfsens_names_count_crossings_and_components() -> None:
+    counts: dict[str, int] = defaultdict(int)
+    for rolfsen, name in ROLFSEN.items():
+        crossings, components = rolfsen.split("_")[0].split("^")
+        assert name[1] == crossings
+        assert len(braid_diagram(KNOTS[name]).passes) == int(components)
+        counts[rolfsen.split("_")[0]] += 1
+    assert counts == {"2^2": 1, "4^2": 1, "5^2": 1, "6^2": 3, "6^3": 3, "7^2": 8, "7^3": 1}
+    assert set(ROLFSEN.values()) == set(LINKS)
+    # Determinants of two-bridge links from Conway's notation: 33, 222 and 412, 3112, 232.
+    for rolfsen, determinant in (("6^2_2", 10), ("6^2_3", 12), ("7^2_1", 14), ("7^2_2", 18), ("7^2_3", 16)):
+        assert sum(map(abs, LINKS[ROLFSEN[rolfsen]][1].values())) == determinant  # alternating
 
 
 @pytest.mark.parametrize("name", [*KNOTS, *ALIASES])

@@ -7,7 +7,7 @@ import numpy as np
 from ..curve import Mesh
 from ..types import FloatArray, IntArray
 
-_ROWS = 128  # of edge pairs looked at together
+_ROWS = 64  # of edge pairs looked at together
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ def plane_crossings(mesh: Mesh, points: FloatArray) -> PlaneCrossings:
 def _found(mesh: Mesh, points: FloatArray, first: int) -> FloatArray:
     """Crossings of a block of edges with later ones, as rows: both edges, where on them, and the turn."""
     i = np.arange(first, min(first + _ROWS, mesh.size))[:, None]
-    j = np.arange(mesh.size)[None, :]
+    j = _near(mesh, points, i.ravel())[None, :]
     start, edge = points[mesh.tails], points[mesh.heads] - points[mesh.tails]
     apart = start[j] - start[i]
     turn = edge[i, 0] * edge[j, 1] - edge[i, 1] * edge[j, 0]
@@ -55,4 +55,14 @@ def _found(mesh: Mesh, points: FloatArray, first: int) -> FloatArray:
         t = (apart[..., 0] * edge[i, 1] - apart[..., 1] * edge[i, 0]) / turn
     neighbours = (mesh.heads[i] == j) | (mesh.heads[j] == i)
     a, b = np.nonzero((j > i) & ~neighbours & (s > 0) & (s < 1) & (t > 0) & (t < 1))
-    return np.array([a + first, b, s[a, b], t[a, b], turn[a, b]], dtype=np.float64)
+    return np.array([a + first, j[0, b], s[a, b], t[a, b], turn[a, b]], dtype=np.float64)
+
+
+def _near(mesh: Mesh, points: FloatArray, block: IntArray) -> IntArray:
+    """Edges from the block's first on whose box meets the box around the block."""
+    later = np.arange(block[0], mesh.size)
+    low = np.minimum(points[mesh.tails[later], :2], points[mesh.heads[later], :2])
+    high = np.maximum(points[mesh.tails[later], :2], points[mesh.heads[later], :2])
+    own = slice(len(block))
+    meets = (low <= high[own].max(axis=0)) & (high >= low[own].min(axis=0))
+    return np.asarray(later[meets.all(axis=1)])

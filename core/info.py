@@ -1,0 +1,137 @@
+"""What there is to say about a curve as it stands: what ``mobius-flow info`` prints."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .collision import check_embedded, check_gap, minimal_gap
+from .collision.thickness import thickness
+from .curve import Curve, check_is_curve
+from .curve.writhe import writhe_and_crossings
+from .descent import Point
+from .driver import RelaxOptions
+from .driver.prepare import start_problem
+from .driver.stability import stability
+from .knots import KnotType, knot_type
+from .measure import MAX_VERTICES as PAIRS_UP_TO
+from .measure import measure
+from .units import check_units
+
+ENERGIES = ("moebius", "edge", "vertex")
+GRADIENT_UP_TO = 12_000  # vertices: a minute, with dense matrices
+INDEX_UP_TO = 400  # vertices, of dense eigenvalue problems of three times that size
+
+
+@dataclass(frozen=True)
+class Rest:
+    """Whether a curve is at rest.
+
+    Attributes
+    ----------
+    objective
+        The Möbius energy with its barrier.
+    gradient_norm
+        Of the projected gradient in the metric J_C, edge lengths being prescribed.
+    bound
+        At most this at rest: a tolerance times √E, as `relax` has it by default.
+    index
+        Number of negative eigenvalues of the Hessian, 0 at a minimum; None away from rest, and for many vertices.
+    """
+
+    objective: float
+    gradient_norm: float
+    bound: float
+    index: int | None
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the gradient is within the bound."""
+        return self.gradient_norm <= self.bound
+
+    @property
+    def sentence(self) -> str:
+        """The same in words."""
+        if not self.at_rest:
+            return "not at rest"
+        if self.index is None:
+            return "at rest; too many vertices to tell a minimum from a saddle"
+        return f"at rest at {f'a saddle with index {self.index}' if self.index else 'a minimum'}"
+
+
+@dataclass(frozen=True)
+class Info:
+    """Measures of a curve, in its own units; None stands for what the number of vertices or the dimension forbids.
+
+    Attributes
+    ----------
+    energies
+        By the names of :data:`ENERGIES`.
+    thickness
+        See :func:`~mobius_flow.core.collision.thickness.thickness`.
+    writhe, average_crossing_number
+        See :func:`~mobius_flow.core.curve.writhe.writhe_and_crossings`.
+    gap
+        Least distance of edges that are no neighbours; infinite for a triangle.
+    """
+
+    components: tuple[int, ...]
+    dimension: int
+    type: KnotType
+    energies: Mapping[str, float | None]
+    rest: Rest | None
+    length: float
+    thickness: float | None
+    writhe: float | None
+    average_crossing_number: float | None
+    shortest_edge: float
+    longest_edge: float
+    gap: float
+
+    @property
+    def ropelength(self) -> float | None:
+        """Length over thickness."""
+        return None if self.thickness is None else self.length / self.thickness
+
+
+def info(curve: Curve) -> Info:
+    """Measure a curve and tell its type.
+
+    Raises
+    ------
+    CurveError
+        If the curve touches itself, or has strands too near, or units too large or small, to compute with.
+    """
+    check_is_curve(curve)
+    check_units(curve)
+    check_embedded(curve)
+    check_gap(curve)
+    in_space, few = curve.dimension == 3, len(curve) <= PAIRS_UP_TO
+    writhe, crossings = writhe_and_crossings(curve) if in_space and few else (None, None)
+    return Info(
+        components=curve.mesh.component_sizes,
+        dimension=curve.dimension,
+        type=knot_type(curve),
+        energies={name: measure(curve, name) if few or name == "moebius" else None for name in ENERGIES},
+        rest=_rest(curve) if len(curve) <= GRADIENT_UP_TO else None,
+        length=curve.length,
+        thickness=thickness(curve) if few else None,
+        writhe=writhe,
+        average_crossing_number=crossings,
+        shortest_edge=float(curve.edge_lengths.min()),
+        longest_edge=float(curve.edge_lengths.max()),
+        gap=minimal_gap(curve)[0],
+    )
+
+
+def _rest(curve: Curve) -> Rest:
+    point = _point(curve, RelaxOptions(edge_lengths="keep"))
+    bound = RelaxOptions().tolerance * float(np.sqrt(abs(point.energy)))
+    index = None
+    if point.gradient_norm <= bound and len(curve) <= INDEX_UP_TO:
+        index = stability(point).index
+    return Rest(point.energy, point.gradient_norm, bound, index)
+
+
+def _point(curve: Curve, options: RelaxOptions) -> Point:
+    return start_problem(curve, options).at_curve(curve)

@@ -1,0 +1,118 @@
+"""``mobius-flow info`` from the terminal's point of view."""
+
+import json
+
+import pytest
+from mobius_flow.cli.main import main
+from mobius_flow.core.knots import smooth_knot
+
+KEYS = {
+    "input", "components", "vertices", "type", "energies", "length", "thickness", "ropelength", "writhe",
+    "average_crossing_number", "edges", "gap", "gradient_norm", "at_rest", "index",
+}  # fmt: skip
+TYPE_KEYS = {
+    "name", "names", "proved", "evidence", "crossings", "linking_numbers", "alexander", "determinant", "jones"
+}  # fmt: skip
+
+
+@pytest.fixture
+def run(capsys):
+    """Run a command; its exit status and both outputs."""
+
+    def runner(*arguments):
+        status = main([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return runner
+
+
+@pytest.fixture
+def trefoil(tmp_path, run):
+    run("knot", "3_1", tmp_path / "trefoil.obj")
+    return tmp_path / "trefoil.obj"
+
+
+def test_words(trefoil, run):
+    status, text, _ = run("info", trefoil)
+    assert status == 0
+    assert text.splitlines()[0] == str(trefoil)
+    assert "type                    3_1 (proved by the Jones polynomial" in text
+    for name in ("moebius energy", "objective", "not at rest", "ropelength", "writhe", "ratio 1"):
+        assert name in text
+
+
+def test_json(trefoil, tmp_path, run):
+    assert run("knot", "hopf", tmp_path / "hopf.txt")[0] == 0
+    found = json.loads(run("info", trefoil, tmp_path / "hopf.txt", "--json")[1])
+    assert [each["type"]["name"] for each in found] == ["3_1", "L2a1"]
+    one = json.loads(run("info", trefoil, "--json")[1])
+    assert one == found[0]
+    assert set(one) == KEYS
+    assert set(one["type"]) == TYPE_KEYS
+    assert one["type"]["jones"] == [[1, 1], [3, 1], [4, -1]]
+    assert one["type"]["determinant"] == 3
+    assert found[1]["type"]["linking_numbers"] == [1]
+    assert found[1]["components"] == 2
+    energy = float(run("energy", trefoil)[1])
+    assert one["energies"]["moebius"] == pytest.approx(energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("form", ["pd", "gauss"])
+def test_codes_are_written_and_read(form, tmp_path, run):
+    for name in ("8_20", "L7a7"):
+        assert run("knot", name, tmp_path / f"a.{form}")[0] == 0
+        assert json.loads(run("info", tmp_path / f"a.{form}", "--json")[1])["type"]["names"] == [name]
+
+
+def test_code_files(tmp_path, run):
+    (tmp_path / "a.dt").write_text("# the cinquefoil\n[6 8 10\n2 4]\n")
+    status, text, _ = run("info", tmp_path / "a.dt")
+    assert status == 0
+    assert " 5_1 (proved" in text
+    assert run("knot", "3_1", tmp_path / "b.dt")[::2] == (
+        2,
+        f"mobius-flow: {tmp_path}/b.dt: DT codes are only read; use .pd or .gauss\n",
+    )
+    (tmp_path / "bad.pd").write_text("PD[X[1,2,3,4]]")
+    status, _, said = run("info", tmp_path / "bad.pd")
+    assert status == 2
+    assert "bad.pd: edge 1 is in the planar diagram code once" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("DT: [4 6 2]", "3_1"), ("PD[X[1,5,2,4],X[3,1,4,6],X[5,3,6,2]]", "3_1"), ("Gauss: [[1,-2],[2,-1]]", "L2a1")],
+)
+def test_names_may_be_codes(name, told, tmp_path, run):
+    assert run("knot", name, tmp_path / "a.txt", "--vertices", 90)[0] == 0
+    found = json.loads(run("info", tmp_path / "a.txt", "--json")[1])
+    assert found["type"]["names"] == [told]
+    assert sum(found["vertices"]) == 90
+
+
+@pytest.mark.parametrize("name", ["K11n34", "11a_1", "L8n3", "12n242"])
+def test_names_of_larger_tables_are_asked_for_as_codes(name, run):
+    status, _, said = run("knot", name, "-")
+    assert status == 2
+    assert "give its code, such as" in said
+
+
+def test_refusals(trefoil, tmp_path, run):
+    assert run("info", "-", "-")[0] == 2
+    assert run("info", trefoil, tmp_path / "missing.txt")[::2] == (
+        2,
+        f"mobius-flow: {tmp_path}/missing.txt: cannot be read: No such file or directory\n",
+    )
+    crossed = tmp_path / "crossed.txt"
+    crossed.write_text("0 0 0\n1 1 0\n1 0 0\n0 1 0\n")
+    assert run("info", crossed)[0] == 2
+
+
+def test_a_relaxed_shape_of_many_vertices(tmp_path, run):
+    (tmp_path / "knot.txt").write_text(
+        "\n".join(" ".join(map(repr, point)) for point in smooth_knot("7_4", 2000).vertices.tolist())
+    )
+    found = json.loads(run("info", tmp_path / "knot.txt", "--json")[1])
+    assert found["type"]["name"] == "7_4"
+    assert found["at_rest"] is False

@@ -1,0 +1,139 @@
+"""Codes of diagrams as people write them."""
+
+import random
+from itertools import product
+
+import pytest
+from mobius_flow.core import CurveError
+from mobius_flow.core.diagrams import Diagram, diagram_of, jones, realized
+from mobius_flow.core.diagrams.codes import MAX_CROSSINGS, diagram_from_code, is_code
+from mobius_flow.core.diagrams.faces import Faces
+from mobius_flow.core.knots import KNOTS
+from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from spherogram import Link
+
+TREFOIL = {2: 1, 6: 1, 8: -1}
+TREFOILS = [
+    "PD[X[1,5,2,4],X[3,1,4,6],X[5,3,6,2]]",
+    "PD: [(1,5,2,4),(3,1,4,6),(5,3,6,2)]",
+    "pd [[1 5 2 4] [3 1 4 6] [5 3 6 2]]",
+    "PD: 1 5 2 4; 3 1 4 6; 5 3 6 2",
+    "PD = {{0,4,1,3},{2,0,3,5},{4,2,5,1}}",
+    "DT: [4 6 2]",
+    "DT[4,6,2]",
+    "DT: [(4,6,2)]",
+    "DT:cacbca",
+    "DT code: {-4,-6,-2}",
+    "Gauss: 1 -2 3 -1 2 -3",
+    "GaussCode[-1, 2, -3, 1, -2, 3]",
+    "Gauss: O1+U2+O3+U1+O2+U3+",
+    "gauss code: o7+u2+o3+u7+o2+u3+",
+]
+SCRAPS = ["", "1", "-", "[", "]", ",", "X", "O1+", "é", " 2"]
+HOPFS = ["PD[X[1,3,2,4],X[3,1,4,2]]", "Gauss: [[1,-2],[2,-1]]", "Gauss: O1+U2+ / U1+O2+", "DT: [(4),(2)]", "DT: bbaaba"]
+
+
+@pytest.mark.parametrize("code", TREFOILS)
+def test_spellings_of_the_trefoil(code: str) -> None:
+    assert is_code(code)
+    assert jones(diagram_from_code(code)) == TREFOIL
+
+
+@pytest.mark.parametrize("code", HOPFS)
+def test_spellings_of_the_hopf_link(code: str) -> None:
+    diagram = diagram_from_code(code)
+    assert len(diagram.passes) == 2
+    assert jones(diagram) == {1: -1, 5: -1}
+
+
+@pytest.mark.parametrize("code", ["PD[]", "DT: []", "Gauss: 1 -1", "PD[X[2,1,1,2]]", "DT: 2"])
+def test_unknots(code: str) -> None:
+    assert jones(diagram_from_code(code)) == {0: 1}
+
+
+@pytest.mark.parametrize("code", ["[(4,6,8,2)]", "[(4,8,10,2,6)]", "[(6,8),(2,4)]", "[(4,8,-12,2,-14,-16,-6,-10)]"])
+def test_dt_codes_are_read_as_spherogram_does(code: str) -> None:
+    theirs = diagram_of(Link(f"DT: {code}").PD_code())
+    assert jones(diagram_from_code(f"DT: {code}")) == jones(theirs)
+
+
+@pytest.mark.parametrize("name", [name for name in KNOTS if name != "0_1"][::7])
+def test_codes_of_braids_come_back(name: str) -> None:
+    diagram = braid_diagram(KNOTS[name])
+    assert jones(diagram_of(diagram.planar_code)) == jones(diagram)
+
+
+def test_codes_without_signs_are_realized_where_any_signs_are_planar() -> None:
+    random.seed(3)
+    found = 0
+    for _ in range(400):
+        count = random.randint(1, 5)
+        word = [(c, over) for c in range(count) for over in (False, True)]
+        random.shuffle(word)
+        cut = random.choice([0, 0, random.randint(1, 2 * count - 1)])
+        passes = tuple(filter(None, (tuple(word[:cut]), tuple(word[cut:]))))
+        planar = [s for s in product((1, -1), repeat=count) if Faces(Diagram(passes, s)).is_planar]
+        try:
+            signs = realized(passes).signs
+        except CurveError as error:
+            refusal = str(error)
+        else:
+            assert signs in planar
+            found += 1
+            continue
+        assert ("no diagram in the plane" in refusal) == (not planar) or "falls apart" in refusal
+    assert found > 50
+
+
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        ("PD[X[1,5,2,4],X[3,1,4,6],X[5,3,6]]", "crossing 3 of the planar diagram code has 3 edges"),
+        ("PD[X[1,5,2,4],X[3,1,4,6],X[5,3,6,7]]", "every edge must be there twice"),
+        ("PD[X[1,1,1,1]]", "4 times"),
+        ("PD[X[1,4,2,5],X[3,6,4,1],X[2,5,6,3]]", "cannot be drawn in the plane"),
+        ("PD[X[1,5,2,4]", "no closing bracket"),
+        ("PD[X[1,5,2,4]]]", "a closing bracket too many"),
+        ("PD: foo", "'f' in the code"),
+        ("PD: 1.5 2 3 4", "in the code is neither"),
+        ("PD [[1,[2,3]],[3]]", "brackets of the code"),
+        ("PD: 1111111111 2 3 4", "in the code is neither"),
+        ("DT: [4 6 3]", "each of 2, 4, … 6 once"),
+        ("DT: [4 4 2]", "each of 2, 4, … 6 once"),
+        ("DT: zz", "letters of a DT code"),
+        ("DT: cacbca.001", "'c' in the code"),
+        ("DT: [4 6 2 10 12 8]", "composite"),
+        ("Gauss: 1 2 1 2", "once above"),
+        ("Gauss: 1 -2 -1 2", "no diagram in the plane"),
+        ("Gauss: [[1,-1],[2,-2]]", "falls apart"),
+        ("Gauss: O1+U1-", "both signs"),
+        ("Gauss: O1+O2+U1+U2+", "no diagram in the plane"),
+        ("Gauss: O1+Q2+", "'Q2+' is no part"),
+        ("DT: [" + " ".join(str(2 * k) for k in range(1, MAX_CROSSINGS + 2)) + "]", "at most 1000"),
+        ("PD: " + "1 2 3 4 " * 1_000_000, "at most 100000"),
+        ("4 6 2", "begin it with PD:, DT: or Gauss:"),
+    ],
+)
+def test_bad_codes_are_one_sentence(code: str, said: str) -> None:
+    with pytest.raises(CurveError) as caught:
+        diagram_from_code(code)
+    assert said in str(caught.value)
+    assert len(str(caught.value)) < 250
+    assert "\n" not in str(caught.value)
+
+
+def test_mangled_codes_are_diagrams_or_one_sentence() -> None:
+    random.seed(5)
+    codes = TREFOILS + HOPFS
+    for _ in range(1500):
+        letters = list(random.choice(codes))
+        for _ in range(random.randint(1, 4)):
+            place = random.randrange(len(letters))
+            letters[place : place + random.randint(0, 2)] = random.choice(
+                ["", "1", "-", "[", "]", ",", "X", "O1+", "é", " 2"]
+            )
+        try:
+            diagram = diagram_from_code("".join(letters))
+        except CurveError:
+            continue
+        assert Faces(diagram).is_planar

@@ -1,0 +1,92 @@
+"""Moves keep the link, take crossings away, and find the factors of sums."""
+
+import numpy as np
+import pytest
+from mobius_flow.core.diagrams import Diagram, factors, is_least, jones, shuffled_down, simplified, views
+from mobius_flow.core.diagrams.faces import Faces
+from mobius_flow.core.diagrams.nugatory import without_nugatory
+from mobius_flow.core.diagrams.reduction import reduced
+from mobius_flow.core.diagrams.rerouting import shortened, shuffled
+from mobius_flow.core.knots import braid_word, hard_unknot, knot, scramble
+from mobius_flow.core.knots.braid_diagrams import braid_diagram
+
+NAMES = ["0_1", "3_1", "m5_2", "8_19", "10_132", "L2a1", "L6a4", "L7n1", "3_1#m4_1"]
+
+
+def messy(name: str, seed: int) -> Diagram:
+    return next(views(scramble(knot(name, 120), seed, moves=300), 1, seed=seed))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("seed", [1, 3])
+def test_every_move_keeps_type_linking_numbers_and_planarity(name: str, seed: int) -> None:
+    diagram, wanted = messy(name, seed), jones(braid_diagram(braid_word(name)))
+    rng = np.random.default_rng(seed)
+    linking = diagram.linking_numbers
+    diagram = reduced(diagram)
+    for _ in range(40):
+        if not diagram.crossings:
+            break
+        moved = shortened(diagram) or shuffled(diagram, rng)
+        assert moved.crossings <= diagram.crossings
+        assert Faces(moved).is_planar
+        assert moved.linking_numbers == linking
+        diagram = moved
+    assert jones(simplified(diagram)) == wanted
+
+
+def test_reidemeisters_moves_undo_loops_and_bigons_but_no_clasps() -> None:
+    assert reduced(Diagram((((0, True), (0, False), (1, False), (1, True)),), (1, -1))) == Diagram(((),), ())
+    bigon = Diagram((((0, True), (1, True)), ((0, False), (1, False))), (1, -1))
+    assert reduced(bigon) == Diagram(((), ()), ())
+    hopf = braid_diagram((1, 1))
+    assert reduced(hopf) == hopf
+
+
+@pytest.mark.parametrize("seed", [1, 3, 5])
+def test_hard_unknots_lose_all_crossings(seed: int) -> None:
+    diagram = next(views(hard_unknot(80, seed), 1))
+    assert diagram.crossings > 60
+    assert shuffled_down(simplified(diagram), is_least).crossings == 0
+
+
+@pytest.mark.parametrize(("name", "sizes"), [("3_1#m5_2", [3, 5]), ("4_1#4_1#L2a1", [2, 4, 4]), ("8_19", [8])])
+def test_factors(name: str, sizes: list[int]) -> None:
+    (piece,) = simplified(messy(name, 3)).pieces()
+    assert sorted(factor.crossings for factor in factors(piece)) == sizes
+
+
+def test_pieces_are_what_no_crossing_joins() -> None:
+    whole = braid_diagram((1, 1, 3, 3, 3))
+    assert sorted((len(piece.passes), piece.crossings) for piece in whole.pieces()) == [(1, 3), (2, 2)]
+    assert [piece.passes for piece in Diagram(((), ()), ()).pieces()] == [((),), ((),)]
+
+
+def test_alternating_diagrams_have_the_least_number_of_crossings() -> None:
+    assert is_least(braid_diagram((1, -2, 1, -2)))
+    assert is_least(Diagram(((),), ()))
+    assert not is_least(braid_diagram((1, 2, 1, 2, 1, 2, 1, 2)))
+
+
+@pytest.mark.parametrize("letter", [3, -3])
+def test_nugatory_crossings_are_left_out(letter: int) -> None:
+    plain, with_one = braid_diagram((1, 1, 1, 2, 2, 2)), braid_diagram((1, 1, 1, 2, 2, 2, letter))
+    assert without_nugatory(with_one) == plain
+    assert without_nugatory(plain) == plain
+    between = braid_diagram((1, 1, 1, 2, -3, -3, -3))
+    assert jones(without_nugatory(between)) == jones(between)
+    assert without_nugatory(between).crossings == 6
+
+
+def test_faces_tell_what_is_planar() -> None:
+    trefoil = braid_diagram((1, 1, 1))
+    assert Faces(trefoil).count == 5
+    assert Faces(trefoil).is_planar
+    assert not Faces(Diagram(trefoil.passes, (1, 1, -1))).is_planar
+
+
+def test_views_of_flat_curves_and_of_strands_in_contact() -> None:
+    assert next(views(knot("0_1"), 1)).crossings == 0
+    hopf = knot("hopf")
+    flat = hopf.with_vertices(hopf.vertices * [1.0, 1.0, 0.0])
+    assert list(views(flat, 3)) == []

@@ -1,0 +1,96 @@
+"""Invariants of diagrams against independent computations, and against tables."""
+
+from pathlib import Path
+
+import pytest
+from braid_words import burau_alexander
+from jones import jones as slow_jones
+from mobius_flow.core.diagrams import (
+    Diagram,
+    alexander,
+    doubled_bracket,
+    jones,
+    knot_signature,
+    normalized_bracket,
+    simplified,
+    views,
+)
+from mobius_flow.core.diagrams.alexander import MAX_CROSSINGS
+from mobius_flow.core.knots import KNOTS, braid_word, knot
+from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from spherogram import Link
+
+_KNOWN = Path(__file__).parents[1] / "knots/known_knots.txt"
+ROWS = {row[0]: row for line in _KNOWN.read_text().splitlines() if line[0] != "#" and (row := line.split())}
+CIRCLE = Diagram(((),), ())
+# Signatures that are not −2τ, from KnotInfo, for the handedness of the table.
+SIGNATURES = {"9_42": 2, "10_132": 0, "10_136": 2, "10_139": -6, "10_145": 2, "10_152": -6, "10_154": -4, "10_161": -4}
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_invariants_of_the_table(name: str) -> None:
+    diagram = braid_diagram(KNOTS[name])
+    _, _, _, tau, polynomial, lowest, coefficients = ROWS[name]
+    assert alexander(diagram) == tuple(map(int, polynomial.split(",")))
+    known = {2 * (int(lowest) + k): int(c) for k, c in enumerate(coefficients.split(",")) if c != "0"}
+    assert jones(diagram) == known
+    assert knot_signature(diagram) == SIGNATURES.get(name, -2 * int(tau))
+
+
+@pytest.mark.parametrize("name", ["L2a1", "L5a1", "L6a4", "L7n2", "3_1#m4_1", "T(3,4)", "braid(1,1,3,3)", "braid(1,3)"])
+def test_links_have_the_jones_polynomial_of_slow_sums(name: str) -> None:
+    diagram = braid_diagram(braid_word(name))
+    link = Link(diagram.planar_code)
+    link.unlinked_unknot_components += sum(not part for part in diagram.passes)
+    assert jones(diagram) == slow_jones(link)
+
+
+@pytest.mark.parametrize("word", [(1, 2, 1, -3, 2, 2, 1), (1, 1, 2, -1, 3, 2, -3, 1, 2, 2, -1)])
+def test_alexander_polynomials_of_any_word(word: tuple[int, ...]) -> None:
+    diagram = braid_diagram(word)
+    assert len(diagram.passes) == 1
+    assert alexander(diagram) == burau_alexander(word, max(map(abs, word)) + 1)
+
+
+@pytest.mark.parametrize("name", ["3_1", "m3_1", "4_1", "6_2", "9_42"])
+def test_invariants_are_those_of_every_diagram(name: str) -> None:
+    for diagram in views(knot(name, 60), 4, seed=3):
+        simple = simplified(diagram)
+        assert alexander(diagram) == alexander(simple)
+        assert jones(diagram) == jones(simple)
+        assert knot_signature(diagram) == knot_signature(simple)
+        assert doubled_bracket(diagram) == doubled_bracket(simple)
+
+
+def test_mirror_images_have_mirrored_polynomials() -> None:
+    left, right = (braid_diagram(braid_word(name)) for name in ("m6_2", "6_2"))
+    for polynomial in (jones, doubled_bracket):
+        assert polynomial(left) == {-power: c for power, c in polynomial(right).items()}
+    assert knot_signature(left) == -knot_signature(right)
+
+
+def test_doubles_tell_what_the_jones_polynomial_does_not() -> None:
+    one, other = braid_diagram(KNOTS["8_16"]), braid_diagram(KNOTS["10_156"])
+    assert jones(one) == jones(other)
+    assert alexander(one) == alexander(other)
+    assert doubled_bracket(one) != doubled_bracket(other)
+
+
+def test_the_bracket_by_own_crossings_is_that_of_all_orientations() -> None:
+    one = braid_diagram([1, 1, 1, 1])
+    parts = list(one.passes)
+    other = Diagram((parts[0], parts[1][::-1]), tuple(-sign for sign in one.signs))
+    assert jones(one) != jones(other)
+    assert normalized_bracket(one, one.own_writhe) == normalized_bracket(other, other.own_writhe)
+
+
+def test_circles() -> None:
+    assert jones(CIRCLE) == {0: 1}
+    assert jones(Diagram(((), ()), ())) == {1: -1, -1: -1}
+    assert alexander(CIRCLE) == (1,)
+    assert knot_signature(CIRCLE) == 0
+
+
+def test_what_is_too_large_is_not_computed() -> None:
+    assert alexander(braid_diagram((1,) * (MAX_CROSSINGS + 1))) is None
+    assert jones(braid_diagram(tuple(range(1, 24)) * 24)) is None

@@ -1,0 +1,128 @@
+"""What polygons are called, and how surely."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve
+from mobius_flow.core.knots import (
+    ALIASES,
+    HARD_UNKNOTS,
+    KNOTS,
+    KnotType,
+    braid_closure,
+    hard_unknot,
+    knot,
+    knot_type,
+    lattice_closure,
+    scramble,
+    smooth_knot,
+)
+from mobius_flow.core.knots.catalogue import AMPHICHEIRAL, crossing_number
+from mobius_flow.core.knots.knot_type import MAX_VERTICES
+from mobius_flow.core.knots.table import ROLFSEN
+
+# The one prime knot to ten crossings whose mirror image has the same invariants of all those that are computed.
+UNTOLD = {"10_71": ("10_71", "m10_71"), "m10_71": ("10_71", "m10_71")}
+
+
+@pytest.mark.parametrize("name", KNOTS)
+def test_smooth_shapes_of_the_table(name: str) -> None:
+    found = knot_type(smooth_knot(name))
+    assert found.names == UNTOLD.get(name, (name,))
+    assert found.proved
+
+
+@pytest.mark.parametrize("name", [name for name in KNOTS if name not in AMPHICHEIRAL][::12])
+def test_mirror_images(name: str) -> None:
+    curve = smooth_knot(name)
+    found = knot_type(curve.with_vertices(curve.vertices * [1.0, 1.0, -1.0]))
+    assert found.names == UNTOLD.get(name, (f"m{name}",))
+    assert found.proved
+
+
+@pytest.mark.parametrize("name", ["0_1", "3_1", "m5_1", "7_7", "8_19", "10_132", "L5a1", "mL7a6"])
+@pytest.mark.parametrize("seed", [1, 3])
+def test_scrambled_curves(name: str, seed: int) -> None:
+    found = knot_type(scramble(knot(name, 150), seed))
+    assert found.names == (name,)
+    assert found.proved
+
+
+@pytest.mark.parametrize("name", HARD_UNKNOTS)
+def test_hard_unknots(name: str) -> None:
+    found = knot_type(knot(name))
+    assert str(found) == "unknot"
+    assert found.sentence == "unknot (proved by a diagram without crossings)"
+
+
+def test_unknots_of_thousands_of_crossings() -> None:
+    assert str(knot_type(hard_unknot(300, 3))) == "unknot"
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("granny", "3_1#3_1"),
+        ("square", "3_1#m3_1"),
+        ("m5_2#4_1#4_1", "4_1#4_1#m5_2"),
+        ("8_19#10_161", "8_19#10_161"),
+        ("3_1#hopf", "L2a1#3_1"),
+        ("braid(1,1,2,2)", "L2a1#L2a1"),
+        ("braid(1,1,3,3,3)", "L2a1 ⊔ 3_1"),
+        ("braid(1,3)", "unknot ⊔ unknot"),
+        ("T(3,4)", "8_19"),
+        ("T(2,-4)", "mL4a1"),
+        ("0_1#0_1", "unknot"),
+    ],
+)
+def test_sums_and_parts_that_come_apart(name: str, told: str) -> None:
+    found = knot_type(knot(name))
+    assert str(found) == told
+    assert found.proved
+
+
+def test_types_beyond_the_table_are_not_told() -> None:
+    for name, polynomial in (("T(3,7)", "[1, -1, 0, 1,"), ("T(2,13)", "[1, -1, 1, -1,")):
+        found = knot_type(knot(name))
+        assert found.names == ()
+        assert not found.proved
+        assert str(found) == "not told"
+        assert found.sentence.startswith(f"not told: Alexander polynomial {polynomial}")
+    assert found.diagram is not None
+    assert found.diagram.crossings == 13
+
+
+def test_curves_of_other_dimensions_or_too_many_vertices_are_not_told() -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, MAX_VERTICES + 1)
+    circle = np.column_stack([np.cos(angle), np.sin(angle), np.sin(2 * angle)])
+    for curve in (Curve(circle), Curve(circle[::1000, :2])):
+        assert knot_type(curve) == KnotType((), False, None, ())
+        assert "at most 20,000 vertices" in knot_type(curve).sentence
+
+
+def test_lattice_polygons_whose_edges_hide_each_other() -> None:
+    assert str(knot_type(lattice_closure(KNOTS["8_20"]))) == "8_20"
+
+
+def test_invariants() -> None:
+    found = knot_type(knot("4_1"))
+    assert found.alexander == (-1, 3, -1)
+    assert found.determinant == 5
+    assert found.jones == {-4: 1, -2: -1, 0: 1, 2: -1, 4: 1}
+    link = knot_type(knot("hopf"))
+    assert link.alexander is None
+    assert link.determinant is None
+
+
+def test_what_would_not_tell_is_not_claimed() -> None:
+    """8_8 and 10_129 have one Jones and one Alexander polynomial; their doubles have not."""
+    word = (*KNOTS["8_8"], max(map(abs, KNOTS["8_8"])) + 1)
+    assert knot_type(braid_closure(word)).names == ("8_8",)
+    assert knot_type(smooth_knot("10_129")).names == ("10_129",)
+
+
+def test_names_count_crossings() -> None:
+    assert crossing_number("m10_132#3_1#mL6n1") == 19
+    assert all(
+        crossing_number(name) == int(name.lstrip("L").split("_")[0].split("a")[0].split("n")[0]) for name in KNOTS
+    )
+    assert set(ROLFSEN) < set(ALIASES)

@@ -1,0 +1,69 @@
+"""Measures of a curve as it stands."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
+from mobius_flow.core.info import GRADIENT_UP_TO, INDEX_UP_TO, info
+from mobius_flow.core.knots import knot, torus_knot
+
+# Near a minimum some Möbius directions are so soft that only well converged curves show that they are positive.
+EXACT = RelaxOptions(method="trust-region", tolerance=1e-7, stability=True, mesh="fixed")
+
+
+def circle(count: int) -> Curve:
+    angle = 2.0 * np.pi * np.arange(count) / count
+    return Curve(np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle]))
+
+
+def test_the_circle() -> None:
+    found = info(circle(100))
+    assert str(found.type) == "unknot"
+    assert found.energies["moebius"] == pytest.approx(4.0)
+    assert found.ropelength == pytest.approx(2.0 * np.pi, rel=2e-3)
+    assert found.writhe == pytest.approx(0.0, abs=1e-12)
+    assert found.rest is not None
+    assert found.rest.objective == pytest.approx(4.0)
+    assert found.rest.sentence == "at rest at a minimum"
+
+
+def test_a_relaxed_trefoil_is_at_rest_and_its_start_is_not() -> None:
+    start = knot("3_1", 80)
+    result = minimize(start, EXACT)
+    before, after = info(start), info(result.curve)
+    assert before.rest is not None
+    assert after.rest is not None
+    assert before.rest.sentence == "not at rest"
+    assert before.rest.index is None
+    assert after.rest.index == 0
+    assert result.outcome.negative_eigenvalues == 0
+    assert after.type.names == before.type.names == ("3_1",)
+
+
+def test_a_saddle_has_its_index() -> None:
+    """Some torus knots are critical points by their symmetry, and no minima."""
+    result = minimize(torus_knot(3, 4, 120), EXACT)
+    assert result.outcome.converged
+    found = info(result.curve).rest
+    assert found is not None
+    assert found.index == result.outcome.negative_eigenvalues
+
+
+def test_what_takes_too_long_is_left_out() -> None:
+    found = info(circle(INDEX_UP_TO + 1)).rest
+    assert found is not None
+    assert found.at_rest
+    assert found.index is None
+    assert "too many vertices" in found.sentence
+    assert info(circle(GRADIENT_UP_TO + 1)).rest is None
+
+
+def test_other_dimensions() -> None:
+    flat = info(Curve(circle(30).vertices[:, :2]))
+    assert str(flat.type) == "not told"
+    assert flat.writhe is None
+    assert flat.thickness == pytest.approx(np.cos(np.pi / 30))
+
+
+def test_curves_that_touch_themselves_are_refused() -> None:
+    with pytest.raises(CurveError):
+        info(Curve([[0.0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]))
