@@ -42,7 +42,9 @@ def test_defaults_are_the_librarys():
     assert parsed() == RelaxOptions() == parsed(method=False)
 
 
-@pytest.mark.parametrize("each", [each for each in declared(RelaxOptions) if each.name != "avoid"], ids=lambda e: e.name)
+@pytest.mark.parametrize(
+    "each", [each for each in declared(RelaxOptions) if each.name != "avoid"], ids=lambda e: e.name
+)
 def test_every_option_can_be_given(each):
     value = unlike_default(each)
     text = ",".join(str(index + 1) for index in value) if each.repeated else str(value)
