@@ -11,7 +11,7 @@ from ...core import Curve, CurveFileError, MobiusFlowError, RelaxOptions, Result
 from ...core.collision import check_embedded
 from ...core.curve.io import CurveFile, load_curve
 from ...core.extrapolation import extrapolated
-from ...core.knots import knot, scramble
+from ...core.knots import knot, knot_type, scramble
 from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves
@@ -19,7 +19,6 @@ from ..main import explained
 from ..provenance import environment
 from .folder import new_folder, write_report
 from .job import CURVE, TRAJECTORY, Job
-from .naming import knot_type
 from .table import Row
 
 GAP = 0.5  # of the mean edge length that scrambled strands keep: nearer ones would need thousands of vertices
@@ -76,8 +75,8 @@ def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> 
     """What the row tells of a result."""
     smooth = extrapolated(result.curve, options) if job.extrapolate and result.outcome.converged else None
     return {
-        "type_before": knot_type(start),
-        "type_after": knot_type(result.curve),
+        "type_before": str(knot_type(start)),
+        "type_after": str(knot_type(result.curve)),
         "vertices": len(result.curve),
         "energy": result.final_energy,
         "extrapolated_energy": smooth and smooth.value,

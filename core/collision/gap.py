@@ -83,7 +83,7 @@ def near_edges(
 
     for a, b in tree.pairs(near):
         i, j = tree.order[a], tree.order[b]
-        squares = squared_segment_distances(points, tree.corners(a, b))
+        squares = squared_segment_distances(points, np.concatenate([tree.corners[:, a], tree.corners[:, b]]))
         kept = squares <= bound()
         yield i[kept], j[kept], squares[kept]
 

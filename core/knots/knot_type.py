@@ -90,7 +90,7 @@ class KnotType:
     def sentence(self) -> str:
         """The short form, and how that is known."""
         if self.diagram is None:
-            return "not told: this is for curves in space of at most " + f"{MAX_VERTICES:,} vertices"
+            return "not told: this is for closed curves in space of at most " + f"{MAX_VERTICES:,} vertices"
         most = f"a diagram of {counted(self.diagram.crossings, 'crossing')}"
         if not self.names:
             polynomial = "" if self.alexander is None else f"Alexander polynomial {list(self.alexander)}, "
@@ -100,14 +100,14 @@ class KnotType:
 
 
 def knot_type(curve: Curve) -> KnotType:
-    """Tell the type of closed polygons in space that do not touch themselves.
+    """Tell the type of closed polygons in space that do not touch themselves; open ones have none.
 
     The diagram is simplified by moves that keep the type; a knot whose diagram then has no crossing is the unknot, and
     of no more than ten (links: seven) it is the one of the table that has its polynomials.  Sums that the diagram shows
     are told factor by factor.  How long it takes is bounded by counts: diagrams that keep too many crossings are not
     told.
     """
-    if curve.dimension != 3 or len(curve) > MAX_VERTICES:
+    if curve.dimension != 3 or len(curve) > MAX_VERTICES or not curve.mesh.all_closed:
         return KnotType((), False, None, ())
     return type_of_diagram(_simplest(curve))
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from ...curve import Curve
-from ...knots.recognition import Unknotted, unknotted
+from ...knots import knot_type
+from ...knots.alexander import signature
 from ..outcome import IS_UNKNOT, MAY_BE_UNKNOT
 
 ROUND = 0.9  # of the area of the circle of the same length: coarse and uneven ones have that
@@ -28,4 +29,9 @@ def told_of_unknot(curve: Curve) -> str | None:
     alone = len(curve.mesh.component_sizes) == 1
     if not alone or curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):
         return None
-    return {Unknotted.YES: IS_UNKNOT, Unknotted.MAYBE: MAY_BE_UNKNOT}.get(unknotted(curve))
+    if len(curve.mesh.component_sizes) > 1 or not signature(curve).is_trivial:
+        return None
+    found = knot_type(curve)
+    if not found.names:
+        return MAY_BE_UNKNOT
+    return IS_UNKNOT if found.names == ("0_1",) else None

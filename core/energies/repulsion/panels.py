@@ -22,8 +22,8 @@ class Edges:
     @classmethod
     def of(cls, mesh: Mesh, vertices: FloatArray) -> "Edges":
         """Those between vertices, or the motions that come of velocities of these; shape (n, 3)."""
-        tail = np.ascontiguousarray(vertices.T)
-        return cls(tail, tail[:, mesh.heads] - tail)
+        tail, head = vertices.T[:, mesh.tails], vertices.T[:, mesh.heads]
+        return cls(tail, head - tail)
 
     @cached_property
     def length(self) -> FloatArray:

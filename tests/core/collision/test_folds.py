@@ -1,4 +1,4 @@
-"""The ends of arcs: no fold is taken for free, by the program's proofs and by those of `verify`, against exact times."""
+"""The ends of arcs: no fold is taken for free, by the program or by `verify`, against exact times."""
 
 import itertools
 from fractions import Fraction
