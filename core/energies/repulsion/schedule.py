@@ -52,7 +52,7 @@ class Schedule:
     @classmethod
     def of(cls, curve: Curve, clusters: Clusters, theta: float) -> "Schedule":
         """That of a curve in R³."""
-        edges, every = Edges.of(curve.mesh, curve.vertices), np.arange(len(curve))
+        edges, every = Edges.of(curve.mesh, curve.vertices), np.arange(curve.mesh.edges)
         chunks = [every[first : first + CHUNK] for first in range(0, len(every), CHUNK)]
         found = [_traverse(Panels.whole(chunk), edges, clusters, theta) for chunk in chunks]
         single, clustered = (Panels.joined(list(kind)) for kind in zip(*found, strict=True))
