@@ -21,10 +21,10 @@ def test_the_first_trial_is_two_thirds_of_the_first_contact() -> None:
     point = crossed_rods()
     down = (np.arange(6) >= 3)[:, None] * [0.0, 0.0, -1.0]
     contact = 1.0 / point.problem.units.scale
-    tau, pair = FirstTrial(max_displacement=100.0)(point, down, np.inf)
+    tau, met = FirstTrial(max_displacement=100.0)(point, down, np.inf)
     assert tau == pytest.approx(2 / 3 * contact, rel=0.02)
-    assert pair is not None
-    assert sorted(pair) == [0, 3]
+    assert met is not None
+    assert sorted(met.edges) == [0, 3]
 
 
 def test_the_first_trial_is_bounded() -> None:
