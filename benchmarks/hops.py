@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from mobius_flow.core import Curve, RelaxOptions, Result, Trajectory, minimize
 from mobius_flow.core.curve.refine import subdivide
-from mobius_flow.core.knots import knot, lattice_closure, scramble, smooth_knot, torus_knot, unknot_word
+from mobius_flow.core.knots import lattice_closure, scramble, smooth_knot, torus_knot, unknot_word
 from mobius_flow.core.verify import verify
 
 ESCAPING = RelaxOptions(escape_saddles=True)
@@ -27,11 +27,8 @@ CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "T34": (partial(torus_knot, 3, 4), RelaxOptions()),
     "T35": (partial(torus_knot, 3, 5), ESCAPING),
     "T45": (partial(torus_knot, 4, 5), RelaxOptions()),
-    "T46": (partial(torus_knot, 4, 6), ESCAPING),
     "4_1-scrambled": (lambda: scramble(smooth_knot("4_1", 120), seed=1), RelaxOptions()),
     "unknot-60-3": (lambda: lattice_closure(unknot_word(60, seed=3)), RelaxOptions()),
-    "unknot-60-4": (lambda: lattice_closure(unknot_word(60, seed=4)), RelaxOptions()),
-    "haken": (partial(knot, "haken"), RelaxOptions()),
 }
 MOST_VERTICES = 500  # of a curve whose index is looked at: dense matrices
 
