@@ -8,7 +8,7 @@ import pytest
 from curve_checks import strand_distance
 from jones import jones
 from knot_diagrams import pairwise_linking, simplified
-from knot_type import UNKNOT, knot_invariants
+from knot_type import knot_invariants
 from mobius_flow.core import CurveError
 from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, knot, smooth_knot
 from mobius_flow.core.knots.inscribed import equal_steps, is_isotopic
@@ -45,7 +45,8 @@ def test_every_link_has_the_type_of_its_name(name: str) -> None:
     found, expected = (smooth_knot(name), knot(name))
     assert pairwise_linking(found.components) == pairwise_linking(expected.components)
     assert jones(simplified(found.components)) == jones(simplified(expected.components))
-    assert all(knot_invariants(part) == UNKNOT for part in found.components)
+    for part, other in zip(found.components, expected.components, strict=True):
+        assert knot_invariants(part) == knot_invariants(other)
 
 
 @pytest.mark.parametrize("name", KNOTS)
@@ -54,7 +55,7 @@ def test_shapes_are_flat_and_fill_their_room(name: str) -> None:
     widths = np.ptp(curve.vertices, axis=0)
     assert widths.max() == pytest.approx(2.0, abs=0.03)
     assert abs(curve.vertices.max(axis=0) + curve.vertices.min(axis=0)).max() < 0.03
-    assert widths[2] <= max(widths[:2]) + 0.02
+    assert widths[2] <= 1.05 * max(widths[:2])
     for part in curve.components:
         lengths = np.linalg.norm(np.diff(part, axis=0, append=part[:1]), axis=1)
         assert lengths.max() < 1.5 * lengths.min()

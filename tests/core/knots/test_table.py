@@ -45,7 +45,7 @@ LINKS: dict[str, tuple[dict[tuple[int, int], int], Laurent]] = {
     "L7n1": ({(0, 1): 2}, {5: -1, 9: -1, 13: -1, 15: 1}),
     "L7n2": ({(0, 1): 0}, {1: -2, 3: 1, 5: -2, 7: 1, 9: -1, 11: 1}),
 }
-KNOTTED = {"L7a3", "L7n1"}  # links with a trefoil among their components
+KNOTTED = {"L7a2", "L7a3", "L7n1", "L7n2"}  # links with a trefoil among their components
 
 
 def _integers(text: str) -> tuple[int, ...]:
