@@ -67,7 +67,7 @@ class Extrapolation:
 def extrapolated(curve: Curve, options: RelaxOptions) -> Extrapolation | None:
     """Relax a relaxed curve on with every edge halved, and halved again; None if one of the runs does not converge.
 
-    It takes some ten times as long as the way to a trefoil: there are twice and four times as many vertices.
+    There are twice and four times as many vertices, and few iterations.
 
     Parameters
     ----------

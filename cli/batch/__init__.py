@@ -44,7 +44,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--extrapolate",
         action="store_true",
-        help="also estimate the smooth curve's energy, from two more runs with edges halved twice: ten times the work",
+        help="also estimate the smooth curve's energy, from two more runs, with edges halved twice: as much work again",
     )
     parser.add_argument("--time-limit", type=float, metavar="T", help="seconds per run (default: none)")
     parser.add_argument(

@@ -3,6 +3,7 @@
 A child lives on from run to run: it takes half a second to import NumPy and SciPy.
 """
 
+import atexit
 import json
 import os
 import signal
@@ -94,6 +95,7 @@ def run(job: Job, limit: float | None) -> Row:
     return box.run(job, limit)
 
 
+@atexit.register
 def close_all() -> None:
     """End all children of this process."""
     for box in list(_open):
