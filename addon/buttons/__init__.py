@@ -3,6 +3,7 @@
 from . import (
     add_family,
     add_knot,
+    avoiding,
     baking,
     draw_knot,
     film,
@@ -23,6 +24,7 @@ _MODULES = (
     relaxing,
     running,
     showing,
+    avoiding,
     baking,
     mending,
     shape,
