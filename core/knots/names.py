@@ -15,7 +15,7 @@ from .torus import torus_knot
 
 _CALL = re.compile(r"(t|torus|braid)\(([^()#]*)(\)?)")
 _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
-_BEYOND = re.compile(r"[kl]?1[1-9]_?[an]_?\d+|l([89]|10)[an]\d+|1[1-9]_\d+", re.ASCII)  # names of larger tables
+_BEYOND = re.compile(r"[kl]?1[1-9]_?[an]_?\d+|l([89]|10)[an]\d+", re.ASCII)  # names of larger tables
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
