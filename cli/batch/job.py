@@ -78,7 +78,7 @@ def jobs(
     avoid: Iterable[str],
     extrapolate: bool,
 ) -> list[Job]:
-    """The runs of a batch, ``avoid`` the obstacles' files; a MobiusFlowError tells where two would write into one folder."""
+    """The runs of a batch, ``avoid`` its obstacles' files; a MobiusFlowError tells where two would share a folder."""
     made = []
     obstacles = {str(Path(path).resolve()): _hash(Path(path)) for path in avoid}
     values = vars(options) | {"avoid": obstacles}
