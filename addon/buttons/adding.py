@@ -41,7 +41,7 @@ class AddsKnot(AddObjectHelper):
         unit="LENGTH",
     )
     color_components: BoolProperty(
-        name="Color Components", description="Give each closed curve of a link a material of its own", default=True
+        name="Color Components", description="Give each spline of a link a material of its own", default=True
     )
 
     @classmethod

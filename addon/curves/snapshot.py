@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Values = dict[str, Any]
 _TYPES: dict[str, Any] = {"BOOLEAN": np.int32, "INT": np.int32, "FLOAT": np.float32, "ENUM": np.int32}
-_BEVEL = ("bevel_depth", "bevel_resolution")
+_BEVEL = ("bevel_depth", "bevel_resolution", "use_fill_caps")
 _POINT_VALUES = ("radius", "tilt", "weight_softbody")
 
 
@@ -138,7 +138,8 @@ class Snapshot:
         data.update_tag()
 
 
-class SplineShape(NamedTuple):
+@dataclass(frozen=True)
+class SplineShape:
     """What a spline is but for where its points are: its type, their number, and whether it is closed."""
 
     type: str

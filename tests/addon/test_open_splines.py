@@ -14,7 +14,7 @@ from mobius_flow.core.knots import overhand  # noqa: E402
 from shapes import regular_polygon  # noqa: E402
 
 ARC = overhand(60).vertices
-RING = regular_polygon(30).vertices + [0.0, 0.0, 20.0]
+RING = regular_polygon(30).vertices + np.array([0.0, 0.0, 20.0])
 
 
 def add_arc(**options):
@@ -122,3 +122,67 @@ def test_a_smooth_open_spline_becomes_a_polygon_from_end_to_end(kind):
     assert bpy.ops.curve.mobius_flow_to_poly() == {"FINISHED"}
     np.testing.assert_allclose(stored(obj.data)[[0, -1]], ARC[[0, -1]], atol=1e-6)
     assert cyclic(obj) == [False]
+
+
+def test_a_tube_is_fitted_with_its_ends_closed():
+    obj = add_arc()
+    assert bpy.ops.curve.mobius_flow_fit_tube() == {"FINISHED"}
+    assert obj.data.use_fill_caps
+    relax(**SHORT | {"fit_bevel": True})
+    assert len({round(key.data[0].radius, 6) for key in obj.data.shape_keys.key_blocks}) > 1
+    clear()
+    assert obj.data.use_fill_caps, "as it was before it was relaxed"
+
+
+@pytest.mark.parametrize("filled", [True, False])
+def test_the_mesh_of_its_tube_ends_as_the_bevel_does(filled):
+    obj = add_both()
+    obj.data.bevel_depth, obj.data.use_fill_caps = 0.05, filled
+    obj.data.materials.append(bpy.data.materials.new("Ring"))
+    obj.data.materials.append(bpy.data.materials.new("Arc"))
+    obj.data.splines[1].material_index = 1
+    relax(**SHORT)
+    sizes = [len(spline.points) for spline in obj.data.splines]
+    assert bpy.ops.curve.mobius_flow_tube_mesh(sides=8, color="strand_distance") == {"FINISHED"}
+    assert bpy.ops.object.select_all(action="DESELECT") == {"FINISHED"}
+    obj.hide_set(False)
+    obj.select_set(True)
+    assert bpy.ops.curve.mobius_flow_tube_mesh(sides=8) == {"FINISHED"}
+    mesh = bpy.context.object.data
+    assert not mesh.validate()
+    assert len(mesh.vertices) == 8 * sum(sizes)
+    slots = [polygon.material_index for polygon in mesh.polygons]
+    assert slots == [0] * 8 * sizes[0] + [1] * (8 * (sizes[1] - 1) + 2 * filled)
+    assert [len(polygon.vertices) for polygon in mesh.polygons][-1] == (8 if filled else 4)
+    assert len(mesh.shape_keys.key_blocks) > 1
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+def test_its_smooth_curve_runs_from_end_to_end(kind, capfd):
+    add_both()
+    obj = relax(**SHORT)
+    end = obj.data.shape_keys.key_blocks[-1].data[-1].co.copy()
+    assert bpy.ops.curve.mobius_flow_smooth_curve(kind=kind) == {"FINISHED"}
+    assert "the same knot, proved" in capfd.readouterr().out
+    made = bpy.context.object
+    assert cyclic(made) == [True, False]
+    np.testing.assert_allclose(evaluated(made)[-1], end, atol=1e-5)
+
+
+def test_a_link_of_several_objects():
+    add_arc(name="A")
+    ring = add_curve([RING], name="B")
+    place(ring)
+    relax(**SHORT)
+    assert BakedKeys(bpy.context.selected_objects).unproved == 0
+    assert cyclic(bpy.data.objects["A"]) == [False]
+
+
+def test_the_worker_knows_ends(operator):
+    obj = add_arc()
+    operator.start()
+    operator.until(lambda: operator.run.last is not None)
+    assert operator.run.last.curve.mesh.closed == (False,)
+    assert operator.run.target.label == "straight = 0"
+    operator.run.cancel()
+    np.testing.assert_array_equal(stored(obj.data), ARC.astype(np.float32))

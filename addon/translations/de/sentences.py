@@ -218,6 +218,7 @@ _RUN = {
     "stopped after 1 iteration, as asked for": "wie verlangt nach 1 Iteration beendet",
     "stopped after {count} iterations, as asked for": "wie verlangt nach {count} Iterationen beendet",
     "circle = {energy:g}": "Kreis = {energy:g}",
+    "straight = {energy:g}": "gerade = {energy:g}",
     "floor = {energy:g}": "Schranke = {energy:g}",
     "iterate {index}, energy {energy:.4f}": "Iteration {index}, Energie {energy:.4f}",
     "not proved": "nicht bewiesen",
