@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
-from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -216,11 +215,7 @@ def _weights_exist(points: Sequence[Sequence[Fraction]]) -> bool:
     return all(row[-1] >= 0 for row in rows[: len(points)]) and all(row[-1] == 0 for row in rows[len(points) :])
 
 
-class OneEdge:
-    """Connectivity of a single edge, as far as collision detection asks for it."""
-
-    size, component_sizes = 2, (2,)
-    offsets, tails, heads = np.array([0, 2]), np.array([0]), np.array([1])
+ONE_EDGE = Mesh((2,), (False,))
 
 
 @dataclass
@@ -249,7 +244,7 @@ class Tally:
         """Compare the answer for one motion."""
         (start, end), contact = motion, first_contact(motion)
         obstacle = Obstacle(start[2:], [[0, 1, 2]])
-        answer = free_motion(cast(Mesh, OneEdge()), start[:2], end[:2], (obstacle,))
+        answer = free_motion(ONE_EDGE, start[:2], end[:2], (obstacle,))
         if contact is None:
             self.misses += 1
             self.timid += not answer.proved

@@ -39,7 +39,7 @@ class Group:
     Attributes
     ----------
     curve
-        All splines as closed polygons in world space.
+        All splines as polygons in world space, open where they are not cyclic.
     link
         Where their vertices are stored.
     continues

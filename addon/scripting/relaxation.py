@@ -39,7 +39,7 @@ class Relaxation:
     Parameters
     ----------
     objects
-        Curve objects of closed splines in Object Mode.
+        Curve objects in Object Mode.
     sample_splines
         Whether Bézier and NURBS splines may become the polygons that are drawn for them.
 
@@ -121,7 +121,7 @@ class Relaxation:
     def set_up_stage(self, use_camera: bool = True, use_world: bool = True) -> "bpy.types.Collection":
         """Put a camera, lights and a floor around the curves for as long as they move; see `staging.set_up`.
 
-        The scene is the open one. Raises MobiusFlowError if splines are open or cannot be read.
+        The scene is the open one. Raises MobiusFlowError if splines cannot be read.
         """
         import bpy
 
