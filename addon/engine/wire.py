@@ -28,7 +28,7 @@ from .placement import Link, Placement
 Message = tuple[dict[str, Any], list[FloatArray]]
 
 _LENGTH = struct.Struct("!Q")
-_VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "method")
+_VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "method", "grown")
 
 
 def write(stream: IO[bytes], message: Message) -> None:

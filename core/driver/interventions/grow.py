@@ -22,10 +22,15 @@ from ..run import Run
 from .finer_mesh import FINEST
 
 import os
+
 FASTEST = float(os.environ.get("FASTEST", 0.2))  # logarithmic change of lengths in one motion
 SLOWEST = 1e-3  # that is worth an iteration
-RISE = float(os.environ.get("RISE", 0.25))  # of the objective, relative to it, in one motion: more would be too near to contact to relax from
-SETTLED = float(os.environ.get("SETTLED", 0.01))  # relative decrease of the objective in a step, from which on the next motion may come
+RISE = float(
+    os.environ.get("RISE", 0.25)
+)  # of the objective, relative to it, in one motion: more would be too near to contact to relax from
+SETTLED = float(
+    os.environ.get("SETTLED", 0.01)
+)  # relative decrease of the objective in a step, from which on the next motion may come
 SLOWER = 0.1  # factor of that where there was none
 EDGES_PER_GAP = float(os.environ.get("EPG", 3.0))  # bends of what is packed are as narrow as gaps
 REACHED = 1e-9  # logarithm of what is missing
