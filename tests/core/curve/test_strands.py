@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.curve import refine
-from mobius_flow.core.curve.distances import arc_distance_of_pairs
+from mobius_flow.core.curve.distances import arc_distance_of_vertices
 from mobius_flow.core.curve.strands import nearest_strands
 from mobius_flow.core.knots import knot
 from shapes import hopf_link, regular_polygon
@@ -15,11 +15,11 @@ RATIO = 3.0
 def of_all_pairs(curve: Curve, furthest: float = np.inf) -> float:
     i, j = np.triu_indices(len(curve), 1)
     distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
-    chosen = (arc_distance_of_pairs(curve, i, j) > RATIO * distance) & (distance <= furthest)
+    chosen = (arc_distance_of_vertices(curve, i, j) > RATIO * distance) & (distance <= furthest)
     return float(distance[chosen].min(initial=np.inf))
 
 
-@pytest.mark.parametrize("name", ["3_1", "8_19", "T(7,8)", "L6a4"])
+@pytest.mark.parametrize("name", ["3_1", "8_19", "T(7,8)", "L6a4", "overhand"])
 def test_they_are_those_of_all_pairs(name: str) -> None:
     curve = knot(name)
     for furthest in (0.01 * curve.length, 0.1 * curve.length, np.inf):
