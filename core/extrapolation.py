@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .curve import Curve
+from .curve.pins import Pins
 from .curve.refine import subdivide
 from .driver import RelaxOptions, minimize
 
@@ -74,15 +75,16 @@ def extrapolated(curve: Curve, options: RelaxOptions) -> Extrapolation | None:
     curve
         A converged curve, in the user's units.
     options
-        How it was relaxed; tolerances above `TOLERANCE` are taken for that.
+        How it was relaxed, with the pins that this curve has; tolerances above `TOLERANCE` are taken for that.
     """
     energies: list[float] = []
+    pins = options.pins
     for pieces in (1, 2, 2):
-        start = subdivide(curve, np.full(len(curve), pieces))
-        result = minimize(start, _on_mesh_of(start, options))
+        start = subdivide(curve, np.full(curve.mesh.edges, pieces))
+        result = minimize(start, _on_mesh_of(start, replace(options, pins=_on(start, curve, pins))))
         if not result.outcome.converged:
             return None
-        curve = result.curve
+        curve, pins = result.curve, result.last.pins
         energies.append(result.final_energy)
     coarse, middle, fine = energies
     return Extrapolation((coarse, middle, fine))
@@ -99,4 +101,11 @@ def _on_mesh_of(curve: Curve, options: RelaxOptions) -> RelaxOptions:
         stability=False,
         escape_saddles=False,
         balance=False,
+        hops=0,
+        pin_tangents=False,
     )
+
+
+def _on(finer: Curve, curve: Curve, pins: tuple[int, ...]) -> tuple[int, ...]:
+    """The pins of a curve on a finer mesh of it."""
+    return tuple(Pins.at(finer, curve.vertices[list(pins)]).vertices.tolist()) if pins else ()

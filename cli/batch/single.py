@@ -92,7 +92,8 @@ def _start(curve: Curve, seed: int | None) -> Curve:
 
 def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> dict[str, object]:
     """What the row tells of a result."""
-    smooth = extrapolated(result.curve, options) if job.extrapolate and result.outcome.converged else None
+    held = replace(options, pins=result.last.pins, pin_tangents=False)
+    smooth = extrapolated(result.curve, held) if job.extrapolate and result.outcome.converged else None
     return {
         "type_before": str(knot_type(start)),
         "type_after": str(knot_type(result.curve)),
