@@ -185,7 +185,11 @@ class RelaxOptions:
         metavar="K",
     )
     seed: int = _advanced(
-        0, "Seed", "which random motions hops begin with: equal numbers, equal motions", low=0, metavar="S"
+        0,
+        "Seed",
+        "of random motions, of hops and of scrambled starts: equal numbers, equal motions",
+        low=0,
+        metavar="S",
     )
     pins: tuple[int, ...] = _scripted(
         (),
