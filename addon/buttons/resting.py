@@ -7,6 +7,7 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..curves.baked_keys import BakedKeys
+from ..curves.pins import pinned_vertices
 from ..engine.phrase import Phrase
 from ..engine.rest import Rest
 from ..engine.words import named
@@ -84,7 +85,9 @@ class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: 
 def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
     """Where the selected curves rest; raises MobiusFlowError."""
     context.view_layer.update()
-    return Rest.of(BakedKeys(selected_curves(context)).curves[-1], relax_options(values))
+    objects = selected_curves(context)
+    keys = BakedKeys(objects)
+    return Rest.of(keys.curves[-1], relax_options({**values, "pins": pinned_vertices(objects, keys.mesh)}))
 
 
 def _told(context: bpy.types.Context, rest: Rest) -> Phrase:

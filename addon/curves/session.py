@@ -137,7 +137,7 @@ class Session:
     group
         The objects; baked ones are set aside until the session's end or `Group.restore`.
     options
-        The requested options.
+        The requested options, and the points that are pinned.
     outcome
         How the relaxation ended, once it has.
 
@@ -155,13 +155,26 @@ class Session:
         continues: bool = False,
     ) -> None:
         key_options.check_room(options.max_iterations)
-        self.group = Group(objects, continues)
-        # the keys that are there have as many points as the curves have now
-        self.options = replace(options, vertices=len(self.group.curve), mesh="fixed") if continues else options
         self._key_options = key_options
+        self.group = Group(objects, continues)
+        try:
+            self.options = self._fitting(options)
+        except BaseException:
+            self.group.restore()
+            raise
         self._motion = Motion(self.group.link, self.group.stored if continues else None)
         self._size: Size | None = None
         self.outcome: Outcome | None = None
+
+    def _fitting(self, options: RelaxOptions) -> RelaxOptions:
+        """The requested options, with the points that are pinned; raises MobiusFlowError if they do not go together."""
+        group = self.group
+        pins = tuple(sorted({*options.pins, *group.pins}))
+        if pins and self._key_options.keep_size is not Measure.LENGTH:
+            raise MobiusFlowError(Phrase("Scaling would move pinned points; set Keep to Length, or unpin them"))
+        if group.continues:  # the keys that are there have as many points as the curves have now
+            options = replace(options, vertices=len(group.curve), mesh="fixed")
+        return replace(options, pins=pins)
 
     def run(self) -> Report:
         """Do the whole job. Objects are touched at its end only, and put back if that fails.

@@ -75,7 +75,9 @@ class Relaxation:
         Parameters
         ----------
         **settings
-            Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out.
+            Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out. Besides,
+            ``pins``: points that stay where they are, as those do that are pinned already. They are counted from 0
+            through all splines of all objects; of Bézier and NURBS splines the points are those that are drawn.
 
         Returns
         -------
