@@ -8,6 +8,7 @@ from types import MappingProxyType
 
 from ..addon.pictures import export, film
 from ..core import Curve, Iterate, MobiusFlowError, Result
+from ..core.curve import check_closed
 from ..core.curve.io import Format
 from ..core.errors import wrong_suffix
 from ..core.knots import FORMATS
@@ -51,7 +52,12 @@ def _curve_output(name: str | None, form: Format) -> Output:
 
 def _blender_output(write: Writer) -> Output:
     # the function is looked up when it is called, as all of export's
-    return Output(write, film.check_dimension, needs_iterates=True, check=lambda: export.require_blender())
+    return Output(write, _admit_to_blender, needs_iterates=True, check=lambda: export.require_blender())
+
+
+def _admit_to_blender(curve: Curve) -> None:
+    film.check_dimension(curve)
+    check_closed(curve, "scenes, films and pictures")
 
 
 def _blender_writer(function: str) -> Writer:

@@ -22,7 +22,7 @@ def half_circle(edges: int, dimension: int = 3) -> Curve:
     vertices = np.zeros((edges + 1, dimension))
     t = np.pi * np.arange(edges + 1) / edges
     vertices[:, 0], vertices[:, 1] = np.cos(t), np.sin(t)
-    return opened(Curve(vertices), 0)
+    return Curve(vertices, Mesh((edges + 1,), (False,)))
 
 
 def straight_arc(edges: int) -> Curve:

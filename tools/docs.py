@@ -120,7 +120,7 @@ def _is_one_of(name: str, patterns: Iterable[str]) -> bool:
 def _default(option: Option) -> str:
     if option.kind is bool:
         return "on" if option.default else "off"
-    return option.automatic or f"{option.default or 'none'}"
+    return option.automatic or ("none" if option.repeated else f"{option.default}")
 
 
 def main() -> int:

@@ -3,6 +3,7 @@
 from . import (
     add_family,
     add_knot,
+    avoiding,
     baking,
     closing,
     draw_knot,
@@ -25,6 +26,7 @@ _MODULES = (
     relaxing,
     running,
     showing,
+    avoiding,
     baking,
     mending,
     closing,

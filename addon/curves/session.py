@@ -6,6 +6,7 @@ What it knows lives here and never in the file.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from ...core.types import FloatArray
 from ..engine.glossary import as_phrase
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
+from ..engine.obstacles import in_common_space
 from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from ..engine.size import Measure, Size
@@ -35,6 +37,7 @@ from ..engine.words import named
 from . import bake, bevel
 from .exchange import stretch
 from .group import Group
+from .surroundings import NOTHING, Surroundings
 
 if TYPE_CHECKING:
     import bpy
@@ -59,11 +62,14 @@ class Report:
     scene_range
         First and last frame of the animation with its rests, if there is one.
     certified
-        Whether every motion shown was proved free of contact, of each curve with itself and of all with each other.
+        Whether every motion shown was proved free of contact, of each curve with itself, of all with each other, and
+        with what they avoid.
     radius
         Radius of the tube in the world if it was fitted.
     modified
         Whether modifiers change what is shown: proofs are about the curves themselves.
+    avoided
+        Names of the objects that were avoided.
     """
 
     names: tuple[str, ...]
@@ -75,6 +81,7 @@ class Report:
     certified: bool
     radius: float | None
     modified: bool
+    avoided: tuple[str, ...]
 
     @property
     def sentence(self) -> Phrase:
@@ -97,9 +104,10 @@ class Report:
     def _proof(self) -> Phrase:
         if not self.certified:
             return Phrase("NOT proved free of contact everywhere")
-        # nothing but the curves that were relaxed is looked at
+        # nothing but the curves that were relaxed, and what they avoid, is looked at
         alone = Phrase("proved free of contact with itself")
         whom = alone if len(self.names) == 1 else Phrase("proved free of contact with themselves and each other")
+        whom = Phrase("{proof}, and with {avoided}", proof=whom, avoided=named(self.avoided)) if self.avoided else whom
         return Phrase("{proof}, before modifiers", proof=whom) if self.modified else whom
 
     @property
@@ -131,13 +139,17 @@ class Session:
         The requested options.
     continues
         Whether baked curves are relaxed on from the ends of their animations; the keys are added to theirs then.
+    surroundings
+        What they avoid.
 
     Attributes
     ----------
     group
         The objects; baked ones are set aside until the session's end or `Group.restore`.
     options
-        The requested options, and the points that are pinned.
+        The requested options, with what is pinned and what is avoided.
+    surroundings
+        What is avoided.
     outcome
         How the relaxation ended, once it has.
 
@@ -153,8 +165,10 @@ class Session:
         options: RelaxOptions,
         key_options: KeyOptions,
         continues: bool = False,
+        surroundings: Surroundings = NOTHING,
     ) -> None:
         key_options.check_room(options.max_iterations)
+        self.surroundings = surroundings
         self._key_options = key_options
         self.group = Group(objects, continues)
         try:
@@ -167,14 +181,14 @@ class Session:
         self.outcome: Outcome | None = None
 
     def _fitting(self, options: RelaxOptions) -> RelaxOptions:
-        """The requested options, with the points that are pinned; raises MobiusFlowError if they do not go together."""
-        group = self.group
+        """The requested options, with what is pinned and avoided; raises MobiusFlowError if they do not go together."""
+        group, obstacles = self.group, self.surroundings.obstacles
         pins = tuple(sorted({*options.pins, *group.pins}))
-        if pins and self._key_options.keep_size is not Measure.LENGTH:
-            raise MobiusFlowError(Phrase("Scaling would move pinned points; set Keep to Length, or unpin them"))
+        if pins or obstacles:
+            self._key_options.check_place()
         if group.continues:  # the keys that are there have as many points as the curves have now
             options = replace(options, vertices=len(group.curve), mesh="fixed")
-        return replace(options, pins=pins)
+        return replace(options, pins=pins, avoid=obstacles)
 
     def run(self) -> Report:
         """Do the whole job. Objects are touched at its end only, and put back if that fails.
@@ -186,7 +200,7 @@ class Session:
         """
         try:
             prepared = self._relaxed()
-            if reason := self.group.lost():
+            if reason := self.lost():
                 raise MobiusFlowError(Phrase("{reason} during the relaxation; nothing was written", reason=reason))
             for _ in self.writing(prepared):
                 pass
@@ -204,18 +218,23 @@ class Session:
             raise self.told(error) from error
         assert run.outcome is not None, "the loop is through"
         self.end(run.outcome)
-        return self.prepare(is_free)
+        return self.prepare(partial(is_free, obstacles=in_common_space(self.options.avoid, self.group.link)))
+
+    def lost(self) -> Phrase | None:
+        """Say what somebody did to one of the objects, or to what they avoid, that makes going on impossible."""
+        return self.group.lost(alone=not self.options.avoid) or self.surroundings.lost()
 
     def told(self, error: CurveError) -> CurveError:
         """The core's error in Blender's words; those about options use the names that options have."""
         if isinstance(error, OptionError):
             return error
-        sentence = self.group.told(str(error))
+        sentence = self.group.told(str(error), self.options.avoid)
         return CurveError(sentence[:1].upper() + sentence[1:], error.place)
 
     def end(self, outcome: Outcome) -> None:
         """Take in how the relaxation ended."""
-        self.outcome = replace(outcome, message=as_phrase(self.group.told(outcome.message).rstrip(".")))
+        message = self.group.told(outcome.message, self.options.avoid)
+        self.outcome = replace(outcome, message=as_phrase(message.rstrip(".")))
 
     def take(self, iterate: Iterate) -> None:
         """Take in an iterate."""
@@ -257,7 +276,7 @@ class Session:
         """
         changed = Phrase("{names} changed since the relaxation ended; relax anew", names=self.group.title)
         objects = self.group.objects
-        if len(objects) < len(self.group.names):
+        if len(objects) < len(self.group.names) or self.surroundings.lost():
             raise MobiusFlowError(changed)
         group = Group(objects, self.group.continues)
         if not group.equals(self.group):
@@ -298,4 +317,5 @@ class Session:
             certified=keys.certified,
             radius=None if prepared.radii is None else float(prepared.radii[-1]) * stretch(group.objects[0]),
             modified=group.modified,
+            avoided=self.surroundings.names,
         )

@@ -40,7 +40,6 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="directory of the results")
     parser.add_argument("--starts", type=int, default=1, metavar="K", help="runs per input (default: 1)")
-    parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the scrambled starts (default: 0)")
     parser.add_argument(
         "--extrapolate",
         action="store_true",
@@ -58,8 +57,6 @@ def run(options: argparse.Namespace) -> int:
     """Relax everything that is not finished, write the table, and print a line about it."""
     if options.starts < 1:
         raise OptionError(f"starts is {options.starts}; it must be 1 or more")
-    if options.seed < 0:
-        raise OptionError(f"seed is {options.seed}; it must be 0 or more")
     if options.time_limit is not None and not 0.0 < options.time_limit < float("inf"):
         raise OptionError(f"time-limit is {options.time_limit}; it must be a finite number of seconds above 0")
     wanted = relax_options.from_arguments(options)

@@ -20,7 +20,7 @@ def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
     """Do the runs that are not finished; the table is written in the end, also of an interrupted batch."""
     cluster.require()
     directory = Path(options.output).resolve()
-    planned = jobs(inputs(options.inputs), options.starts, options.seed, directory, wanted, options.extrapolate)
+    planned = jobs(inputs(options.inputs), options.starts, directory, wanted, options.avoid, options.extrapolate)
     _prepare(directory, planned)
     rows = _found(planned)
     left = [job for job in planned if job not in rows]

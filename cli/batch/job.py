@@ -36,7 +36,7 @@ class Job:
     folder
         Absolute path of the results.
     options
-        Of the relaxation.
+        Of the relaxation, in plain values: obstacles as absolute paths with their hashes.
     extrapolate
         Whether the smooth curve's energy is wanted.
     version
@@ -71,16 +71,22 @@ def folder_name(name: str, start: int) -> str:
 
 
 def jobs(
-    inputs: Iterable[Input], starts: int, seed: int, directory: Path, options: RelaxOptions, extrapolate: bool
+    inputs: Iterable[Input],
+    starts: int,
+    directory: Path,
+    options: RelaxOptions,
+    avoid: Iterable[str],
+    extrapolate: bool,
 ) -> list[Job]:
-    """The runs of a batch; a MobiusFlowError tells where two would write into one folder."""
+    """The runs of a batch, ``avoid`` its obstacles' files; a MobiusFlowError tells where two would share a folder."""
     made = []
-    values = asdict(options)
+    obstacles = {str(Path(path).resolve()): _hash(Path(path)) for path in avoid}
+    values = vars(options) | {"avoid": obstacles}
     for each in inputs:
         sha256 = None if each.file is None else _hash(each.file)
         for start in range(1, starts + 1):
             folder = directory / folder_name(each.name, start)
-            scrambled = None if start == 1 else seed + start
+            scrambled = None if start == 1 else options.seed + start
             file = None if each.file is None else str(each.file)
             made.append(Job(each.name, start, scrambled, file, sha256, str(folder), values, extrapolate))
     _check_folders(made)

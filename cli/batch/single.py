@@ -5,9 +5,20 @@ import time
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ... import __version__
-from ...core import Curve, CurveFileError, MobiusFlowError, RelaxOptions, Result, Trajectory, minimize, write_curve
+from ...core import (
+    Curve,
+    CurveFileError,
+    MobiusFlowError,
+    RelaxOptions,
+    Result,
+    Trajectory,
+    minimize,
+    read_obstacle,
+    write_curve,
+)
 from ...core.collision import check_embedded
 from ...core.curve.io import CurveFile, load_curve
 from ...core.extrapolation import extrapolated
@@ -16,6 +27,7 @@ from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves
 from ..main import explained
+from ..options import about
 from ..provenance import environment
 from .folder import new_folder, write_report
 from .job import CURVE, TRAJECTORY, Job
@@ -36,12 +48,13 @@ def relaxed(job: Job) -> Row:
 
 def _relaxed(job: Job) -> Row:
     began = time.perf_counter()
-    options = RelaxOptions(**job.options)  # type: ignore[arg-type]
+    options = _options(job)
     file = None if job.file is None else _load(job.file)
     if file is not None:
+        options = about(file, options)
         job = replace(job, sha256=file.source.sha256)  # of what is really relaxed
     origin = {"options": job.options, "input": {"name": job.file or job.name, "sha256": job.sha256}, **environment()}
-    trajectory = Trajectory(origin)
+    trajectory = Trajectory(origin, options.avoid)
     with nullcontext() if file is None else curves.refusals(file):
         start = _start(knot(job.name) if file is None else file.curve, job.seed)
         result = minimize(start, options, trajectory.add)
@@ -53,6 +66,12 @@ def _relaxed(job: Job) -> Row:
         row = Row.of(job, **found, verified=verified, seconds=time.perf_counter() - began)
         write_report(room, job, row, result.report() | origin)
     return row
+
+
+def _options(job: Job) -> RelaxOptions:
+    """Those of the relaxation, with its obstacles read."""
+    values: dict[str, Any] = {**job.options}
+    return RelaxOptions(**values | {"avoid": tuple(map(read_obstacle, values["avoid"]))})
 
 
 def _load(path: str) -> CurveFile:

@@ -19,6 +19,7 @@ from ..option import declared, documented, option
 EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
 SOLVERS = ("auto", "dense", "hierarchical")
+MAX_GROWTH = 1000.0  # what is packed takes more vertices than there is time for long before
 _advanced = partial(option, group="advanced")
 _scripted = partial(_advanced, scripted=True)
 
@@ -166,6 +167,15 @@ class RelaxOptions:
         "length, and relax that",
     )
 
+    grow: float = _advanced(
+        1.0,
+        "Grow",
+        "target lengths become so many times those of the start, by and by where there is something in the way, and "
+        "edges are split as that calls for it unless mesh is fixed; below 1 the curve shrinks",
+        low=0,
+        high=MAX_GROWTH,
+        metavar="F",
+    )
     hops: int = _advanced(
         0,
         "Hops",
@@ -175,7 +185,11 @@ class RelaxOptions:
         metavar="K",
     )
     seed: int = _advanced(
-        0, "Seed", "which random motions hops begin with: equal numbers, equal motions", low=0, metavar="S"
+        0,
+        "Seed",
+        "of random motions, of hops and of scrambled starts: equal numbers, equal motions",
+        low=0,
+        metavar="S",
     )
     pins: tuple[int, ...] = _scripted(
         (),
@@ -222,4 +236,5 @@ class RelaxOptions:
     @property
     def keyed(self) -> "RelaxOptions":
         """The same for keyframes, which belong to vertices: ``auto`` neither leaves any out nor brings them back."""
-        return replace(self, mesh="finer" if self.ends_finer else "fixed") if self.mesh == "auto" else self
+        splits = self.ends_finer or (self.grow != 1.0 and self.edge_lengths == "auto")
+        return replace(self, mesh="finer" if splits else "fixed") if self.mesh == "auto" else self

@@ -132,6 +132,8 @@ def start_problem(curve: Curve, options: RelaxOptions, pins: Pins | None = None)
     if second_order and not objective.has_hessian:
         name = objective.energy.name
         raise OptionError(f"{method.name} with these options needs a second derivative; energy {name} has none")
+    if options.grow != 1.0 and not method.geometry.prescribes:
+        raise OptionError(f"grow prescribes lengths, but method {method.name} penalises them; choose another method")
     if (options.stability or options.escape_saddles) and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
     if options.balance and objective.energy.scale_exponent != 0.0:
@@ -149,8 +151,9 @@ def on_mesh(problem: Problem, curve: Curve, options: RelaxOptions) -> Point:
 
 
 def with_parts_of(problem: Problem, other: Problem, curve: Curve) -> Point:
-    """The point of a curve in another problem, where the parts that are held in place in ``problem`` are held too."""
-    parts = problem.constraints.parts
+    """The point of a curve in another problem, with the parts held in place that ``problem`` holds, grown as much."""
+    parts, grown = problem.constraints.parts, problem.constraints.grown
+    other = replace(other, constraints=replace(other.constraints, grown=grown))
     if parts is not None:
         own_units = curve.with_vertices(other.units.from_user(curve.vertices))
         other = replace(other, constraints=other.constraints.of_parts(own_units, parts))

@@ -11,17 +11,18 @@ from .braids import Word, connected_sum, mirror
 from .closures import braid_closure
 from .coded import coded_knot
 from .planar import diagram_knot
-from .table import ALIASES, HARD_UNKNOTS, KNOTS
+from .table import ALIASES, HARD_UNKNOTS, KNOTS, ROLFSEN
 from .torus import torus_knot
 
 _CALL = re.compile(r"(t|torus|braid)\(([^()#]*)(\)?)")
 _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
-_BEYOND = re.compile(r"[kl]?1[1-9]_?[an]_?\d+|l([89]|10)[an]\d+|1[1-9]_\d+", re.ASCII)  # names of larger tables
+_BEYOND = re.compile(r"[kl]?1[1-9]_?[an]_?\d+|l([89]|10)[an]\d+", re.ASCII)  # names of larger tables
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
 _MIRRORS = re.compile(r"(?:m\s*)+")
 _TABLE = {name.lower(): name for name in KNOTS}
+_WORDS = {**ALIASES, **ROLFSEN}
 
 
 class UnknownKnotError(MobiusFlowError):
@@ -36,7 +37,7 @@ def knot_names() -> list[str]:
 def knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link from its name.
 
-    Names: the table's (``3_1`` to ``10_165``, ``L5a1``), the words of :data:`ALIASES` (``trefoil``,
+    Names: the table's (``3_1`` to ``10_165``, ``L5a1``, also ``5^2_1``), the words of :data:`ALIASES` (``trefoil``,
     ``figure-eight``), torus knots ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, mirror images
     ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, the diagrams of :data:`HARD_UNKNOTS`
     (``goeritz``), the open polygons of :data:`ARCS` (``overhand``), and codes of diagrams (``DT: [4 6 2]``,
@@ -91,7 +92,7 @@ def table_name(name: str) -> tuple[str, bool]:
     part = _plain(str(name))
     mirrors = _MIRRORS.match(part)
     bare = part[mirrors.end() :] if mirrors else part
-    entry = ALIASES.get(bare, bare)
+    entry = _WORDS.get(bare, bare)
     if (found := _TABLE.get(_squeezed(entry))) is None:
         knot(name, None)  # which says what is wrong with names that mean nothing
         raise UnknownKnotError(f"{name[:60]!r} is a knot, but none of the table; give one of those, or m and one")
@@ -111,8 +112,8 @@ def _prime_word(part: str, name: str) -> Word:
     call = _call(squeezed, name)
     if call is not None:
         return call[1] if call[0] == "braid" else _torus_word(*call[1])
-    if part in ALIASES:
-        return braid_word(ALIASES[part])
+    if part in _WORDS:
+        return braid_word(_WORDS[part])
     if squeezed in _TABLE:
         return KNOTS[_TABLE[squeezed]]
     mirrors = _MIRRORS.match(part)

@@ -97,6 +97,5 @@ ALIASES: Mapping[str, str] = MappingProxyType(
         "borromean": "L6a4",
         "granny": "3_1#3_1",
         "square": "3_1#m3_1",
-        **ROLFSEN,
     }
 )

@@ -213,7 +213,7 @@ def test_no_size_but_the_length_can_be_kept():
     obj = add_arc()
     ENDS()
     before = contents()
-    with pytest.raises(RuntimeError, match="set Keep to Length"):
+    with pytest.raises(RuntimeError, match="where something is pinned or avoided; set Keep to Length"):
         relax(keep_size="BOX")
     assert contents() == before
     relax(**SHORT)

@@ -26,8 +26,8 @@ def proofs(monkeypatch: pytest.MonkeyPatch) -> Proofs:
     proved: Proofs = set()
     prove = problem.free_motion
 
-    def recorded(mesh: object, start: FloatArray, end: FloatArray) -> FreeMotion:
-        motion = prove(mesh, start, end)
+    def recorded(mesh: object, start: FloatArray, end: FloatArray, obstacles: object) -> FreeMotion:
+        motion = prove(mesh, start, end, obstacles)
         if motion.proved:
             proved.add((start.tobytes(), end.tobytes()))
         return motion

@@ -137,10 +137,11 @@ def test_pins_survive_every_mesh(mesh: str) -> None:
     assert iterates[-1].energy < 0.5 * iterates[0].energy, message
 
 
-def test_pins_survive_a_coarse_start() -> None:
-    curve = torus_knot(2, 3, 1500)
+@pytest.mark.parametrize(("count", "pins"), [(1500, (0, 7, 1000, 1499)), (6000, (0, 2500, 5999))])
+def test_pins_survive_a_coarse_start(count: int, pins: tuple[int, ...]) -> None:
+    """By the dense solver and, in the end, by the hierarchical one."""
+    curve = torus_knot(2, 3, count)
     curve = curve.with_vertices(curve.vertices * [1.0, 1.4, 1.2])
-    pins = (0, 7, 1000, 1499)
     iterates, message = checked(curve, pins=pins, max_iterations=120)
     assert min(len(iterate.curve) for iterate in iterates) < 900
     assert message.startswith("converged")

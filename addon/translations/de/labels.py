@@ -3,7 +3,7 @@
 A vertex is a Punkt here, as in Blender's own table; the other word for it, Knoten, is wanted for knots.
 """
 
-from . import film
+from . import film, surroundings
 
 _UNCHANGED = (
     "Animation",
@@ -199,4 +199,6 @@ _BUTTONS = {
     "Use Preset": "Voreinstellung verwenden",
 }
 
-LABELS = {text: text for text in _UNCHANGED} | _KNOTS | _METHODS | _OPTIONS | _BUTTONS | film.LABELS
+LABELS = (
+    {text: text for text in _UNCHANGED} | _KNOTS | _METHODS | _OPTIONS | _BUTTONS | film.LABELS | surroundings.LABELS
+)

@@ -1,6 +1,6 @@
 """Sentences and labels that are filled in when they are shown; fields in braces stay as they are."""
 
-from . import film
+from . import film, surroundings
 
 _REFUSALS = {
     "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first": (
@@ -318,12 +318,6 @@ _SIDEBAR = {
     "From Drawing": "Aus Zeichnung",
     "Keep {measure}": "{measure} beibehalten",
     "None": "Keine",
-    "Only selected curves are kept apart; {names} nearby are not": (
-        "Nur ausgewählte Kurven werden auseinandergehalten, {names} in der Nähe nicht"
-    ),
-    "Only selected curves are kept apart; {names} nearby is not": (
-        "Nur ausgewählte Kurven werden auseinandergehalten, {names} in der Nähe nicht"
-    ),
     "Quality: Custom, see Expert": "Qualität: benutzerdefiniert, siehe Experten",
     "Relax by Mobius Energy": "Nach Mobius-Energie entspannen",
     "Relax {count} Curves Together": "{count} Kurven gemeinsam entspannen",
@@ -340,4 +334,4 @@ _SIDEBAR = {
     "{radius} (your own)": "{radius} (eigener)",
 }
 
-SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES
+SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES | surroundings.SENTENCES

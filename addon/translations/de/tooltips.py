@@ -1,6 +1,6 @@
 """Tooltips: of operators, of settings, and of what they let choose. Blender adds the full stop."""
 
-from . import film
+from . import film, surroundings
 from .relaxation import RELAXATION
 
 _OPERATORS = {
@@ -287,4 +287,4 @@ _ANIMATION = {
     "Which key has the size that all are given": "Welcher Schlüssel die Größe hat, die alle erhalten",
 }
 
-TOOLTIPS = _OPERATORS | _KNOTS | _OUTPUTS | _ANIMATION | film.TOOLTIPS | RELAXATION
+TOOLTIPS = _OPERATORS | _KNOTS | _OUTPUTS | _ANIMATION | film.TOOLTIPS | surroundings.TOOLTIPS | RELAXATION

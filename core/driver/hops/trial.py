@@ -55,4 +55,4 @@ def trial(run: Run, motion: Stir, rng: np.random.Generator, below: float) -> Tri
 def _plain(options: RelaxOptions, iterations: int) -> RelaxOptions:
     """The same without what is looked at in the end or changes the mesh."""
     options = replace(options, stability=False, escape_saddles=False, balance=False)
-    return replace(options, mesh="fixed", vertices=None, max_iterations=iterations)
+    return replace(options, mesh="fixed", grow=1.0, vertices=None, max_iterations=iterations)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
-from mobius_flow.core.collision import Limit, free_motion, is_free, minimal_gap
+from mobius_flow.core.collision import Limit, free_motion, is_free, minimal_gap, survives_rounding
 from mobius_flow.core.collision.folds import folds
 from mobius_flow.core.verify import Verdict, verify
 from mobius_flow.core.verify.segments import meet
@@ -41,7 +41,7 @@ def test_random_motions_of_arcs(tmp_path: Path, size: int, dimension: int) -> No
     """On a small lattice, where edges fold and shrink exactly, and in general position."""
     mesh, rng = Mesh((size,), (False,)), np.random.default_rng(100 * size + dimension)
     found = {True: 0, False: 0}
-    for k in range(120):
+    for k in range(60):
         start, end = rng.integers(-1, 2, (2, size, dimension)) * 1.0
         if k % 3 == 0:
             start = np.cumsum(rng.normal(size=(size, dimension)), axis=0)
@@ -113,6 +113,14 @@ def test_closed_polygons_of_four_and_more_have_no_folds() -> None:
     assert folds(Mesh((4, 5, 9))).shape == (4, 0)
     assert folds(Mesh((3,))).T.tolist() == [[0, 0, 1, 2], [1, 1, 2, 0], [2, 2, 0, 1]]
     assert folds(Mesh((4, 3), (True, False))).T.tolist() == [[4, 4, 5, 6], [6, 6, 4, 5]]
+
+
+def test_ends_that_rounding_could_fold() -> None:
+    """Far from the origin the end might be on the other side of the edge that it nearly lies on."""
+    bent = np.array([[1.0, 1e-6, 0.0], [0.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
+    arcs = [Curve(bent + far, Mesh((3,), (False,))) for far in (0.0, 1e9)]
+    assert [survives_rounding(arc) for arc in arcs] == [True, False]
+    assert survives_rounding(straight_arc(1))
 
 
 def test_gaps_of_arcs() -> None:
