@@ -202,10 +202,11 @@ class RelaxOptions:
         metavar="V,V,…",
         read=_indices,
     )
-    pin_tangents: bool = _scripted(
+    pin_tangents: bool = option(
         False,
         "Pin Tangents",
         "pin the neighbours that pinned vertices have in the refined start too, and so the curve's direction there",
+        group="pins",
     )
 
     def __post_init__(self) -> None:
