@@ -28,11 +28,7 @@ from .placement import Link, Placement
 Message = tuple[dict[str, Any], list[FloatArray]]
 
 _LENGTH = struct.Struct("!Q")
-<<<<<<< HEAD
-_VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "method", "grown")
-=======
 _VALUES = tuple(field.name for field in fields(Iterate) if field.name not in ("curve", "path"))
->>>>>>> 978a4205ebd4cd9747cb55c94957d0df7632393b
 
 
 def write(stream: IO[bytes], message: Message) -> None:
