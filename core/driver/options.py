@@ -170,8 +170,8 @@ class RelaxOptions:
     grow: float = _advanced(
         1.0,
         "Grow",
-        "multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and pins "
-        "leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
+        "multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and "
+        "pins leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
         low=0,
         high=MAX_GROWTH,
         metavar="F",
