@@ -22,7 +22,7 @@ def test_a_knot_grows_in_the_ball_of_the_examples(tmp_path, capsys):
     assert (
         run("relax", trefoil, *outputs, "--avoid", BALL, "--grow", 1.3, "--vertices", 60, "--max-iterations", 15) == 0
     )
-    assert "grew to 1.3 of 1.3 times its length" in capsys.readouterr().out
+    assert "grew to 1.3 of 1.3 times its length" in capsys.readouterr().err
     values = json.loads(report.read_text())
     assert values["grown"] == pytest.approx(1.3, rel=1e-12)
     assert values["certified"]
@@ -33,7 +33,6 @@ def test_a_knot_grows_in_the_ball_of_the_examples(tmp_path, capsys):
 @pytest.mark.parametrize("factor", ["0", "-2", "nan", "1e9", "twice"])
 def test_no_factor_no_run(factor, tmp_path, capsys):
     write_curve(tmp_path / "trefoil.obj", knot("3_1"))
-    with pytest.raises(SystemExit) if factor == "twice" else pytest.MonkeyPatch.context():
-        assert run("relax", tmp_path / "trefoil.obj", tmp_path / "o.obj", f"--grow={factor}") == 2
+    assert run("relax", tmp_path / "trefoil.obj", tmp_path / "o.obj", f"--grow={factor}") == 2
     assert "grow" in capsys.readouterr().err
     assert not (tmp_path / "o.obj").exists()
