@@ -164,6 +164,11 @@ def test_at_the_circle_there_is_nothing_to_look_for() -> None:
     assert "hop" not in result.message
 
 
+def test_where_all_is_pinned_there_is_nowhere_to_go() -> None:
+    options = RelaxOptions(pins=tuple(range(20)), vertices=20, mesh="fixed", hops=1)
+    assert "hop" not in minimize(torus_trefoil(20), options).message
+
+
 def test_methods_that_penalise_lengths_make_no_hops() -> None:
     result = minimize(torus_trefoil(60), RelaxOptions(method="penalty-lbfgs", hops=1, tolerance=1e-2))
     assert "hop" not in result.message

@@ -41,7 +41,7 @@ class Hops:
         """Try until a hop leads lower, which the run then takes; False if none does, or there is nothing lower."""
         run = self._run
         motions = [motion for motion in MOTIONS if motion.fits(run.point)]
-        if not (outcome.may_be_left and motions):
+        if not (outcome.may_be_left and motions) or run.frozen:
             return False
         if run.problem.unconfined and is_circle(run.iterate.curve):
             return False
