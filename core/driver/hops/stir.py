@@ -8,7 +8,10 @@ import numpy as np
 
 from ...descent import Leg, Point, Step
 from ...descent.step import attempt
+from ...energies.components import energy_scale
 from ...types import FloatArray
+
+RIGID = 1e-12  # part of a flow that is tangent, up to which it is rounding: pins may leave nothing to move
 
 Flow = Callable[[FloatArray], FloatArray]
 
@@ -35,7 +38,8 @@ class Stir:
     frequency
         Standard deviation of each component of their wave vectors, in radians per radius of gyration.
     ceilings
-        Least and greatest multiple of the energy up to which the curve may be led.
+        Least and greatest multiple of the energy (of arcs, whose least is 0: of `energy_scale`) up to which the curve
+        may be led.
     """
 
     distance: float = 10.0
@@ -52,7 +56,7 @@ class Stir:
 
     def __call__(self, point: Point, rng: np.random.Generator) -> Iterator[Step]:
         """Yield steps, each of which ends on the constraints."""
-        ceiling = point.energy * _between(self.ceilings, rng)
+        ceiling = energy_scale(point.problem.mesh, point.energy) * _between(self.ceilings, rng)
         for _ in range(round(self.distance / self.each)):
             for step in self._along(self._flow(point, rng), point, ceiling):
                 yield step
@@ -62,7 +66,10 @@ class Stir:
         """Yield steps along one flow."""
         left, stride = self.each, self.stride
         while left > 0.0 and stride > self.shortest:
-            u = point.tangent_space.project(flow(point.vertices))
+            velocity = flow(point.vertices)
+            u = point.tangent_space.project(velocity)
+            if _root_mean_square(u) <= RIGID * _root_mean_square(velocity):
+                return
             u *= stride * _radius(point.vertices) / _root_mean_square(u)
             leg = attempt(point, point.vertices + u, 0.0 * point.residual, lambda end: end.energy < ceiling)
             if not isinstance(leg, Leg):
