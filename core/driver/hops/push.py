@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...descent import Point, Step
+from ...energies.components import energy_scale
 from .pace import Pace, between
 from .soft_modes import soft_modes
 
@@ -45,7 +46,7 @@ class Push:
 
     def __call__(self, point: Point, rng: np.random.Generator) -> Iterator[Step]:
         """Yield steps, each of which ends on the constraints."""
-        ceiling = point.energy * between(self.ceilings, rng)
+        ceiling = energy_scale(point.problem.mesh, point.energy) * between(self.ceilings, rng)
         for _ in range(self.pushes):
             modes = soft_modes(point, rng).vectors[: self.modes]
             u = np.tensordot(rng.normal(size=len(modes)), modes, 1)
