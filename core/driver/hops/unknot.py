@@ -29,7 +29,7 @@ def told_of_unknot(curve: Curve) -> str | None:
     alone = len(curve.mesh.component_sizes) == 1
     if not alone or curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):
         return None
-    if len(curve.mesh.component_sizes) > 1 or not signature(curve).is_trivial:
+    if not signature(curve).is_trivial:
         return None
     found = knot_type(curve)
     if not found.names:
