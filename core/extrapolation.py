@@ -75,23 +75,23 @@ def extrapolated(curve: Curve, options: RelaxOptions) -> Extrapolation | None:
     curve
         A converged curve, in the user's units.
     options
-        How it was relaxed, with the pins that this curve has; tolerances above `TOLERANCE` are taken for that.
+        How it was relaxed, its pins those of this curve; tolerances above `TOLERANCE` are taken for that.
     """
+    pinned = curve.vertices[list(options.pins)]
     energies: list[float] = []
-    pins = options.pins
     for pieces in (1, 2, 2):
         start = subdivide(curve, np.full(curve.mesh.edges, pieces))
-        result = minimize(start, _on_mesh_of(start, replace(options, pins=_on(start, curve, pins))))
+        result = minimize(start, _on_mesh_of(start, options, Pins.at(start, pinned)))
         if not result.outcome.converged:
             return None
-        curve, pins = result.curve, result.last.pins
+        curve = result.curve
         energies.append(result.final_energy)
     coarse, middle, fine = energies
     return Extrapolation((coarse, middle, fine))
 
 
-def _on_mesh_of(curve: Curve, options: RelaxOptions) -> RelaxOptions:
-    """The same method on a mesh that stays as it is."""
+def _on_mesh_of(curve: Curve, options: RelaxOptions, pins: Pins) -> RelaxOptions:
+    """The same method on a mesh that stays as it is, without what leaves a minimum that was found."""
     return replace(
         options,
         tolerance=min(options.tolerance, TOLERANCE),
@@ -102,10 +102,6 @@ def _on_mesh_of(curve: Curve, options: RelaxOptions) -> RelaxOptions:
         escape_saddles=False,
         balance=False,
         hops=0,
+        pins=tuple(pins.vertices.tolist()),
         pin_tangents=False,
     )
-
-
-def _on(finer: Curve, curve: Curve, pins: tuple[int, ...]) -> tuple[int, ...]:
-    """The pins of a curve on a finer mesh of it."""
-    return tuple(Pins.at(finer, curve.vertices[list(pins)]).vertices.tolist()) if pins else ()

@@ -3,7 +3,7 @@
 A vertex is a Punkt here, as in Blender's own table; the other word for it, Knoten, is wanted for knots.
 """
 
-from . import film
+from . import film, surroundings
 
 _UNCHANGED = (
     "Animation",
@@ -122,6 +122,7 @@ _OPTIONS = {
     "Frames/Iterate": "Bilder/Iteration",
     "Gauss Points": "Gauß-Punkte",
     "Good": "Gut",
+    "Grow": "Wachsen",
     "Hide Curve": "Kurve verbergen",
     "Hold at End": "Ruhe am Ende",
     "Hold at Start": "Ruhe am Anfang",
@@ -199,4 +200,6 @@ _BUTTONS = {
     "Use Preset": "Voreinstellung verwenden",
 }
 
-LABELS = {text: text for text in _UNCHANGED} | _KNOTS | _METHODS | _OPTIONS | _BUTTONS | film.LABELS
+LABELS = (
+    {text: text for text in _UNCHANGED} | _KNOTS | _METHODS | _OPTIONS | _BUTTONS | film.LABELS | surroundings.LABELS
+)

@@ -1,6 +1,6 @@
 """Sentences and labels that are filled in when they are shown; fields in braces stay as they are."""
 
-from . import film
+from . import film, surroundings
 
 _REFUSALS = {
     "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first": (
@@ -9,8 +9,8 @@ _REFUSALS = {
     "'{name}' has no keys of Möbius Flow; press Relax first": (
         "'{name}' hat keine Schlüssel von Möbius Flow; zuerst Entspannen drücken"
     ),
-    "'{name}' has no splines; give it at least one closed poly spline": (
-        "'{name}' hat keine Splines; mindestens ein geschlossener Poly-Spline ist nötig"
+    "'{name}' has no splines; give it at least one poly spline": (
+        "'{name}' hat keine Splines; mindestens ein Poly-Spline ist nötig"
     ),
     "'{name}' has shape keys; remove them or relax a copy without them": (
         "'{name}' hat Formschlüssel; diese entfernen oder eine Kopie ohne sie entspannen"
@@ -71,6 +71,9 @@ _REFUSALS = {
         "Schlüssel von '{name}' wurden bearbeitet; das rückgängig machen oder die Schlüssel entfernen, "
         "um die Kurve so zu entspannen, wie sie ist"
     ),
+    "No selected curve has an open spline without keys; select one in Object Mode": (
+        "Keine ausgewählte Kurve hat einen offenen Spline ohne Schlüssel; eine im Objektmodus auswählen"
+    ),
     "No relaxation was cancelled": "Es wurde keine Entspannung abgebrochen",
     "Nothing is being relaxed": "Es wird gerade nichts entspannt",
     "Nothing is the matter at any place of this curve": "Es gibt an dieser Kurve keine Stelle, die Probleme macht",
@@ -80,18 +83,13 @@ _REFUSALS = {
     ),
     "Select a curve object first": "Zuerst ein Kurvenobjekt auswählen",
     "Select a curve that was baked first": "Zuerst eine gebackene Kurve auswählen",
-    "Spline {number} of '{name}' has fewer than {fewest} points, too few for a closed curve; "
-    "give it more, or delete it": (
-        "Spline {number} von '{name}' hat weniger als {fewest} Punkte, zu wenig für eine geschlossene Kurve; "
-        "Punkte hinzufügen oder den Spline löschen"
+    "Spline {number} of '{name}' has fewer than {fewest} points; give it more, or delete it": (
+        "Spline {number} von '{name}' hat weniger als {fewest} Punkte; Punkte hinzufügen oder den Spline löschen"
     ),
     "Spline {number} of '{name}' is a {kind} spline; convert it to Poly first "
     "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines": (
         "Spline {number} von '{name}' ist ein {kind}-Spline; zuerst in Poly umwandeln "
         "(Bearbeitungsmodus, Kurve > Splinetyp setzen > Poly) oder Splines abtasten einschalten"
-    ),
-    "Spline {number} of '{name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)": (
-        "Spline {number} von '{name}' ist offen; zuerst schließen (Bearbeitungsmodus, Kurve > Toggle Cyclic)"
     ),
     "The curve data of '{name}' is animated; remove the animation or relax a copy without it": (
         "Die Kurvendaten von '{name}' sind animiert; die Animation entfernen oder eine Kopie ohne sie entspannen"
@@ -204,6 +202,7 @@ _RUN = {
     "Möbius Flow was disabled; all is as it was": "Möbius Flow wurde deaktiviert; alles ist, wie es war",
     "Paused": "Angehalten",
     "Points of '{name}' were added or removed": "Punkte von '{name}' wurden hinzugefügt oder entfernt",
+    "Splines of '{name}' were changed": "Splines von '{name}' wurden geändert",
     "Resume": "Fortsetzen",
     "Running": "Läuft",
     "Step": "Schritt",
@@ -219,6 +218,7 @@ _RUN = {
     "stopped after 1 iteration, as asked for": "wie verlangt nach 1 Iteration beendet",
     "stopped after {count} iterations, as asked for": "wie verlangt nach {count} Iterationen beendet",
     "circle = {energy:g}": "Kreis = {energy:g}",
+    "straight = {energy:g}": "gerade = {energy:g}",
     "floor = {energy:g}": "Schranke = {energy:g}",
     "iterate {index}, energy {energy:.4f}": "Iteration {index}, Energie {energy:.4f}",
     "not proved": "nicht bewiesen",
@@ -318,12 +318,6 @@ _SIDEBAR = {
     "From Drawing": "Aus Zeichnung",
     "Keep {measure}": "{measure} beibehalten",
     "None": "Keine",
-    "Only selected curves are kept apart; {names} nearby are not": (
-        "Nur ausgewählte Kurven werden auseinandergehalten, {names} in der Nähe nicht"
-    ),
-    "Only selected curves are kept apart; {names} nearby is not": (
-        "Nur ausgewählte Kurven werden auseinandergehalten, {names} in der Nähe nicht"
-    ),
     "Quality: Custom, see Expert": "Qualität: benutzerdefiniert, siehe Experten",
     "Relax by Mobius Energy": "Nach Mobius-Energie entspannen",
     "Relax {count} Curves Together": "{count} Kurven gemeinsam entspannen",
@@ -340,4 +334,4 @@ _SIDEBAR = {
     "{radius} (your own)": "{radius} (eigener)",
 }
 
-SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES
+SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES | surroundings.SENTENCES

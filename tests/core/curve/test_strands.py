@@ -6,7 +6,7 @@ from mobius_flow.core import Curve
 from mobius_flow.core.curve import refine
 from mobius_flow.core.curve.distances import arc_distance_of_vertices
 from mobius_flow.core.curve.strands import nearest_strands
-from mobius_flow.core.knots import knot
+from mobius_flow.core.knots import knot, overhand
 from shapes import hopf_link, regular_polygon
 
 RATIO = 3.0
@@ -41,3 +41,9 @@ def test_vertices_that_coincide_are_no_hindrance() -> None:
     doubled = np.repeat(np.array([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 9.0, 0.0], [0.0, 9.0, 0.0]]), 3, axis=0)
     curve = Curve.from_components([doubled, doubled + np.array([0.0, 0.0, 1.0])])
     assert nearest_strands(curve, RATIO) == 1.0
+
+
+def test_arcs_have_a_vertex_more_than_edges() -> None:
+    link = Curve.from_components([hopf_link(30).components[0] + 2.0, overhand(90).vertices], (True, False))
+    assert nearest_strands(link, RATIO) == of_all_pairs(link)
+    assert nearest_strands(overhand(90), RATIO) == of_all_pairs(overhand(90))
