@@ -8,6 +8,7 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..curves.baked_keys import BakedKeys
+from ..curves.pins import pinned_vertices
 from ..curves.surroundings import Surroundings
 from ..engine.phrase import Phrase
 from ..engine.rest import Rest
@@ -88,8 +89,9 @@ def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
     """Where the selected curves rest; raises MobiusFlowError."""
     context.view_layer.update()
     objects = selected_curves(context)
-    options = replace(relax_options(values), avoid=Surroundings.of(values["avoid"], objects).obstacles)
-    return Rest.of(BakedKeys(objects).curves[-1], options)
+    keys = BakedKeys(objects)
+    options = relax_options({**values, "pins": pinned_vertices(objects, keys.mesh)})
+    return Rest.of(keys.curves[-1], replace(options, avoid=Surroundings.of(values["avoid"], objects).obstacles))
 
 
 def _told(context: bpy.types.Context, rest: Rest) -> Phrase:

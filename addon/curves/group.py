@@ -19,6 +19,7 @@ from ..engine.spots import Spot, spots
 from ..engine.words import named
 from .exchange import read_link, spline_points
 from .member import Member
+from .pins import pinned_vertices
 from .snapshot import outside_edit_mode
 
 if TYPE_CHECKING:
@@ -123,6 +124,11 @@ class Group:
             moved = next((member for member in self._members if member.moved), None)
             reason = Phrase("'{name}' was moved against the others", name=moved.name) if moved else None
         return reason
+
+    @property
+    def pins(self) -> tuple[int, ...]:
+        """The link's vertices that are pinned; raises CurveError as `pinned_vertices`."""
+        return pinned_vertices(self.objects, self.curve.mesh)
 
     @property
     def stored(self) -> Frame:

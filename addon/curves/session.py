@@ -148,9 +148,9 @@ class Session:
     group
         The objects; baked ones are set aside until the session's end or `Group.restore`.
     options
-        The requested options, with what is avoided.
+        The requested options, with what is pinned and what is avoided.
     surroundings
-        The same.
+        What is avoided.
     outcome
         How the relaxation ended, once it has.
 
@@ -169,16 +169,27 @@ class Session:
         surroundings: Surroundings = NOTHING,
     ) -> None:
         key_options.check_room(options.max_iterations)
-        if surroundings.obstacles:
-            key_options.check_place()
-        self.group, self.surroundings = Group(objects, continues), surroundings
-        options = replace(options, avoid=surroundings.obstacles)
-        # the keys that are there have as many points as the curves have now
-        self.options = replace(options, vertices=len(self.group.curve), mesh="fixed") if continues else options
+        self.surroundings = surroundings
         self._key_options = key_options
+        self.group = Group(objects, continues)
+        try:
+            self.options = self._fitting(options)
+        except BaseException:
+            self.group.restore()
+            raise
         self._motion = Motion(self.group.link, self.group.stored if continues else None)
         self._size: Size | None = None
         self.outcome: Outcome | None = None
+
+    def _fitting(self, options: RelaxOptions) -> RelaxOptions:
+        """The requested options, with what is pinned and avoided; raises MobiusFlowError if they do not go together."""
+        group, obstacles = self.group, self.surroundings.obstacles
+        pins = tuple(sorted({*options.pins, *group.pins}))
+        if pins or obstacles:
+            self._key_options.check_place()
+        if group.continues:  # the keys that are there have as many points as the curves have now
+            options = replace(options, vertices=len(group.curve), mesh="fixed")
+        return replace(options, pins=pins, avoid=obstacles)
 
     def run(self) -> Report:
         """Do the whole job. Objects are touched at its end only, and put back if that fails.

@@ -55,6 +55,7 @@ class KeyOptions:
             self.timing.check_room(iterations)
 
     def check_place(self) -> None:
-        """Raise an OptionError if keys are scaled: what was proved of a curve beside others holds at its own size."""
+        """Raise an OptionError if keys are scaled: that moves pins, and proofs beside others hold at one size only."""
         if self.keep_size is not Measure.LENGTH:
-            raise OptionError(Phrase("Only the length can be kept where something is avoided; set Keep to Length"))
+            sentence = "Only the length can be kept where something is pinned or avoided; set Keep to Length"
+            raise OptionError(Phrase(sentence))

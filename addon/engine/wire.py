@@ -4,7 +4,7 @@ import hashlib
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, fields, replace
 from typing import IO, Any
 
 import numpy as np
@@ -28,7 +28,7 @@ from .placement import Link, Placement
 Message = tuple[dict[str, Any], list[FloatArray]]
 
 _LENGTH = struct.Struct("!Q")
-_VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "method", "grown")
+_VALUES = tuple(field.name for field in fields(Iterate) if field.name not in ("curve", "path"))
 
 
 def write(stream: IO[bytes], message: Message) -> None:
@@ -106,6 +106,7 @@ def unpack_iterate(message: Message) -> tuple[Iterate, list[str]]:
     header, (vertices, *path) = message
     values = {name: header[name] for name in _VALUES}
     curve = Curve(vertices, _unpack_mesh(header))
+    values["pins"] = tuple(values["pins"])
     return Iterate(curve=curve, path=tuple(path), **values), header["proved"]
 
 

@@ -73,6 +73,17 @@ def needing(objects: Sequence["bpy.types.Object"], remedy: Remedy) -> Iterator["
             yield obj
 
 
+def curves_at_hand(context: "bpy.types.Context") -> list["bpy.types.Object"]:
+    """The curve objects that are being edited, or the selected ones where none is."""
+    return list(context.objects_in_mode) if context.mode == "EDIT_CURVE" else selected_curves(context)
+
+
+def unpinnable(context: "bpy.types.Context") -> Refusal | None:
+    """Say why points of these cannot be pinned, or return None if they can."""
+    objects = curves_at_hand(context)
+    return running() or (_first(objects, (_ownership,)) if objects else _no_curve(context))
+
+
 def closable(objects: Sequence["bpy.types.Object"]) -> Iterator["bpy.types.Object"]:
     """Yield the curve objects with open splines that may be closed: keys of a baked curve are about open ones."""
     for obj in objects:

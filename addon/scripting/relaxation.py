@@ -79,7 +79,9 @@ class Relaxation:
             Objects that the curves never touch, as they are shown at the current frame; those that are relaxed
             themselves are left out.
         **settings
-            Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out.
+            Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out. Besides,
+            ``pins``: points that stay where they are, as those do that are pinned already. They are counted from 0
+            through all splines of all objects; of Bézier and NURBS splines the points are those that are drawn.
 
         Returns
         -------

@@ -170,8 +170,8 @@ class RelaxOptions:
     grow: float = _advanced(
         1.0,
         "Grow",
-        "target lengths become so many times those of the start, by and by where there is something in the way, and "
-        "edges are split as that calls for it unless mesh is fixed; below 1 the curve shrinks",
+        "multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and "
+        "pins leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
         low=0,
         high=MAX_GROWTH,
         metavar="F",
@@ -202,10 +202,11 @@ class RelaxOptions:
         metavar="V,V,…",
         read=_indices,
     )
-    pin_tangents: bool = _scripted(
+    pin_tangents: bool = option(
         False,
         "Pin Tangents",
         "pin the neighbours that pinned vertices have in the refined start too, and so the curve's direction there",
+        group="pins",
     )
 
     def __post_init__(self) -> None:

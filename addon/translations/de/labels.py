@@ -122,6 +122,7 @@ _OPTIONS = {
     "Frames/Iterate": "Bilder/Iteration",
     "Gauss Points": "Gauß-Punkte",
     "Good": "Gut",
+    "Grow": "Wachsen",
     "Hide Curve": "Kurve verbergen",
     "Hold at End": "Ruhe am Ende",
     "Hold at Start": "Ruhe am Anfang",

@@ -36,8 +36,8 @@ SENTENCES = {
     "Nothing is near the selected curves but what they avoid": (
         "In der Nähe der ausgewählten Kurven ist nichts, was sie nicht meiden"
     ),
-    "Only the length can be kept where something is avoided; set Keep to Length": (
-        "Wo etwas gemieden wird, kann nur die Länge beibehalten werden; Behalten auf Länge stellen"
+    "Only the length can be kept where something is pinned or avoided; set Keep to Length": (
+        "Wo etwas gepinnt ist oder gemieden wird, kann nur die Länge beibehalten werden; Behalten auf Länge stellen"
     ),
     "There is no collection '{name}' to avoid": "Es gibt keine Sammlung '{name}', die gemieden werden könnte",
     "an object that its shape is made with": "Objekt, mit dem seine Form gemacht ist",
