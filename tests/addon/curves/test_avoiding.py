@@ -171,7 +171,8 @@ def test_there_is_no_such_collection():
 def test_sizes_cannot_be_kept():
     add_curve([ring()], "Ring")
     avoid(torus())
-    assert refused(keep_size="BOX") == "Only the length can be kept where something is pinned or avoided; set Keep to Length"
+    said = "Only the length can be kept where something is pinned or avoided; set Keep to Length"
+    assert refused(keep_size="BOX") == said
 
 
 def test_a_curve_that_moves_avoids_nothing():
