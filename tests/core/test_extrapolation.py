@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.core import Curve, Mesh, RelaxOptions, extrapolation, minimize
 from mobius_flow.core.extrapolation import Extrapolation, extrapolated
 from mobius_flow.core.knots import knot
-from shapes import half_circle, regular_polygon
+from shapes import regular_polygon
 from torus_energies import torus_knot_minimum
 
 
@@ -59,15 +59,6 @@ def test_loose_runs_are_tightened() -> None:
     found = extrapolated(minimize(knot("3_1", 90), options).curve, options)
     assert found is not None
     assert abs(found.value - torus_knot_minimum(2, 3)) <= found.error
-
-
-def test_arcs_stay_between_their_pins() -> None:
-    """A half circle is the least arc of its length between its ends; with one end free it would be straight."""
-    start, options = half_circle(20), RelaxOptions(vertices=21, pins=(0, 20))
-    result = minimize(start, options)
-    found = extrapolated(result.curve, options)
-    assert found is not None
-    assert found.energies == pytest.approx((result.final_energy,) * 3, rel=0.01)
 
 
 def test_runs_that_do_not_converge_have_none() -> None:
