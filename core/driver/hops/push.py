@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...descent import Point, Step
-from .pace import Pace, between
+from ...types import FloatArray
+from .pace import Field, Pace, between
 from .soft_modes import soft_modes
 
 SLOW = Pace(stride=0.05, shortest=1e-3)  # where strands touch, only short steps are free
@@ -49,6 +50,10 @@ class Push:
         for _ in range(self.pushes):
             modes = soft_modes(point, rng).vectors[: self.modes]
             u = np.tensordot(rng.normal(size=len(modes)), modes, 1)
-            for step in self.pace.along(point, lambda _, u=u: u, self.each, ceiling):
+            for step in self.pace.along(point, _constant(u), self.each, ceiling):
                 yield step
                 point = step.point.anchored
+
+
+def _constant(u: FloatArray) -> Field:
+    return lambda _: u
