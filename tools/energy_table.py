@@ -33,6 +33,7 @@ def table(rows: list[Row]) -> str:
     """The rows in Markdown, several types in a line, in columns."""
     cells = [f"{row['name']} | {_with_error(row)} | {row['index']}" for row in rows]
     height = -(-len(cells) // _COLUMNS)
+    cells += [" | | "] * (_COLUMNS * height - len(cells))
     lines = [" | ".join(cells[k::height]) for k in range(height)]
     head = " | ".join(["type | energy | index"] * _COLUMNS)
     rule = " | ".join(["--- | --- | ---"] * _COLUMNS)

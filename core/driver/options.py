@@ -213,10 +213,15 @@ class RelaxOptions:
         for each in declared(type(self)):
             each.check(getattr(self, each.name))
         object.__setattr__(self, "pins", tuple(map(int, self.pins)))
+        object.__setattr__(self, "avoid", tuple(self.avoid))
         self._check_pins()
+        if self.balance and self.avoid:
+            raise OptionError(
+                "balance takes Möbius images, which keep the energy but not the repulsion of what avoid names; "
+                "leave one of the two out"
+            )
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
-        object.__setattr__(self, "avoid", tuple(self.avoid))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
 

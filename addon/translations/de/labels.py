@@ -3,7 +3,7 @@
 A vertex is a Punkt here, as in Blender's own table; the other word for it, Knoten, is wanted for knots.
 """
 
-from . import film, surroundings
+from . import film, pins, surroundings
 
 _UNCHANGED = (
     "Animation",
@@ -173,7 +173,6 @@ _BUTTONS = {
     "Cancel": "Abbruch",
     "Check": "Prüfen",
     "Clear": "Entfernen",
-    "Close Splines": "Splines schließen",
     "Continue": "Fortsetzen",
     "Convert to Curve": "In Kurve konvertieren",
     "Convert to Poly": "In Poly konvertieren",
@@ -201,5 +200,12 @@ _BUTTONS = {
 }
 
 LABELS = (
-    {text: text for text in _UNCHANGED} | _KNOTS | _METHODS | _OPTIONS | _BUTTONS | film.LABELS | surroundings.LABELS
+    {text: text for text in _UNCHANGED}
+    | _KNOTS
+    | _METHODS
+    | _OPTIONS
+    | _BUTTONS
+    | film.LABELS
+    | pins.LABELS
+    | surroundings.LABELS
 )

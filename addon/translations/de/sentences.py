@@ -1,6 +1,6 @@
 """Sentences and labels that are filled in when they are shown; fields in braces stay as they are."""
 
-from . import film, surroundings
+from . import film, pins, surroundings
 
 _REFUSALS = {
     "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first": (
@@ -70,9 +70,6 @@ _REFUSALS = {
     "Keys of '{name}' were edited; undo that, or remove the keys to relax the curve as it is": (
         "Schlüssel von '{name}' wurden bearbeitet; das rückgängig machen oder die Schlüssel entfernen, "
         "um die Kurve so zu entspannen, wie sie ist"
-    ),
-    "No selected curve has an open spline without keys; select one in Object Mode": (
-        "Keine ausgewählte Kurve hat einen offenen Spline ohne Schlüssel; eine im Objektmodus auswählen"
     ),
     "No relaxation was cancelled": "Es wurde keine Entspannung abgebrochen",
     "Nothing is being relaxed": "Es wird gerade nichts entspannt",
@@ -202,7 +199,6 @@ _RUN = {
     "Möbius Flow was disabled; all is as it was": "Möbius Flow wurde deaktiviert; alles ist, wie es war",
     "Paused": "Angehalten",
     "Points of '{name}' were added or removed": "Punkte von '{name}' wurden hinzugefügt oder entfernt",
-    "Splines of '{name}' were changed": "Splines von '{name}' wurden geändert",
     "Resume": "Fortsetzen",
     "Running": "Läuft",
     "Step": "Schritt",
@@ -218,7 +214,6 @@ _RUN = {
     "stopped after 1 iteration, as asked for": "wie verlangt nach 1 Iteration beendet",
     "stopped after {count} iterations, as asked for": "wie verlangt nach {count} Iterationen beendet",
     "circle = {energy:g}": "Kreis = {energy:g}",
-    "straight = {energy:g}": "gerade = {energy:g}",
     "floor = {energy:g}": "Schranke = {energy:g}",
     "iterate {index}, energy {energy:.4f}": "Iteration {index}, Energie {energy:.4f}",
     "not proved": "nicht bewiesen",
@@ -322,16 +317,16 @@ _SIDEBAR = {
     "Relax by Mobius Energy": "Nach Mobius-Energie entspannen",
     "Relax {count} Curves Together": "{count} Kurven gemeinsam entspannen",
     "Search...": "Suchen...",
+    "one of {knots}": "einer von {knots}",
     "{count} crossings": "{count} Kreuzungen",
     "{count} more objects have smooth splines too": "{count} weitere Objekte haben auch glatte Splines",
     "{crossings}: it is not knotted": "{crossings}: nicht verknotet",
-    "{crossings}: one of {knots}": "{crossings}: einer von {knots}",
-    "{crossings}: {knots} or its mirror image": "{crossings}: {knots} oder sein Spiegelbild",
-    "{knots}, if it is prime": "{knots}, falls er prim ist",
+    "{crossings}: perhaps {knots}, not proved": "{crossings}: vielleicht {knots}, nicht bewiesen",
+    "{crossings}: {knots}, proved": "{crossings}: {knots}, bewiesen",
     "{names} and {count} more": "{names} und {count} weitere",
     "{names} and {last}": "{names} und {last}",
     "{radius} (fitted)": "{radius} (angepasst)",
     "{radius} (your own)": "{radius} (eigener)",
 }
 
-SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES | surroundings.SENTENCES
+SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES | pins.SENTENCES | surroundings.SENTENCES

@@ -1,6 +1,6 @@
 """Tooltips: of operators, of settings, and of what they let choose. Blender adds the full stop."""
 
-from . import film, surroundings
+from . import film, pins, surroundings
 from .relaxation import RELAXATION
 
 _OPERATORS = {
@@ -39,9 +39,6 @@ _OPERATORS = {
     "Go on to the shape of the same energy that bends least for its length; new keys follow the old ones": (
         "Weiter zur Form gleicher Energie gehen, die sich für ihre Länge am wenigsten biegt; "
         "neue Schlüssel folgen auf die alten"
-    ),
-    "Join the two ends of every open spline of the selected curves": (
-        "Die beiden Enden jedes offenen Splines der ausgewählten Kurven verbinden"
     ),
     "Keep all settings as a preset, or remove one": "Alle Einstellungen als Voreinstellung sichern oder eine entfernen",
     "Keep what the last relaxation had reached when it was cancelled": (
@@ -287,4 +284,6 @@ _ANIMATION = {
     "Which key has the size that all are given": "Welcher Schlüssel die Größe hat, die alle erhalten",
 }
 
-TOOLTIPS = _OPERATORS | _KNOTS | _OUTPUTS | _ANIMATION | film.TOOLTIPS | surroundings.TOOLTIPS | RELAXATION
+TOOLTIPS = (
+    _OPERATORS | _KNOTS | _OUTPUTS | _ANIMATION | film.TOOLTIPS | pins.TOOLTIPS | surroundings.TOOLTIPS | RELAXATION
+)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...energies.components import energy_scale
 from ...errors import counted
 from ..loop import Relaxation, descent, told
 from ..outcome import HOPS, Outcome
@@ -41,12 +42,14 @@ class Hops:
         """Try until a hop leads lower, which the run then takes; False if none does, or there is nothing lower."""
         run = self._run
         motions = [motion for motion in MOTIONS if motion.fits(run.point)]
-        if not (outcome.may_be_left and motions) or run.frozen:
+        if run.frozen or not (outcome.may_be_left and motions):
             return False
         if run.problem.unconfined and is_circle(run.iterate.curve):
             return False
         while self._tried < run.options.hops and run.iterations_left > 0:
-            below = (1.0 - GAIN) * run.iterate.energy
+            below = run.iterate.energy - GAIN * energy_scale(run.problem.mesh, run.iterate.energy)
+            if below < 0.0:  # arcs that are straight
+                return False
             found = self._next(motions[self._tried % len(motions)], below)
             if found is None:
                 continue

@@ -10,6 +10,8 @@ from ...descent import Leg, Point, Step
 from ...descent.step import attempt
 from ...types import FloatArray
 
+RIGID = 1e-12  # part of a field that is tangent, up to which it is rounding: pins may leave nothing to move
+
 Field = Callable[[FloatArray], FloatArray]
 """Velocities at vertices; shapes (n, m) -> (n, m)."""
 
@@ -33,7 +35,10 @@ class Pace:
         """Yield steps, each of which ends on the constraints and below a level of energy."""
         left, stride = distance, self.stride
         while left > 0.0 and stride > self.shortest:
-            u = point.tangent_space.project(field(point.vertices))
+            velocity = field(point.vertices)
+            u = point.tangent_space.project(velocity)
+            if root_mean_square(u) <= RIGID * root_mean_square(velocity):
+                return
             u *= stride * radius(point.vertices) / root_mean_square(u)
             leg = attempt(point, point.vertices + u, 0.0 * point.residual, lambda end: end.energy < ceiling)
             if not isinstance(leg, Leg):

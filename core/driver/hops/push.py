@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...descent import Point, Step
-from .pace import Pace, between
+from ...energies.components import energy_scale
+from ...types import FloatArray
+from .pace import Field, Pace, between
 from .soft_modes import soft_modes
 
 SLOW = Pace(stride=0.05, shortest=1e-3)  # where strands touch, only short steps are free
@@ -45,10 +47,14 @@ class Push:
 
     def __call__(self, point: Point, rng: np.random.Generator) -> Iterator[Step]:
         """Yield steps, each of which ends on the constraints."""
-        ceiling = point.energy * between(self.ceilings, rng)
+        ceiling = energy_scale(point.problem.mesh, point.energy) * between(self.ceilings, rng)
         for _ in range(self.pushes):
             modes = soft_modes(point, rng).vectors[: self.modes]
-            u = np.tensordot(rng.normal(size=len(modes)), modes, 1)
-            for step in self.pace.along(point, lambda _, u=u: u, self.each, ceiling):
+            field = _constant(np.tensordot(rng.normal(size=len(modes)), modes, 1))
+            for step in self.pace.along(point, field, self.each, ceiling):
                 yield step
                 point = step.point.anchored
+
+
+def _constant(u: FloatArray) -> Field:
+    return lambda _: u

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...descent import Point, Step
+from ...energies.components import energy_scale
 from .pace import Field, Pace, between, radius
 
 QUICK = Pace(stride=0.1, shortest=5e-3)
@@ -31,7 +32,8 @@ class Stir:
     frequency
         Standard deviation of each component of their wave vectors, in radians per radius of gyration.
     ceilings
-        Least and greatest multiple of the energy up to which the curve may be led.
+        Least and greatest multiple of the energy (of arcs, whose least is 0: of `energy_scale`) up to which the curve
+        may be led.
     """
 
     flows: int = 10
@@ -47,7 +49,7 @@ class Stir:
 
     def __call__(self, point: Point, rng: np.random.Generator) -> Iterator[Step]:
         """Yield steps, each of which ends on the constraints."""
-        ceiling = point.energy * between(self.ceilings, rng)
+        ceiling = energy_scale(point.problem.mesh, point.energy) * between(self.ceilings, rng)
         for _ in range(self.flows):
             for step in self.pace.along(point, self._flow(point, rng), self.each, ceiling):
                 yield step

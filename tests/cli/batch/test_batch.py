@@ -46,10 +46,10 @@ def test_rows_and_folders(batch: Batch, ring: Path, tmp_path: Path, capsys: pyte
         (name, start, seed) for name in ("L2a1", "knot", "ring") for start, seed in (("1", ""), ("2", "7"))
     ]
     assert pick(rows, "type_before", "type_after") == [
-        (name, name) for name in ("L2a1", "3_1", "unknot") for _ in range(2)
+        (name, name) for name in ("L2a1", "m3_1", "unknot") for _ in range(2)
     ]
     assert {(row["certified"], row["verified"]) for row in rows} == {("True", "True")}
-    assert {row["options"] for row in rows} == {'{"max_iterations": 3}'}
+    assert {row["options"] for row in rows} == {'{"max_iterations": 3, "seed": 5}'}
     for row in rows:
         folder = tmp_path / "out" / (row["name"] + ("" if row["start"] == "1" else "-2"))
         report = json.loads((folder / "report.json").read_text())
@@ -121,12 +121,15 @@ def test_what_is_finished_is_not_repeated(
     assert again(*TINY, "--time-limit", 1000)[0] == []
     assert again(*TINY, "--seed", 1)[0] == [("bad", 2), ("ring", 2)]
     assert again(*TINY, "--seed", 1, "--tolerance", "1e-3")[0] == everything
+    assert again(*TINY, "--seed", 1, "--tolerance", "1e-3", "--hops", 1)[0] == everything
+    assert again(*TINY, "--seed", 2, "--tolerance", "1e-3", "--hops", 1)[0] == everything  # hops have seeds too
+    assert again(*TINY, "--seed", 1, "--tolerance", "1e-3")[0] == everything
     write_curve(ring, regular_polygon(13))
     assert again(*TINY, "--seed", 1, "--tolerance", "1e-3")[0] == everything[2:]
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names")
-def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path) -> None:
+def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     poison = tmp_path / "poison"
     poison.mkdir()
     os.mkfifo(poison / "pipe.txt")
@@ -140,6 +143,7 @@ def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path) -> N
     }.items():
         (poison / name).write_text(text)
     rows = batch(poison, ring, "--starts", 2, *TINY)
+    assert capsys.readouterr().out.endswith(f"; {tmp_path / 'out/results.csv'} says why\n")
     told = {row["name"]: row["message"] for row in rows if row["status"] == "failed"}
     assert len(rows) == 16
     assert [row["name"] for row in rows if row["status"] != "failed"] == ["ring", "ring"]
@@ -223,6 +227,7 @@ def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkey
         (["none.txt"], "none.txt: there is no such file"),
         (["3_1", "--scheduler", "tcp://127.0.0.1:9"], "tcp://127.0.0.1:9: no Dask scheduler answers there"),
         (["3_1", "--scheduler", "nonsense"], "nonsense: no Dask scheduler answers there"),
+        (["3_1", "--scheduler", "tls://127.0.0.1:9"], "tls://127.0.0.1:9: no Dask scheduler answers there"),
     ],
 )
 def test_one_sentence(

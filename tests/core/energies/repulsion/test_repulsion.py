@@ -215,3 +215,19 @@ def test_stiffness_becomes_part_of_the_metric() -> None:
     (term,) = point.problem.objective.potentials
     expected = point.problem.metric.at(point.curve).dense() + np.diag(term.stiffness(point.curve))
     assert np.allclose(point.inner_product.dense(), expected, rtol=1e-12, atol=0.0)
+
+
+def test_what_has_no_area_repels_nothing() -> None:
+    """Clusters of it alone have no centroid; meshes have some."""
+    point, needle = [[5.0, 0.0, 0.0]] * 3, [[5.0, 0.0, 0.0], [6.0, 0.0, 0.0], [5.5, 0.0, 0.0]]
+    corners = np.array([point, point, needle])
+    flat = Obstacle(corners.reshape(-1, 3), np.arange(9).reshape(3, 3))
+    assert Repulsion.of([flat]) == ()
+    both = Obstacle(np.concatenate([sphere(3).corners.reshape(-1, 3), flat.vertices]), _counted(sphere(3), flat))
+    alone = Repulsion.of([sphere(3)])[0].clusters
+    np.testing.assert_array_equal(Repulsion.of([both])[0].clusters.spread, alone.spread)
+
+
+def _counted(*obstacles: Obstacle) -> np.ndarray:
+    """Faces of the obstacles' corners, one after the other."""
+    return np.arange(3 * sum(len(obstacle.faces) for obstacle in obstacles)).reshape(-1, 3)
