@@ -56,9 +56,9 @@ def test_energies(tmp_path: Path, energy: str) -> None:
 
 
 def test_single_edges(tmp_path: Path) -> None:
-    result = relaxed(
-        tmp_path, Curve([[0, 0, 0], [1, 0, 0], [0, 0.1, 1], [0, 1, 1]], Mesh((2, 2), (False, False))), vertices=4
-    )
+    edges = Curve([[0, 0, 0], [1, 0, 0], [0, 0.1, 1], [0, 1, 1]], Mesh((2, 2), (False, False)))
+    result = relaxed(tmp_path, edges, vertices=4, max_iterations=50)
+    assert result.final_energy < 0.1 * result.energies[0]  # they drift apart for ever
     np.testing.assert_allclose(result.curve.edge_lengths, [1.0, 0.9])
 
 
