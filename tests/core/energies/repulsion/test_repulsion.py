@@ -217,6 +217,16 @@ def test_stiffness_becomes_part_of_the_metric() -> None:
     assert np.allclose(point.inner_product.dense(), expected, rtol=1e-12, atol=0.0)
 
 
+def test_second_derivatives_of_arcs() -> None:
+    """Which have fewer edges than vertices."""
+    curve = Curve.from_components([wavy(20).vertices, wavy(30).vertices + 5.0], [False, True])
+    for obstacle in (BALL, FRAME):
+        term, v = repulsion(obstacle), np.random.default_rng(5).normal(size=curve.vertices.shape)
+        product = term.hessian_product(curve, v)
+        np.testing.assert_allclose(term.sparse_hessian(curve) @ v.ravel(), product.ravel(), atol=1e-10)
+        assert hessian_slope(term.frozen_at(curve), curve, v, largest=1e-3) == pytest.approx(3.0, abs=0.1)
+
+
 def test_what_has_no_area_repels_nothing() -> None:
     """Clusters of it alone have no centroid; meshes have some."""
     point, needle = [[5.0, 0.0, 0.0]] * 3, [[5.0, 0.0, 0.0], [6.0, 0.0, 0.0], [5.5, 0.0, 0.0]]
