@@ -125,6 +125,7 @@ _OPTIONS = {
     "Hide Curve": "Kurve verbergen",
     "Hold at End": "Ruhe am Ende",
     "Hold at Start": "Ruhe am Anfang",
+    "Grow": "Wachsen",
     "Hops": "Sprünge",
     "Keep": "Behalten",
     "Keep Tubes Fitted": "Röhren angepasst halten",

@@ -138,8 +138,13 @@ _OPTIONS = {
         "Gewicht von Längenfehlern in den Strafmethoden; 0: das der Methode"
     ),
     "What is minimised, with a barrier between strands": "Was minimiert wird, mit einer Barriere zwischen Strängen",
-    "Which random motions hops begin with: equal numbers, equal motions": (
-        "Mit welchen zufälligen Bewegungen Sprünge beginnen: gleiche Zahlen, gleiche Bewegungen"
+    "Of random motions, of hops and of scrambled starts: equal numbers, equal motions": (
+        "Der zufälligen Bewegungen, von Sprüngen und durchmischten Anfängen: gleiche Zahlen, gleiche Bewegungen"
+    ),
+    "Target lengths become so many times those of the start, by and by where there is something in the way, and "
+    "edges are split as that calls for it unless mesh is fixed; below 1 the curve shrinks": (
+        "Die Längen werden so viele Male die des Anfangs, nach und nach, wo etwas im Weg ist, und Kanten werden dafür "
+        "geteilt, außer bei festem Netz; unter 1 schrumpft die Kurve"
     ),
     "the method's own": "die der Methode",
 }
