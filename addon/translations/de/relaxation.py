@@ -148,14 +148,6 @@ _OPTIONS = {
     "What is minimised, with a barrier between strands": "Was minimiert wird, mit einer Barriere zwischen Strängen",
     "Of random motions, of hops and of scrambled starts: equal numbers, equal motions": (
         "Der zufälligen Bewegungen, von Sprüngen und durchmischten Anfängen: gleiche Zahlen, gleiche Bewegungen"
-<<<<<<< HEAD
-=======
-    ),
-    "Target lengths become so many times those of the start, by and by where there is something in the way, and "
-    "edges are split as that calls for it unless mesh is fixed; below 1 the curve shrinks": (
-        "Die Längen werden so viele Male die des Anfangs, nach und nach, wo etwas im Weg ist, und Kanten werden dafür "
-        "geteilt, außer bei festem Netz; unter 1 schrumpft die Kurve"
->>>>>>> b30c455cb3b16050190aab6c0338eb79ee4459f1
     ),
     "the method's own": "die der Methode",
 }
