@@ -3,15 +3,16 @@
 import bpy
 from bpy.props import PointerProperty
 
-from . import buttons, film_settings, panel_settings, sidebar, translations
+from . import buttons, film_settings, panel_settings, sidebar, surroundings_settings, translations
 from .buttons import gallery, presets
 from .live import handlers, overlay
 from .properties import MobiusFlowSettings
 from .sidebar import menus
 
-_CLASSES = (MobiusFlowSettings, *panel_settings.CLASSES, *film_settings.CLASSES, *buttons.CLASSES, *sidebar.CLASSES)
+_SETTINGS = (panel_settings, film_settings, surroundings_settings)
+_CLASSES = (MobiusFlowSettings, *(cls for part in (*_SETTINGS, buttons, sidebar) for cls in part.CLASSES))
 # what else there is to register
-_PARTS = (translations, panel_settings, film_settings, presets, gallery, menus, handlers, overlay)
+_PARTS = (translations, *_SETTINGS, presets, gallery, menus, handlers, overlay)
 
 
 def register() -> None:

@@ -36,16 +36,25 @@ class Constraints:
         For each component the number of its part, from 0; None if all are one.
     pins
         Vertices that stay where they are.
+    grown
+        How many times as long the targets are as they were at first, but for edges between two pins.
     """
 
     lengths: FloatArray
     barycenter: FloatArray
     parts: Parts | None = None
     pins: Pins = NO_PINS
+    grown: float = 1.0
 
     def of_parts(self, curve: Curve, parts: Parts) -> "Constraints":
         """The same lengths and pins, with the barycenter of each part kept where it is in ``curve``."""
         return replace(self, barycenter=weighted_barycenter(curve, parts, self.pins.vertices), parts=parts)
+
+    def scaled(self, factor: float, mesh: Mesh) -> "Constraints":
+        """All lengths times a factor, but for edges between two pins, and the barycenters in their places."""
+        lengths, free = self.lengths.copy(), free_edges(mesh, self.pins.vertices)
+        lengths[free] *= factor
+        return replace(self, lengths=lengths, barycenter=factor * self.barycenter, grown=factor * self.grown)
 
     def derivative(self, curve: Curve) -> "ConstraintDerivative":
         """DΦ at a curve."""

@@ -22,7 +22,7 @@ class Operator:
 
     def __init__(self, continues=False, **values):
         self.loop, self.reports, self.continues = None, [], continues
-        self.values = {"view_every": 1} | values
+        self.values = {"view_every": 1, "avoid": ()} | values
 
     def report(self, kind, message):
         self.reports.append((kind, message))

@@ -41,7 +41,7 @@ class AddsKnot(AddObjectHelper):
         unit="LENGTH",
     )
     color_components: BoolProperty(
-        name="Color Components", description="Give each closed curve of a link a material of its own", default=True
+        name="Color Components", description="Give each spline of a link a material of its own", default=True
     )
 
     @classmethod
@@ -69,7 +69,7 @@ class AddsKnot(AddObjectHelper):
 
     def curve_data(self, name: str, vertices: FloatArray, curve: Curve) -> bpy.types.Curve:
         """Make curve data of a curve with these vertices, shape (n, 3), its tube and its colours."""
-        data = new_curve_data(name, curve.mesh.component_sizes)
+        data = new_curve_data(name, curve.mesh)
         self.fit_bevel = self._fits()  # so that doing it again does the same
         if self.fit_bevel:
             self.thickness = bevel.fitting_radius(curve.with_vertices(vertices))

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...core.knots import Drawing
 
 _SWITCHES = 32  # Blender's longest array of switches
-_NAMED = 10  # crossings of the largest knots that have a name
-_TELLING = 7  # crossings up to which no composite knot has the Alexander polynomial of one that is named
 
 
 class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N801
@@ -131,19 +129,18 @@ def _read(objects: list[bpy.types.Object]) -> Curve:
 
 def _words(curve: Curve, crossings: int) -> tuple[str, Phrase]:
     """A name for a drawn knot, and what can be said of it."""
-    from ...core.knots.recognition import names_alike
+    from ...core.knots import knot_type
 
-    known = names_alike(curve, crossings) if crossings <= _NAMED else []
+    found = knot_type(curve)
     told = Phrase("{count} crossings", count=crossings) if crossings != 1 else Phrase("1 crossing")
-    if known == ["0_1"]:
+    if found.proved and found.names == ("0_1",):
         return "Drawn Unknot", Phrase("{crossings}: it is not knotted", crossings=told)
-    if not known:
+    if not found.names:
         return "Drawn Knot", told
-    name, what = "Drawn Knot", "{crossings}: one of {knots}"
-    if len(known) == 1:
-        name, what = f"Drawn {known[0]}", "{crossings}: {knots} or its mirror image"
-    knots = Phrase(what, crossings=told, knots=", ".join(known))
-    return name, Phrase("{knots}, if it is prime", knots=knots) if crossings > _TELLING else knots
+    known = Phrase("one of {knots}", knots=", ".join(found.names)) if len(found.names) > 1 else found.names[0]
+    name = "Drawn Knot" if len(found.names) > 1 else f"Drawn {found.names[0]}"
+    sentence = "{crossings}: {knots}, proved" if found.proved else "{crossings}: perhaps {knots}, not proved"
+    return name, Phrase(sentence, crossings=told, knots=known)
 
 
 def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: FloatArray, size: float) -> None:

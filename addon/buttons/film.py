@@ -37,7 +37,7 @@ Your own lights stay; your camera and your world come back with Remove Stage"""
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
-        """The curves must be closed and drawn."""
+        """The curves must be drawn."""
         return unreadable(context)
 
     def act(self, context: bpy.types.Context) -> None:

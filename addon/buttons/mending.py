@@ -89,15 +89,6 @@ class CURVE_OT_mobius_flow_make_3d(_Mending, bpy.types.Operator):  # noqa: N801
     mend = staticmethod(mending.make_3d)
 
 
-class CURVE_OT_mobius_flow_close(_Mending, bpy.types.Operator):  # noqa: N801
-    """Join the two ends of every open spline of the selected curves"""
-
-    bl_idname = Remedy.CLOSE.value
-    bl_label = "Close Splines"
-    remedy = Remedy.CLOSE
-    mend = staticmethod(mending.close)
-
-
 class CURVE_OT_mobius_flow_to_poly(_Mending, bpy.types.Operator):  # noqa: N801
     """Replace Bézier and NURBS splines of the selected curves by the polygons drawn for them"""
 
@@ -149,7 +140,6 @@ CLASSES = (
     CURVE_OT_mobius_flow_make_local,
     CURVE_OT_mobius_flow_single_user,
     CURVE_OT_mobius_flow_make_3d,
-    CURVE_OT_mobius_flow_close,
     CURVE_OT_mobius_flow_to_poly,
     CURVE_OT_mobius_flow_copy,
     CURVE_OT_mobius_flow_to_curve,

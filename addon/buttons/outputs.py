@@ -14,9 +14,10 @@ from ..curves.outputs import put_beside
 from ..curves.recorded import Recorded, in_world
 from ..curves.smooth_curve import smooth_objects
 from ..curves.units import length
+from ..engine.cubic_spline import FEWEST
 from ..engine.in_between import places_between
 from ..engine.phrase import Phrase
-from ..engine.smooth_fit import FEWEST, SmoothFit
+from ..engine.smooth_fit import SmoothFit
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
 from ..live.checks import selected_curves, unreadable
@@ -43,7 +44,7 @@ class _Output(Refusing):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
-        """The curves must be closed and drawn."""
+        """The curves must be drawn."""
         return unreadable(context)
 
     def act(self, context: bpy.types.Context) -> None:
@@ -83,7 +84,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             description="What the vertices are colored by, as the curves are at the end of their animation",
             items=[
                 (_PLAIN, "Materials", "The curve's own materials"),
-                (COMPONENT, "Component", "A color for each closed curve"),
+                (COMPONENT, "Component", "A color for each spline"),
                 (DISTANCE, "Distance", "The distance to the nearest other strand: yellow where it is near"),
                 (ENERGY, "Energy", "The Möbius energy per length: yellow where there is much of it"),
             ],

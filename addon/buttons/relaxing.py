@@ -3,9 +3,10 @@
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty
+from bpy.props import BoolProperty, StringProperty
 
 from ...core import MobiusFlowError
+from ..live.avoided import avoided
 from ..live.checks import refusal, selected_curves
 from ..live.refusal import Refusal
 from ..live.start import LiveRelax, tell
@@ -27,6 +28,11 @@ class Relaxing(LiveRelax, Refusing):
             description="Replace Bézier and NURBS splines by the polygons drawn for them",
             options={"SKIP_SAVE", "HIDDEN"},
         ),
+        "avoid": StringProperty(
+            name="Avoid",
+            description="Name of the collection whose visible objects are never touched; empty for none",
+            options={"SKIP_SAVE", "HIDDEN"},
+        ),
     }
 
     @classmethod
@@ -37,8 +43,8 @@ class Relaxing(LiveRelax, Refusing):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job."""
         context.view_layer.update()  # a script may have moved the object just before
-        values = self.values(context)
         try:
+            values = self.values(context)
             if refused := self.refusal(context):
                 raise MobiusFlowError(refused.sentence)
             relaxation = Relaxation(*selected_curves(context), sample_splines=self.sample_splines)
@@ -54,11 +60,12 @@ class Relaxing(LiveRelax, Refusing):
         return {"FINISHED"}
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
-        """The settings: those given to the operator, and the scene's."""
+        """The settings: those given to the operator, and the scene's; raises MobiusFlowError."""
         scene = context.scene.mobius_flow
         given = self.properties.is_property_set
         values = {name: getattr(self if given(name) else scene, name) for name in SETTINGS}
-        return values | implied([name for name in SETTINGS if given(name)])
+        avoid = avoided(context, self.avoid if given("avoid") else None)
+        return values | implied([name for name in SETTINGS if given(name)]) | {"avoid": avoid}
 
 
 class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme

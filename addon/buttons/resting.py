@@ -1,15 +1,19 @@
 """Where a relaxed curve rests: told, and left for a better shape or a lower energy."""
 
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import bpy
 
 from ...core import MobiusFlowError
 from ..curves.baked_keys import BakedKeys
+from ..curves.pins import pinned_vertices
+from ..curves.surroundings import Surroundings
 from ..engine.phrase import Phrase
 from ..engine.rest import Rest
 from ..engine.words import named
+from ..live.avoided import avoided
 from ..live.checks import edited, selected_curves
 from ..live.refusal import Refusal
 from ..properties import SETTINGS, relax_options
@@ -49,7 +53,7 @@ class CURVE_OT_mobius_flow_check(Refusing, bpy.types.Operator):  # noqa: N801
     def act(self, context: bpy.types.Context) -> None:
         """Look at the end of the animation."""
         values = {name: getattr(context.scene.mobius_flow, name) for name in SETTINGS}
-        self.report({"INFO"}, rpt_(_told(context, _rest(context, values))))
+        self.report({"INFO"}, rpt_(_told(context, _rest(context, values | {"avoid": avoided(context)}))))
 
 
 class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: N801
@@ -84,7 +88,10 @@ class CURVE_OT_mobius_flow_leave_saddle(Rebaking, bpy.types.Operator):  # noqa: 
 def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
     """Where the selected curves rest; raises MobiusFlowError."""
     context.view_layer.update()
-    return Rest.of(BakedKeys(selected_curves(context)).curves[-1], relax_options(values))
+    objects = selected_curves(context)
+    keys = BakedKeys(objects)
+    options = relax_options({**values, "pins": pinned_vertices(objects, keys.mesh)})
+    return Rest.of(keys.curves[-1], replace(options, avoid=Surroundings.of(values["avoid"], objects).obstacles))
 
 
 def _told(context: bpy.types.Context, rest: Rest) -> Phrase:

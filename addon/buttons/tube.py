@@ -26,7 +26,7 @@ class CURVE_OT_mobius_flow_fit_tube(Refusing, bpy.types.Operator):  # noqa: N801
 
 
 class CURVE_OT_mobius_flow_color_components(Refusing, bpy.types.Operator):  # noqa: N801
-    """Give each closed curve of the selected objects a material of its own, in slots after those that are there"""
+    """Give each spline of the selected objects a material of its own, in slots after those that are there"""
 
     bl_idname = "curve.mobius_flow_color_components"
     bl_label = "Color Components"

@@ -122,12 +122,14 @@ def _animated(data: "bpy.types.Curve") -> "bpy.types.ID | None":
 
 
 def _fingerprint(data: "bpy.types.Curve") -> list[int]:
-    """Numbers of keys, of F-curves and of points; -1 where somebody else's animation is."""
+    """Numbers of keys, of F-curves and of points, and which splines are open; -1 where somebody else's animation is."""
     keys = data.shape_keys
     owner: Any = keys or data
     blocks = 0 if keys is None else -1 if keys.use_relative else len(keys.key_blocks)
     own, other = count_own(owner), keys is not None and _moves(data)
-    return [blocks, -1 if own is None or other or _driven(owner) else own, sum(count for _, count in shape(data))]
+    splines = shape(data)
+    points, open_ones = sum(each.count for each in splines), [k for k, each in enumerate(splines) if not each.closed]
+    return [blocks, -1 if own is None or other or _driven(owner) else own, points, *open_ones]
 
 
 def _digest(data: "bpy.types.Curve") -> str:

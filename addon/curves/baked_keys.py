@@ -14,6 +14,7 @@ from ..engine.phrase import Phrase
 from ..engine.placement import Frame, Link, Placement
 from ..engine.words import named
 from . import bake
+from .exchange import closed
 from .rewriting import keyed_points, move_keys, scale_tube
 
 if TYPE_CHECKING:
@@ -46,7 +47,8 @@ class BakedKeys:
     def __init__(self, objects: Sequence["bpy.types.Object"]) -> None:
         self._objects = objects
         sizes = [[len(spline.points) for spline in obj.data.splines] for obj in objects]
-        self.mesh = Mesh(tuple(size for each in sizes for size in each))
+        open_too = tuple(flag for obj in objects for flag in closed(obj.data))
+        self.mesh = Mesh(tuple(size for each in sizes for size in each), open_too)
         placements = tuple(Placement.from_matrix(obj.matrix_world) for obj in objects)
         self.link = Link(placements, tuple(map(len, sizes)))
         keys = [keyed_points(obj.data) for obj in objects]

@@ -49,11 +49,11 @@ def deforms(modifier: "bpy.types.Modifier") -> bool:
     Others add to what is drawn, as a bevel does; of geometry nodes those do that have no node for positions.
     """
     if modifier.type == "NODES":
-        return any(node.bl_idname in _MOVING_NODES for node in _nodes(modifier.node_group, set()))
+        return any(node.bl_idname in _MOVING_NODES for node in nodes_of(modifier.node_group, set()))
     return modifier.type in _DEFORMING
 
 
-def _nodes(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]") -> "Iterator[bpy.types.Node]":
+def nodes_of(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]") -> "Iterator[bpy.types.Node]":
     """Yield the nodes of a tree and of the groups in it that are not muted, each tree once."""
     if tree is None or tree in seen:
         return
@@ -61,4 +61,4 @@ def _nodes(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]") -
     for node in tree.nodes:
         if not node.mute:
             yield node
-            yield from _nodes(getattr(node, "node_tree", None), seen)
+            yield from nodes_of(getattr(node, "node_tree", None), seen)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Curve, CurveError
+from ...core import Curve, CurveError, Mesh
 from ...core.types import FloatArray
 from ..engine.phrase import Phrase
 from ..engine.placement import Frame, Link, Placement
@@ -20,7 +20,7 @@ _FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
 def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
     """Read the splines of curve objects in world space, one component each, and where they are stored.
 
-    Smooth splines are read as the polygons drawn for them.
+    Splines that are not cyclic are open components. Smooth splines are read as the polygons drawn for them.
 
     Raises
     ------
@@ -32,7 +32,12 @@ def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
     components = [read_splines(obj) for obj in objects]
     link = Link(placements, tuple(len(each) for each in components))
     world = [placement.to_world(c) for placement, each in zip(placements, components, strict=True) for c in each]
-    return Curve.from_components(world), link
+    return Curve.from_components(world, [flag for obj in objects for flag in closed(obj.data)]), link
+
+
+def closed(data: "bpy.types.Curve") -> tuple[bool, ...]:
+    """Whether each spline is closed; those that are not cyclic are open."""
+    return tuple(bool(spline.use_cyclic_u) for spline in data.splines)
 
 
 def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
@@ -92,14 +97,14 @@ def write_points(data: "bpy.types.Curve", frame: Frame) -> None:
     data.update_tag()
 
 
-def new_curve_data(name: str, sizes: tuple[int, ...]) -> "bpy.types.Curve":
-    """Make curve data of closed poly splines with so many points, all still at the origin."""
+def new_curve_data(name: str, mesh: Mesh) -> "bpy.types.Curve":
+    """Make curve data of poly splines, one for each component, with all points still at the origin."""
     import bpy
 
     data = bpy.data.curves.new(name, "CURVE")
     data.dimensions = "3D"
-    for size in sizes:
+    for size, is_closed in zip(mesh.component_sizes, mesh.closed, strict=True):
         spline = data.splines.new("POLY")
         spline.points.add(size - 1)
-        spline.use_cyclic_u = True
+        spline.use_cyclic_u = is_closed
     return data

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Curve
+from ...core import Curve, Obstacle
 from ...core.curve import Mesh
 from ...core.errors import Place
 from ...core.types import FloatArray
@@ -19,6 +19,7 @@ from ..engine.spots import Spot, spots
 from ..engine.words import named
 from .exchange import read_link, spline_points
 from .member import Member
+from .pins import pinned_vertices
 from .snapshot import outside_edit_mode
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ class Group:
     Attributes
     ----------
     curve
-        All splines as closed polygons in world space.
+        All splines as polygons in world space, open where they are not cyclic.
     link
         Where their vertices are stored.
     continues
@@ -81,9 +82,9 @@ class Group:
         """One of the objects, by its number among those that there were; None if it is gone."""
         return self._members[number].object
 
-    def told(self, sentence: str) -> str:
-        """What the core says of the link, with the splines named by their objects."""
-        return in_blenders_words(sentence, spline_names(self.names, self.link.counts))
+    def told(self, sentence: str, avoided: Sequence[Obstacle] = ()) -> str:
+        """What the core says of the link and of what it avoids, with the splines named by their objects."""
+        return in_blenders_words(sentence, spline_names(self.names, self.link.counts), avoided)
 
     def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
         """Where on the objects a place is on the link, or on the same with other vertices."""
@@ -113,13 +114,21 @@ class Group:
             and all(one.equals(another) for one, another in pairs)
         )
 
-    def lost(self) -> Phrase | None:
-        """Say what somebody did to one of the objects that makes going on impossible."""
+    def lost(self, alone: bool = True) -> Phrase | None:
+        """Say what somebody did to one of the objects that makes going on impossible.
+
+        What is proved of a single one holds wherever it goes, if it is ``alone``, and avoids nothing.
+        """
         reason = next((reason for member in self._members if (reason := member.lost())), None)
-        if reason is None and len(self._members) > 1:  # what is proved of a single one holds wherever it goes
+        if reason is None and not (alone and len(self._members) == 1):
             moved = next((member for member in self._members if member.moved), None)
             reason = Phrase("'{name}' was moved against the others", name=moved.name) if moved else None
         return reason
+
+    @property
+    def pins(self) -> tuple[int, ...]:
+        """The link's vertices that are pinned; raises CurveError as `pinned_vertices`."""
+        return pinned_vertices(self.objects, self.curve.mesh)
 
     @property
     def stored(self) -> Frame:

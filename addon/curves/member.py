@@ -99,7 +99,9 @@ class Member:
         if obj.mode != "OBJECT":
             return Phrase("'{name}' is being edited", name=self.name)
         if shape(data) != self._shape:
-            return Phrase("Points of '{name}' were added or removed", name=self.name)
+            counts = [each.count for each in shape(data)] != [each.count for each in self._shape]
+            changed = "Points of '{name}' were added or removed" if counts else "Splines of '{name}' were changed"
+            return Phrase(changed, name=self.name)
         if self._foreign_keys(data):
             return Phrase("'{name}' was given shape keys", name=self.name)
         deformer = what_deforms(obj)

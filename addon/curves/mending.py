@@ -7,7 +7,7 @@ import numpy as np
 from ...core import Curve
 from . import sampling
 from .copying import select_instead
-from .exchange import write_points
+from .exchange import closed, write_points
 from .snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def to_poly(obj: "bpy.types.Object") -> None:
         If no polygon is drawn for one of them; nothing is changed then.
     """
     frames = sampling.sampled(obj)
-    drawn = Curve.from_components([frame.astype(np.float64) for frame in frames])
+    drawn = Curve.from_components([frame.astype(np.float64) for frame in frames], closed(obj.data))
     Snapshot.of(obj.data).make_polygons(obj.data, drawn, drawn)
     write_points(obj.data, np.concatenate(frames))
 

@@ -27,7 +27,7 @@ def _movers(obj: "bpy.types.Object") -> Iterator[Phrase]:
         yield Phrase("a driver")
     if any(not constraint.mute for constraint in obj.constraints):
         yield Phrase("a constraint")
-    if obj.rigid_body:
+    if obj.rigid_body and obj.rigid_body.type == "ACTIVE":  # a passive one is hit, and stays where it is
         yield Phrase("physics")
     if obj.parent:
         yield from _parental(obj)

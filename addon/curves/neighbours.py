@@ -8,28 +8,34 @@ import numpy as np
 from ...core.types import FloatArray
 from ..engine.phrase import Phrase
 from ..engine.words import named
+from .surfaces import SOLID
 
 if TYPE_CHECKING:
     import bpy
 
 STAGE = "mobius_flow_stage"  # custom property of what only surrounds curves, to be seen with them
-_SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}
 _MARGIN = 0.1  # of the diagonal of the curves' box
 
 
-def warning(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> Phrase | None:
-    """Name what is visible near curve objects and not one of them, or return None; cheap enough for every redraw."""
-    near = _near(context, objects)
-    if not near:
+def warning(
+    context: "bpy.types.Context", objects: Sequence["bpy.types.Object"], avoided: Sequence["bpy.types.Object"] = ()
+) -> Phrase | None:
+    """Name what is visible near curve objects, and neither one of them nor avoided by them, or return None."""
+    if not (found := near(context, objects, avoided)):
         return None
-    names = named([obj.name for obj in near])
-    if len(near) > 1:
-        return Phrase("Only selected curves are kept apart; {names} nearby are not", names=names)
-    return Phrase("Only selected curves are kept apart; {names} nearby is not", names=names)
+    names = named([obj.name for obj in found])
+    if len(found) > 1:
+        return Phrase("{names} nearby are neither selected nor avoided, and may be crossed", names=names)
+    return Phrase("{names} nearby is neither selected nor avoided, and may be crossed", names=names)
 
 
-def _near(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -> list["bpy.types.Object"]:
-    """Visible objects with a surface or a line whose boxes in the world overlap those of the curves, enlarged."""
+def near(
+    context: "bpy.types.Context", objects: Sequence["bpy.types.Object"], avoided: Sequence["bpy.types.Object"] = ()
+) -> list["bpy.types.Object"]:
+    """Other visible objects with a surface or a line whose boxes in the world overlap those of the curves, enlarged.
+
+    Cheap enough for every redraw.
+    """
     everything = context.view_layer.objects
     together = set(objects)
     mine = np.array([obj in together for obj in everything], dtype=bool)
@@ -40,7 +46,8 @@ def _near(context: "bpy.types.Context", objects: Sequence["bpy.types.Object"]) -
     margin = _MARGIN * np.linalg.norm(highest - lowest)
     overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
     candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
-    return [obj for obj in candidates if obj.type in _SOLID and STAGE not in obj and obj.visible_get()]
+    others = (obj for obj in candidates if obj.type in SOLID and obj not in avoided)
+    return [obj for obj in others if STAGE not in obj and obj.visible_get()]
 
 
 def _boxes(objects: "bpy.types.bpy_prop_collection") -> tuple[FloatArray, FloatArray]:

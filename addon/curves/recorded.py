@@ -11,8 +11,9 @@ from ...core.curve import Mesh
 from ...core.types import FloatArray
 from ..engine.in_between import interpolated
 from ..engine.placement import Placement
+from ..engine.refinement import along
 from . import bake
-from .exchange import key_points, key_radii, read_splines
+from .exchange import closed, key_points, key_radii, read_splines
 from .fcurves import fcurves_of
 from .keyframes import coordinate_curves
 
@@ -48,15 +49,15 @@ class Recorded:
 
     @classmethod
     def of(cls, obj: "bpy.types.Object") -> "Recorded":
-        """Read a curve object with closed splines; raises CurveError if they cannot be read."""
+        """Read the splines of a curve object; raises CurveError if they cannot be read."""
         data = obj.data
         if not bake.is_baked(data):
             splines = read_splines(obj)
-            mesh = Mesh(tuple(map(len, splines)))
+            mesh = Mesh(tuple(map(len, splines)), closed(data))
             radii = [_radii(spline, len(points)) for spline, points in zip(data.splines, splines, strict=True)]
             points = np.concatenate(splines)[None]
             return cls(mesh, np.zeros(1), points, np.concatenate(radii)[None], points)
-        mesh = Mesh(tuple(len(spline.points) for spline in data.splines))
+        mesh = Mesh(tuple(len(spline.points) for spline in data.splines), closed(data))
         return cls(mesh, *(_from_shape_keys(data) if data.shape_keys else _from_fcurves(data)))
 
     def at(self, places: FloatArray) -> "Recorded":
@@ -74,7 +75,7 @@ def in_world(
         for obj, each, points in zip(objects, recorded, shapes, strict=True)
         for piece in each.mesh.slices
     ]
-    return Curve.from_components(components)
+    return Curve.from_components(components, [flag for each in recorded for flag in each.mesh.closed])
 
 
 def _shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray]:
@@ -111,8 +112,8 @@ def _frames(curves: Sequence["bpy.types.FCurve"]) -> FloatArray:
 
 
 def _radii(spline: "bpy.types.Spline", size: int) -> FloatArray:
-    """Radii at the points drawn for a spline, which lie evenly between its control points."""
+    """Radii at the points drawn for a spline."""
     points = spline.bezier_points if spline.type == "BEZIER" else spline.points
     values = np.empty(len(points), dtype=np.float32)
     points.foreach_get("radius", values)
-    return np.interp(np.arange(size) * len(points) / size, np.arange(len(points)), values, period=len(points))
+    return along(values, size, spline.use_cyclic_u)

@@ -5,7 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...core import MobiusFlowError
+from ..engine.phrase import Phrase
 from ..engine.size import Measure, Size
+from . import pins
 from .baked_keys import BakedKeys
 
 if TYPE_CHECKING:
@@ -20,8 +23,10 @@ def keep_size(objects: Sequence["bpy.types.Object"], measure: Measure, reference
     Raises
     ------
     MobiusFlowError
-        If the objects were not baked together.
+        If the objects were not baked together, or points of them are pinned.
     """
+    if any(pins.count(obj.data) for obj in objects):
+        raise MobiusFlowError(Phrase("Scaling would move pinned points; unpin them first"))
     keys = BakedKeys(objects)
     curves = keys.curves
     size = Size.of(measure, curves[reference])

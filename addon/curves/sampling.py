@@ -65,8 +65,8 @@ def sampled(obj: "bpy.types.Object") -> list[Frame]:
                 name=obj.name,
             )
         )
-    for k, loop in enumerate(loops, 1):
-        if len(loop) < 3:
+    for k, (loop, spline) in enumerate(zip(loops, obj.data.splines, strict=True), 1):
+        if len(loop) < (3 if spline.use_cyclic_u else 2):
             raise CurveError(
                 Phrase(
                     "Spline {number} of '{name}' is drawn with only {count} points; "

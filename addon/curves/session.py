@@ -6,6 +6,7 @@ What it knows lives here and never in the file.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from ...core import (
     CurveError,
     Iterate,
     MobiusFlowError,
+    Obstacle,
     OptionError,
     Outcome,
     RelaxOptions,
@@ -28,6 +30,7 @@ from ...core.types import FloatArray
 from ..engine.glossary import as_phrase
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
+from ..engine.obstacles import in_common_space
 from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from ..engine.size import Measure, Size
@@ -35,6 +38,7 @@ from ..engine.words import named
 from . import bake, bevel
 from .exchange import stretch
 from .group import Group
+from .surroundings import NOTHING, Surroundings
 
 if TYPE_CHECKING:
     import bpy
@@ -59,11 +63,14 @@ class Report:
     scene_range
         First and last frame of the animation with its rests, if there is one.
     certified
-        Whether every motion shown was proved free of contact, of each curve with itself and of all with each other.
+        Whether every motion shown was proved free of contact, of each curve with itself, of all with each other, and
+        with what they avoid.
     radius
         Radius of the tube in the world if it was fitted.
     modified
         Whether modifiers change what is shown: proofs are about the curves themselves.
+    avoided
+        Names of the objects that were avoided.
     """
 
     names: tuple[str, ...]
@@ -75,6 +82,7 @@ class Report:
     certified: bool
     radius: float | None
     modified: bool
+    avoided: tuple[str, ...]
 
     @property
     def sentence(self) -> Phrase:
@@ -97,9 +105,10 @@ class Report:
     def _proof(self) -> Phrase:
         if not self.certified:
             return Phrase("NOT proved free of contact everywhere")
-        # nothing but the curves that were relaxed is looked at
+        # nothing but the curves that were relaxed, and what they avoid, is looked at
         alone = Phrase("proved free of contact with itself")
         whom = alone if len(self.names) == 1 else Phrase("proved free of contact with themselves and each other")
+        whom = Phrase("{proof}, and with {avoided}", proof=whom, avoided=named(self.avoided)) if self.avoided else whom
         return Phrase("{proof}, before modifiers", proof=whom) if self.modified else whom
 
     @property
@@ -131,13 +140,17 @@ class Session:
         The requested options.
     continues
         Whether baked curves are relaxed on from the ends of their animations; the keys are added to theirs then.
+    surroundings
+        What they avoid.
 
     Attributes
     ----------
     group
         The objects; baked ones are set aside until the session's end or `Group.restore`.
     options
-        The requested options.
+        The requested options, with what is pinned and what is avoided.
+    surroundings
+        What is avoided.
     outcome
         How the relaxation ended, once it has.
 
@@ -153,15 +166,30 @@ class Session:
         options: RelaxOptions,
         key_options: KeyOptions,
         continues: bool = False,
+        surroundings: Surroundings = NOTHING,
     ) -> None:
         key_options.check_room(options.max_iterations)
-        self.group = Group(objects, continues)
-        # the keys that are there have as many points as the curves have now
-        self.options = replace(options, vertices=len(self.group.curve), mesh="fixed") if continues else options
+        self.surroundings = surroundings
         self._key_options = key_options
+        self.group = Group(objects, continues)
+        try:
+            self.options = self._fitting(options)
+        except BaseException:
+            self.group.restore()
+            raise
         self._motion = Motion(self.group.link, self.group.stored if continues else None)
         self._size: Size | None = None
         self.outcome: Outcome | None = None
+
+    def _fitting(self, options: RelaxOptions) -> RelaxOptions:
+        """The requested options, with what is pinned and avoided; raises MobiusFlowError if they do not go together."""
+        group, obstacles = self.group, self.surroundings.obstacles
+        pins = tuple(sorted({*options.pins, *group.pins}))
+        if pins or obstacles:
+            self._key_options.check_place()
+        if group.continues:  # the keys that are there have as many points as the curves have now
+            options = replace(options, vertices=len(group.curve), mesh="fixed")
+        return replace(options, pins=pins, avoid=obstacles)
 
     def run(self) -> Report:
         """Do the whole job. Objects are touched at its end only, and put back if that fails.
@@ -173,7 +201,7 @@ class Session:
         """
         try:
             prepared = self._relaxed()
-            if reason := self.group.lost():
+            if reason := self.lost():
                 raise MobiusFlowError(Phrase("{reason} during the relaxation; nothing was written", reason=reason))
             for _ in self.writing(prepared):
                 pass
@@ -191,18 +219,28 @@ class Session:
             raise self.told(error) from error
         assert run.outcome is not None, "the loop is through"
         self.end(run.outcome)
-        return self.prepare(is_free)
+        return self.prepare(partial(is_free, obstacles=self._avoided))
+
+    @property
+    def _avoided(self) -> tuple[Obstacle, ...]:
+        """What is avoided, in the common space."""
+        return in_common_space(self.options.avoid, self.group.link)
+
+    def lost(self) -> Phrase | None:
+        """Say what somebody did to one of the objects, or to what they avoid, that makes going on impossible."""
+        return self.group.lost(alone=not self.options.avoid) or self.surroundings.lost()
 
     def told(self, error: CurveError) -> CurveError:
         """The core's error in Blender's words; those about options use the names that options have."""
         if isinstance(error, OptionError):
             return error
-        sentence = self.group.told(str(error))
+        sentence = self.group.told(str(error), self.options.avoid)
         return CurveError(sentence[:1].upper() + sentence[1:], error.place)
 
     def end(self, outcome: Outcome) -> None:
         """Take in how the relaxation ended."""
-        self.outcome = replace(outcome, message=as_phrase(self.group.told(outcome.message).rstrip(".")))
+        message = self.group.told(outcome.message, self.options.avoid)
+        self.outcome = replace(outcome, message=as_phrase(message.rstrip(".")))
 
     def take(self, iterate: Iterate) -> None:
         """Take in an iterate."""
@@ -232,7 +270,8 @@ class Session:
         shape_keys = self._key_options.output is Output.SHAPE_KEYS or self.group.continues
         shown = keys.keys if shape_keys else keys.keys[-1:]
         mesh, common = self._mesh, self.group.link.to_common
-        return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh)) for key in shown])
+        beside = self._avoided
+        return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh), beside) for key in shown])
 
     def take_up(self) -> None:
         """Go on after `Group.restore` with curves that are still what they were when the session began.
@@ -244,7 +283,7 @@ class Session:
         """
         changed = Phrase("{names} changed since the relaxation ended; relax anew", names=self.group.title)
         objects = self.group.objects
-        if len(objects) < len(self.group.names):
+        if len(objects) < len(self.group.names) or self.surroundings.lost():
             raise MobiusFlowError(changed)
         group = Group(objects, self.group.continues)
         if not group.equals(self.group):
@@ -285,4 +324,5 @@ class Session:
             certified=keys.certified,
             radius=None if prepared.radii is None else float(prepared.radii[-1]) * stretch(group.objects[0]),
             modified=group.modified,
+            avoided=self.surroundings.names,
         )

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core import Curve
+from ...core.types import FloatArray
+from ..engine.cubic_spline import bezier_points
 from ..engine.placement import Frame, Placement
-from ..engine.smooth_fit import SmoothFit, bezier_points, fitted
+from ..engine.smooth_fit import SmoothFit, fitted
 from . import bevel
 from .outputs import object_like
 
@@ -62,24 +64,34 @@ def _object(obj: "bpy.types.Object", control: Sequence[Frame], kind: str) -> "bp
         data.materials.append(material)
     for points, old in zip(control, obj.data.splines, strict=True):
         spline = data.splines.new(kind)
-        spline.use_cyclic_u = True
+        spline.use_cyclic_u = old.use_cyclic_u
         (_fill_bezier if kind == "BEZIER" else _fill_nurbs)(spline, points)
         spline.material_index = old.material_index
     return object_like(obj, data)
 
 
 def _fill_bezier(spline: "bpy.types.Spline", control: Frame) -> None:
-    bezier = bezier_points(control.astype(np.float64)).astype(np.float32)
+    closed = bool(spline.use_cyclic_u)
+    left, place, right = _with_handles(bezier_points(control.astype(np.float64), closed), closed)
     points = spline.bezier_points
-    points.add(len(bezier) - 1)
+    points.add(len(place) - 1)
     for point in points:  # aligned handles stay in line when somebody moves them
         point.handle_left_type = point.handle_right_type = "ALIGNED"
-    points.foreach_set("co", bezier[:, 0].ravel())
-    points.foreach_set("handle_right", bezier[:, 1].ravel())
-    points.foreach_set("handle_left", np.roll(bezier[:, 2], 1, axis=0).ravel())
+    for name, array in (("co", place), ("handle_right", right), ("handle_left", left)):
+        points.foreach_set(name, array.astype(np.float32).ravel())
+
+
+def _with_handles(bezier: FloatArray, closed: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Left handles, points and right handles; at the ends of an open spline the outer handles mirror the inner ones."""
+    if closed:
+        return np.roll(bezier[:, 2], 1, axis=0), bezier[:, 0], bezier[:, 1]
+    place = np.concatenate([bezier[:, 0], bezier[-1:, 3]])
+    right, left = bezier[:, 1], bezier[:, 2]
+    before, after = 2 * place[:1] - right[:1], 2 * place[-1:] - left[-1:]
+    return np.concatenate([before, left]), place, np.concatenate([right, after])
 
 
 def _fill_nurbs(spline: "bpy.types.Spline", control: Frame) -> None:
     spline.points.add(len(control) - 1)
     spline.points.foreach_set("co", np.pad(control, ((0, 0), (0, 1)), constant_values=1.0).ravel())
-    spline.order_u = 4
+    spline.order_u, spline.use_endpoint_u = 4, True  # which a cyclic spline has no use for

@@ -9,14 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core import Curve
-from ..engine.refinement import Places, places
+from ..engine.refinement import Places, along, places
 
 if TYPE_CHECKING:
     import bpy
 
 Values = dict[str, Any]
 _TYPES: dict[str, Any] = {"BOOLEAN": np.int32, "INT": np.int32, "FLOAT": np.float32, "ENUM": np.int32}
-_BEVEL = ("bevel_depth", "bevel_resolution")
+_BEVEL = ("bevel_depth", "bevel_resolution", "use_fill_caps")
 _POINT_VALUES = ("radius", "tilt", "weight_softbody")
 
 
@@ -41,6 +41,11 @@ class _Spline:
             del settings["order_u"]  # means nothing, and is made valid when it is set
         return cls(spline.type, len(points), settings, arrays)
 
+    @property
+    def closed(self) -> bool:
+        """Whether it is cyclic."""
+        return bool(self.settings["use_cyclic_u"])
+
     def put(self, spline: "bpy.types.Spline") -> None:
         """Fill a spline of this type with this many points."""
         for name, array in self.points.items():
@@ -60,15 +65,10 @@ class _Spline:
 
     def polygon(self, size: int, place: Places) -> "_Spline":
         """A polygon of ``size`` points drawn for this spline, refined; where its points are is left open."""
-        values = {name: self._along(self.points[name], size) for name in _POINT_VALUES}
+        values = {name: along(self.points[name], size, self.closed) for name in _POINT_VALUES}
         settings = {name: value for name, value in self.settings.items() if name != "order_u"}
         points = {name: place.values(array).astype(np.float32) for name, array in values.items()}
         return _Spline("POLY", len(place.edge), settings, points)
-
-    def _along(self, array: npt.NDArray[Any], size: int) -> npt.NDArray[np.float64]:
-        """Values at the points of the polygon; those of a smooth spline lie evenly between its control points."""
-        where = np.arange(size) * len(array) / size
-        return np.interp(where, np.arange(len(array) + 1), np.append(array, array[:1]).astype(np.float64))
 
 
 class Snapshot:
@@ -138,20 +138,29 @@ class Snapshot:
         data.update_tag()
 
 
-def shape(data: "bpy.types.Curve") -> list[tuple[str, int]]:
-    """Type and number of points of every spline."""
-    return [(spline.type, len(control_points(spline))) for spline in data.splines]
+@dataclass(frozen=True)
+class SplineShape:
+    """What a spline is but for where its points are: its type, their number, and whether it is closed."""
+
+    type: str
+    count: int
+    closed: bool
 
 
-def _grows(old: list[tuple[str, int]], new: list[tuple[str, int]]) -> bool:
-    """Whether splines of one shape become those of another by more points alone."""
+def shape(data: "bpy.types.Curve") -> list[SplineShape]:
+    """What every spline is."""
+    return [SplineShape(each.type, len(control_points(each)), bool(each.use_cyclic_u)) for each in data.splines]
+
+
+def _grows(old: list[SplineShape], new: list[SplineShape]) -> bool:
+    """Whether splines of one shape become those of another without fewer points or another type."""
     return len(old) == len(new) and all(
-        before == after and have <= want for (before, have), (after, want) in zip(old, new, strict=True)
+        before.type == after.type and before.count <= after.count for before, after in zip(old, new, strict=True)
     )
 
 
-def _shape_of(splines: Sequence[_Spline]) -> list[tuple[str, int]]:
-    return [(spline.type, spline.count) for spline in splines]
+def _shape_of(splines: Sequence[_Spline]) -> list[SplineShape]:
+    return [SplineShape(each.type, each.count, each.closed) for each in splines]
 
 
 @contextmanager

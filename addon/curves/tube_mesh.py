@@ -1,12 +1,12 @@
 """Tubes of curve objects as meshes with the same vertices at every key, for exporters and Geometry Nodes."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...core.types import FloatArray, IntArray
-from ..engine.tube_mesh import quads, rings
+from ..engine.tube_mesh import caps, quads, rings
 from .fcurves import FCurves
 from .outputs import object_like
 from .recorded import Recorded
@@ -19,6 +19,8 @@ COLOUR = "colour"  # attribute of vertices
 
 def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, sides: int) -> "bpy.types.Object":
     """Make a mesh object where a curve object is, with its motion as shape keys and its materials.
+
+    Ends of open splines are closed where the curve fills its caps.
 
     Parameters
     ----------
@@ -33,11 +35,13 @@ def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, 
     """
     import bpy
 
-    surface = rings(recorded.points, radii, recorded.mesh, sides)
+    curve, surface = recorded.mesh, rings(recorded.points, radii, recorded.mesh, sides)
     mesh = bpy.data.meshes.new(f"{obj.name} Tube")
-    _fill(mesh, surface[0], quads(recorded.mesh, sides))
+    ends = caps(curve, sides)[: None if obj.data.use_fill_caps else 0]
+    _fill(mesh, surface[0], [quads(curve, sides), ends])
     made = object_like(obj, mesh)
-    _take_materials(mesh, obj.data, np.repeat(recorded.mesh.component, sides))
+    corners = np.concatenate([curve.tails.repeat(sides), curve.ends.ravel()])  # a curve vertex of each face
+    _take_materials(mesh, obj.data, curve.component[corners[: len(mesh.polygons)]])
     if len(surface) > 1:
         _write_keys(made, surface, recorded.frames)
     return made
@@ -69,14 +73,17 @@ def _on_rings(mesh: "bpy.types.Mesh", values: FloatArray) -> FloatArray:
     return np.repeat(values, sides, axis=0).astype(np.float32)
 
 
-def _fill(mesh: "bpy.types.Mesh", vertices: FloatArray, faces: IntArray) -> None:
+def _fill(mesh: "bpy.types.Mesh", vertices: FloatArray, faces: Sequence[IntArray]) -> None:
+    """Fill a mesh with faces, those with equally many corners in an array of their own."""
+    corners = np.concatenate([each.ravel() for each in faces])
+    sizes = np.concatenate([np.full(len(each), each.shape[1]) for each in faces])
     mesh.vertices.add(len(vertices))
     mesh.vertices.foreach_set("co", vertices.astype(np.float32).ravel())
-    mesh.loops.add(faces.size)
-    mesh.loops.foreach_set("vertex_index", faces.astype(np.int32).ravel())
-    mesh.polygons.add(len(faces))
-    mesh.polygons.foreach_set("loop_start", np.arange(0, faces.size, 4, dtype=np.int32))
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(faces), dtype=bool))
+    mesh.loops.add(len(corners))
+    mesh.loops.foreach_set("vertex_index", corners.astype(np.int32))
+    mesh.polygons.add(len(sizes))
+    mesh.polygons.foreach_set("loop_start", (np.cumsum(sizes) - sizes).astype(np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.arange(len(sizes)) < len(faces[0]))
     mesh.update(calc_edges=True)
 
 
@@ -84,7 +91,7 @@ def _take_materials(mesh: "bpy.types.Mesh", data: "bpy.types.Curve", component: 
     for material in data.materials:
         mesh.materials.append(material)
     slots = np.array([spline.material_index for spline in data.splines], dtype=np.int32)
-    mesh.polygons.foreach_set("material_index", slots[component])  # face k begins at vertex k
+    mesh.polygons.foreach_set("material_index", slots[component])
 
 
 def _write_keys(made: "bpy.types.Object", surface: FloatArray, frames: FloatArray) -> None:

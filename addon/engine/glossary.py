@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from string import Formatter
 
+from ...core import Obstacle
 from .phrase import Phrase
 
 _WORDS = {
@@ -14,7 +15,7 @@ _WORDS = {
     "edge": "segment",
     "edges": "segments",
 }
-_TERM = re.compile(rf"\bcomponent (\d+)\b|\b({'|'.join(_WORDS)})\b")
+_TERM = rf"\bcomponent (\d+)\b|\b({'|'.join(_WORDS)})\b"
 
 _ENDS = (  # how most relaxations end, see `core.driver.outcome`
     Phrase("converged: projected gradient {norm} ≤ {bound}"),
@@ -23,9 +24,15 @@ _ENDS = (  # how most relaxations end, see `core.driver.outcome`
 )
 
 
-def in_blenders_words(sentence: str, splines: Sequence[str]) -> str:
-    """Say the same to somebody who sees curve objects; ``splines`` are the names of the components in turn."""
-    return _TERM.sub(lambda match: splines[int(match[1]) - 1] if match[1] else _WORDS[match[2]], sentence)
+def in_blenders_words(sentence: str, splines: Sequence[str], avoided: Sequence[Obstacle] = ()) -> str:
+    """Say the same to somebody who sees objects; ``splines`` are the names of the components in turn."""
+    names = {each.title: f"'{each.name}'" for each in avoided}
+    titles = "|".join(re.escape(title) for title in sorted(names, key=len, reverse=True)) or "(?!)"
+
+    def said(match: re.Match[str]) -> str:
+        return splines[int(match[1]) - 1] if match[1] else names.get(match[0]) or _WORDS[match[2]]
+
+    return re.sub(f"{_TERM}|{titles}", said, sentence)
 
 
 def spline_names(objects: Sequence[str], counts: Sequence[int]) -> list[str]:

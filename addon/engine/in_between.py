@@ -18,7 +18,7 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
     Parameters
     ----------
     points
-        Vertices of closed polygons at every key, (keys, n, 3).
+        Vertices of polygons at every key, (keys, n, 3).
     mesh
         Their connectivity.
     """
@@ -41,5 +41,6 @@ def interpolated(values: FloatArray, places: FloatArray) -> FloatArray:
 
 def _least_cosines(points: FloatArray, mesh: Mesh) -> FloatArray:
     """Cosines of the largest angles that tangents turn by from each key to the next; (keys - 1,)."""
-    tau = np.concatenate([tangents(points[:, s]) for s in mesh.slices], axis=1)
+    pieces = zip(mesh.slices, mesh.closed, strict=True)
+    tau = np.concatenate([tangents(points[:, s], closed) for s, closed in pieces], axis=1)
     return np.asarray(np.einsum("kni,kni->kn", tau[:-1], tau[1:]).min(axis=1))

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from enum import Enum
 
+from ...core import OptionError
+from .phrase import Phrase
 from .size import Measure
 from .timing import Timing
 
@@ -51,3 +53,9 @@ class KeyOptions:
         """Raise an OptionError if so many iterations would be keyed to beyond the last frame of a scene."""
         if self.animated:
             self.timing.check_room(iterations)
+
+    def check_place(self) -> None:
+        """Raise an OptionError if keys are scaled: that moves pins, and proofs beside others hold at one size only."""
+        if self.keep_size is not Measure.LENGTH:
+            sentence = "Only the length can be kept where something is pinned or avoided; set Keep to Length"
+            raise OptionError(Phrase(sentence))

@@ -97,6 +97,9 @@ class Motion:
         frames = frames_of(self._link, iterate)
         if self._start is None and self._first is not None:
             frames = [self._first]
+        for frame in frames if self._keys else ():
+            held = list(iterate.pins)
+            frame[held] = self._keys[-1].points[held]  # rounding them anew might move them
         self._start = self._start or iterate
         self._last = iterate
         times = self._leg_times(iterate.index, frames)

@@ -84,7 +84,7 @@ class Link:
     def split(self, curve: Curve) -> Iterator[Curve]:
         """Yield each object's components as a curve of their own."""
         for a, b in pairwise(accumulate(self.counts, initial=0)):
-            yield Curve.from_components(curve.components[a:b])
+            yield Curve.from_components(curve.components[a:b], curve.mesh.closed[a:b])
 
     def to_stored(self, mesh: Mesh, vertices: FloatArray) -> FloatArray:
         """From the world to each object's own coordinates; (n, 2) or (n, 3) to (n, 3)."""

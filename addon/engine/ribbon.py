@@ -1,9 +1,10 @@
-"""Normals along closed polygons in motion, for tubes that neither jump nor twist more than they must.
+"""Normals along polygons in motion, for tubes that neither jump nor twist more than they must.
 
 Normals are carried along the curve by parallel transport; carried once round a closed curve they come back turned by
 the holonomy, and the angle that is missing is spread evenly over the length.  In a motion that angle may grow beyond
 half a turn: the self-linking number of the framed curve is a whole number, so it cannot change without a jump, and
 whatever writhe the curve loses its framing gains as twist (Călugăreanu, White, Fuller).  The last key has the least.
+Along an arc nothing has to close, and normals do not twist at all.
 """
 
 import numpy as np
@@ -14,28 +15,38 @@ _TINY = float(np.finfo(np.float64).tiny)
 _TURNS = np.array([-1.0, 0.0, 1.0])  # more or less than at the next key
 
 
-def tangents(points: FloatArray) -> FloatArray:
-    """Unit tangents at the vertices of closed polygons, halfway between those of their edges; (..., n, 3) to same."""
-    edges = np.roll(points, -1, axis=-2) - points
-    along = unit(edges)
-    return unit(along + np.roll(along, 1, axis=-2))
+def tangents(points: FloatArray, closed: bool = True) -> FloatArray:
+    """Unit tangents at the vertices of polygons, halfway between those of their edges; (..., n, 3) to same."""
+    before, after = edges_around(points, closed)
+    return unit(before + after)
 
 
-def normals(points: FloatArray) -> FloatArray:
-    """Unit normals at the vertices of one closed polygon in motion, the same turned as little as possible later.
+def edges_around(points: FloatArray, closed: bool) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors along the edges before and after each vertex; at an end of an arc twice that of its only edge."""
+    if closed:
+        after = unit(np.roll(points, -1, axis=-2) - points)
+        return np.roll(after, 1, axis=-2), after
+    along = unit(np.diff(points, axis=-2))
+    return np.concatenate([along[..., :1, :], along], axis=-2), np.concatenate([along, along[..., -1:, :]], axis=-2)
+
+
+def normals(points: FloatArray, closed: bool = True) -> FloatArray:
+    """Unit normals at the vertices of one polygon in motion, the same turned as little as possible later.
 
     Parameters
     ----------
     points
         Vertices at every key, (keys, n, 3).
+    closed
+        Whether it is closed.
 
     Returns
     -------
     array (keys, n, 3)
     """
-    tau = tangents(points)
+    tau = tangents(points, closed)
     bare = _transported(tau)
-    share = _shares_of_length(points)
+    share = _shares_of_length(points) if closed else np.zeros(points.shape[:2])  # of what is missing at the end
     angles = -_holonomy(bare, tau)[:, None] * share
     normal = np.empty_like(bare)
     normal[-1] = turned(bare[-1], tau[-1], angles[-1])

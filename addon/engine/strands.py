@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from ...core import Curve
-from ...core.curve.distances import arc_distances
+from ...core.curve.distances import arc_distance_of_vertices
 from ...core.curve.refine import STRAND_RATIO, TINY
 from ...core.types import FloatArray, IntArray
 
@@ -35,17 +35,17 @@ def _distances(curve: Curve, rows: IntArray) -> FloatArray:
     """The same for some vertices, inf where nothing passes."""
     mesh = curve.mesh
     r = cdist(curve.vertices[rows], curve.vertices)
-    passing = (r <= r[:, mesh.heads]) & (r <= r[:, mesh.previous])
-    passing &= arc_distances(curve, 0.0, 0.0, rows, slice(None)) > STRAND_RATIO * r
+    passing = (r <= r[:, mesh.heads[mesh.outgoing]]) & (r <= r[:, mesh.tails[mesh.incoming]])
+    passing &= arc_distance_of_vertices(curve, rows[:, None], np.arange(len(curve))) > STRAND_RATIO * r
     r[~passing] = np.inf
     nearest = r.argmin(axis=1)
     found = np.isfinite(r.min(axis=1))
-    sides = [_to_edges(curve, rows, edges) for edges in (nearest, mesh.previous[nearest])]
+    sides = [_to_edges(curve, rows, edges) for edges in (mesh.outgoing[nearest], mesh.incoming[nearest])]
     return np.where(found, np.minimum(*sides), np.inf)
 
 
 def _to_edges(curve: Curve, vertices: IntArray, edges: IntArray) -> FloatArray:
     """Distances from vertices to edges, elementwise: those to vertices would show the mesh in the colours."""
-    e, chord = curve.edge_vectors[edges], curve.vertices[vertices] - curve.vertices[edges]
+    e, chord = curve.edge_vectors[edges], curve.vertices[vertices] - curve.vertices[curve.mesh.tails[edges]]
     t = (np.einsum("km,km->k", chord, e) / np.maximum(curve.edge_lengths[edges] ** 2, TINY)).clip(0.0, 1.0)
     return np.asarray(np.linalg.norm(chord - t[:, None] * e, axis=1))

@@ -7,6 +7,7 @@ from ...core.knots.alexander import TRIVIAL, signature
 from .phrase import Phrase
 
 CIRCLE = 4.0  # Möbius energy of the round circle, the least of any closed curve: Freedman, He and Wang (1994)
+SEGMENT = 0.0  # that of the straight segment, the least of any arc
 _MOST = 2000  # vertices of a curve whose type is looked at: a tenth of a second
 
 
@@ -21,13 +22,17 @@ class Target:
 def target_of(curve: Curve, options: RelaxOptions) -> Target | None:
     """What the energy of a curve goes down to at the least; None if nothing useful is known.
 
-    A component has at least the energy of a circle, which a knotted one is far from: a curve whose Alexander
-    polynomial shows that it is knotted has no target.
+    A closed component has at least the energy of a circle, which a knotted one is far from: a curve whose Alexander
+    polynomial shows that it is knotted has no target. An arc has at least that of a segment, which it comes near to
+    where its ends are free.
     """
-    if options.energy != "moebius":
+    if options.energy != "moebius" or options.pins:
         return None
-    components = len(curve.mesh.component_sizes)
-    if components > 1:
-        return Target(CIRCLE * components, Phrase("floor = {energy:g}", energy=CIRCLE * components))
+    closed = curve.mesh.closed
+    if closed == (False,):
+        return Target(SEGMENT, Phrase("straight = {energy:g}", energy=SEGMENT))
+    if len(closed) > 1:
+        floor = CIRCLE * sum(closed)
+        return Target(floor, Phrase("floor = {energy:g}", energy=floor))
     knotted = len(curve) <= _MOST and signature(curve).alexander != (TRIVIAL,)
     return None if knotted else Target(CIRCLE, Phrase("circle = {energy:g}", energy=CIRCLE))

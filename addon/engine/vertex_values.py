@@ -30,5 +30,5 @@ def vertex_values(link: Curve) -> dict[str, FloatArray]:
     return {
         COMPONENT: link.mesh.component.astype(np.float64),
         DISTANCE: strand_distances(link),
-        ENERGY: 0.5 * (density + density[link.mesh.previous]),
+        ENERGY: 0.5 * (density[link.mesh.outgoing] + density[link.mesh.incoming]),
     }

@@ -4,12 +4,23 @@ import hashlib
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields, replace
 from typing import IO, Any
 
 import numpy as np
 
-from ...core import Curve, CurveError, Iterate, Mesh, MobiusFlowError, OptionError, Outcome, RelaxOptions, Status
+from ...core import (
+    Curve,
+    CurveError,
+    Iterate,
+    Mesh,
+    MobiusFlowError,
+    Obstacle,
+    OptionError,
+    Outcome,
+    RelaxOptions,
+    Status,
+)
 from ...core.errors import Place
 from ...core.types import FloatArray
 from .placement import Link, Placement
@@ -17,7 +28,7 @@ from .placement import Link, Placement
 Message = tuple[dict[str, Any], list[FloatArray]]
 
 _LENGTH = struct.Struct("!Q")
-_VALUES = ("index", "energy", "gradient_norm", "step_size", "certified", "edge_length_error", "method")
+_VALUES = tuple(field.name for field in fields(Iterate) if field.name not in ("curve", "path"))
 
 
 def write(stream: IO[bytes], message: Message) -> None:
@@ -48,23 +59,45 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
 
 def pack_job(curve: Curve, options: RelaxOptions, link: Link) -> Message:
     """What the worker is asked to do."""
-    header = {"sizes": curve.mesh.component_sizes, "options": asdict(options), "counts": link.counts}
+    wanted, avoided = _pack_options(options)
+    header = {**_pack_mesh(curve.mesh), "options": wanted, "counts": link.counts}
     linear = np.stack([placement.linear for placement in link.placements])
     origins = np.stack([placement.origin for placement in link.placements])
-    return header, [curve.vertices, linear, origins]
+    return header, [curve.vertices, linear, origins, *avoided]
 
 
 def unpack_job(message: Message) -> tuple[Curve, RelaxOptions, Link]:
     """The inverse of `pack_job`."""
-    header, (vertices, linear, origins) = message
+    header, (vertices, linear, origins, *avoided) = message
     link = Link(tuple(map(Placement, linear, origins)), tuple(header["counts"]))
-    return Curve(vertices, Mesh(tuple(header["sizes"]))), RelaxOptions(**header["options"]), link
+    return Curve(vertices, _unpack_mesh(header)), _unpack_options((header["options"], avoided)), link
+
+
+def _pack_mesh(mesh: Mesh) -> dict[str, Any]:
+    return {"sizes": mesh.component_sizes, "closed": mesh.closed}
+
+
+def _unpack_mesh(header: dict[str, Any]) -> Mesh:
+    return Mesh(tuple(header["sizes"]), tuple(header["closed"]))
+
+
+def _pack_options(options: RelaxOptions) -> Message:
+    """Options as JSON has them; vertices and faces of obstacles are arrays."""
+    header = asdict(replace(options, avoid=())) | {"avoid": [each.name for each in options.avoid]}
+    return header, [array for each in options.avoid for array in (each.vertices, each.faces.astype(np.float64))]
+
+
+def _unpack_options(message: Message) -> RelaxOptions:
+    header, arrays = message
+    faces = [each.astype(np.intp) for each in arrays[1::2]]
+    avoid = tuple(map(Obstacle, arrays[::2], faces, header["avoid"]))
+    return RelaxOptions(**header | {"avoid": avoid})
 
 
 def pack_iterate(iterate: Iterate, proved: Sequence[str]) -> Message:
     """One iterate, and the motions known to be free of contact, by their `digest`."""
     header = {name: getattr(iterate, name) for name in _VALUES}
-    header |= {"sizes": iterate.curve.mesh.component_sizes, "proved": list(proved)}
+    header |= {**_pack_mesh(iterate.curve.mesh), "proved": list(proved)}
     return header, [iterate.curve.vertices, *iterate.path]
 
 
@@ -72,7 +105,8 @@ def unpack_iterate(message: Message) -> tuple[Iterate, list[str]]:
     """The inverse of `pack_iterate`."""
     header, (vertices, *path) = message
     values = {name: header[name] for name in _VALUES}
-    curve = Curve(vertices, Mesh(tuple(header["sizes"])))
+    curve = Curve(vertices, _unpack_mesh(header))
+    values["pins"] = tuple(values["pins"])
     return Iterate(curve=curve, path=tuple(path), **values), header["proved"]
 
 

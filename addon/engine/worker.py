@@ -20,6 +20,7 @@ from ...core.curve import Mesh
 from ...core.types import FloatArray
 from . import wire
 from .job import messages
+from .obstacles import in_common_space
 from .phrase import Phrase
 from .placement import Link
 
@@ -44,6 +45,7 @@ class Worker:
 
     def __init__(self, curve: Curve, options: RelaxOptions, link: Link) -> None:
         self._job = wire.pack_job(curve, options, link)
+        self._obstacles = in_common_space(options.avoid, link)
         self._proved: set[str] = set()
         self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
         self._closed = threading.Event()
@@ -75,7 +77,7 @@ class Worker:
 
     def is_free(self, mesh: Mesh, start: FloatArray, end: FloatArray) -> bool:
         """As `core.collision.is_free`, but most motions were proved by the worker already."""
-        return wire.digest(start, end) in self._proved or bool(is_free(mesh, start, end))
+        return wire.digest(start, end) in self._proved or bool(is_free(mesh, start, end, self._obstacles))
 
     def close(self) -> None:
         """End the process now and the thread with it; harmless to repeat."""

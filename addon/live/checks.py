@@ -45,7 +45,7 @@ def unreadable(context: "bpy.types.Context") -> Refusal | None:
 
 
 def undrawn(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
-    """Say which of some curve objects is being edited, or has splines that are not closed; None if there is none."""
+    """Say which of some curve objects is being edited, 2D, or has splines of too few points; None if none is."""
     return running() or _first(objects, (_mode, _splines))
 
 
@@ -70,6 +70,25 @@ def needing(objects: Sequence["bpy.types.Object"], remedy: Remedy) -> Iterator["
     for obj in objects:
         refused = _first([obj], checks)
         if refused is not None and refused.remedy is remedy:
+            yield obj
+
+
+def curves_at_hand(context: "bpy.types.Context") -> list["bpy.types.Object"]:
+    """The curve objects that are being edited, or the selected ones where none is."""
+    return list(context.objects_in_mode) if context.mode == "EDIT_CURVE" else selected_curves(context)
+
+
+def unpinnable(context: "bpy.types.Context") -> Refusal | None:
+    """Say why points of these cannot be pinned, or return None if they can."""
+    objects = curves_at_hand(context)
+    return running() or (_first(objects, (_ownership,)) if objects else _no_curve(context))
+
+
+def closable(objects: Sequence["bpy.types.Object"]) -> Iterator["bpy.types.Object"]:
+    """Yield the curve objects with open splines that may be closed: keys of a baked curve are about open ones."""
+    for obj in objects:
+        open_ones = not all(spline.use_cyclic_u for spline in obj.data.splines)
+        if open_ones and not bake.is_baked(obj.data) and not _first([obj], (_mode, _ownership, _animation)):
             yield obj
 
 
@@ -187,19 +206,13 @@ def _splines(obj: "bpy.types.Object") -> Iterator[Refusal]:
         sentence = "'{name}' is a 2D curve; set its Shape to 3D first (Object Data properties)"
         yield Refusal(Phrase(sentence, name=obj.name), Remedy.MAKE_3D)
     if not data.splines:
-        yield Refusal(Phrase("'{name}' has no splines; give it at least one closed poly spline", name=obj.name))
+        yield Refusal(Phrase("'{name}' has no splines; give it at least one poly spline", name=obj.name))
     for k, spline in enumerate(data.splines, 1):
-        fewest = 2 if spline.type == "BEZIER" else 3
+        fewest = 3 if spline.use_cyclic_u and spline.type != "BEZIER" else 2
         count = len(spline.bezier_points if spline.type == "BEZIER" else spline.points)
         if count < fewest:
-            sentence = (
-                "Spline {number} of '{name}' has fewer than {fewest} points, too few for a closed curve; "
-                "give it more, or delete it"
-            )
+            sentence = "Spline {number} of '{name}' has fewer than {fewest} points; give it more, or delete it"
             yield Refusal(Phrase(sentence, number=k, name=obj.name, fewest=fewest))
-        elif not spline.use_cyclic_u:
-            sentence = "Spline {number} of '{name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)"
-            yield Refusal(Phrase(sentence, number=k, name=obj.name), Remedy.CLOSE)
 
 
 def _bevel(obj: "bpy.types.Object") -> Iterator[Refusal]:

@@ -1,6 +1,7 @@
-"""What is drawn over the 3D views: the energy of the run that the panel shows, and marks at places of trouble."""
+"""What is drawn over the 3D views: the energy of the run that the panel shows, places of trouble, and pinned points."""
 
 import logging
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -9,10 +10,12 @@ import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from ...core.types import FloatArray
+from ..curves import pins
 from ..engine.contrast import Colour, legible
 from ..engine.plot import dashes, plot
 from ..translations import iface_
 from . import registry
+from .checks import curves_at_hand
 from .drawing import area, line, text
 from .run import Run
 
@@ -26,6 +29,8 @@ _RADIUS = 14.0  # of marks
 _FONT_SHARE = 0.9  # of the interface's size of text
 _OPACITY = 0.85
 _RED = (0.95, 0.25, 0.2)
+_GOLD = (1.0, 0.75, 0.1)
+_DIAMOND = 7.0 * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])  # around pinned points
 _log = logging.getLogger(__name__)
 _handles: list[object] = []
 
@@ -46,9 +51,10 @@ def _draw() -> None:
     try:
         context = bpy.context
         run = registry.shown(context.active_object)
-        if run is None or context.region is None:
+        if context.region is None or not context.space_data.overlay.show_overlays:
             return
-        if context.space_data.overlay.show_overlays:
+        _pins(context)
+        if run is not None:
             _marks(context, run)
             if context.scene.mobius_flow_panel.show_plot and run.energies:
                 _plot(context, run)
@@ -126,8 +132,23 @@ def _marks(context: bpy.types.Context, run: Run) -> None:
     scale = context.preferences.system.ui_scale
     turns = np.linspace(0.0, 2.0 * np.pi, 33)
     ring = scale * _RADIUS * np.column_stack([np.cos(turns), np.sin(turns)])
-    places = [obj.matrix_world @ mathutils.Vector(mark) for obj, spot in run.spots.items() for mark in spot.marks]
-    for place in places:
-        there = location_3d_to_region_2d(context.region, context.region_data, place)
-        if there is not None:
-            line(np.array(there) + ring, _RED, scale * _LINE)
+    marks = [(obj, mark) for obj, spot in run.spots.items() for mark in spot.marks]
+    for there in _seen(context, marks):
+        line(there + ring, _RED, scale * _LINE)
+
+
+def _pins(context: bpy.types.Context) -> None:
+    """Mark the pinned points of the curves at hand, all in one batch: there may be thousands."""
+    scale = context.preferences.system.ui_scale
+    pinned = [(obj, place) for obj in curves_at_hand(context) for place in pins.places(obj.data)]
+    corners = scale * np.stack([_DIAMOND, np.roll(_DIAMOND, -1, axis=0)], axis=1).reshape(-1, 2)
+    diamonds = [there + corners for there in _seen(context, pinned)]
+    line(np.reshape(diamonds, (-1, 2)), _GOLD, scale * _LINE, kind="LINES")
+
+
+def _seen(context: bpy.types.Context, places: Iterable[tuple[bpy.types.Object, FloatArray]]) -> Iterator[FloatArray]:
+    """Yield where places of objects are in the view at hand, those that are; shape (2,)."""
+    for obj, place in places:
+        world = obj.matrix_world @ mathutils.Vector(place)
+        if (there := location_3d_to_region_2d(context.region, context.region_data, world)) is not None:
+            yield np.array(there)

@@ -15,7 +15,6 @@ class Remedy(Enum):
     TO_CURVE = "curve.mobius_flow_to_curve"
     TO_POLY = "curve.mobius_flow_to_poly"
     MAKE_3D = "curve.mobius_flow_make_3d"
-    CLOSE = "curve.mobius_flow_close"
     COPY = "curve.mobius_flow_copy"
 
 

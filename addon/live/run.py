@@ -17,6 +17,7 @@ from ...core.errors import Place
 from ..curves.group import Group
 from ..curves.imprint import Imprint
 from ..curves.session import Report, Session
+from ..curves.surroundings import NOTHING, Surroundings
 from ..engine.key_options import KeyOptions
 from ..engine.phrase import Phrase
 from ..engine.spots import Spot
@@ -63,6 +64,8 @@ class Run:
         Whether baked curves are relaxed on from the ends of their animations.
     refresh
         When the curves are shown.
+    surroundings
+        What they avoid.
 
     Raises
     ------
@@ -86,6 +89,7 @@ class Run:
         key_options: KeyOptions,
         continues: bool,
         refresh: Refresh,
+        surroundings: Surroundings = NOTHING,
     ) -> None:
         self.state = State.RUNNING
         self.message = ""
@@ -99,7 +103,7 @@ class Run:
         self._left: Imprint | None = None  # what the objects were at its end
         self.history = History()
         self._refresh = refresh
-        self._session = Session(objects, options, key_options, continues)
+        self._session = Session(objects, options, key_options, continues, surroundings)
         try:
             self._worker = Worker(self.group.curve, self._session.options, self.group.link)
         except BaseException:
@@ -120,6 +124,11 @@ class Run:
     def name(self) -> str:
         """The names of the objects, as messages show them."""
         return self.group.title
+
+    @property
+    def avoided(self) -> tuple[str, ...]:
+        """The names of what they avoid."""
+        return self._session.surroundings.names
 
     @cached_property
     def target(self) -> Target | None:
@@ -203,7 +212,7 @@ class Run:
         if self.state.over or self.waits:
             return
         with self._failing():
-            if reason := self.group.lost():
+            if reason := self._session.lost():
                 self._lose(reason)
             elif self.state is State.RUNNING:
                 self._take()
@@ -215,7 +224,7 @@ class Run:
         if self.state is not State.FINISHING or not self._keys.has_begun:
             return
         with self._failing():
-            if reason := self.group.lost():
+            if reason := self._session.lost():
                 self._lose(reason)
             else:
                 self._write(self._keys.advance(math.inf))

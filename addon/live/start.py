@@ -7,6 +7,7 @@ import bpy
 from ...core import MobiusFlowError
 from ..curves import bake
 from ..curves.session import Report
+from ..curves.surroundings import Surroundings
 from ..engine.key_options import KeyOptions
 from ..engine.phrase import Phrase
 from ..properties import key_options, relax_options
@@ -59,7 +60,11 @@ class LiveRelax(Listening):
         if bpy.app.background or context.window is None:
             return set(self.execute(context))
         context.view_layer.update()
-        values = self.values(context)
+        try:
+            values = self.values(context)
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, rpt_(str(error)))
+            return {"CANCELLED"}
         if unsampled(selected_curves(context)) and not self.sample_splines:
             return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
         return self.begin(context, values)
@@ -70,7 +75,9 @@ class LiveRelax(Listening):
             if refused := refusal(context) or edited(context):
                 raise MobiusFlowError(refused.sentence)
             options, refresh = self.key_options(context, values), Refresh(values["view_every"])
-            run = Run(selected_curves(context), relax_options(values), options, self.continues, refresh)
+            objects = selected_curves(context)
+            surroundings = Surroundings.of(values["avoid"], objects)
+            run = Run(objects, relax_options(values), options, self.continues, refresh, surroundings)
             registry.begin(run)
         except MobiusFlowError as error:
             self.report({"ERROR"}, rpt_(str(error)))

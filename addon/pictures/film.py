@@ -87,8 +87,9 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
 
     points = [key.points for key in keys.keys]
     radii = tube.animated_radii(mesh, points, frames)
-    data = new_curve_data("Curve", mesh.component_sizes)
+    data = new_curve_data("Curve", mesh)
     data.bevel_depth, data.bevel_resolution = float(radii.max()), _BEVEL_RESOLUTION
+    data.use_fill_caps = True  # at the ends of arcs
     obj = _add_object(scene, data)
     if len(points) > 1:
         write_shape_keys(obj, keys, frames, radii / radii.max())

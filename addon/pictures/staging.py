@@ -34,7 +34,7 @@ def set_up(
     scene
         Where the objects are; the camera's pictures have the shape of its renders.
     objects
-        Curve objects with closed splines, their transforms evaluated.
+        Curve objects, their transforms evaluated.
     use_camera, use_world
         Whether the scene is rendered by the stage's camera and under its sky, instead of those that it has.
 

@@ -10,7 +10,7 @@ and with the Python package beside `bpy`::
 """
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from ...core import Curve, MobiusFlowError
 from ..curves import bake
 from ..curves.baked_keys import BakedKeys
 from ..curves.session import Report, Session
+from ..curves.surroundings import Surroundings
 from ..live import checks
 from ..live.refusal import Refusal
 from ..pictures import staging
@@ -38,7 +39,7 @@ class Relaxation:
     Parameters
     ----------
     objects
-        Curve objects of closed splines in Object Mode.
+        Curve objects in Object Mode.
     sample_splines
         Whether Bézier and NURBS splines may become the polygons that are drawn for them.
 
@@ -69,13 +70,18 @@ class Relaxation:
         self.objects = objects
         self.sample_splines = sample_splines
 
-    def relax(self, **settings: Any) -> Report:
+    def relax(self, avoid: Iterable["bpy.types.Object"] = (), **settings: Any) -> Report:
         """Relax from how the curves are, or were before they were baked, and keep the motion as keyframes.
 
         Parameters
         ----------
+        avoid
+            Objects that the curves never touch, as they are shown at the current frame; those that are relaxed
+            themselves are left out.
         **settings
-            Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out.
+            Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out. Besides,
+            ``pins``: points that stay where they are, as those do that are pinned already. They are counted from 0
+            through all splines of all objects; of Bézier and NURBS splines the points are those that are drawn.
 
         Returns
         -------
@@ -87,14 +93,14 @@ class Relaxation:
         MobiusFlowError
             If the curves cannot be relaxed or a setting is wrong; the message says why and what helps.
         """
-        return self._run(settings, continues=False)
+        return self._run(avoid, settings, continues=False)
 
-    def relax_further(self, **settings: Any) -> Report:
+    def relax_further(self, avoid: Iterable["bpy.types.Object"] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
 
         With ``balance=True`` or ``escape_saddles=True`` this is what the buttons *Balance* and *Leave Saddle* do.
         """
-        return self._run(settings, continues=True)
+        return self._run(avoid, settings, continues=True)
 
     def clear(self) -> None:
         """Take the keys away, and give the curves back as they were before; raises MobiusFlowError as `relax`."""
@@ -117,7 +123,7 @@ class Relaxation:
     def set_up_stage(self, use_camera: bool = True, use_world: bool = True) -> "bpy.types.Collection":
         """Put a camera, lights and a floor around the curves for as long as they move; see `staging.set_up`.
 
-        The scene is the open one. Raises MobiusFlowError if splines are open or cannot be read.
+        The scene is the open one. Raises MobiusFlowError if splines cannot be read.
         """
         import bpy
 
@@ -137,7 +143,7 @@ class Relaxation:
         filming.render()
         return filming.path
 
-    def _run(self, settings: Mapping[str, Any], continues: bool) -> Report:
+    def _run(self, avoid: Iterable["bpy.types.Object"], settings: Mapping[str, Any], continues: bool) -> Report:
         values = complete(settings)
         self._evaluate()
         unbaked = checks.bare(self.objects) if continues else None
@@ -146,7 +152,8 @@ class Relaxation:
         self._allow(hindered or checks.edited_by_hand(self.objects) or smooth)
         options = key_options(values)
         options = bake.continued(self.objects, options) if continues else options
-        return Session(self.objects, relax_options(values), options, continues).run()
+        surroundings = Surroundings.of(_objects(avoid), self.objects)
+        return Session(self.objects, relax_options(values), options, continues, surroundings).run()
 
     @staticmethod
     def _evaluate() -> None:
@@ -158,3 +165,14 @@ class Relaxation:
     def _allow(self, refused: Refusal | None) -> None:
         if refused is not None:
             raise MobiusFlowError(refused.sentence)
+
+
+def _objects(avoid: Iterable["bpy.types.Object"]) -> list["bpy.types.Object"]:
+    """What is to be avoided; raises MobiusFlowError if something is no object."""
+    import bpy
+
+    found = list(avoid)
+    wrong = [each for each in found if not isinstance(each, bpy.types.Object)]
+    if wrong:
+        raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is no object")
+    return found

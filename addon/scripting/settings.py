@@ -36,7 +36,7 @@ def complete(given: Mapping[str, Any]) -> dict[str, Any]:
         If there is no setting of a name, or a value is none that it may have.
     """
     for name, value in given.items():
-        if name != "any_bevel":
+        if name not in ("any_bevel", "pins"):
             _check(name, value)
     return {**_DEFAULTS, **implied(given), **given}
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import bpy
 
-from ..buttons import baking, mending, resting, shape, tube
+from ..buttons import baking, closing, mending, pinning, resting, shape, tube
 from ..buttons.relaxing import CURVE_OT_mobius_flow_relax
 from .knots import VIEW3D_MT_mobius_flow_knots
 
@@ -19,7 +19,7 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):  # noqa: N801 - Blender's naming sc
         """Offer it all; what does not apply is grey, and its tooltip says why."""
         # Operator Search lists this first for who types no ö
         self.layout.operator(CURVE_OT_mobius_flow_relax.bl_idname, text="Relax by Mobius Energy", icon="PLAY")
-        for group in (baking, shape, resting, tube, mending):
+        for group in (baking, shape, resting, tube, pinning, closing, mending):
             self.layout.separator()
             for cls in group.CLASSES:
                 self.layout.operator(cls.bl_idname)

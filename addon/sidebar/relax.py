@@ -11,10 +11,10 @@ from ..buttons.running import (
     CURVE_OT_mobius_flow_stop,
 )
 from ..buttons.showing import CURVE_OT_mobius_flow_show
-from ..curves import neighbours
 from ..curves.units import length
 from ..engine.phrase import Phrase
 from ..engine.quality import QUALITIES
+from ..engine.words import named
 from ..live import registry
 from ..live.checks import refusal, selected_curves
 from ..live.run import Run, State
@@ -23,6 +23,7 @@ from .labels import sentence
 from .layout import InSidebar, value
 from .presets import VIEW3D_PT_mobius_flow_presets
 from .refused import refused
+from .surroundings import warned
 
 _STATES = {
     State.RUNNING: Phrase("Running"),
@@ -80,8 +81,8 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context, shown: Run 
     hindered = refusal(context)
     if hindered and (run is None or any(obj not in objects for obj in selected_curves(context))):
         refused(column, context, hindered)
-    if (run or not hindered) and (unguarded := neighbours.warning(context, objects)):
-        sentence(layout, context, unguarded, icon="ERROR")
+    if run or not hindered:
+        warned(layout, context, objects)
 
 
 def _run_buttons(row: bpy.types.UILayout, run: Run) -> None:
@@ -110,6 +111,8 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) 
         proved = run.last.certified if run.report is None else run.report.certified
         whom = Phrase("with itself") if len(run.group.names) == 1 else Phrase("among themselves")
         value(box, "Free of contact", whom if proved else Phrase("not proved"))
+        if run.avoided:
+            value(box, "Avoided", named(run.avoided))
     if run.report is not None and run.report.radius is not None:
         value(box, "Tube radius", length(context.scene, run.report.radius))
     if run.message:

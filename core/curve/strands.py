@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .curve import Curve
-from .distances import arc_distance_of_pairs
+from .distances import arc_distance_of_vertices
 
 
 def nearest_strands(curve: Curve, ratio: float, furthest: float = np.inf) -> float:
@@ -21,7 +21,7 @@ def nearest_strands(curve: Curve, ratio: float, furthest: float = np.inf) -> flo
         radius = min(2.0 * radius, furthest)
         i, j = tree.query_pairs(radius, output_type="ndarray").T
         distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
-        distance = distance[arc_distance_of_pairs(curve, i, j) > ratio * distance]
+        distance = distance[arc_distance_of_vertices(curve, i, j) > ratio * distance]
         if distance.size:
             return float(distance.min())
         if radius >= furthest:

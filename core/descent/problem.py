@@ -6,12 +6,13 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
+import scipy.sparse as sp
 
 from ..collision import FreeMotion, Limit, free_motion
 from ..constraints import Constraints
 from ..curve import Curve, Mesh
 from ..energies import Objective
-from ..metrics import InnerProduct, Metric
+from ..metrics import InnerProduct, Metric, SparseInnerProduct
 from ..obstacle import Obstacle
 from ..saddle import TangentSpace
 from ..types import FloatArray
@@ -68,6 +69,16 @@ class Problem:
     units: Units
     geometry: Geometry
     obstacles: tuple[Obstacle, ...] = ()
+
+    def inner_product(self, curve: Curve) -> InnerProduct:
+        """The metric on functions along a curve, stiffer where potentials of the objective are.
+
+        It does not see these by itself: steps near an obstacle would be as short as its repulsion changes fast.
+        """
+        inner = self.metric.at(curve)
+        for potential in self.objective.potentials:
+            inner = inner.plus(SparseInnerProduct(sp.diags_array(potential.stiffness(curve))))
+        return inner
 
     def at(self, vertices: FloatArray) -> "Point":
         """The point with these vertices, in the program's units; pinned ones are put back to their last digits."""
@@ -203,7 +214,7 @@ class Point:
     @cached_property
     def inner_product(self) -> InnerProduct:
         """The metric, on functions along the curve: that of this curve, or of one some steps ago."""
-        return self.problem.metric.at(self.curve)
+        return self.problem.inner_product(self.curve)
 
     @cached_property
     def tangent_space(self) -> TangentSpace:

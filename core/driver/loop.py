@@ -9,6 +9,7 @@ from ..descent import NoStep, Step
 from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
 from .interventions.check_accuracy import with_errors
+from .interventions.grow import with_growth
 from .iterate import Iterate
 from .outcome import DEGENERATE, Outcome, stalled
 from .rises import Rises
@@ -54,7 +55,7 @@ def descent(run: Run, rises: Rises) -> Relaxation:
 
 def told(outcome: Outcome, run: Run, rises: Rises) -> Outcome:
     """The outcome with what is to be said of the whole run."""
-    return with_errors(rises.told(outcome, run.iterate.index), run)
+    return with_errors(with_growth(rises.told(outcome, run.iterate.index), run), run)
 
 
 def _descent(run: Run, interventions: Sequence[Intervention], rises: Rises) -> Relaxation:

@@ -19,6 +19,7 @@ from ..option import declared, documented, option
 EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
 SOLVERS = ("auto", "dense", "hierarchical")
+MAX_GROWTH = 1000.0  # what is packed takes more vertices than there is time for long before
 _advanced = partial(option, group="advanced")
 _scripted = partial(_advanced, scripted=True)
 
@@ -167,6 +168,15 @@ class RelaxOptions:
         "length, and relax that",
     )
 
+    grow: float = _advanced(
+        1.0,
+        "Grow",
+        "multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and "
+        "pins leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
+        low=0,
+        high=MAX_GROWTH,
+        metavar="F",
+    )
     hops: int = _advanced(
         0,
         "Hops",
@@ -193,10 +203,11 @@ class RelaxOptions:
         metavar="V,V,…",
         read=_indices,
     )
-    pin_tangents: bool = _scripted(
+    pin_tangents: bool = option(
         False,
         "Pin Tangents",
         "pin the neighbours that pinned vertices have in the refined start too, and so the curve's direction there",
+        group="pins",
     )
 
     def __post_init__(self) -> None:
@@ -231,4 +242,5 @@ class RelaxOptions:
     @property
     def keyed(self) -> "RelaxOptions":
         """The same for keyframes, which belong to vertices: ``auto`` neither leaves any out nor brings them back."""
-        return replace(self, mesh="finer" if self.ends_finer else "fixed") if self.mesh == "auto" else self
+        splits = self.ends_finer or (self.grow != 1.0 and self.edge_lengths == "auto")
+        return replace(self, mesh="finer" if splits else "fixed") if self.mesh == "auto" else self

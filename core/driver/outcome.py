@@ -100,6 +100,8 @@ UNRESOLVED = (
     "strands are nearer than this mesh resolves; with more vertices or a finer mesh there is less energy to reach"
 )
 ADVICE = "more vertices or an adaptive mesh may help"
+CROWDED = "no motion that changes the lengths as asked for is free of contact and takes little enough energy"
+GREW = "grew to {grown:.6g} of {wanted:.6g} times its length"
 TIGHTENED = "distant clusters were expanded to order {order} for the accuracy asked for"
 INACCURATE = (
     "the hierarchical solver is less accurate than asked for: dense sums over sampled edges put its relative errors at "

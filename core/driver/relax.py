@@ -102,6 +102,7 @@ class Result:
             "components": len(self.curve.mesh.component_sizes),
             "pins": list(self.last.pins),
             "obstacles": len(self.obstacles),
+            "grown": self.last.grown,
             "max_edge_length_error": self.last.edge_length_error,
             "certified": self.certified,
             "method": self.method,

@@ -22,7 +22,12 @@ class Rises:
             self._steps.append(_rise(before, after))
 
     def change(self, before: Iterate, after: Iterate) -> None:
-        """Note a change of mesh, or a motion that goes with it; what follows right after it is part of the same."""
+        """Note a change of mesh, or a motion that goes with it; what follows right after it is part of the same.
+
+        Longer curves have energies of their own.
+        """
+        if before.grown != after.grown:
+            return
         if not (self._changes and self._changes[-1][-1].index == before.index):
             self._changes.append([before])
         self._changes[-1].append(after)

@@ -141,6 +141,7 @@ class Run:
             path=path,
             certified=self._certified,
             edge_length_error=point.problem.constraints.length_error(point.curve),
+            grown=point.problem.constraints.grown,
             method=self.method.name,
             pins=tuple(point.problem.constraints.pins.vertices.tolist()),
         )

@@ -6,12 +6,14 @@ import numpy as np
 from scipy.linalg import eigh, qr
 
 from ..constraints import ConstraintDerivative
+from ..curve import Curve
 from ..curve.pins import holds
 from ..descent import Point
 from ..descent.directions.newton import lagrangian_hessian_matrix
 from ..types import FloatArray
 
 ZERO = 1e-5  # eigenvalues against J_C below this count as 0: rotations and sliding are flat directions
+MOEBIUS = 20.0  # and so do Möbius maps on a mesh: in units of (h/L)², h the longest edge, they have 11 at most at knots
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,15 +26,18 @@ class Stability:
         The lowest eigenvalues against the metric, in ascending order; shape (k,).
     directions
         Their eigenvectors, tangent and of length 1 in the metric; shape (k, n, m).
+    zero
+        Size up to which the mesh cannot tell an eigenvalue from 0.
     """
 
     eigenvalues: FloatArray
     directions: FloatArray
+    zero: float = ZERO
 
     @property
     def index(self) -> int:
         """Number of negative eigenvalues: 0 at a minimum, more at a saddle."""
-        return int(np.count_nonzero(self.eigenvalues < -ZERO))
+        return int(np.count_nonzero(self.eigenvalues < -self.zero))
 
 
 def stability(point: Point, count: int = 20) -> Stability:
@@ -49,7 +54,14 @@ def stability(point: Point, count: int = 20) -> Stability:
     gram = tangent.T @ point.tangent_space.apply(tangent.reshape(n, -1)).reshape(tangent.shape)
     last = min(count, len(gram)) - 1
     values, vectors = eigh(0.5 * (hessian + hessian.T), 0.5 * (gram + gram.T), subset_by_index=(0, last))
-    return Stability(values, np.ascontiguousarray((tangent @ vectors).T).reshape(-1, n, m))
+    directions = np.ascontiguousarray((tangent @ vectors).T).reshape(-1, n, m)
+    return Stability(values, directions, _unresolved(point.curve))
+
+
+def _unresolved(curve: Curve) -> float:
+    """Size of eigenvalues of Möbius maps, which change nothing of the energy but what the mesh makes of it."""
+    ell = curve.edge_lengths
+    return max(ZERO, MOEBIUS * max(float(ell[s].max() / ell[s].sum()) ** 2 for s in curve.mesh.edge_slices))
 
 
 def _tangent_basis(constraints: ConstraintDerivative) -> FloatArray:

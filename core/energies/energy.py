@@ -34,6 +34,13 @@ class LocalTerm(Term, Protocol):
         """The second derivative times a vector ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
 
 
+class Potential(LocalTerm, Protocol):
+    """A term of what stands around the curve, which acts on each of its points by itself."""
+
+    def stiffness(self, curve: Curve) -> FloatArray:
+        """By how much force, at most, the vertices are driven back for the way they go, not below 0; shape (n,)."""
+
+
 @runtime_checkable
 class Energy(Term, Protocol):
     """A term that is invariant under rigid motions; users choose it by its name."""

@@ -11,7 +11,7 @@ from ..errors import OptionError
 from ..obstacle import Obstacle
 from ..types import FloatArray
 from .barrier import Barrier
-from .energy import Approximate, Energy, LocalTerm, Term, TwiceDifferentiable, WithMidpointPairs
+from .energy import Approximate, Energy, LocalTerm, Potential, Term, TwiceDifferentiable, WithMidpointPairs
 from .moebius import MoebiusEnergy
 from .near_pairs import replaced_pairs
 from .repulsion import Repulsion
@@ -35,7 +35,7 @@ class Objective:
 
     energy: Energy = field(default_factory=MoebiusEnergy)
     barrier: Barrier = field(default_factory=Barrier)
-    potentials: tuple[LocalTerm, ...] = ()
+    potentials: tuple[Potential, ...] = ()
 
     name = "objective"
     description = "moebius + barrier + repulsion of obstacles, what relax descends on"

@@ -16,7 +16,7 @@ FLOORS = [
     {"pictures", "properties"},
     {"live"},
     {"scripting"},
-    {"panel_settings", "film_settings", "buttons"},
+    {"panel_settings", "film_settings", "surroundings_settings", "buttons"},
     {"sidebar"},
     {"registration"},
     {""},  # the package, which Blender and the command line import

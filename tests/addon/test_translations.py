@@ -130,13 +130,13 @@ def german(text):
 def test_a_refusal_in_german():
     bpy.ops.curve.mobius_flow_add_knot(knot="3_1")
     curve = bpy.context.active_object
-    curve.name, curve.data.splines[0].use_cyclic_u = "{Knot}", False
-    with pytest.raises(RuntimeError, match=r"Spline 1 of '\{Knot\}' is open"):
+    curve.name, curve.data.dimensions = "{Knot}", "2D"
+    with pytest.raises(RuntimeError, match=r"'\{Knot\}' is a 2D curve"):
         bpy.ops.curve.mobius_flow_relax()
     from mobius_flow.addon.live.checks import refusal
 
     said = refusal(bpy.context).sentence.said(german)
-    assert said.startswith("Spline 1 von '{Knot}' ist offen; zuerst schließen")
+    assert said.startswith("'{Knot}' ist eine 2D-Kurve")
 
 
 def test_what_cannot_be_turned_in_german():

@@ -3,7 +3,7 @@
 A vertex is a Punkt here, as in Blender's own table; the other word for it, Knoten, is wanted for knots.
 """
 
-from . import film
+from . import film, pins, surroundings
 
 _UNCHANGED = (
     "Animation",
@@ -122,6 +122,7 @@ _OPTIONS = {
     "Frames/Iterate": "Bilder/Iteration",
     "Gauss Points": "Gauß-Punkte",
     "Good": "Gut",
+    "Grow": "Wachsen",
     "Hide Curve": "Kurve verbergen",
     "Hold at End": "Ruhe am Ende",
     "Hold at Start": "Ruhe am Anfang",
@@ -172,7 +173,6 @@ _BUTTONS = {
     "Cancel": "Abbruch",
     "Check": "Prüfen",
     "Clear": "Entfernen",
-    "Close Splines": "Splines schließen",
     "Continue": "Fortsetzen",
     "Convert to Curve": "In Kurve konvertieren",
     "Convert to Poly": "In Poly konvertieren",
@@ -199,4 +199,13 @@ _BUTTONS = {
     "Use Preset": "Voreinstellung verwenden",
 }
 
-LABELS = {text: text for text in _UNCHANGED} | _KNOTS | _METHODS | _OPTIONS | _BUTTONS | film.LABELS
+LABELS = (
+    {text: text for text in _UNCHANGED}
+    | _KNOTS
+    | _METHODS
+    | _OPTIONS
+    | _BUTTONS
+    | film.LABELS
+    | pins.LABELS
+    | surroundings.LABELS
+)

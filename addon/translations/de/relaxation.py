@@ -98,6 +98,12 @@ _OPTIONS = {
     "Möbius energy without arc distances, midpoint rule (Ishizeki–Nagasawa density)": (
         "Möbius-Energie ohne Bogenabstände, Mittelpunktregel (Dichte von Ishizeki–Nagasawa)"
     ),
+    "Multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and pins "
+    "leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks": (
+        "Alle Längen damit malnehmen: auf einmal, wo nichts im Weg ist, sonst Schritt für Schritt, wie Hindernisse und "
+        "feste Punkte Platz lassen; Kanten werden geteilt, wo Stränge sich nähern, außer auf festem Netz; unter 1 "
+        "schrumpft die Kurve"
+    ),
     "Number of tries to get on from a minimum, or from where the curve is stuck: a random motion, proved like all "
     "others, and a relaxation; those that end lower are kept, and the iterations of all count": (
         "Anzahl der Versuche, von einem Minimum weiterzukommen, oder von wo die Kurve festsitzt: eine zufällige "

@@ -1,6 +1,6 @@
 """Sentences and labels that are filled in when they are shown; fields in braces stay as they are."""
 
-from . import film
+from . import film, pins, surroundings
 
 _REFUSALS = {
     "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first": (
@@ -9,8 +9,8 @@ _REFUSALS = {
     "'{name}' has no keys of Möbius Flow; press Relax first": (
         "'{name}' hat keine Schlüssel von Möbius Flow; zuerst Entspannen drücken"
     ),
-    "'{name}' has no splines; give it at least one closed poly spline": (
-        "'{name}' hat keine Splines; mindestens ein geschlossener Poly-Spline ist nötig"
+    "'{name}' has no splines; give it at least one poly spline": (
+        "'{name}' hat keine Splines; mindestens ein Poly-Spline ist nötig"
     ),
     "'{name}' has shape keys; remove them or relax a copy without them": (
         "'{name}' hat Formschlüssel; diese entfernen oder eine Kopie ohne sie entspannen"
@@ -80,18 +80,13 @@ _REFUSALS = {
     ),
     "Select a curve object first": "Zuerst ein Kurvenobjekt auswählen",
     "Select a curve that was baked first": "Zuerst eine gebackene Kurve auswählen",
-    "Spline {number} of '{name}' has fewer than {fewest} points, too few for a closed curve; "
-    "give it more, or delete it": (
-        "Spline {number} von '{name}' hat weniger als {fewest} Punkte, zu wenig für eine geschlossene Kurve; "
-        "Punkte hinzufügen oder den Spline löschen"
+    "Spline {number} of '{name}' has fewer than {fewest} points; give it more, or delete it": (
+        "Spline {number} von '{name}' hat weniger als {fewest} Punkte; Punkte hinzufügen oder den Spline löschen"
     ),
     "Spline {number} of '{name}' is a {kind} spline; convert it to Poly first "
     "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines": (
         "Spline {number} von '{name}' ist ein {kind}-Spline; zuerst in Poly umwandeln "
         "(Bearbeitungsmodus, Kurve > Splinetyp setzen > Poly) oder Splines abtasten einschalten"
-    ),
-    "Spline {number} of '{name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)": (
-        "Spline {number} von '{name}' ist offen; zuerst schließen (Bearbeitungsmodus, Kurve > Toggle Cyclic)"
     ),
     "The curve data of '{name}' is animated; remove the animation or relax a copy without it": (
         "Die Kurvendaten von '{name}' sind animiert; die Animation entfernen oder eine Kopie ohne sie entspannen"
@@ -318,26 +313,20 @@ _SIDEBAR = {
     "From Drawing": "Aus Zeichnung",
     "Keep {measure}": "{measure} beibehalten",
     "None": "Keine",
-    "Only selected curves are kept apart; {names} nearby are not": (
-        "Nur ausgewählte Kurven werden auseinandergehalten, {names} in der Nähe nicht"
-    ),
-    "Only selected curves are kept apart; {names} nearby is not": (
-        "Nur ausgewählte Kurven werden auseinandergehalten, {names} in der Nähe nicht"
-    ),
     "Quality: Custom, see Expert": "Qualität: benutzerdefiniert, siehe Experten",
     "Relax by Mobius Energy": "Nach Mobius-Energie entspannen",
     "Relax {count} Curves Together": "{count} Kurven gemeinsam entspannen",
     "Search...": "Suchen...",
+    "one of {knots}": "einer von {knots}",
     "{count} crossings": "{count} Kreuzungen",
     "{count} more objects have smooth splines too": "{count} weitere Objekte haben auch glatte Splines",
     "{crossings}: it is not knotted": "{crossings}: nicht verknotet",
-    "{crossings}: one of {knots}": "{crossings}: einer von {knots}",
-    "{crossings}: {knots} or its mirror image": "{crossings}: {knots} oder sein Spiegelbild",
-    "{knots}, if it is prime": "{knots}, falls er prim ist",
+    "{crossings}: perhaps {knots}, not proved": "{crossings}: vielleicht {knots}, nicht bewiesen",
+    "{crossings}: {knots}, proved": "{crossings}: {knots}, bewiesen",
     "{names} and {count} more": "{names} und {count} weitere",
     "{names} and {last}": "{names} und {last}",
     "{radius} (fitted)": "{radius} (angepasst)",
     "{radius} (your own)": "{radius} (eigener)",
 }
 
-SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES
+SENTENCES = _REFUSALS | _ERRORS | _RUN | _REPORTS | _SIDEBAR | film.SENTENCES | pins.SENTENCES | surroundings.SENTENCES

@@ -1,6 +1,6 @@
 """Tooltips: of operators, of settings, and of what they let choose. Blender adds the full stop."""
 
-from . import film
+from . import film, pins, surroundings
 from .relaxation import RELAXATION
 
 _OPERATORS = {
@@ -26,8 +26,8 @@ _OPERATORS = {
         "Die ausgewählten Kurven als dickste runde Röhren zeichnen, die sich nicht berühren. "
         "Beim Entspannen bleiben sie es"
     ),
-    "Give each closed curve of the selected objects a material of its own, in slots after those that are there": (
-        "Jeder geschlossenen Kurve der ausgewählten Objekte ein eigenes Material geben, in Slots nach den vorhandenen"
+    "Give each spline of the selected objects a material of its own, in slots after those that are there": (
+        "Jedem Spline der ausgewählten Objekte ein eigenes Material geben, in Slots nach den vorhandenen"
     ),
     "Give each of the selected objects curve data of its own; other objects keep what they share": (
         "Jedem ausgewählten Objekt eigene Kurvendaten geben; andere Objekte behalten, was sie teilen"
@@ -39,9 +39,6 @@ _OPERATORS = {
     "Go on to the shape of the same energy that bends least for its length; new keys follow the old ones": (
         "Weiter zur Form gleicher Energie gehen, die sich für ihre Länge am wenigsten biegt; "
         "neue Schlüssel folgen auf die alten"
-    ),
-    "Join the two ends of every open spline of the selected curves": (
-        "Die beiden Enden jedes offenen Splines der ausgewählten Kurven verbinden"
     ),
     "Keep all settings as a preset, or remove one": "Alle Einstellungen als Voreinstellung sichern oder eine entfernen",
     "Keep what the last relaxation had reached when it was cancelled": (
@@ -123,16 +120,14 @@ _OPERATORS = {
 }
 
 _KNOTS = {
-    "A color for each closed curve": "Eine Farbe für jede geschlossene Kurve",
+    "A color for each spline": "Eine Farbe für jeden Spline",
     "A knot or link of the table": "Ein Knoten oder eine Verschlingung der Tabelle",
     "Add the mirror image": "Das Spiegelbild hinzufügen",
     "Crossings one by one: 2 crosses strands 2 and 3, -2 does so the other way": (
         "Kreuzungen eine nach der anderen: 2 kreuzt die Stränge 2 und 3, -2 tut es andersherum"
     ),
     "Full turns of the two strands around each other": "Volle Umdrehungen der beiden Stränge umeinander",
-    "Give each closed curve of a link a material of its own": (
-        "Jeder geschlossenen Kurve einer Verschlingung ein eigenes Material geben"
-    ),
+    "Give each spline of a link a material of its own": ("Jedem Spline einer Verschlingung ein eigenes Material geben"),
     "Half of the knot's width": "Die halbe Breite des Knotens",
     "Hide the curves that were drawn, in renders too": "Die gezeichneten Kurven verbergen, auch beim Rendern",
     "Hook the strands into each other the other way": "Die Stränge andersherum ineinanderhaken",
@@ -289,4 +284,6 @@ _ANIMATION = {
     "Which key has the size that all are given": "Welcher Schlüssel die Größe hat, die alle erhalten",
 }
 
-TOOLTIPS = _OPERATORS | _KNOTS | _OUTPUTS | _ANIMATION | film.TOOLTIPS | RELAXATION
+TOOLTIPS = (
+    _OPERATORS | _KNOTS | _OUTPUTS | _ANIMATION | film.TOOLTIPS | pins.TOOLTIPS | surroundings.TOOLTIPS | RELAXATION
+)

@@ -9,7 +9,7 @@ from ...types import FloatArray
 from ..loop import iterates
 from ..options import RelaxOptions
 from ..run import Run
-from .stir import Stir
+from .motions import Motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Trial:
     iterations: int
 
 
-def trial(run: Run, motion: Stir, rng: np.random.Generator, below: float) -> Trial:
+def trial(run: Run, motion: Motion, rng: np.random.Generator, below: float) -> Trial:
     """Leave the point that a run has reached, and relax on the same mesh until the objective is ``below`` a value.
 
     It ends earlier where the relaxation does, or where no iterations are left.  Raises LinAlgError where a curve on the
@@ -55,4 +55,4 @@ def trial(run: Run, motion: Stir, rng: np.random.Generator, below: float) -> Tri
 def _plain(options: RelaxOptions, iterations: int) -> RelaxOptions:
     """The same without what is looked at in the end or changes the mesh."""
     options = replace(options, stability=False, escape_saddles=False, balance=False)
-    return replace(options, mesh="fixed", vertices=None, max_iterations=iterations)
+    return replace(options, mesh="fixed", grow=1.0, vertices=None, max_iterations=iterations)

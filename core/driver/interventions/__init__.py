@@ -16,6 +16,7 @@ from .composite import Composite
 from .escape_saddle import EscapeSaddle
 from .fallback import Fallback
 from .finer_mesh import FinerMesh
+from .grow import Grow
 from .remesh import Remesh
 from .split_links import SplitLinks
 
@@ -28,6 +29,7 @@ class Intervention(Protocol):
 
 
 INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
+    Grow,
     SplitLinks,
     CoarseStart,
     EscapeSaddle,

@@ -52,7 +52,7 @@ class CoarseStart:
         options, curve = self._run.options, self._run.iterate.curve
         if self._run.iterate.index > 0:
             return False  # after a hop the curve is untangled already
-        if options.mesh != "auto" or options.edge_lengths not in ("auto", "equal"):
+        if options.mesh != "auto" or options.grow != 1.0 or options.edge_lengths not in ("auto", "equal"):
             return False
         if not self._problem.geometry.prescribes:
             return False  # lengths that are penalised would take the jump of the energy at once

@@ -99,6 +99,16 @@ class Repulsion:
         rows, columns = np.broadcast_arrays(index[None], index[:, None])
         return sp.csr_array((self.weight * changes.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, 3 * n))
 
+    def stiffness(self, curve: Curve) -> FloatArray:
+        """∫ Φ³/(2π²) ds, half of each edge's at either end; shape (n,).
+
+        A plane at the distance h, and so a straight line, has Φ'' = 4π/h³ = Φ³/(2π²).
+        """
+        edges = Edges.of(curve.mesh, curve.vertices)
+        potential = Integrals.of(edges, self.clusters, self._schedule(curve)).potential
+        half = 0.25 / np.pi**2 * self.weight * edges.length * potential**3
+        return curve.mesh.scatter(half, half)
+
     def _schedule(self, curve: Curve) -> Schedule:
         """The schedule that counts at a curve: its own, or that of the curve."""
         if self.schedule is not None and self.schedule.suits(curve, self.clusters, OUTDATED):

@@ -30,7 +30,7 @@ def test_a_drawn_trefoil():
     drawn = add_curve([scribble()])
     before = stored(drawn.data)
     obj, points = lifted()
-    assert obj.name == "Drawn 3_1"
+    assert obj.name == "Drawn m3_1"
     assert knot_invariants(points).genus == 1
     assert np.array_equal(stored(drawn.data), before)
     assert drawn.hide_get()
@@ -48,12 +48,16 @@ def test_a_crossing_is_changed_and_all_are_mirrored():
     assert knot_invariants(points) == UNKNOT
 
 
-def test_the_mirror_image():
-    hands = []
+def test_the_mirror_image(capfd):
+    names, hands = set(), []
     for mirror in (False, True):
         bpy.ops.object.select_all(action="DESELECT")
         add_curve([scribble()])
-        hands.append(knot_invariants(lifted(mirror=mirror)[1]).tau)
+        obj, points = lifted(mirror=mirror)
+        names.add(obj.name)
+        hands.append(knot_invariants(points).tau)
+        assert f"3 crossings: {obj.name.removeprefix('Drawn ')}, proved" in capfd.readouterr().out
+    assert names == {"Drawn 3_1", "Drawn m3_1"}
     assert hands[0] == -hands[1] != 0
 
 
@@ -84,7 +88,7 @@ def test_several_curves_make_a_link():
 def test_smooth_splines_are_drawings_too():
     add_curve([scribble(n=24)], kind="NURBS")
     obj, points = lifted()
-    assert obj.name == "Drawn 3_1"
+    assert obj.name == "Drawn m3_1"
     check_embedded(Curve(points))
 
 
@@ -92,7 +96,7 @@ def test_filled_curves_are_drawings_too():
     """Blender's 2D curves are filled, and drawn as faces."""
     obj = add_curve([scribble(n=12)], kind="NURBS")
     obj.data.dimensions = "2D"
-    assert lifted()[0].name == "Drawn 3_1"
+    assert lifted()[0].name == "Drawn m3_1"
     assert obj.data.dimensions == "2D"
 
 

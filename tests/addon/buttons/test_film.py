@@ -74,8 +74,8 @@ def test_a_curve_that_renders_do_not_show_is_told_of(scene, capfd):
 
 def test_what_is_wanted_first(scene):
     assert CURVE_OT_mobius_flow_render_film.refusal(bpy.context).sentence.startswith("The scene has no camera")
-    bpy.context.object.data.splines[0].use_cyclic_u = False
-    assert "is open" in CURVE_OT_mobius_flow_set_up_stage.refusal(bpy.context).sentence
+    bpy.context.object.data.dimensions = "2D"
+    assert "is a 2D curve" in CURVE_OT_mobius_flow_set_up_stage.refusal(bpy.context).sentence
     bpy.ops.object.select_all(action="DESELECT")
     before = contents()
     with pytest.raises(RuntimeError) as error:

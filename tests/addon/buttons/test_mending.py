@@ -41,7 +41,7 @@ def test_what_needs_nothing_is_left_alone(remedy):
         assert contents() == before
 
 
-@pytest.mark.parametrize("remedy", [Remedy.CLOSE, Remedy.COPY], ids=lambda remedy: remedy.name)
+@pytest.mark.parametrize("remedy", [Remedy.MAKE_3D, Remedy.COPY], ids=lambda remedy: remedy.name)
 def test_not_during_a_run(operator, remedy):
     add_trefoil()
     operator.start()
@@ -49,33 +49,6 @@ def test_not_during_a_run(operator, remedy):
     with pytest.raises(RuntimeError, match="is being relaxed; stop that first"):
         call(remedy)()
     registry.current().cancel()
-
-
-def test_open_splines_are_closed():
-    first, second = two(cyclic=False)
-    third = add_curve([SHAPE + 20], "C")
-    second.data.splines.new("NURBS").points.add(5)
-    before = [stored(obj.data) for obj in (first, second, third)]
-    mend(Remedy.CLOSE)
-    assert all(spline.use_cyclic_u for obj in (first, second) for spline in obj.data.splines)
-    for obj, points in zip((first, second, third), before, strict=True):
-        np.testing.assert_array_equal(stored(obj.data), points)
-
-
-def test_a_closed_curve_may_be_relaxed():
-    add_curve([SHAPE], cyclic=False)
-    mend(Remedy.CLOSE)
-    may_be_relaxed()
-
-
-def test_what_is_too_short_is_not_closed():
-    obj = add_curve([SHAPE, SHAPE[:2] + 9], cyclic=False)
-    bpy.context.view_layer.update()
-    assert refusal(bpy.context).remedy is Remedy.CLOSE
-    mend(Remedy.CLOSE)
-    assert obj.data.splines[0].use_cyclic_u
-    assert refusal(bpy.context).remedy is None
-    assert "fewer than 3 points" in refusal(bpy.context).sentence
 
 
 def test_flat_curves_become_curves_in_space():

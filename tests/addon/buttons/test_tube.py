@@ -66,8 +66,8 @@ def edited():
     bpy.ops.object.mode_set(mode="EDIT")
 
 
-def opened():
-    add_trefoil().data.splines[0].use_cyclic_u = False
+def flat():
+    add_trefoil().data.dimensions = "2D"
 
 
 def infinite():
@@ -80,7 +80,7 @@ def infinite():
     [
         (nothing, "Select a curve object first"),
         (edited, "'Knot' is being edited; go back to Object Mode first"),
-        (opened, "Spline 1 of 'Knot' is open; close it first"),
+        (flat, "'Knot' is a 2D curve; set its Shape to 3D first"),
     ],
 )
 def test_refusals_say_what_to_do(name, arrange, said):

@@ -173,8 +173,8 @@ def refused():
 
 
 def test_every_selected_object_is_looked_at():
-    rings()[0].data.splines[0].use_cyclic_u = False
-    assert "Spline 1 of 'A' is open" in refused()
+    rings()[0].data.dimensions = "2D"
+    assert "'A' is a 2D curve" in refused()
 
 
 def test_objects_that_touch_each_other_are_refused():

@@ -5,7 +5,7 @@ import re
 import pytest
 from mobius_flow.addon.engine.glossary import as_phrase, in_blenders_words, spline_names
 from mobius_flow.addon.engine.phrase import Phrase
-from mobius_flow.core import Curve, CurveError, relax
+from mobius_flow.core import Curve, CurveError, Obstacle, relax
 from mobius_flow.core.driver.outcome import converged, out_of_iterations
 from shapes import torus_trefoil
 
@@ -35,6 +35,15 @@ def test_splines_are_counted_in_each_object():
 )
 def test_sentences(said, wanted):
     assert in_blenders_words(said, NAMES) == wanted
+
+
+def test_what_is_avoided_keeps_its_name():
+    still = [[0, 0, 0], [1, 0, 0]], [[0, 1]]
+    avoided = [Obstacle(*still, name) for name in ("edge", "edge of component 1", "O'Hara (2)")]
+    said = "component 1: edge 4 pierces {}; move one of them away"
+    for each in avoided:
+        expected = f"spline 1 of 'Ring': segment 4 pierces '{each.name}'; move one of them away"
+        assert in_blenders_words(said.format(each.title), NAMES, avoided) == expected
 
 
 SQUARE = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]

@@ -101,3 +101,30 @@ def test_carrying_keeps_angles():
     np.testing.assert_allclose(carried(u, a, b), u, atol=1e-12)  # the axis itself
     phi = rng.uniform(-3, 3, 20)
     np.testing.assert_allclose(signed_angle(u, carried(turned(u, a, phi), a, b), b), phi, atol=1e-9)
+
+
+def helix(n=80, turns=2.0):
+    t = np.linspace(0, 2 * np.pi * turns, n)
+    return np.stack([np.cos(t), np.sin(t), 0.2 * t], axis=1)
+
+
+def test_along_an_arc_nothing_twists():
+    """Each normal is carried to the next by the least rotation, at every key."""
+    points = np.stack([helix(), helix(turns=1.0)])
+    u, tau = normals(points, closed=False), tangents(points, closed=False)
+    np.testing.assert_allclose(np.einsum("kni,kni->kn", u, tau), 0, atol=1e-12)
+    np.testing.assert_allclose(carried(u[:, :-1], tau[:, :-1], tau[:, 1:]), u[:, 1:], atol=1e-12)
+
+
+def test_an_arc_begins_along_its_first_edge_and_ends_along_its_last():
+    points = helix()
+    tau = tangents(points, closed=False)
+    for edge, tangent in ((points[1] - points[0], tau[0]), (points[-1] - points[-2], tau[-1])):
+        np.testing.assert_allclose(tangent, edge / np.linalg.norm(edge), atol=1e-15)
+    np.testing.assert_allclose(tau[1:-1], tangents(points)[1:-1], atol=1e-15)
+
+
+def test_an_arc_that_moves_keeps_its_normals():
+    points = np.stack([helix() + shift for shift in (0.0, 1.0, 2.0)])
+    u = normals(points, closed=False)
+    np.testing.assert_allclose(u, np.broadcast_to(u[2], u.shape), atol=1e-12)

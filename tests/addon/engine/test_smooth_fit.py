@@ -2,21 +2,10 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine.smooth_fit import SmoothFit, bezier_points, fitted
+from mobius_flow.addon.engine.smooth_fit import SmoothFit, fitted
 from mobius_flow.addon.engine.tube import free_radius, thickest_radius
-from mobius_flow.core import Curve
-from scipy.interpolate import BSpline
+from mobius_flow.core import Curve, Mesh
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
-
-
-def test_bezier_points_are_those_of_the_b_spline():
-    points = np.random.default_rng(3).normal(size=(9, 3))
-    spline = BSpline(np.arange(-3, 13), np.concatenate([points, points[:3]]), 3)
-    bezier = bezier_points(np.roll(points, -1, axis=0))
-    for k, segment in enumerate(bezier):
-        np.testing.assert_allclose(segment[0], spline(k), atol=1e-12)
-        np.testing.assert_allclose(segment[-1], spline(k + 1 if k < 8 else 0), atol=1e-12)
-        np.testing.assert_allclose(3 * (segment[1] - segment[0]), spline(k, 1), atol=1e-12)
 
 
 def circle_error(points):
@@ -92,3 +81,36 @@ def test_the_place_does_not_matter():
     curve = torus_trefoil(100)
     moved = Curve(curve.vertices + 1000.0)
     assert fitted(moved, 24).error == pytest.approx(fitted(curve, 24).error, rel=1e-6)
+
+
+def half_circle(n):
+    angles = np.linspace(0, np.pi, n)
+    return Curve(np.column_stack([np.cos(angles), np.sin(angles), 0 * angles]), Mesh((n,), (False,)))
+
+
+def test_errors_along_an_arc_fall_with_the_fourth_power():
+    errors = np.array([fitted(half_circle(20_000), points).error for points in (8, 14, 26)])
+    slopes = np.log(errors[:-1] / errors[1:]) / np.log([11 / 5, 23 / 11])  # three segments less than points
+    assert (slopes > 3.8).all()
+
+
+def test_the_spline_of_an_arc_runs_from_end_to_end():
+    arc = Curve(torus_trefoil(200).vertices[:180], Mesh((180,), (False,)))
+    fit = fitted(arc)
+    assert fit.proved
+    assert fit.error <= 0.05 * free_radius(arc, thickest_radius(arc))
+    np.testing.assert_array_equal(fit.points[0][[0, -1]], arc.vertices[[0, -1]])
+    np.testing.assert_allclose(fit.bezier[0][[0, -1], [0, 3]], arc.vertices[[0, -1]], atol=1e-12)
+
+
+def test_a_segment_is_its_own_spline():
+    segment = Curve(np.array([[0.0, 1.0, 2.0], [3.0, -1.0, 2.0]]), Mesh((2,), (False,)))
+    assert fitted(segment).error < 1e-12
+
+
+def test_an_arc_beside_a_ring():
+    ring = regular_polygon(100).vertices
+    link = Curve.from_components([ring, half_circle(50).vertices + 3], (True, False))
+    fit = fitted(link)
+    assert fit.proved
+    assert [len(bezier) for bezier in fit.bezier] == [len(fit.points[0]), len(fit.points[1]) - 3]

@@ -43,3 +43,22 @@ def test_blocks_do_not_matter(monkeypatch, block):
     whole = strand_distances(curve)
     monkeypatch.setattr(strands, "_BLOCK", block)
     np.testing.assert_array_equal(strand_distances(curve), whole)
+
+
+def test_of_two_segments():
+    segment = np.linspace(-1, 1, 50)[:, None] * np.array([1.0, 0.0, 0.0])
+    curve = Curve.from_components([segment, segment + np.array([0.0, 0.25, 0.0])], (False, False))
+    np.testing.assert_allclose(strand_distances(curve), 0.25, rtol=1e-12)
+
+
+def test_a_straight_arc_has_no_other_strand():
+    segment = np.linspace(0, 1, 50)[:, None] * np.array([1.0, 2.0, 2.0])
+    np.testing.assert_allclose(strand_distances(Curve.from_components([segment], (False,))), 3.0, rtol=1e-12)
+
+
+def test_ends_that_nearly_meet_are_near():
+    """A ring with a gap: its ends are on different strands."""
+    angles = np.linspace(0.02, 2 * np.pi - 0.02, 300)
+    ring = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+    distances = strand_distances(Curve.from_components([ring], (False,)))
+    np.testing.assert_allclose(distances[[0, -1]], 2 * np.sin(0.02), rtol=1e-9)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from mobius_flow.addon.engine.target import CIRCLE, target_of
-from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize
-from mobius_flow.core.knots import knot
+from mobius_flow.core import Curve, Mesh, MoebiusEnergy, RelaxOptions, minimize
+from mobius_flow.core.knots import knot, overhand
 from shapes import hopf_link, torus_trefoil
 
 MOEBIUS = RelaxOptions()
@@ -42,3 +42,19 @@ def test_it_is_the_energy_of_the_circle(n):
     angles = 2 * np.pi * np.arange(n) / n
     circle = Curve(np.column_stack([np.cos(angles), np.sin(angles), 0 * angles]))
     assert MoebiusEnergy().value(circle) == pytest.approx(CIRCLE, rel=10 / n**2)
+
+
+def test_an_arc_may_become_straight():
+    target = target_of(overhand(60), MOEBIUS)
+    assert (target.energy, target.label) == (0.0, "straight = 0")
+    segment = Curve(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]]), Mesh((3,), (False,)))
+    assert MoebiusEnergy().value(segment) == pytest.approx(target.energy, abs=1e-12)
+
+
+def test_arcs_add_nothing_to_the_floor():
+    link = Curve.from_components([*hopf_link(24).components, overhand(60).vertices + 20], (True, True, False))
+    assert target_of(link, MOEBIUS).label == "floor = 8"
+
+
+def test_pins_keep_curves_from_it():
+    assert target_of(overhand(60), RelaxOptions(pins=(0, 59))) is None

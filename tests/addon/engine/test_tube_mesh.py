@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine.tube_mesh import quads, rings
+from mobius_flow.addon.engine.tube_mesh import caps, quads, rings
+from mobius_flow.core import Curve
 from mobius_flow.core.curve import Mesh
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 
@@ -67,3 +68,22 @@ def test_halfway_between_keys_it_does_not_pinch():
     middle = shapes.mean(axis=0).reshape(200, 12, 3)
     thickness = np.linalg.norm(middle - points.mean(axis=0)[:, None], axis=-1)
     assert thickness.min() > 0.19
+
+
+def test_the_tube_of_an_arc_ends_and_caps_close_it():
+    mesh = Mesh((3, 4, 2), (False, True, False))
+    faces = [*quads(mesh, 5), *caps(mesh, 5)]
+    assert len(faces) == 5 * 7 + 4
+    edges = [(int(a), int(b)) for face in faces for a, b in zip(face, np.roll(face, -1), strict=True)]
+    assert len(set(edges)) == len(edges)
+    assert {(b, a) for a, b in edges} == set(edges)
+
+
+def test_a_straight_tube_is_a_cylinder():
+    curve = Curve(np.linspace(0, 1, 5)[:, None] * np.array([0.0, 0.0, 3.0]), Mesh((5,), (False,)))
+    vertices = rings(curve.vertices[None], np.full((1, 5), 0.25), curve.mesh, 200)[0]
+    np.testing.assert_allclose(np.linalg.norm(vertices[:, :2], axis=1), 0.25, rtol=1e-12)
+    start, end = (vertices[face] for face in caps(curve.mesh, 200))
+    for cap, height, up in ((start, 0.0, -1.0), (end, 3.0, 1.0)):
+        np.testing.assert_allclose(cap[:, 2], height, atol=1e-15)
+        assert np.cross(cap[1] - cap[0], cap[2] - cap[1])[2] * up > 0  # seen counterclockwise from outside

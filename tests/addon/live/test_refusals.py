@@ -105,9 +105,9 @@ def zero_parent():
     return "scaled to nothing"
 
 
-def open_spline():
-    add_curve([torus_trefoil(9).vertices], cyclic=False)
-    return "Spline 1 of 'Knot' is open"
+def open_spline_of_one_point():
+    add_curve([torus_trefoil(9).vertices[:1]], cyclic=False)
+    return "Spline 1 of 'Knot' has fewer than 2 points"
 
 
 def bezier():
@@ -222,7 +222,7 @@ CASES = [
     shared_data,
     zero_scale,
     zero_parent,
-    open_spline,
+    open_spline_of_one_point,
     bezier,
     nurbs,
     shape_keys,

@@ -135,8 +135,8 @@ def test_what_cannot_be_relaxed():
         Relaxation(obj).relax_further()
     with pytest.raises(MobiusFlowError, match="has no keys"):
         Relaxation(obj).clear()
-    obj.data.splines[0].use_cyclic_u = False
-    with pytest.raises(MobiusFlowError, match="is open"):
+    obj.data.dimensions = "2D"
+    with pytest.raises(MobiusFlowError, match="is a 2D curve"):
         Relaxation(obj).relax()
 
 

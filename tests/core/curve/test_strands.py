@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.curve import refine
-from mobius_flow.core.curve.distances import arc_distance_of_pairs
+from mobius_flow.core.curve.distances import arc_distance_of_vertices
 from mobius_flow.core.curve.strands import nearest_strands
-from mobius_flow.core.knots import knot
+from mobius_flow.core.knots import knot, overhand
 from shapes import hopf_link, regular_polygon
 
 RATIO = 3.0
@@ -15,11 +15,11 @@ RATIO = 3.0
 def of_all_pairs(curve: Curve, furthest: float = np.inf) -> float:
     i, j = np.triu_indices(len(curve), 1)
     distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
-    chosen = (arc_distance_of_pairs(curve, i, j) > RATIO * distance) & (distance <= furthest)
+    chosen = (arc_distance_of_vertices(curve, i, j) > RATIO * distance) & (distance <= furthest)
     return float(distance[chosen].min(initial=np.inf))
 
 
-@pytest.mark.parametrize("name", ["3_1", "8_19", "T(7,8)", "L6a4"])
+@pytest.mark.parametrize("name", ["3_1", "8_19", "T(7,8)", "L6a4", "overhand"])
 def test_they_are_those_of_all_pairs(name: str) -> None:
     curve = knot(name)
     for furthest in (0.01 * curve.length, 0.1 * curve.length, np.inf):
@@ -41,3 +41,9 @@ def test_vertices_that_coincide_are_no_hindrance() -> None:
     doubled = np.repeat(np.array([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 9.0, 0.0], [0.0, 9.0, 0.0]]), 3, axis=0)
     curve = Curve.from_components([doubled, doubled + np.array([0.0, 0.0, 1.0])])
     assert nearest_strands(curve, RATIO) == 1.0
+
+
+def test_arcs_have_a_vertex_more_than_edges() -> None:
+    link = Curve.from_components([hopf_link(30).components[0] + 2.0, overhand(90).vertices], (True, False))
+    assert nearest_strands(link, RATIO) == of_all_pairs(link)
+    assert nearest_strands(overhand(90), RATIO) == of_all_pairs(overhand(90))

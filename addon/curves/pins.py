@@ -1,0 +1,134 @@
+"""Pinned points: those with the greatest goal weight that a point can have.
+
+The weight belongs to soft bodies, where it holds points in place as well, and Blender's own tools give points 1 at the
+most. It is kept with the point itself, so that whatever keeps points keeps pins: files, undo (in Edit Mode too, which
+knows of no custom properties), copies, joined objects. Where edges are refined, points between two pinned ones are
+pinned too, and no others.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core import CurveError, Mesh
+from ...core.types import BoolArray, IntArray
+from ..engine.phrase import Phrase
+from ..engine.placement import Frame
+from .sampling import kind
+from .snapshot import control_points
+
+if TYPE_CHECKING:
+    import bpy
+
+_MARK = "weight_softbody"
+_PINNED, _FREE = 100.0, 1.0
+
+
+def marked(spline: "bpy.types.Spline") -> BoolArray:
+    """Which points of a spline are pinned; (points,)."""
+    return np.asarray(_weights(spline) == _PINNED)
+
+
+def pin(spline: "bpy.types.Spline", chosen: BoolArray) -> None:
+    """Pin points of a spline, (points,)."""
+    _mark(spline, chosen, _PINNED)
+
+
+def unpin(spline: "bpy.types.Spline", chosen: BoolArray) -> None:
+    """Let pinned points of a spline, (points,), move again; others keep the weights that they have."""
+    _mark(spline, chosen & marked(spline), _FREE)
+
+
+def ends(spline: "bpy.types.Spline") -> BoolArray:
+    """The first and the last point of an open spline, none of a closed one; (points,)."""
+    found = np.zeros(len(control_points(spline)), dtype=bool)
+    if not spline.use_cyclic_u:
+        found[[0, -1]] = True
+    return found
+
+
+def selected(spline: "bpy.types.Spline") -> BoolArray:
+    """The points of a spline that are selected in Edit Mode; (points,)."""
+    points = control_points(spline)
+    found = np.empty(len(points), dtype=bool)
+    points.foreach_get("select_control_point" if spline.type == "BEZIER" else "select", found)
+    return found
+
+
+def count(data: "bpy.types.Curve") -> int:
+    """Number of points that are pinned."""
+    return sum(int(marked(spline).sum()) for spline in data.splines)
+
+
+def places(data: "bpy.types.Curve") -> Frame:
+    """Coordinates of all pinned points; shape (k, 3)."""
+    found = [np.empty((0, 3), dtype=np.float32)]
+    for spline in data.splines:
+        if (chosen := marked(spline)).any():
+            points, width = control_points(spline), 3 if spline.type == "BEZIER" else 4
+            coordinates = np.empty(width * len(points), dtype=np.float32)
+            points.foreach_get("co", coordinates)
+            found.append(coordinates.reshape(-1, width)[chosen, :3])
+    return np.concatenate(found)
+
+
+def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None:
+    """Raise a CurveError if points of a spline lie on no polygon that can be drawn for it.
+
+    Parameters
+    ----------
+    obj
+        The curve object.
+    number
+        Index of the spline.
+    chosen
+        The points, (points,).
+    """
+    spline = obj.data.splines[number]
+    if spline.type != "POLY" and (chosen & ~ends(spline)).any():
+        sentence = (
+            "Spline {number} of '{name}' is a {kind} spline, of which only the ends can be pinned; "
+            "convert it to Poly first (Edit Mode, Curve > Set Spline Type > Poly)"
+        )
+        raise CurveError(Phrase(sentence, number=number + 1, name=obj.name, kind=kind(spline)))
+
+
+def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[int, ...]:
+    """The pinned vertices of the link that curve objects are, ascending.
+
+    Parameters
+    ----------
+    objects
+        The curve objects.
+    mesh
+        Their splines as polygons, a component each.
+
+    Raises
+    ------
+    CurveError
+        If a pinned point is between the ends of a smooth spline.
+    """
+    found: list[IntArray] = []
+    for obj in objects:
+        for number, spline in enumerate(obj.data.splines):
+            chosen, piece = marked(spline), mesh.slices[len(found)]
+            check_place(obj, number, chosen)
+            inside = np.flatnonzero(chosen)
+            if spline.type != "POLY":  # at its ends alone
+                inside = np.where(inside == 0, 0, piece.stop - piece.start - 1)
+            found.append(piece.start + inside)
+    return tuple(map(int, np.concatenate(found)))
+
+
+def _weights(spline: "bpy.types.Spline") -> Frame:
+    points = control_points(spline)
+    weights = np.empty(len(points), dtype=np.float32)
+    points.foreach_get(_MARK, weights)
+    return weights
+
+
+def _mark(spline: "bpy.types.Spline", chosen: BoolArray, weight: float) -> None:
+    weights = _weights(spline)
+    weights[chosen] = weight
+    control_points(spline).foreach_set(_MARK, weights)

@@ -1,0 +1,92 @@
+"""What objects show in the 3D view, with their modifiers and all that they show copies of, as triangles and edges."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core import MobiusFlowError
+from ..engine.obstacles import Surface
+from ..engine.phrase import Phrase
+from ..engine.placement import Placement
+from .standing import unsteady_object
+
+if TYPE_CHECKING:
+    import bpy
+
+SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}  # what Blender makes meshes of
+WITHOUT_SHAPE = {"ARMATURE", "CAMERA", "LATTICE", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
+
+
+def surfaces(
+    depsgraph: "bpy.types.Depsgraph", objects: Sequence["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]
+) -> list[list[Surface]]:
+    """What each of some objects shows, piece by piece.
+
+    Raises
+    ------
+    MobiusFlowError
+        If one of them is hidden, or shows what cannot be avoided: something else than faces and edges, or a copy of
+        an object that does not stand still while others are relaxed.
+    """
+    shown: dict[int, list[Surface]] = {obj.session_uid: [] for obj in objects}
+    looked_at: set[int] = set()
+    for obj in objects:
+        _check_shown(obj)
+    for instance in depsgraph.object_instances:
+        owner = (instance.parent if instance.is_instance else instance.object).original
+        pieces = shown.get(owner.session_uid)
+        if pieces is None or not instance.show_self:
+            continue
+        source = instance.object.original
+        if source.session_uid not in looked_at:
+            looked_at.add(source.session_uid)
+            _check(source, relaxed)
+        piece = _surface(instance)
+        # curves, texts and so on are shown a second time, as the meshes that are made of them
+        if piece is not None and not any(map(piece.equals, pieces)):
+            pieces.append(piece)
+    return [shown[obj.session_uid] for obj in objects]
+
+
+def _check_shown(obj: "bpy.types.Object") -> None:
+    """Refuse an object that is hidden, or whose shape is just being changed."""
+    if not obj.visible_get():
+        raise MobiusFlowError(Phrase("'{name}' is hidden; show it first, or leave it out", name=obj.name))
+    if obj.mode != "OBJECT":
+        raise MobiusFlowError(Phrase("'{name}' is being edited; go back to Object Mode first", name=obj.name))
+
+
+def _check(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> None:
+    """Refuse an object that is shown somewhere and cannot be avoided."""
+    if said := unsteady_object(obj, relaxed):
+        raise MobiusFlowError(said)
+    if obj.type not in SOLID | WITHOUT_SHAPE | {"EMPTY"}:
+        kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
+        sentence = "'{name}' is of type {type}, which cannot be avoided; convert it to a mesh, or leave it out"
+        raise MobiusFlowError(Phrase(sentence, name=obj.name, type=kind))
+
+
+def _surface(instance: "bpy.types.DepsgraphObjectInstance") -> Surface | None:
+    """The mesh that is shown at one place; None if there is none."""
+    obj = instance.object
+    mesh = obj.to_mesh() if obj.type in SOLID else None
+    if mesh is None:
+        return None
+    try:
+        mesh.calc_loop_triangles()
+        points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+        mesh.vertices.foreach_get("co", points)
+        triangles, edges = _indices(mesh.loop_triangles, 3), _indices(mesh.edges, 2)
+        placement = Placement.from_matrix(instance.matrix_world)
+        return Surface.of_mesh(points.reshape(-1, 3), triangles, edges, placement)
+    finally:
+        obj.to_mesh_clear()
+
+
+def _indices(items: "bpy.types.bpy_prop_collection", corners: int) -> npt.NDArray[np.int32]:
+    """Vertices of all edges or triangles of a mesh; (n, corners)."""
+    numbers = np.empty(corners * len(items), dtype=np.int32)
+    items.foreach_get("vertices", numbers)
+    return numbers.reshape(-1, corners)

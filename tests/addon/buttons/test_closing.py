@@ -1,0 +1,46 @@
+"""Open splines are closed where nothing depends on their being open."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, contents, relax, stored  # noqa: E402
+from mended_curves import SHAPE, two  # noqa: E402
+
+CLOSE = bpy.ops.curve.mobius_flow_close
+
+
+def refused(why):
+    before = contents()
+    with pytest.raises(RuntimeError, match=why):
+        CLOSE()
+    assert contents() == before
+
+
+def test_open_splines_are_closed():
+    first, second = two(cyclic=False)
+    third = add_curve([SHAPE + 20], "C")
+    second.data.splines.new("NURBS").points.add(5)
+    before = [stored(obj.data) for obj in (first, second, third)]
+    assert CLOSE() == {"FINISHED"}
+    assert all(spline.use_cyclic_u for obj in (first, second) for spline in obj.data.splines)
+    for obj, points in zip((first, second, third), before, strict=True):
+        np.testing.assert_array_equal(stored(obj.data), points)
+
+
+def test_what_is_closed_or_baked_stays():
+    """Keys of an open spline are proved for an open one."""
+    add_curve([SHAPE])
+    refused("No selected curve has an open spline without keys")
+    add_curve([SHAPE + 9], cyclic=False)
+    relax(max_iterations=1)
+    refused("No selected curve has an open spline without keys")
+
+
+def test_not_during_a_run(operator):
+    add_curve([SHAPE], cyclic=False)
+    operator.start()
+    with pytest.raises(RuntimeError, match="is being relaxed; stop that first"):
+        CLOSE()
+    operator.run.cancel()

@@ -1,0 +1,188 @@
+"""Splines that are not cyclic are relaxed as open components, and stay open whatever becomes of them."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from baked_curves import KEYED, SHORT, again, clear, go_on, reopen  # noqa: E402
+from blender_scenes import add_curve, evaluated, place, relax, stored  # noqa: E402
+from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
+from mobius_flow.addon.live.checks import refusal  # noqa: E402
+from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize  # noqa: E402
+from mobius_flow.core.knots import overhand  # noqa: E402
+from shapes import regular_polygon  # noqa: E402
+
+ARC = overhand(60).vertices
+RING = regular_polygon(30).vertices + np.array([0.0, 0.0, 20.0])
+
+
+def add_arc(**options):
+    return add_curve([ARC], cyclic=False, **options)
+
+
+def add_both():
+    """A closed spline and an open one in one object."""
+    obj = add_curve([RING, ARC])
+    obj.data.splines[1].use_cyclic_u = False
+    return obj
+
+
+def cyclic(obj):
+    return [spline.use_cyclic_u for spline in obj.data.splines]
+
+
+def test_the_result_is_the_librarys():
+    obj = add_arc()
+    start = Curve(stored(obj.data).astype(np.float64), Mesh((60,), (False,)))
+    result = minimize(start, RelaxOptions(max_iterations=5).keyed).curve
+    relax(max_iterations=5)
+    np.testing.assert_array_equal(stored(obj.data), result.vertices.astype(np.float32))
+    assert cyclic(obj) == [False]
+
+
+@pytest.mark.parametrize("keyframes", KEYED)
+def test_the_keys_are_proved_and_shown(keyframes, capfd):
+    obj = add_both()
+    place(obj)
+    relax(max_iterations=4, keyframes=keyframes)
+    assert "proved free of contact with itself" in capfd.readouterr().out
+    keys = BakedKeys([obj])
+    assert (keys.mesh.closed, keys.unproved) == ((True, False), 0)
+    assert cyclic(obj) == [True, False]
+    np.testing.assert_array_equal(evaluated(obj, 1), keys.frames[0])
+
+
+def test_a_segment_is_a_curve():
+    """It is straight, and stays where it is."""
+    obj = add_curve([np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]])], cyclic=False)
+    relax(max_iterations=3, keyframes="RESULT")
+    points = stored(obj.data).astype(np.float64)
+    np.testing.assert_allclose(points[[0, -1]], [[0, 0, 0], [1, 2, 3]], atol=1e-6)
+
+
+@pytest.mark.parametrize("keyframes", KEYED)
+def test_it_is_given_back(keyframes):
+    obj = add_both()
+    before = stored(obj.data)
+    relax(**SHORT, keyframes=keyframes)
+    again(keyframes=keyframes)
+    go_on()
+    assert cyclic(obj) == [True, False]
+    clear()
+    np.testing.assert_array_equal(stored(obj.data), before)
+    assert cyclic(obj) == [True, False]
+
+
+def test_an_animation_goes_on_after_the_file_was_closed(tmp_path):
+    add_arc()
+    relax(**SHORT)
+    obj = reopen(tmp_path / "arc.blend")
+    end = obj.data.shape_keys.key_blocks[-1]
+    last = np.array([point.co for point in end.data])
+    go_on()
+    np.testing.assert_array_equal([point.co for point in obj.data.shape_keys.key_blocks[5].data], last)
+    assert BakedKeys([obj]).unproved == 0
+
+
+def test_new_points_have_values_in_between():
+    obj = add_arc()
+    obj.data.splines[0].points.foreach_set("radius", np.linspace(1, 2, 60))
+    relax(**SHORT)
+    radii = np.array([point.radius for point in obj.data.splines[0].points])
+    assert len(radii) > 60
+    assert (np.diff(radii) >= 0).all()
+    assert radii[[0, -1]] == pytest.approx([1, 2])
+
+
+def test_keys_are_not_about_a_spline_that_is_closed_later():
+    obj = add_arc()
+    relax(**SHORT)
+    obj.data.splines[0].use_cyclic_u = True
+    bpy.context.view_layer.update()
+    assert "has other keys or points than it was baked with" in refusal(bpy.context).sentence
+
+
+@pytest.mark.parametrize(("kind", "ends"), [("BEZIER", True), ("NURBS", False), ("NURBS", True)])
+def test_smooth_splines_are_drawn_open(kind, ends):
+    obj = add_arc(kind=kind)
+    obj.data.splines[0].use_endpoint_u = ends
+    relax(**SHORT, sample_splines=True)
+    assert obj.data.splines[0].type == "POLY"
+    assert cyclic(obj) == [False]
+    clear()
+    assert obj.data.splines[0].type == kind
+    assert cyclic(obj) == [False]
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+def test_a_smooth_open_spline_becomes_a_polygon_from_end_to_end(kind):
+    obj = add_arc(kind=kind)
+    obj.data.splines[0].use_endpoint_u = True
+    assert bpy.ops.curve.mobius_flow_to_poly() == {"FINISHED"}
+    np.testing.assert_allclose(stored(obj.data)[[0, -1]], ARC[[0, -1]], atol=1e-6)
+    assert cyclic(obj) == [False]
+
+
+def test_a_tube_is_fitted_with_its_ends_closed():
+    obj = add_arc()
+    assert bpy.ops.curve.mobius_flow_fit_tube() == {"FINISHED"}
+    assert obj.data.use_fill_caps
+    relax(**SHORT | {"fit_bevel": True})
+    assert len({round(key.data[0].radius, 6) for key in obj.data.shape_keys.key_blocks}) > 1
+    clear()
+    assert obj.data.use_fill_caps, "as it was before it was relaxed"
+
+
+@pytest.mark.parametrize("filled", [True, False])
+def test_the_mesh_of_its_tube_ends_as_the_bevel_does(filled):
+    obj = add_both()
+    obj.data.bevel_depth, obj.data.use_fill_caps = 0.05, filled
+    obj.data.materials.append(bpy.data.materials.new("Ring"))
+    obj.data.materials.append(bpy.data.materials.new("Arc"))
+    obj.data.splines[1].material_index = 1
+    relax(**SHORT)
+    sizes = [len(spline.points) for spline in obj.data.splines]
+    assert bpy.ops.curve.mobius_flow_tube_mesh(sides=8, color="strand_distance") == {"FINISHED"}
+    assert bpy.ops.object.select_all(action="DESELECT") == {"FINISHED"}
+    obj.hide_set(False)
+    obj.select_set(True)
+    assert bpy.ops.curve.mobius_flow_tube_mesh(sides=8) == {"FINISHED"}
+    mesh = bpy.context.object.data
+    assert not mesh.validate()
+    assert len(mesh.vertices) == 8 * sum(sizes)
+    slots = [polygon.material_index for polygon in mesh.polygons]
+    assert slots == [0] * 8 * sizes[0] + [1] * (8 * (sizes[1] - 1) + 2 * filled)
+    assert [len(polygon.vertices) for polygon in mesh.polygons][-1] == (8 if filled else 4)
+    assert len(mesh.shape_keys.key_blocks) > 1
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+def test_its_smooth_curve_runs_from_end_to_end(kind, capfd):
+    add_both()
+    obj = relax(**SHORT)
+    end = obj.data.shape_keys.key_blocks[-1].data[-1].co.copy()
+    assert bpy.ops.curve.mobius_flow_smooth_curve(kind=kind) == {"FINISHED"}
+    assert "the same knot, proved" in capfd.readouterr().out
+    made = bpy.context.object
+    assert cyclic(made) == [True, False]
+    np.testing.assert_allclose(evaluated(made)[-1], end, atol=1e-5)
+
+
+def test_a_link_of_several_objects():
+    add_arc(name="A")
+    ring = add_curve([RING], name="B")
+    place(ring)
+    relax(**SHORT)
+    assert BakedKeys(bpy.context.selected_objects).unproved == 0
+    assert cyclic(bpy.data.objects["A"]) == [False]
+
+
+def test_the_worker_knows_ends(operator):
+    obj = add_arc()
+    operator.start()
+    operator.until(lambda: operator.run.last is not None)
+    assert operator.run.last.curve.mesh.closed == (False,)
+    assert operator.run.target.label == "straight = 0"
+    operator.run.cancel()
+    np.testing.assert_array_equal(stored(obj.data), ARC.astype(np.float32))

@@ -1,0 +1,249 @@
+"""Pinned points stay exactly where they are, whatever becomes of their curve."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from baked_curves import KEYED, SHORT, again, clear, go_on, reopen  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, contents, place, relax, stored  # noqa: E402
+from mobius_flow import Relaxation  # noqa: E402
+from mobius_flow.addon.curves import pins  # noqa: E402
+from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
+from mobius_flow.core import MobiusFlowError  # noqa: E402
+from mobius_flow.core.knots import overhand  # noqa: E402
+
+ARC = overhand(60).vertices.astype(np.float32)
+PIN, ENDS, UNPIN = bpy.ops.curve.mobius_flow_pin, bpy.ops.curve.mobius_flow_pin_ends, bpy.ops.curve.mobius_flow_unpin
+
+
+def add_arc(**options):
+    return add_curve([ARC], cyclic=False, **options)
+
+
+def select(obj, *indices):
+    """Go to Edit Mode and select points of the first spline."""
+    if obj.mode != "EDIT":
+        bpy.ops.object.mode_set(mode="EDIT")
+    for k, point in enumerate(obj.data.splines[0].points):
+        point.select = k in indices
+
+
+def pin(obj, *indices):
+    select(obj, *indices)
+    assert PIN() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def held(obj):
+    return np.flatnonzero(pins.marked(obj.data.splines[0])).tolist()
+
+
+def still(obj, points, atol=0.0):
+    """See that points are at every key where they should be, in the very numbers."""
+    frames = np.stack(BakedKeys([obj]).frames)
+    for point in points:
+        distance = np.linalg.norm(frames - point, axis=2)
+        (index,) = np.flatnonzero((distance <= atol).all(axis=0))
+        assert len(np.unique(frames[:, index], axis=0)) == 1
+    assert not np.array_equal(frames[0], frames[-1])
+
+
+def test_selected_points_are_pinned_and_let_go(capfd):
+    obj = add_arc()
+    pin(obj, 0, 7)
+    assert held(obj) == [0, 7]
+    assert "Points that are pinned: 2" in capfd.readouterr().out
+    select(obj, 7, 8)
+    assert UNPIN() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert held(obj) == [0]
+    np.testing.assert_array_equal(pins.places(obj.data), ARC[:1])
+    assert UNPIN() == {"FINISHED"}
+    assert held(obj) == []
+
+
+@pytest.mark.parametrize("keyframes", KEYED)
+@pytest.mark.parametrize("placed", [False, True])
+def test_they_do_not_move_at_all(keyframes, placed):
+    obj = add_arc()
+    if placed:
+        place(obj)
+    pin(obj, 0, 30, 59)
+    relax(max_iterations=8, keyframes=keyframes)
+    still(obj, ARC[[0, 30, 59]])
+    assert BakedKeys([obj]).unproved == 0
+
+
+def test_points_far_from_the_objects_origin_in_the_world_do_not_either():
+    """Mapped into the world and back they are rounded."""
+    obj = add_arc()
+    obj.location, obj.rotation_euler, obj.scale = (3e3, -2e3, 1e3), (0.3, 0.2, 0.1), (0.1, 0.1, 0.1)
+    pin(obj, 0, 30, 59)
+    relax(max_iterations=5)
+    still(obj, ARC[[0, 30, 59]], atol=1e-4)
+
+
+def test_ends_are_pinned_and_the_knot_stays_on():
+    obj = add_arc()
+    assert ENDS() == {"FINISHED"}
+    assert held(obj) == [0, 59]
+    relax(max_iterations=8)
+    still(obj, ARC[[0, 59]])
+
+
+def test_tangents():
+    obj = add_arc()
+    ENDS()
+    relax(max_iterations=8, pin_tangents=True)
+    frames = np.stack(BakedKeys([obj]).frames)
+    for edge in (frames[:, 1] - frames[:, 0], frames[:, -1] - frames[:, -2]):
+        np.testing.assert_array_equal(edge, np.broadcast_to(edge[0], edge.shape))
+    assert bpy.context.scene.mobius_flow.pin_tangents is False
+
+
+def test_they_are_kept_with_refinement_and_given_back():
+    obj = add_arc()
+    pin(obj, 0, 20)
+    relax(**SHORT)
+    assert len(held(obj)) == 2
+    np.testing.assert_array_equal(pins.places(obj.data), ARC[[0, 20]])
+    again()
+    still(obj, ARC[[0, 20]])
+    go_on(max_iterations=3)
+    still(obj, ARC[[0, 20]])
+    clear()
+    assert held(obj) == [0, 20]
+
+
+def test_between_two_pinned_points_nothing_moves():
+    """What is refined there lies on a straight edge that neither end leaves."""
+    obj = add_arc()
+    pin(obj, 0, 20, 21)
+    relax(**SHORT, vertices=250)
+    inside = np.array(held(obj))[1:]
+    assert len(inside) > 2
+    assert (np.diff(inside) == 1).all()
+    still(obj, ARC[[0, 20, 21]])
+    go_on(max_iterations=3)
+    still(obj, ARC[[0, 20, 21]])
+
+
+def test_files_and_copies_keep_them(tmp_path):
+    obj = add_arc()
+    pin(obj, 3, 59)
+    copy = obj.copy()
+    copy.data = obj.data.copy()
+    assert held(copy) == [3, 59]
+    assert held(reopen(tmp_path / "pinned.blend")) == [3, 59]
+
+
+def test_points_that_are_moved_added_or_removed_take_their_pins_along():
+    obj = add_arc()
+    pin(obj, 10, 59)
+    select(obj, 4)
+    bpy.ops.curve.delete(type="VERT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    np.testing.assert_array_equal(pins.places(obj.data), ARC[[10, 59]])
+
+
+def test_keys_stay_ours_in_edit_mode():
+    obj = add_arc()
+    relax(**SHORT)
+    pin(obj, 0)
+    go_on(max_iterations=2)
+    assert held(obj) == [0]
+
+
+def test_a_link_counts_on(capfd):
+    """The closed spline of another object comes first."""
+    ring = add_trefoil()
+    ring.location.z = 20
+    arc = add_arc(name="Arc")
+    pin(arc, 5)
+    bpy.context.view_layer.update()
+    relax(**SHORT)
+    still_there = BakedKeys([ring, arc])
+    start = int(still_there.mesh.offsets[1])
+    frames = np.stack(still_there.frames)
+    index = start + held(arc)[0]
+    np.testing.assert_array_equal(frames[:, index], np.broadcast_to(ARC[5], (len(frames), 3)))
+
+
+@pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
+def test_ends_of_smooth_splines_may_be_pinned(kind):
+    obj = add_arc(kind=kind)
+    ENDS()
+    relax(**SHORT, sample_splines=True)
+    count = len(obj.data.splines[0].points)
+    assert held(obj) == [0, count - 1]
+    frames = np.stack(BakedKeys([obj]).frames)[:, [0, -1]]
+    np.testing.assert_array_equal(frames, np.broadcast_to(frames[0], frames.shape))
+
+
+def test_other_points_of_smooth_splines_may_not():
+    obj = add_arc(kind="NURBS")
+    select(obj, 0, 7)
+    with pytest.raises(RuntimeError, match="is a NURBS spline, of which only the ends can be pinned"):
+        PIN()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert held(obj) == []
+    pins.pin(obj.data.splines[0], np.arange(60) == 7)
+    with pytest.raises(RuntimeError, match="of which only the ends can be pinned"):
+        relax(sample_splines=True)
+
+
+def test_refusals_say_what_to_do():
+    with pytest.raises(RuntimeError, match="Go to Edit Mode and select the points to pin"):
+        PIN()
+    for button in (ENDS, UNPIN):
+        with pytest.raises(RuntimeError, match="Select a curve object first"):
+            button()
+    obj = add_trefoil()
+    with pytest.raises(RuntimeError, match="All splines are closed"):
+        ENDS()
+    with pytest.raises(RuntimeError, match="No points of the selected curves are pinned"):
+        UNPIN()
+    select(obj)
+    with pytest.raises(RuntimeError, match="No points are selected"):
+        PIN()
+
+
+def test_no_size_but_the_length_can_be_kept():
+    obj = add_arc()
+    ENDS()
+    before = contents()
+    with pytest.raises(RuntimeError, match="where something is pinned or avoided; set Keep to Length"):
+        relax(keep_size="BOX")
+    assert contents() == before
+    relax(**SHORT)
+    with pytest.raises(RuntimeError, match="Scaling would move pinned points; unpin them first"):
+        bpy.ops.curve.mobius_flow_keep_size()
+    still(obj, ARC[[0, 59]])
+
+
+def test_balance_would_move_them():
+    add_arc()
+    ENDS()
+    relax(**SHORT)
+    with pytest.raises(RuntimeError, match="balance would move pins"):
+        bpy.ops.curve.mobius_flow_balance()
+
+
+def test_scripts_may_name_them():
+    obj = add_arc()
+    Relaxation(obj).relax(pins=(0, 59), **SHORT)
+    still(obj, ARC[[0, 59]])
+    with pytest.raises(MobiusFlowError, match="pins asks for"):
+        Relaxation(obj).relax(pins=(60,), **SHORT)
+
+
+def test_the_worker_holds_them_too(operator):
+    obj = add_arc()
+    pin(obj, 0, 59)
+    operator.start()
+    operator.reach(3)
+    assert operator.run.last.pins == (0, len(operator.run.last.curve) - 1)
+    np.testing.assert_array_equal(stored(obj.data)[[0, -1]], ARC[[0, -1]])
+    operator.run.cancel()
+    assert held(obj) == [0, 59]
