@@ -135,7 +135,7 @@ def test_an_empty_name_avoids_nothing(capfd):
     assert "proved free of contact with itself\n" in capfd.readouterr().out
 
 
-@pytest.mark.parametrize("further", ["bake_again", "continue", "leave_saddle"])
+@pytest.mark.parametrize("further", ["bake_again", "continue"])
 def test_what_goes_on_avoids_it_too(capfd, further):
     tube, moving = torus(), add_curve([ring()], "Ring")
     avoid(tube)
