@@ -134,8 +134,9 @@ class RelaxOptions:
     edge_lengths: str | tuple[float, ...] = _advanced(
         "auto",
         "Edge Lengths",
-        "target lengths, equal within each component or kept as in the refined start; auto keeps them only where they, "
-        "or the gaps between edges, differ by more than 10:1, and evening them out would crumple the curve",
+        "target lengths, equal within each component or kept as in the refined start; auto keeps them only among "
+        "obstacles, and where they, or the gaps between edges, differ by more than 10:1: evening them out would press "
+        "the curve against walls, or crumple it",
         choices=EDGE_LENGTHS,
         objects=("as many numbers above 0 as there are edges", _are_lengths),
         metavar="L",

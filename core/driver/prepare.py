@@ -176,7 +176,7 @@ def _target_lengths(start: Curve, options: RelaxOptions, scale: float, pins: Int
     if options.mesh == "adaptive":
         return normalised(start, graded_spacing(start, Resolution(options.vertices)), pins)
     uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
-    if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and uneven):
+    if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and (uneven or options.avoid)):
         return start.edge_lengths
     return equal_lengths(start.mesh, start.edge_lengths, pins)
 

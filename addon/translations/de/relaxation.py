@@ -124,10 +124,12 @@ _OPTIONS = {
     "Tangent-point energy with exponents 3 and 6, at the edges' end points": (
         "Tangentenpunkt-Energie mit Exponenten 3 und 6, an den Endpunkten der Kanten"
     ),
-    "Target lengths, equal within each component or kept as in the refined start; auto keeps them only where they, "
-    "or the gaps between edges, differ by more than 10:1, and evening them out would crumple the curve": (
-        "Ziellängen, gleich in jeder Komponente oder wie im verfeinerten Anfang; automatisch behält sie nur, wo sie "
-        "oder die Abstände zwischen Kanten um mehr als 10:1 verschieden sind und Angleichen die Kurve zerknittern würde"
+    "Target lengths, equal within each component or kept as in the refined start; auto keeps them only among "
+    "obstacles, and where they, or the gaps between edges, differ by more than 10:1: evening them out would press "
+    "the curve against walls, or crumple it": (
+        "Ziellängen, gleich in jeder Komponente oder wie im verfeinerten Anfang; automatisch behält sie nur zwischen "
+        "Hindernissen und wo sie oder die Abstände zwischen Kanten um mehr als 10:1 verschieden sind: Angleichen würde "
+        "die Kurve an Wände drücken oder zerknittern"
     ),
     "Tell whether a converged curve is a minimum, and go on downhill from a saddle": (
         "Sagen, ob eine konvergierte Kurve ein Minimum ist, und von einem Sattel weiter bergab gehen"
@@ -144,8 +146,8 @@ _OPTIONS = {
         "Gewicht von Längenfehlern in den Strafmethoden; 0: das der Methode"
     ),
     "What is minimised, with a barrier between strands": "Was minimiert wird, mit einer Barriere zwischen Strängen",
-    "Which random motions hops begin with: equal numbers, equal motions": (
-        "Mit welchen zufälligen Bewegungen Sprünge beginnen: gleiche Zahlen, gleiche Bewegungen"
+    "Of random motions, of hops and of scrambled starts: equal numbers, equal motions": (
+        "Der zufälligen Bewegungen, von Sprüngen und durchmischten Anfängen: gleiche Zahlen, gleiche Bewegungen"
     ),
     "the method's own": "die der Methode",
 }

@@ -90,12 +90,12 @@ class Repulsion:
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²R as a sparse matrix, which couples the ends of edges only, in the order of ``vertices.ravel()``."""
-        n = len(curve)
-        rest, unit = np.zeros((3, n)), np.eye(3)[:, :, None] * np.ones(n)
+        n, edges = len(curve), curve.mesh.edges
+        rest, unit = np.zeros((3, edges)), np.eye(3)[:, :, None] * np.ones(edges)
         tails_move, heads_move = [Edges(e, -e) for e in unit], [Edges(rest, e) for e in unit]
         changes = np.array(self._force_changes(curve, [*tails_move, *heads_move]))
         ends = np.stack([curve.mesh.tails, curve.mesh.heads])
-        index = (3 * ends[:, None] + np.arange(3)[:, None]).reshape(6, n)
+        index = (3 * ends[:, None] + np.arange(3)[:, None]).reshape(6, edges)
         rows, columns = np.broadcast_arrays(index[None], index[:, None])
         return sp.csr_array((self.weight * changes.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, 3 * n))
 

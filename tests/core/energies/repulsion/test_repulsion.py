@@ -195,6 +195,16 @@ def test_thin_triangles_give_numbers() -> None:
     assert np.isfinite(derivative).all()
 
 
+def test_second_derivatives_of_arcs() -> None:
+    """Which have fewer edges than vertices."""
+    curve = Curve.from_components([wavy(20).vertices, wavy(30).vertices + 5.0], [False, True])
+    for obstacle in (BALL, FRAME):
+        term, v = repulsion(obstacle), np.random.default_rng(5).normal(size=curve.vertices.shape)
+        product = term.hessian_product(curve, v)
+        np.testing.assert_allclose(term.sparse_hessian(curve) @ v.ravel(), product.ravel(), atol=1e-10)
+        assert hessian_slope(term.frozen_at(curve), curve, v, largest=1e-3) == pytest.approx(3.0, abs=0.1)
+
+
 def test_stiffness_is_the_second_derivative_away_from_a_plane_or_a_line() -> None:
     """Φ'' = 4π/h³ of both, integrated along an edge at the distance h, beside which others count little."""
     far, h = 1e4, 0.01
