@@ -146,11 +146,13 @@ def test_what_goes_on_avoids_it_too(capfd, further):
     assert free(moving, Surroundings.of([tube], []).obstacles)
 
 
-def test_balance_does_not_go_with_what_is_avoided():
-    avoid(torus())
+def test_images_of_equal_energy_are_not_taken():
     add_curve([ring()], "Ring")
+    avoid(torus())
+    said = "Balance does not go with what is avoided; leave it out, or avoid nothing"
+    assert refused(balance=True) == said
     relax(**SHORT)
-    with pytest.raises(RuntimeError, match="balance takes Möbius images"):
+    with pytest.raises(RuntimeError, match=said):
         bpy.ops.curve.mobius_flow_balance()
 
 
