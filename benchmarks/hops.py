@@ -1,14 +1,17 @@
 """What hops lead to from local minima, and from where curves are stuck: the table in docs/energies.md.
 
-    python benchmarks/hops.py                    every case, 5 hops each
+    python benchmarks/hops.py                    every case, 6 hops each
     python benchmarks/hops.py T35 --hops 2       one of them
 
-A row tells where a run ends without hops and with how many vertices; unless it is stuck, the index there (0: a minimum)
+Processor time is limited, for each run by itself; one that is cut short ends with its lowest curve.
+
+A row tells where a run ends without hops and with how many vertices; if it is at rest, the index there (0: a minimum)
 and what is left of its energy on a mesh with every edge halved; then where it ends with hops, whether the verifier
 accepts the whole way, and the processor time of both runs.
 """
 
 import argparse
+import signal
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -17,10 +20,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from mobius_flow.core import Curve, RelaxOptions, Result, Trajectory, minimize
+from mobius_flow.core import Curve, RelaxOptions, Result, Status, Trajectory, minimize
 from mobius_flow.core.curve.refine import subdivide
-from mobius_flow.core.knots import lattice_closure, scramble, smooth_knot, torus_knot, unknot_word
+from mobius_flow.core.knots import knot, lattice_closure, scramble, smooth_knot, torus_knot, unknot_word
 from mobius_flow.core.verify import verify
+
+
+def lattice_unknot(crossings: int, seed: int) -> Curve:
+    """A coarse polygon on the cubic lattice."""
+    return lattice_closure(unknot_word(crossings, seed))
+
 
 ESCAPING = RelaxOptions(escape_saddles=True)
 CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
@@ -28,9 +37,21 @@ CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "T35": (partial(torus_knot, 3, 5), ESCAPING),
     "T45": (partial(torus_knot, 4, 5), RelaxOptions()),
     "4_1-scrambled": (lambda: scramble(smooth_knot("4_1", 120), seed=1), RelaxOptions()),
-    "unknot-60-3": (lambda: lattice_closure(unknot_word(60, seed=3)), RelaxOptions()),
+    "unknot-60-3": (partial(lattice_unknot, 60, 3), RelaxOptions()),
+    "unknot-60-4": (partial(lattice_unknot, 60, 4), RelaxOptions()),
+    "haken": (partial(knot, "haken"), RelaxOptions()),
 }
-MOST_VERTICES = 500  # of a curve whose index is looked at: dense matrices
+MOST_VERTICES = 1000  # of a curve whose index is looked at: dense matrices
+
+
+def limited(minutes: float, curve: Curve, options: RelaxOptions, trajectory: Trajectory) -> Result:
+    """The end of a run, or the lowest curve after so much processor time, even if that is in the middle of a hop."""
+    signal.signal(signal.SIGPROF, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_PROF, 60.0 * minutes)
+    try:
+        return minimize(curve, options, trajectory.add)
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
 
 
 def at_rest(curve: Curve, **changes: object) -> Result:
@@ -51,26 +72,32 @@ def halved(curve: Curve) -> str:
     return f"{at_rest(subdivide(curve, np.full(len(curve), 2))).final_energy:.2f}"
 
 
-def hopped(curve: Curve, options: RelaxOptions) -> tuple[Result, bool]:
+def rest(result: Result) -> str:
+    """Index and energy of the refined curve, where a run has come to rest; else that it is stuck, or was cut short."""
+    if result.status is Status.CONVERGED:
+        return f"{index(result.curve)} | {halved(result.curve)}"
+    return f"{'stuck' if result.status is Status.STALLED else 'cut short'} | –"
+
+
+def hopped(minutes: float, curve: Curve, options: RelaxOptions) -> tuple[Result, bool]:
     """The end of a run with hops, and whether the verifier accepts all of its trajectory."""
     trajectory = Trajectory()
-    result = minimize(curve, options, trajectory.add)
+    result = limited(minutes, curve, options, trajectory)
     with TemporaryDirectory() as directory:
         path = Path(directory) / "T.npz"
         trajectory.save(path)
         return result, result.certified and verify(path).accepted
 
 
-def row(name: str, hops: int) -> str:
+def row(name: str, hops: int, minutes: float) -> str:
     """What becomes of one case."""
     make, options = CASES[name]
     began = time.process_time()
-    plain = minimize(make(), options)
-    result, verified = hopped(make(), replace(options, hops=hops))
+    plain = limited(minutes, make(), options, Trajectory())
+    result, verified = hopped(minutes, make(), replace(options, hops=hops))
     seconds = time.process_time() - began
-    rests = (index(plain.curve), halved(plain.curve)) if plain.outcome.converged else ("stuck", "–")
     return (
-        f"| {name} | {len(plain.curve)} | {plain.final_energy:.2f} | {' | '.join(rests)} | {result.final_energy:.2f} | "
+        f"| {name} | {len(plain.curve)} | {plain.final_energy:.2f} | {rest(plain)} | {result.final_energy:.2f} | "
         f"{'yes' if verified else 'NO'} | {seconds:.0f} s |"
     )
 
@@ -79,12 +106,13 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", help=f"cases: {', '.join(CASES)}")
-    parser.add_argument("--hops", type=int, default=5, metavar="K", help="hops tried (default: 5)")
+    parser.add_argument("--hops", type=int, default=6, metavar="K", help="hops tried (default: 6)")
+    parser.add_argument("--minutes", type=float, default=10.0, help="processor time of a run, at most (default: 10)")
     arguments = parser.parse_args()
     print("| case | vertices | energy | index | edges halved | with hops | verified | time |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for name in arguments.names or CASES:
-        print(row(name, arguments.hops), flush=True)
+        print(row(name, arguments.hops, arguments.minutes), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,20 +1,27 @@
-"""Thousands of short flows on random curves: type changes, NaNs and uncaught exceptions must all be 0.
+"""Thousands of short flows on random curves: type changes, contacts, NaNs and uncaught exceptions must all be 0.
 
 OPENBLAS_NUM_THREADS=1 python benchmarks/soak.py --flows 2000 --seed 1
+OPENBLAS_NUM_THREADS=1 python benchmarks/soak.py --flows 500 --world    arcs, pins and obstacles; all of it verified
 """
 
 import argparse
 import sys
+import tempfile
 import time
 import traceback
 from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
-from mobius_flow.core import METHODS, Curve, MobiusFlowError, RelaxOptions, relax
+from mobius_flow.core import METHODS, Curve, Iterate, MobiusFlowError, Obstacle, RelaxOptions, Trajectory, relax
+from mobius_flow.core.collision.clearance import clears
 from mobius_flow.core.driver.options import EDGE_LENGTHS, MESHES
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import KNOTS, braid_closure, hard_unknot, knot, scramble
 from mobius_flow.core.knots.alexander import signature
+from mobius_flow.core.verify import verify
 
 # slow ones and those that change the mesh come up less often
 COMMON = ("lbfgs", "cg", "flow-moebius", "flow-h1", "flow-l2", "flow-h2", "penalty-lbfgs", "penalty-nesterov")
@@ -60,16 +67,61 @@ def random_options(rng: np.random.Generator, given: int) -> RelaxOptions:
     )
 
 
-def flow(rng: np.random.Generator) -> str:
-    """Run one flow and say how it went: "ok", "refused", "type", "nan" or "exception"."""
+def random_obstacles(rng: np.random.Generator, curve: Curve) -> list[Obstacle]:
+    """Triangles and segments among the strands, those of them that are clear of these, and perhaps a box around."""
+    middle, half = 0.5 * (curve.vertices.max(axis=0) + curve.vertices.min(axis=0)), 0.5 * np.ptp(curve.vertices)
+    found = []
+    for _ in range(rng.integers(0, 6)):
+        corners = int(rng.integers(2, 4))
+        simplex = rng.uniform(-1.0, 1.0, 3) + 10.0 ** rng.uniform(-2.0, 1.0) * rng.normal(size=(corners, 3))
+        found.append(Obstacle(middle + half * simplex, [list(range(corners))], "simplex"))
+    if rng.random() < 0.5:
+        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+        faces = [triangle for a, b, c, d in quads for triangle in ((a, b, c), (a, c, d))]
+        found.append(Obstacle(middle + half * (1.0 + 10.0 ** rng.uniform(-6.0, 0.0)) * signs, faces, "box"))
+    return [each for each in found if clears(curve, [each], 1e-9 * half)]
+
+
+def in_the_world(rng: np.random.Generator, curve: Curve, options: RelaxOptions) -> tuple[Curve, RelaxOptions]:
+    """Some components opened, some vertices pinned, and obstacles."""
+    closed = rng.random(len(curve.components)) < 0.5
+    curve = Curve.from_components(curve.components, closed.tolist())
+    pins = rng.choice(len(curve), size=int(rng.integers(0, 5)), replace=False)
+    tangents = bool(rng.random() < 0.3)
+    avoid = random_obstacles(rng, curve)
+    return curve, replace(options, pins=tuple(pins.tolist()), pin_tangents=tangents, avoid=avoid)
+
+
+def is_accepted(iterates: Sequence[Iterate], options: RelaxOptions) -> bool:
+    """Whether the independent check accepts the way, and every pin has kept its place."""
+    trajectory = Trajectory(obstacles=options.avoid)
+    for iterate in iterates:
+        trajectory.add(iterate)
+    with tempfile.TemporaryDirectory() as room:
+        trajectory.save(Path(room) / "path.npz")
+        accepted = verify(Path(room) / "path.npz").accepted
+    first, last = (set(map(tuple, i.curve.vertices[list(i.pins)].tolist())) for i in (iterates[0], iterates[-1]))
+    return accepted and first <= last
+
+
+def flow(rng: np.random.Generator, world: bool = False) -> str:
+    """Run one flow and say how it went: "ok", "refused", "type", "contact", "nan" or "exception"."""
     try:
         curve = random_curve(rng)
-        iterates = list(relax(curve, random_options(rng, len(curve))))
+        options = random_options(rng, len(curve))
+        if world:
+            curve, options = in_the_world(rng, curve, options)
+        iterates = list(relax(curve, options))
     except MobiusFlowError:
         return "refused"
     numbers = [value for i in iterates for value in (i.energy, i.gradient_norm, *i.curve.vertices[0])]
     if not np.isfinite(numbers).all():
         return "nan"
+    if world and not is_accepted(iterates, options):
+        return "contact"
+    if not curve.mesh.all_closed:
+        return "ok"
     return "ok" if signature(curve) == signature(iterates[-1].curve) else "type"
 
 
@@ -78,13 +130,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--flows", type=int, default=2000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--world", action="store_true", help="with open components, pins and obstacles")
     arguments = parser.parse_args()
     counts: Counter[str] = Counter()
     started = time.perf_counter()
     for k in range(arguments.flows):
         seed = [arguments.seed, k]
         try:
-            outcome = flow(np.random.default_rng(seed))
+            outcome = flow(np.random.default_rng(seed), arguments.world)
         except Exception:
             traceback.print_exc()
             outcome = "exception"
@@ -95,10 +148,11 @@ def main() -> int:
             print(f"{k + 1} flows: {dict(counts)}", flush=True)
     seconds = time.perf_counter() - started
     print(
-        f"{arguments.flows} flows in {seconds:.0f} s: {counts['type']} type changes, {counts['nan']} NaNs, "
+        f"{arguments.flows} flows in {seconds:.0f} s: {counts['type']} type changes, "
+        f"{counts['contact']} contacts, {counts['nan']} NaNs, "
         f"{counts['exception']} exceptions; {counts['ok']} relaxed, {counts['refused']} refused with a sentence"
     )
-    return int(counts["type"] + counts["nan"] + counts["exception"] > 0)
+    return int(sum(counts[bad] for bad in ("type", "contact", "nan", "exception")) > 0)
 
 
 if __name__ == "__main__":

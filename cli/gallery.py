@@ -76,7 +76,7 @@ def _results(directory: Path) -> list[Shown]:
         with (directory / CSV).open(encoding="utf-8", newline="") as stream:
             rows = [row for row in csv.DictReader(stream) if row["status"] != FAILED]
         found = [_shown(directory, row) for row in rows]
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError, KeyError, TypeError, csv.Error) as error:  # TypeError: of short rows
         raise MobiusFlowError(f"{directory}: holds no results of mobius-flow batch") from error
     if not found:
         raise MobiusFlowError(f"{directory}: none of the runs has a result")

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .curve import Curve
+from .curve.pins import Pins
 from .curve.refine import subdivide
 from .driver import RelaxOptions, minimize
 
@@ -74,12 +75,13 @@ def extrapolated(curve: Curve, options: RelaxOptions) -> Extrapolation | None:
     curve
         A converged curve, in the user's units.
     options
-        How it was relaxed; tolerances above `TOLERANCE` are taken for that.
+        How it was relaxed, its pins those of this curve; tolerances above `TOLERANCE` are taken for that.
     """
+    pinned = curve.vertices[list(options.pins)]
     energies: list[float] = []
     for pieces in (1, 2, 2):
-        start = subdivide(curve, np.full(len(curve), pieces))
-        result = minimize(start, _on_mesh_of(start, options))
+        start = subdivide(curve, np.full(curve.mesh.edges, pieces))
+        result = minimize(start, _on_mesh_of(start, options, Pins.at(start, pinned)))
         if not result.outcome.converged:
             return None
         curve = result.curve
@@ -88,8 +90,8 @@ def extrapolated(curve: Curve, options: RelaxOptions) -> Extrapolation | None:
     return Extrapolation((coarse, middle, fine))
 
 
-def _on_mesh_of(curve: Curve, options: RelaxOptions) -> RelaxOptions:
-    """The same method on a mesh that stays as it is."""
+def _on_mesh_of(curve: Curve, options: RelaxOptions, pins: Pins) -> RelaxOptions:
+    """The same method on a mesh that stays as it is, without what leaves a minimum that was found."""
     return replace(
         options,
         tolerance=min(options.tolerance, TOLERANCE),
@@ -99,4 +101,7 @@ def _on_mesh_of(curve: Curve, options: RelaxOptions) -> RelaxOptions:
         stability=False,
         escape_saddles=False,
         balance=False,
+        hops=0,
+        pins=tuple(pins.vertices.tolist()),
+        pin_tangents=False,
     )

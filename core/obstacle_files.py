@@ -52,7 +52,7 @@ def _from_obj(source: Source) -> Obstacle:
     try:
         return Obstacle(content.points, simplices, source.path.name)
     except CurveError as error:
-        raise source.error(str(error)) from error
+        raise source.error(str(error).removeprefix(f"{source.path.name}: ")) from error
 
 
 def _triangles(source: Source, content: Content, face: Face) -> list[Triangle]:

@@ -73,6 +73,8 @@ def test_the_guides_example_for_scripts_runs(tmp_path):
         "scene = bpy.context.scene\n"
         "scene.render.engine, scene.cycles.samples, scene.cycles.use_denoising = 'CYCLES', 1, False\n"
         "scene.render.resolution_x, scene.render.resolution_y, scene.frame_end = 64, 36, 2\n"
+        "bpy.ops.mesh.primitive_cube_add(location=(0, 0, -9))\n"
+        "bpy.context.object.name = 'Table'\n"
         "bpy.ops.curve.mobius_flow_add_knot()\n"
         "bpy.context.object.name = 'Knot'\n"
     )

@@ -5,12 +5,13 @@ A curve that has one of them, wherever undo or *Clear* have brought it back from
 one that has been given another depth since is the artist's.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Curve
-from ..engine.tube import free_radius, thickest_radius
+from ...core import Curve, Obstacle
+from ..engine.tube import free_radius, radius_beside, thickest_radius
 
 if TYPE_CHECKING:
     import bpy
@@ -30,9 +31,9 @@ def is_fitted(data: "bpy.types.Curve") -> bool:
     return data.bevel_depth in list(data.get(_FITTED, ()))
 
 
-def fitting_radius(curve: Curve) -> float:
+def fitting_radius(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> float:
     """The largest radius that is free of contact, but no more than looks like a curve."""
-    return free_radius(curve, thickest_radius(curve))
+    return radius_beside(curve, free_radius(curve, thickest_radius(curve)), obstacles)
 
 
 def fit(data: "bpy.types.Curve", radius: float) -> None:

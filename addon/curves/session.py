@@ -16,6 +16,7 @@ from ...core import (
     CurveError,
     Iterate,
     MobiusFlowError,
+    Obstacle,
     OptionError,
     Outcome,
     RelaxOptions,
@@ -218,7 +219,12 @@ class Session:
             raise self.told(error) from error
         assert run.outcome is not None, "the loop is through"
         self.end(run.outcome)
-        return self.prepare(partial(is_free, obstacles=in_common_space(self.options.avoid, self.group.link)))
+        return self.prepare(partial(is_free, obstacles=self._avoided))
+
+    @property
+    def _avoided(self) -> tuple[Obstacle, ...]:
+        """What is avoided, in the common space."""
+        return in_common_space(self.options.avoid, self.group.link)
 
     def lost(self) -> Phrase | None:
         """Say what somebody did to one of the objects, or to what they avoid, that makes going on impossible."""
@@ -264,7 +270,8 @@ class Session:
         shape_keys = self._key_options.output is Output.SHAPE_KEYS or self.group.continues
         shown = keys.keys if shape_keys else keys.keys[-1:]
         mesh, common = self._mesh, self.group.link.to_common
-        return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh)) for key in shown])
+        beside = self._avoided
+        return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh), beside) for key in shown])
 
     def take_up(self) -> None:
         """Go on after `Group.restore` with curves that are still what they were when the session began.

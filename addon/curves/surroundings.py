@@ -41,7 +41,7 @@ def add(scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "bpy
     if settings.avoid is None:
         settings.avoid = bpy.data.collections.new("Avoid")
         scene.collection.children.link(settings.avoid)
-    if not settings.avoid.is_editable:
+    if settings.avoid.library or settings.avoid.override_library:
         sentence = "'{name}' is linked from another file; choose another collection to avoid"
         raise MobiusFlowError(Phrase(sentence, name=settings.avoid.name))
     for obj in objects:

@@ -1,10 +1,11 @@
-"""How thick a tube may be drawn around a curve without running into itself; for pictures, proves nothing."""
+"""How thick a tube may be drawn around a curve without running into anything; for pictures, proves nothing."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from ...core import Curve
+from ...core import Curve, Obstacle
+from ...core.collision.clearance import clears
 from ...core.curve import Mesh
 from ...core.curve.strands import nearest_strands
 from ...core.types import FloatArray
@@ -24,6 +25,17 @@ def thickest_radius(curve: Curve) -> float:
 def free_radius(curve: Curve, thickest: float) -> float:
     """Half the gap between strands of a curve, at most ``thickest``."""
     return min(thickest, 0.5 * _AIR * strand_gap(curve, 2 * thickest / _AIR))
+
+
+def radius_beside(curve: Curve, radius: float, obstacles: Sequence[Obstacle]) -> float:
+    """A radius, or as much less, to 2 %, as obstacles leave room for; at least a thousandth of it."""
+    if clears(curve, obstacles, radius / _AIR):
+        return radius
+    low, high = 1e-3 * radius, radius
+    while high > 1.02 * low:
+        middle = float(np.sqrt(low * high))
+        low, high = (middle, high) if clears(curve, obstacles, middle / _AIR) else (low, middle)
+    return low
 
 
 def strand_gap(curve: Curve, widest: float) -> float:

@@ -26,10 +26,14 @@ class VIEW3D_PT_mobius_flow_surroundings(InSidebar, bpy.types.Panel):  # noqa: N
         """Put in the collection to avoid, and what it comes to."""
         surroundings = context.scene.mobius_flow_surroundings
         layout.prop(surroundings, "avoid")
-        if surroundings.avoid is not None:
-            names = [obj.name for obj in avoided(context)]
-            told = Phrase("Never touches {names}", names=named(names)) if names else Phrase("Nothing in it is visible")
-            sentence(layout, context, told)
+        if surroundings.avoid is None:
+            return
+        found = avoided(context)
+        if not found:
+            sentence(layout, context, Phrase("Nothing in it is visible"))
+        elif not unsteady(found, selected_curves(context)):
+            names = named([obj.name for obj in found])
+            sentence(layout, context, Phrase("Curves never touch {names}", names=names))
 
 
 def warned(layout: bpy.types.UILayout, context: bpy.types.Context, objects: Sequence[bpy.types.Object]) -> None:

@@ -1,10 +1,12 @@
 """``mobius-flow batch``: relax tables of knots, on all cores of one machine or on a cluster."""
 
 import argparse
+import os
 
 from ...core.errors import OptionError
 from .. import options as relax_options
 from ..streams import emit
+from .job import CSV
 
 _DESCRIPTION = "Relax many curves, each in a folder of its own, and write one table of the results."
 _EPILOG = """\
@@ -64,5 +66,6 @@ def run(options: argparse.Namespace) -> int:
 
     table = campaign(options, wanted)
     if not options.quiet:
-        emit(table.summary())
+        why = f"; {os.path.join(options.output, CSV)} says why" if any(row.failed for row in table.rows) else ""
+        emit(table.summary() + why)
     return 0

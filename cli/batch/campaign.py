@@ -58,4 +58,4 @@ def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argpar
             signals.hold()  # the table is neither lost nor halved
             rows |= _found(job for job in left if job not in rows)  # whose rows were still on their way
             Table(rows.values()).save(directory)
-    sweep(directory, left)
+    sweep(directory)

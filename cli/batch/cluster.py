@@ -69,7 +69,7 @@ def _joined(address: str) -> "Iterator[Client]":
 
     try:
         client = Client(address, timeout=_PATIENCE)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, TypeError) as error:  # TypeError: where TLS is not set up
         raise MobiusFlowError(f"{address}: no Dask scheduler answers there") from error
     with client:
         try:

@@ -4,8 +4,9 @@ import json
 import os
 import secrets
 import shutil
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,8 @@ from ...core import MobiusFlowError
 from .job import REPORT, Job
 from .table import Row
 
-_UNFINISHED = "partial"
+_ROOM = ".mobius-flow-{}.partial"  # short, so that whatever can be the name of results has one beside it
+_ABANDONED = 3600.0  # seconds after which nobody fills a folder any more: it takes seconds
 
 
 @contextmanager
@@ -30,7 +32,7 @@ def new_folder(path: Path) -> Iterator[Path]:
 
 def _beside(path: Path) -> Path:
     """A new name for what is not, or no longer, in its place."""
-    return path.with_name(f".{path.name}.{secrets.token_hex(8)}.{_UNFINISHED}")
+    return path.with_name(_ROOM.format(secrets.token_hex(8)))
 
 
 def _take_place(room: Path, path: Path) -> None:
@@ -51,12 +53,12 @@ def check_replaceable(path: Path) -> None:
         raise MobiusFlowError(f"{path}: is there already, and holds no results; move it, or name another directory")
 
 
-def sweep(directory: Path, jobs: Iterable[Job]) -> None:
-    """Remove what killed runs of these jobs have left behind; only while none of them is running."""
-    names = {Path(job.folder).name for job in jobs}
-    for room in directory.glob(f".*.{_UNFINISHED}"):
-        if room.name[1:].rsplit(".", 2)[0] in names:
-            shutil.rmtree(room, ignore_errors=True)
+def sweep(directory: Path) -> None:
+    """Remove what killed runs have left behind, and nothing that runs of another batch may still be filling."""
+    for room in directory.glob(_ROOM.format("*")):
+        with suppress(FileNotFoundError):
+            if time.time() - room.stat().st_mtime > _ABANDONED:
+                shutil.rmtree(room, ignore_errors=True)
 
 
 def finished(job: Job) -> Row | None:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...core import MobiusFlowError
-from ...core.curve.io import FORMATS
-from ...core.knots import KNOTS, knot
+from ...core.diagrams.codes import is_code
+from ...core.knots import FORMATS, KNOTS, knot
 from ...core.knots.names import table_name
 
 
@@ -42,6 +42,8 @@ def _meant(word: str) -> Iterator[Input]:
         yield from _in_directory(Path(word))
     elif os.path.lexists(word):
         yield _of_file(Path(word))
+    elif is_code(word):
+        raise MobiusFlowError(f"{word[:60]}: codes name no folder; put it in a file that ends in .pd, .dt or .gauss")
     elif glob.has_magic(word):
         yield from _matching(word)
     elif os.path.dirname(word) or Path(word).suffix.lower() in FORMATS:
@@ -54,7 +56,9 @@ def _meant(word: str) -> Iterator[Input]:
 
 
 def _of_file(path: Path) -> Input:
-    return Input(path.stem, Path(os.path.abspath(path)))
+    """Results are called as the file; bytes that are no text are shown in hexadecimal, as tables have text only."""
+    name = path.stem if path.stem.strip(".") else path.name  # nothing but dots is another directory
+    return Input(os.fsencode(name).decode(errors="backslashreplace"), Path(os.path.abspath(path)))
 
 
 def _in_directory(directory: Path) -> Iterator[Input]:

@@ -61,6 +61,8 @@ class Job:
         """All that the results depend on, as JSON has it: runs of equal recipes need not be repeated."""
         made = asdict(self)
         del made["folder"], made["file"]
+        if not self.options.get("hops"):
+            made["options"].pop("seed", None)  # which only hops draw from: that of a scrambled start is the job's own
         plain: dict[str, object] = json.loads(json.dumps(made))
         return plain
 

@@ -34,7 +34,7 @@ class Sandbox:
 
     def __init__(self) -> None:
         self._process = subprocess.Popen(
-            [sys.executable, "-m", child.__name__],
+            [sys.executable, "-P", "-m", child.__name__],  # modules in the directory where it starts are not its own
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

@@ -21,8 +21,9 @@ from ...core import (
 )
 from ...core.collision import check_embedded
 from ...core.curve.io import CurveFile, load_curve
+from ...core.errors import wrong_suffix
 from ...core.extrapolation import extrapolated
-from ...core.knots import knot, knot_type, scramble
+from ...core.knots import FORMATS, knot, knot_type, scramble
 from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves
@@ -78,7 +79,10 @@ def _load(path: str) -> CurveFile:
     """Read a file; a pipe, which might never end, is none."""
     if not os.path.isfile(path):
         raise CurveFileError(path, "cannot be read: it is missing, or no regular file")
-    return load_curve(path)
+    form = FORMATS.get(Path(path).suffix.lower())
+    if form is None:
+        raise CurveFileError(path, wrong_suffix(path, FORMATS, "curve files"))
+    return load_curve(path, form)
 
 
 def _start(curve: Curve, seed: int | None) -> Curve:
@@ -92,7 +96,9 @@ def _start(curve: Curve, seed: int | None) -> Curve:
 
 def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> dict[str, object]:
     """What the row tells of a result."""
-    smooth = extrapolated(result.curve, options) if job.extrapolate and result.outcome.converged else None
+    smooth = None
+    if job.extrapolate and result.outcome.converged:
+        smooth = extrapolated(result.curve, replace(options, pins=result.last.pins, pin_tangents=False))
     return {
         "type_before": str(knot_type(start)),
         "type_after": str(knot_type(result.curve)),

@@ -3,7 +3,7 @@
 import csv
 import json
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import get_args, get_type_hints
@@ -11,7 +11,6 @@ from typing import get_args, get_type_hints
 from ... import __version__
 from ...core import RelaxOptions
 from ...core.errors import OutputError, counted
-from ...core.option import declared
 from ...core.system.files import atomic_write
 from ..streams import one_line
 from .job import CSV, PARQUET, Job
@@ -28,7 +27,7 @@ class Row:
     name, start, seed
         As in its `Job`.
     type_before, type_after
-        Names of the table that the start and the end may have; empty for links and what is not in it.
+        Of the start and the end, as `mobius-flow info` tells them: ``m3_1``, ``3_1#4_1``, or ``not told``.
     vertices
         Of the end.
     energy
@@ -73,8 +72,8 @@ class Row:
     @classmethod
     def of(cls, job: Job, **values: object) -> "Row":
         """A row of a job."""
-        defaults = {option.name: option.default for option in declared(RelaxOptions)}
-        given = {name: value for name, value in job.options.items() if value != defaults[name]}
+        defaults, options = _plain(vars(RelaxOptions()) | {"avoid": {}}), _plain(job.options)
+        given = {name: value for name, value in options.items() if value != defaults[name]}
         return cls(name=job.name, start=job.start, seed=job.seed, options=json.dumps(given), **values)  # type: ignore[arg-type]
 
     @classmethod
@@ -86,6 +85,12 @@ class Row:
     def failed(self) -> bool:
         """Whether there are no results."""
         return self.status == FAILED
+
+
+def _plain(options: Mapping[str, object]) -> dict[str, object]:
+    """Options as JSON has them, wherever they come from: it has no tuples."""
+    plain: dict[str, object] = json.loads(json.dumps(dict(options)))
+    return plain
 
 
 class Table:

@@ -23,7 +23,7 @@ def writhe_and_crossings(curve: Curve) -> tuple[float, float]:
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; only curves in space have a writhe")
     writhe = crossings = 0.0
-    for first in range(0, len(curve), _ROWS):
+    for first in range(0, curve.mesh.edges, _ROWS):
         areas = _areas(curve, first)
         writhe += float(areas.sum())
         crossings += float(np.abs(areas).sum())
@@ -31,13 +31,13 @@ def writhe_and_crossings(curve: Curve) -> tuple[float, float]:
 
 
 def _areas(curve: Curve, first: int) -> FloatArray:
-    """Signed areas for a block of edges with all later ones but their neighbours; shape (rows, n − first).
+    """Signed areas for a block of edges with all later ones but their neighbours; shape (rows, edges − first).
 
     Each is that of two triangles between the directions of chords (van Oosterom and Strackee, *IEEE Trans. Biomed.
     Eng.* 30, 1983), whose triple products are equal.
     """
-    mesh, tails = curve.mesh, curve.vertices
-    heads = tails[mesh.heads]
+    mesh = curve.mesh
+    tails, heads = curve.vertices[mesh.tails], curve.vertices[mesh.heads]
     i, j = slice(first, first + _ROWS), slice(first, None)
     a, b, d, c = (end[None, j] - start[i, None] for start in (tails, heads) for end in (tails, heads))
     volume = _dot(np.cross(curve.edge_vectors[None, j], curve.edge_vectors[i, None]), a)
@@ -47,8 +47,8 @@ def _areas(curve: Curve, first: int) -> FloatArray:
     for x, name in ((b, "b"), (d, "d")):
         across = (size["a"] * size["c"] + diagonal) * size[name]
         area += 2.0 * np.arctan2(volume, across + _dot(a, x) * size["c"] + _dot(c, x) * size["a"])
-    rows, columns = np.arange(len(curve))[i, None], np.arange(len(curve))[None, j]
-    counted = (columns > rows) & (mesh.heads[rows] != columns) & (mesh.heads[columns] != rows)
+    rows, columns = np.arange(mesh.edges)[i, None], np.arange(mesh.edges)[None, j]
+    counted = (columns > rows) & mesh.disjoint(rows, columns)
     return np.asarray(np.where(counted, area, 0.0))
 
 

@@ -134,8 +134,9 @@ class RelaxOptions:
     edge_lengths: str | tuple[float, ...] = _advanced(
         "auto",
         "Edge Lengths",
-        "target lengths, equal within each component or kept as in the refined start; auto keeps them only where they, "
-        "or the gaps between edges, differ by more than 10:1, and evening them out would crumple the curve",
+        "target lengths, equal within each component or kept as in the refined start; auto keeps them only among "
+        "obstacles, and where they, or the gaps between edges, differ by more than 10:1: evening them out would press "
+        "the curve against walls, or crumple it",
         choices=EDGE_LENGTHS,
         objects=("as many numbers above 0 as there are edges", _are_lengths),
         metavar="L",
@@ -170,8 +171,8 @@ class RelaxOptions:
     grow: float = _advanced(
         1.0,
         "Grow",
-        "target lengths become so many times those of the start, by and by where there is something in the way, and "
-        "edges are split as that calls for it unless mesh is fixed; below 1 the curve shrinks",
+        "multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and "
+        "pins leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
         low=0,
         high=MAX_GROWTH,
         metavar="F",
@@ -213,10 +214,15 @@ class RelaxOptions:
         for each in declared(type(self)):
             each.check(getattr(self, each.name))
         object.__setattr__(self, "pins", tuple(map(int, self.pins)))
+        object.__setattr__(self, "avoid", tuple(self.avoid))
         self._check_pins()
+        if self.balance and self.avoid:
+            raise OptionError(
+                "balance takes Möbius images, which keep the energy but not the repulsion of what avoid names; "
+                "leave one of the two out"
+            )
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
-        object.__setattr__(self, "avoid", tuple(self.avoid))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
 

@@ -101,7 +101,7 @@ UNRESOLVED = (
 )
 ADVICE = "more vertices or an adaptive mesh may help"
 CROWDED = "no motion that changes the lengths as asked for is free of contact and takes little enough energy"
-GREW = "grew to {grown:.6g} times of {wanted:.6g}"
+GREW = "grew to {grown:.6g} of {wanted:.6g} times its length"
 TIGHTENED = "distant clusters were expanded to order {order} for the accuracy asked for"
 INACCURATE = (
     "the hierarchical solver is less accurate than asked for: dense sums over sampled edges put its relative errors at "

@@ -10,10 +10,10 @@ from ..checks import named
 from ..collision import check_clear, check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
 from ..curve import Curve, Mesh, check_closed, check_is_curve, refine
-from ..curve.pins import NO_PINS, TAUT, Pins, arcs, spans
+from ..curve.pins import NO_PINS, TAUT, Pins, arcs, free_edges, spans
 from ..curve.refine import Resolution
 from ..curve.remesh import graded_spacing, normalised
-from ..descent import METHODS, Point, Problem
+from ..descent import METHODS, Method, Point, Problem
 from ..energies import Objective
 from ..errors import CurveError, CurveOptionError, OptionError
 from ..obstacle import Obstacle
@@ -132,8 +132,8 @@ def start_problem(curve: Curve, options: RelaxOptions, pins: Pins | None = None)
     if second_order and not objective.has_hessian:
         name = objective.energy.name
         raise OptionError(f"{method.name} with these options needs a second derivative; energy {name} has none")
-    if options.grow != 1.0 and not method.geometry.prescribes:
-        raise OptionError(f"grow prescribes lengths, but method {method.name} penalises them; choose another method")
+    if options.grow != 1.0:
+        _check_growth(start, constraints, options, method)
     if (options.stability or options.escape_saddles) and not method.geometry.prescribes:
         raise OptionError(f"stability is about constrained minima, but method {method.name} penalises lengths")
     if options.balance and objective.energy.scale_exponent != 0.0:
@@ -147,7 +147,8 @@ def start_problem(curve: Curve, options: RelaxOptions, pins: Pins | None = None)
 
 def on_mesh(problem: Problem, curve: Curve, options: RelaxOptions) -> Point:
     """The point of a curve in the user's units in the same problem on its own mesh; raises as `start_problem` does."""
-    return with_parts_of(problem, start_problem(curve, options, problem.constraints.pins.on(curve)), curve)
+    pins = problem.constraints.pins.on(curve)
+    return with_parts_of(problem, start_problem(curve, replace(options, grow=1.0), pins), curve)
 
 
 def with_parts_of(problem: Problem, other: Problem, curve: Curve) -> Point:
@@ -175,7 +176,7 @@ def _target_lengths(start: Curve, options: RelaxOptions, scale: float, pins: Int
     if options.mesh == "adaptive":
         return normalised(start, graded_spacing(start, Resolution(options.vertices)), pins)
     uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
-    if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and uneven):
+    if options.edge_lengths == "keep" or (options.edge_lengths == "auto" and (uneven or options.avoid)):
         return start.edge_lengths
     return equal_lengths(start.mesh, start.edge_lengths, pins)
 
@@ -188,16 +189,26 @@ def equal_lengths(mesh: Mesh, lengths: FloatArray, pins: IntArray) -> FloatArray
     return even
 
 
-def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray) -> None:
-    """Refuse target lengths with which an arc does not reach from pin to pin, or only just."""
+def _check_growth(start: Curve, constraints: Constraints, options: RelaxOptions, method: Method) -> None:
+    """Refuse to change lengths that are not prescribed, or cannot change by the factor that is asked for."""
+    pins = constraints.pins.vertices
+    if not method.geometry.prescribes:
+        raise OptionError(f"grow prescribes lengths, but method {method.name} penalises them; choose another method")
+    if not len(free_edges(start.mesh, pins)):
+        raise OptionError("grow changes lengths, but all edges lie between pinned vertices; leave some of the pins out")
+    _check_spans(start, constraints.scaled(options.grow, start.mesh).lengths, pins, "grow")
+
+
+def _check_spans(start: Curve, lengths: FloatArray, pins: IntArray, option: str = "edge_lengths") -> None:
+    """Refuse target lengths, made by an option, with which an arc does not reach from pin to pin, or only just."""
     for span in spans(start, pins):
         i, j = (end + 1 for end in span.ends)
         wanted = float(lengths[span.edges].sum())
         if len(span.edges) == 1 and abs(wanted - span.length) > TAUT * span.length:
-            raise OptionError(f"edge_lengths changes the edge between vertices {i} and {j}, which are both pinned")
+            raise OptionError(f"{option} changes the edge between vertices {i} and {j}, which are both pinned")
         if len(span.edges) > 1 and wanted <= (1.0 + TAUT) * span.distance:
             ratio = wanted / span.distance
             raise OptionError(
-                f"edge_lengths makes the arc between vertices {i} and {j}, which are pinned, {ratio:.6g} times as long "
+                f"{option} makes the arc between vertices {i} and {j}, which are pinned, {ratio:.6g} times as long "
                 "as their distance; give it more than that"
             )

@@ -14,6 +14,7 @@ from scipy.optimize import linprog
 from scipy.sparse.csgraph import connected_components
 
 from ..curve import Curve
+from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 from .alexander import TRIVIAL, linking_numbers, signature
 
@@ -43,6 +44,12 @@ class Ball:
     def contains(self, points: FloatArray) -> BoolArray:
         """Whether points, shape (n, 3), lie inside."""
         return np.asarray(np.linalg.norm(points - self.center, axis=1) < self.radius)
+
+    def is_clear_of(self, obstacle: Obstacle) -> bool:
+        """Whether an obstacle certainly is outside: the boxes around its triangles or segments are."""
+        low, high = obstacle.corners.min(axis=1), obstacle.corners.max(axis=1)
+        outside = np.maximum(np.maximum(low - self.center, self.center - high), 0.0)
+        return bool(np.linalg.norm(outside, axis=1).min() > self.radius)
 
 
 def knotted_ball(curve: Curve) -> Ball | None:

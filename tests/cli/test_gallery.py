@@ -75,6 +75,19 @@ def test_every_result_has_its_picture_name_and_energy(
     assert [np.isclose(page[..., :3], 0.1 * k, atol=0.01).all(axis=2).sum() > 20_000 for k in (1, 2, 3)] == [True] * 3
 
 
+@pytest.mark.parametrize(
+    "text", ["name,start,status\nknot\n", f"name,start,status,energy\n{'x' * 200_000},1,converged,1\n", "\0\xff"]
+)
+def test_other_tables_are_no_results(
+    text: str, results: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr(export, "require_blender", lambda: None)
+    (results / "results.csv").write_text(text, encoding="latin-1")
+    assert main(["gallery", str(results), "-o", str(results / "page.png")]) == 2
+    assert capsys.readouterr().err == f"mobius-flow: {results}: holds no results of mobius-flow batch\n"
+
+
 def test_rendered_by_blender(results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("bpy")
     image = pytest.importorskip("matplotlib.image")

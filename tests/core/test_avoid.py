@@ -52,7 +52,7 @@ def test_without_the_wall_it_goes_there():
     assert result.report()["obstacles"] == 0
 
 
-@pytest.mark.parametrize("more", [{"mesh": "adaptive"}, {"mesh": "finer"}, {"balance": True}, {"escape_saddles": True}])
+@pytest.mark.parametrize("more", [{"mesh": "adaptive"}, {"mesh": "finer"}, {"hops": 1}, {"escape_saddles": True}])
 def test_changes_of_mesh_and_shape_stay_clear(more, tmp_path):
     curve = scramble(knot("3_1", vertices=60), seed=3, moves=300)
     low, high = float(curve.vertices.min()), float(curve.vertices.max())
@@ -83,10 +83,14 @@ def test_a_curve_stays_on_its_side_of_a_rod(tmp_path):
 
 
 def test_a_stalled_run_names_the_obstacle():
-    tight = (plate(0.9 + 1e-9, name="ceiling"), plate(-0.9 - 1e-9, name="floor"))
-    result = minimize(flat_trefoil(), RelaxOptions(max_iterations=200, vertices=60, mesh="fixed", avoid=tight))
+    """An ellipse in a box without room for it to become rounder."""
+    ring = regular_polygon(24)
+    ellipse = ring.with_vertices(ring.vertices * [2.0, 1.0, 1.0])
+    sides = np.abs(ellipse.vertices).max(axis=0) + 1e-9
+    tight = Obstacle(box(-1.0, 1.0).vertices * sides, box(-1.0, 1.0).faces, "box")
+    result = minimize(ellipse, RelaxOptions(vertices=24, mesh="fixed", edge_lengths="keep", avoid=(tight,)))
     assert result.outcome.place is not None
-    assert any(f"and obstacle {name} are so near to each other" in result.message for name in ("ceiling", "floor"))
+    assert "and obstacle box are so near to each other" in result.message
 
 
 def test_a_start_that_pierces_is_refused():
@@ -98,7 +102,7 @@ def test_a_start_that_pierces_is_refused():
 
 @pytest.mark.parametrize("value", [plate(1.0), "wall.obj", [[0.0, 0.0]], 3, None])
 def test_what_is_no_tuple_of_obstacles_is_refused(value):
-    with pytest.raises(OptionError, match=r"avoid is .*; it must be obstacles, such as \(Obstacle\("):
+    with pytest.raises(OptionError, match=r"avoid is .*; it must be an? (tuple|obstacle), such as \(?Obstacle\("):
         RelaxOptions(avoid=value)
 
 

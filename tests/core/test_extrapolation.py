@@ -1,10 +1,11 @@
 """The smooth curve's energy from three meshes: what is known of it lies within the error that is told."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, RelaxOptions, minimize
+from mobius_flow.core import Curve, Mesh, RelaxOptions, extrapolation, minimize
 from mobius_flow.core.extrapolation import Extrapolation, extrapolated
 from mobius_flow.core.knots import knot
 from shapes import regular_polygon
@@ -63,3 +64,24 @@ def test_loose_runs_are_tightened() -> None:
 def test_runs_that_do_not_converge_have_none() -> None:
     bent = regular_polygon(24).vertices * [1.0, 0.5, 1.0]
     assert extrapolated(Curve(bent), RelaxOptions(max_iterations=0)) is None
+
+
+def test_pins_stay_and_ends_are_free() -> None:
+    """An arc between pins bends into the same shape on every mesh; halved edges have other numbers of vertices."""
+    t = np.linspace(0.0, np.pi, 13)
+    arc = Curve(np.column_stack([np.cos(t), 0.5 * np.sin(t), 0.2 * np.sin(2.0 * t)]), Mesh((13,), (False,)))
+    options = RelaxOptions(pins=(0, 6, 12), vertices=25)
+    result = minimize(arc, options)
+    found = extrapolated(result.curve, replace(options, pins=result.last.pins))
+    assert found is not None
+    assert 1.0 < found.order < 3.0
+    assert abs(found.value - found.energies[2]) < abs(found.energies[2] - found.energies[1])
+    assert found.energies[0] == pytest.approx(result.final_energy, rel=1e-3)
+
+
+def test_a_minimum_is_not_left_by_hops(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[RelaxOptions] = []
+    monkeypatch.setattr(extrapolation, "minimize", lambda *given: asked.append(given[1]) or minimize(*given))
+    options = RelaxOptions(vertices=24, hops=3)
+    assert extrapolated(regular_polygon(24), options) is not None
+    assert [each.hops for each in asked] == [0, 0, 0]

@@ -5,6 +5,8 @@ import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
 from mobius_flow.core.info import GRADIENT_UP_TO, INDEX_UP_TO, info
 from mobius_flow.core.knots import knot, torus_knot
+from mobius_flow.core.measure import measure
+from shapes import half_circle
 
 # Near a minimum some Möbius directions are so soft that only well converged curves show that they are positive.
 EXACT = RelaxOptions(method="trust-region", tolerance=1e-7, stability=True, mesh="fixed")
@@ -46,6 +48,15 @@ def test_a_saddle_has_its_index() -> None:
     found = info(result.curve).rest
     assert found is not None
     assert found.index == result.outcome.negative_eigenvalues
+
+
+def test_arcs_have_all_but_a_type() -> None:
+    found = info(half_circle(60))
+    assert str(found.type) == "not told"
+    assert found.energies["moebius"] == pytest.approx(measure(half_circle(60), "moebius"))
+    assert found.rest is not None
+    assert found.thickness == pytest.approx(np.cos(np.pi / 120))
+    assert found.writhe == pytest.approx(0.0, abs=1e-12)
 
 
 def test_what_takes_too_long_is_left_out() -> None:

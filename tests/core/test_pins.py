@@ -137,7 +137,7 @@ def test_pins_survive_every_mesh(mesh: str) -> None:
     assert iterates[-1].energy < 0.5 * iterates[0].energy, message
 
 
-@pytest.mark.parametrize(("count", "pins"), [(1500, (0, 7, 1000, 1499)), (6000, (0, 2500, 5999))])
+@pytest.mark.parametrize(("count", "pins"), [(1500, (0, 7, 1000, 1499)), (3000, (0, 1250, 2999))])
 def test_pins_survive_a_coarse_start(count: int, pins: tuple[int, ...]) -> None:
     """By the dense solver and, in the end, by the hierarchical one."""
     curve = torus_knot(2, 3, count)
@@ -238,8 +238,8 @@ def test_little_slack_is_no_obstacle() -> None:
         ({"pins": (2, 5, 2)}, "pins names vertex 3 more than once"),
         ({"pins": (-1,)}, "pins is -1; it must be 0 or more"),
         ({"pins": (0.5,)}, "pins is 0.5; it must be a whole number"),
-        ({"pins": "12"}, "pins is '12'; it must be a tuple of whole numbers, such as (0, 5)"),
-        ({"pins": 12}, "pins is 12; it must be a tuple of whole numbers, such as (0, 5)"),
+        ({"pins": "12"}, "pins is '12'; it must be a tuple, such as (0, 5)"),
+        ({"pins": 12}, "pins is 12; it must be a tuple, such as (0, 5)"),
         (
             {"pins": (1,), "balance": True},
             "balance would move pins, as Möbius maps do; leave one of the two out",

@@ -98,6 +98,12 @@ _OPTIONS = {
     "Möbius energy without arc distances, midpoint rule (Ishizeki–Nagasawa density)": (
         "Möbius-Energie ohne Bogenabstände, Mittelpunktregel (Dichte von Ishizeki–Nagasawa)"
     ),
+    "Multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and pins "
+    "leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks": (
+        "Alle Längen damit malnehmen: auf einmal, wo nichts im Weg ist, sonst Schritt für Schritt, wie Hindernisse und "
+        "feste Punkte Platz lassen; Kanten werden geteilt, wo Stränge sich nähern, außer auf festem Netz; unter 1 "
+        "schrumpft die Kurve"
+    ),
     "Number of tries to get on from a minimum, or from where the curve is stuck: a random motion, proved like all "
     "others, and a relaxation; those that end lower are kept, and the iterations of all count": (
         "Anzahl der Versuche, von einem Minimum weiterzukommen, oder von wo die Kurve festsitzt: eine zufällige "
@@ -118,10 +124,12 @@ _OPTIONS = {
     "Tangent-point energy with exponents 3 and 6, at the edges' end points": (
         "Tangentenpunkt-Energie mit Exponenten 3 und 6, an den Endpunkten der Kanten"
     ),
-    "Target lengths, equal within each component or kept as in the refined start; auto keeps them only where they, "
-    "or the gaps between edges, differ by more than 10:1, and evening them out would crumple the curve": (
-        "Ziellängen, gleich in jeder Komponente oder wie im verfeinerten Anfang; automatisch behält sie nur, wo sie "
-        "oder die Abstände zwischen Kanten um mehr als 10:1 verschieden sind und Angleichen die Kurve zerknittern würde"
+    "Target lengths, equal within each component or kept as in the refined start; auto keeps them only among "
+    "obstacles, and where they, or the gaps between edges, differ by more than 10:1: evening them out would press "
+    "the curve against walls, or crumple it": (
+        "Ziellängen, gleich in jeder Komponente oder wie im verfeinerten Anfang; automatisch behält sie nur zwischen "
+        "Hindernissen und wo sie oder die Abstände zwischen Kanten um mehr als 10:1 verschieden sind: Angleichen würde "
+        "die Kurve an Wände drücken oder zerknittern"
     ),
     "Tell whether a converged curve is a minimum, and go on downhill from a saddle": (
         "Sagen, ob eine konvergierte Kurve ein Minimum ist, und von einem Sattel weiter bergab gehen"
@@ -140,11 +148,6 @@ _OPTIONS = {
     "What is minimised, with a barrier between strands": "Was minimiert wird, mit einer Barriere zwischen Strängen",
     "Of random motions, of hops and of scrambled starts: equal numbers, equal motions": (
         "Der zufälligen Bewegungen, von Sprüngen und durchmischten Anfängen: gleiche Zahlen, gleiche Bewegungen"
-    ),
-    "Target lengths become so many times those of the start, by and by where there is something in the way, and "
-    "edges are split as that calls for it unless mesh is fixed; below 1 the curve shrinks": (
-        "Die Längen werden so viele Male die des Anfangs, nach und nach, wo etwas im Weg ist, und Kanten werden dafür "
-        "geteilt, außer bei festem Netz; unter 1 schrumpft die Kurve"
     ),
     "the method's own": "die der Methode",
 }

@@ -31,7 +31,7 @@ SENTENCES = {
         "Ein Punkt von '{name}' ist nicht endlich oder unermesslich weit weg; reparieren oder löschen"
     ),
     "Avoided": "Gemieden",
-    "Never touches {names}": "Berührt nie {names}",
+    "Curves never touch {names}": "Kurven berühren nie {names}",
     "Nothing in it is visible": "Nichts darin ist sichtbar",
     "Nothing is near the selected curves but what they avoid": (
         "In der Nähe der ausgewählten Kurven ist nichts, was sie nicht meiden"

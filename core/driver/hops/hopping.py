@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from ...energies.components import energy_scale
 from ...errors import counted
 from ..loop import Relaxation, descent, told
 from ..outcome import HOPS, Outcome
 from ..rises import Rises
 from ..run import Run
-from .stir import Stir
+from .motions import MOTIONS, Motion
 from .trial import Trial, trial
 from .unknot import is_circle, told_of_unknot
 
@@ -30,23 +31,26 @@ def hopping(run: Run) -> Relaxation:
 
 
 class Hops:
-    """The hops of one run."""
+    """The hops of one run; their motions take turns."""
 
     def __init__(self, run: Run) -> None:
-        self._run, self._motion = run, Stir()
+        self._run = run
         self._rng = np.random.default_rng(run.options.seed)
         self._tried = self._taken = 0
 
     def led_lower(self, outcome: Outcome) -> bool:
         """Try until a hop leads lower, which the run then takes; False if none does, or there is nothing lower."""
         run = self._run
-        if not (outcome.may_be_left and self._motion.fits(run.point)):
+        motions = [motion for motion in MOTIONS if motion.fits(run.point)]
+        if run.frozen or not (outcome.may_be_left and motions):
             return False
         if run.problem.unconfined and is_circle(run.iterate.curve):
             return False
         while self._tried < run.options.hops and run.iterations_left > 0:
-            below = (1.0 - GAIN) * run.iterate.energy
-            found = self._next(below)
+            below = run.iterate.energy - GAIN * energy_scale(run.problem.mesh, run.iterate.energy)
+            if below < 0.0:  # arcs that are straight
+                return False
+            found = self._next(motions[self._tried % len(motions)], below)
             if found is None:
                 continue
             lower = found.run.iterate.energy < below
@@ -57,11 +61,11 @@ class Hops:
                 return True
         return False
 
-    def _next(self, below: float) -> Trial | None:
-        """The next trial; None if numbers fail on the way."""
+    def _next(self, motion: Motion, below: float) -> Trial | None:
+        """The next trial, which begins with a motion; None if numbers fail on the way."""
         self._tried += 1
         try:
-            return trial(self._run, self._motion, self._rng, below)
+            return trial(self._run, motion, self._rng, below)
         except np.linalg.LinAlgError:
             return None
 

@@ -1,16 +1,15 @@
 """Stirring: one random flow of space after another carries the curve along, which folds it and turns it over."""
 
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...descent import Leg, Point, Step
-from ...descent.step import attempt
-from ...types import FloatArray
+from ...descent import Point, Step
+from ...energies.components import energy_scale
+from .pace import Field, Pace, between, radius
 
-Flow = Callable[[FloatArray], FloatArray]
+QUICK = Pace(stride=0.1, shortest=5e-3)
 
 
 @dataclass(frozen=True)
@@ -22,26 +21,24 @@ class Stir:
 
     Parameters
     ----------
-    distance
-        That the curve moves by (root mean square over its vertices), all flows together.
+    flows
+        Number of flows, one after the other.
     each
-        The same of one flow.
-    stride
-        The same of one step, at most; where steps are not accepted they are halved.
-    shortest
-        Step at which a flow is given up.
+        That the curve moves by along each of them (root mean square over its vertices).
+    pace
+        Of its steps.
     waves
         Number of plane waves that a flow is the sum of.
     frequency
         Standard deviation of each component of their wave vectors, in radians per radius of gyration.
     ceilings
-        Least and greatest multiple of the energy up to which the curve may be led.
+        Least and greatest multiple of the energy (of arcs, whose least is 0: of `energy_scale`) up to which the curve
+        may be led.
     """
 
-    distance: float = 10.0
+    flows: int = 10
     each: float = 1.0
-    stride: float = 0.1
-    shortest: float = 5e-3
+    pace: Pace = QUICK
     waves: int = 4
     frequency: float = 2.0
     ceilings: tuple[float, float] = (2.0, 16.0)
@@ -52,45 +49,18 @@ class Stir:
 
     def __call__(self, point: Point, rng: np.random.Generator) -> Iterator[Step]:
         """Yield steps, each of which ends on the constraints."""
-        ceiling = point.energy * _between(self.ceilings, rng)
-        for _ in range(round(self.distance / self.each)):
-            for step in self._along(self._flow(point, rng), point, ceiling):
+        ceiling = energy_scale(point.problem.mesh, point.energy) * between(self.ceilings, rng)
+        for _ in range(self.flows):
+            for step in self.pace.along(point, self._flow(point, rng), self.each, ceiling):
                 yield step
-                point = step.point
+                point = step.point.anchored
 
-    def _along(self, flow: Flow, point: Point, ceiling: float) -> Iterator[Step]:
-        """Yield steps along one flow."""
-        left, stride = self.each, self.stride
-        while left > 0.0 and stride > self.shortest:
-            u = point.tangent_space.project(flow(point.vertices))
-            u *= stride * _radius(point.vertices) / _root_mean_square(u)
-            leg = attempt(point, point.vertices + u, 0.0 * point.residual, lambda end: end.energy < ceiling)
-            if not isinstance(leg, Leg):
-                stride *= 0.5
-                continue
-            yield Step((leg,), 0.0, None)
-            point, left, stride = leg.end.anchored, left - stride, min(2.0 * stride, self.stride)
-
-    def _flow(self, point: Point, rng: np.random.Generator) -> Flow:
+    def _flow(self, point: Point, rng: np.random.Generator) -> Field:
         """A sum of plane waves, each without divergence, most of them shorter than the curve is wide."""
-        center, radius = point.vertices.mean(axis=0), _radius(point.vertices)
+        center = point.vertices.mean(axis=0)
         waves, amplitudes = rng.normal(size=(2, self.waves, point.curve.dimension))
         along = np.sum(waves * amplitudes, axis=1) / np.square(waves).sum(axis=1)
         amplitudes -= along[:, None] * waves
-        waves *= self.frequency / radius
+        waves *= self.frequency / radius(point.vertices)
         phases = rng.uniform(0.0, 2.0 * np.pi, self.waves)
         return lambda x: np.asarray(np.sin((x - center) @ waves.T + phases) @ amplitudes)
-
-
-def _between(bounds: tuple[float, float], rng: np.random.Generator) -> float:
-    """A random number whose logarithm is evenly distributed."""
-    return math.exp(rng.uniform(*np.log(bounds)))
-
-
-def _radius(vertices: FloatArray) -> float:
-    """Radius of gyration."""
-    return _root_mean_square(vertices - vertices.mean(axis=0))
-
-
-def _root_mean_square(u: FloatArray) -> float:
-    return float(np.sqrt(np.square(u).sum(axis=1).mean()))

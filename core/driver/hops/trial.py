@@ -9,7 +9,7 @@ from ...types import FloatArray
 from ..loop import iterates
 from ..options import RelaxOptions
 from ..run import Run
-from .stir import Stir
+from .motions import Motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Trial:
     iterations: int
 
 
-def trial(run: Run, motion: Stir, rng: np.random.Generator, below: float) -> Trial:
+def trial(run: Run, motion: Motion, rng: np.random.Generator, below: float) -> Trial:
     """Leave the point that a run has reached, and relax on the same mesh until the objective is ``below`` a value.
 
     It ends earlier where the relaxation does, or where no iterations are left.  Raises LinAlgError where a curve on the

@@ -30,12 +30,16 @@ class Composite:
         parts = [part for part in split(self._run.iterate.curve, problem.constraints.parts) if _may_be_composite(part)]
         ball = next(filter(None, map(knotted_ball, parts)), None)
         if ball is not None:
+            if not all(map(ball.is_clear_of, problem.obstacles)):
+                return event  # around what stands still nothing shrinks to a point
             center = ", ".join(f"{x:.3g}" for x in ball.center)
             return replace(event.stalling(COMPOSITE.format(radius=ball.radius, center=center)), unbounded=True)
         return event if all(map(is_searchable, parts)) else event.adding(UNTESTED)
 
 
 def _may_be_composite(curve: Curve) -> bool:
-    """Whether there is energy enough for that, in space."""
+    """Whether there is energy enough for that, in space, on closed components: arcs can be unknotted."""
+    if curve.dimension != 3 or not curve.mesh.all_closed:
+        return False
     components = len(curve.mesh.component_sizes)
-    return curve.dimension == 3 and moebius_energy(curve)[0] >= (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK)
+    return moebius_energy(curve)[0] >= (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK)

@@ -6,29 +6,27 @@ import numpy as np
 
 from ...constraints import weighted_barycenter
 from ...curve import Curve
-from ...curve.pins import free_edges
 from ...curve.refine import affordable_pieces, subdivide
 from ...curve.remesh import SPLIT, graded_spacing
-from ...descent import Leg, NoStep, Point, Problem, Step
+from ...descent import Leg, NoStep, Point, Step
 from ...descent.searches.normal_step import on_target
 from ...descent.step import attempt
 from ...errors import MobiusFlowError
 from ...types import IntArray
 from ...units import Units
-from ..events import Change, Event, Start
+from ..events import Change, Event
 from ..outcome import CROWDED, GREW, Outcome
 from ..prepare import check_refined, on_mesh
 from ..run import Run
 from .finer_mesh import FINEST
 
-import os
-FASTEST = float(os.environ.get("FASTEST", 0.2))  # logarithmic change of lengths in one motion
-SLOWEST = 1e-3  # that is worth an iteration
-RISE = float(os.environ.get("RISE", 0.25))  # of the objective, relative to it, in one motion: more would be too near to contact to relax from
-SETTLED = float(os.environ.get("SETTLED", 0.01))  # relative decrease of the objective in a step, from which on the next motion may come
-SLOWER = 0.1  # factor of that where there was none
-EDGES_PER_GAP = float(os.environ.get("EPG", 3.0))  # bends of what is packed are as narrow as gaps
-REACHED = 1e-9  # logarithm of what is missing
+FASTEST, SLOWEST = 0.2, 0.01  # logarithmic change of the lengths in one motion; less is not worth an iteration
+RISE = 0.25  # of the objective in one motion, relative to it: more is made by contacts that it takes long to relax from
+SETTLED = 0.01  # relative decrease of the objective in a step, from which on the next motion may come
+LATER = 0.1  # factor of that after no motion was found
+EDGES_PER_GAP = 2.0  # what is packed bends as narrowly as strands are near
+EVEN_RATIO = 2.0  # of spacings to their median: where walls are near, as spacings do not see, it bends as narrowly, too
+REACHED = 1e-9  # logarithm of what may be missing
 
 
 class Grow:
@@ -41,32 +39,29 @@ class Grow:
         self._resolution = replace(run.resolution, edges_per_gap=EDGES_PER_GAP)
 
     def __call__(self, event: Event) -> Event | Change:
-        """Look at the start, after steps that gained little, and wherever the run would end without more length."""
-        run = self._run
-        left = float(np.log(run.options.grow / run.iterate.grown))
-        ends = isinstance(event, Outcome) and not event.converged
-        if abs(left) <= REACHED or ends or not self._is_due(event):
+        """Look at the start, at steps that gained little, and where the run would end with other lengths."""
+        left = float(np.log(self._run.options.grow / self._run.iterate.grown))
+        if abs(left) <= REACHED or (isinstance(event, Outcome) and not event.converged):
             return event
-        if not (run.problem.obstacles or len(run.problem.constraints.pins)):
-            return self._scaled(np.exp(left))
-        step = self._step(left)
+        if not (self._run.problem.obstacles or len(self._run.problem.constraints.pins)):
+            return self._scaled(left)
+        step = self._step(left) if self._is_due(event) else None
         if step is not None:
-            self._energy, self._settled = step.point.energy, SETTLED
+            self._energy = step.point.energy
             return Change((step,), self._resolved(step.point))
-        self._settled *= SLOWER
         return event.stalling(CROWDED) if isinstance(event, Outcome) else event
 
     def _is_due(self, event: Event) -> bool:
-        run = self._run
-        before, self._energy = self._energy, run.point.energy
+        """Whether there is nothing else to do, or the curve has its lengths and has all but come to rest."""
+        before, self._energy = self._energy, self._run.point.energy
         if isinstance(event, NoStep | Outcome):
             return True
         gained = before - self._energy if isinstance(event, Step) else 0.0
-        return on_target(run.point) and gained <= self._settled * abs(self._energy)
+        return on_target(self._run.point) and gained <= self._settled * abs(self._energy)
 
-    def _scaled(self, factor: float) -> Change:
-        """With nothing in the way: the whole curve scaled, about its barycenter."""
-        start, problem = self._run.iterate.curve, self._run.problem
+    def _scaled(self, left: float) -> Change:
+        """With nothing in the way: the whole curve scaled about its barycenter."""
+        start, problem, factor = self._run.iterate.curve, self._run.problem, float(np.exp(left))
         center = weighted_barycenter(start) / start.length
         end = start.with_vertices(center + factor * (start.vertices - center))
         proof = problem.free_motion(start.vertices, end.vertices)
@@ -75,7 +70,7 @@ class Grow:
         return Change((step,), self._resolved(step.point))
 
     def _step(self, left: float) -> Step | None:
-        """The shortest motion in the metric to longer edges, as much longer as it can be made; None if it is hardly any."""
+        """The shortest motion in the metric to what can be had of the change that is left; None if it is nothing."""
         point, problem = self._run.point, self._run.problem
         space, change = point.tangent_space, float(np.clip(left, -self._fastest, self._fastest))
         while abs(change) >= min(SLOWEST, abs(left)):
@@ -84,9 +79,10 @@ class Grow:
             aim = base.vertices - space.pseudo_inverse(base.residual)
             found = attempt(base, aim, np.zeros_like(base.residual), self._is_cheap, space)
             if isinstance(found, Leg):
-                self._fastest = min(2.0 * abs(change), FASTEST)
+                self._fastest, self._settled = min(2.0 * abs(change), FASTEST), SETTLED
                 return Step((found,), 0.0, None)
             change *= 0.5
+        self._settled *= LATER
         return None
 
     def _is_cheap(self, end: Point) -> bool:
@@ -94,7 +90,7 @@ class Grow:
         return end.energy - before <= RISE * abs(before)
 
     def _resolved(self, point: Point) -> Point | None:
-        """The point on a mesh, and in units, that suit its length; None if the present ones do, or there are no others."""
+        """The point on a mesh and in units for its length; None if the present ones do, or are all that there are."""
         problem, curve = point.problem, point.curve.with_vertices(point.placed)
         pieces = self._pieces(curve)
         if pieces.max() == 1 and Units.of(curve).scale == problem.units.scale:
@@ -114,6 +110,7 @@ class Grow:
         if self._run.options.mesh == "fixed":
             return whole
         spacing = graded_spacing(curve, self._resolution)
+        spacing = np.minimum(spacing, EVEN_RATIO * np.median(spacing))
         if not (curve.edge_lengths > SPLIT * spacing).any():
             return whole
         return affordable_pieces(curve, spacing, FINEST)

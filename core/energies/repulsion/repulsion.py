@@ -21,6 +21,7 @@ from .clusters import Clusters
 from .integrals import Forces, Integrals
 from .panels import Edges
 from .schedule import Schedule
+from .simplices import Simplices
 
 THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
 KEPT = 0.9  # slack up to which a schedule is as good as a new one
@@ -56,9 +57,13 @@ class Repulsion:
 
     @classmethod
     def of(cls, obstacles: Iterable[Obstacle], weight: float = 1.0) -> "tuple[Repulsion, ...]":
-        """That of obstacles, in the units of curves: one for all triangles, one for all segments, if there are any."""
+        """That of obstacles, in the units of curves: one for all triangles, one for all segments, if there are any.
+
+        Those without area or length repel nothing, and clusters of them alone would have no centroid.
+        """
         corners = [obstacle.corners.transpose(1, 2, 0) for obstacle in obstacles]
-        kinds = ([each for each in corners if len(each) == count] for count in (3, 2))
+        solid = [each[:, :, Simplices(each).sizes > 0.0] for each in corners]
+        kinds = ([each for each in solid if len(each) == count and each.size] for count in (3, 2))
         return tuple(cls(Clusters.of(np.concatenate(kind, axis=2)), weight) for kind in kinds if kind)
 
     def frozen_at(self, curve: Curve) -> "Repulsion":
@@ -85,12 +90,12 @@ class Repulsion:
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²R as a sparse matrix, which couples the ends of edges only, in the order of ``vertices.ravel()``."""
-        n = len(curve)
-        rest, unit = np.zeros((3, n)), np.eye(3)[:, :, None] * np.ones(n)
+        n, edges = len(curve), curve.mesh.edges
+        rest, unit = np.zeros((3, edges)), np.eye(3)[:, :, None] * np.ones(edges)
         tails_move, heads_move = [Edges(e, -e) for e in unit], [Edges(rest, e) for e in unit]
         changes = np.array(self._force_changes(curve, [*tails_move, *heads_move]))
         ends = np.stack([curve.mesh.tails, curve.mesh.heads])
-        index = (3 * ends[:, None] + np.arange(3)[:, None]).reshape(6, n)
+        index = (3 * ends[:, None] + np.arange(3)[:, None]).reshape(6, edges)
         rows, columns = np.broadcast_arrays(index[None], index[:, None])
         return sp.csr_array((self.weight * changes.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, 3 * n))
 

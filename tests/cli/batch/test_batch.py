@@ -45,9 +45,11 @@ def test_rows_and_folders(batch: Batch, ring: Path, tmp_path: Path, capsys: pyte
     assert pick(rows, "name", "start", "seed") == [
         (name, start, seed) for name in ("L2a1", "knot", "ring") for start, seed in (("1", ""), ("2", "7"))
     ]
-    assert pick(rows, "type_before", "type_after") == [("", "")] * 2 + [("3_1", "3_1")] * 2 + [("0_1", "0_1")] * 2
+    assert pick(rows, "type_before", "type_after") == [
+        (name, name) for name in ("L2a1", "m3_1", "unknot") for _ in range(2)
+    ]
     assert {(row["certified"], row["verified"]) for row in rows} == {("True", "True")}
-    assert {row["options"] for row in rows} == {'{"max_iterations": 3}'}
+    assert {row["options"] for row in rows} == {'{"max_iterations": 3, "seed": 5}'}
     for row in rows:
         folder = tmp_path / "out" / (row["name"] + ("" if row["start"] == "1" else "-2"))
         report = json.loads((folder / "report.json").read_text())
@@ -119,12 +121,15 @@ def test_what_is_finished_is_not_repeated(
     assert again(*TINY, "--time-limit", 1000)[0] == []
     assert again(*TINY, "--seed", 1)[0] == [("bad", 2), ("ring", 2)]
     assert again(*TINY, "--seed", 1, "--tolerance", "1e-3")[0] == everything
+    assert again(*TINY, "--seed", 1, "--tolerance", "1e-3", "--hops", 1)[0] == everything
+    assert again(*TINY, "--seed", 2, "--tolerance", "1e-3", "--hops", 1)[0] == everything  # hops have seeds too
+    assert again(*TINY, "--seed", 1, "--tolerance", "1e-3")[0] == everything
     write_curve(ring, regular_polygon(13))
     assert again(*TINY, "--seed", 1, "--tolerance", "1e-3")[0] == everything[2:]
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names")
-def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path) -> None:
+def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     poison = tmp_path / "poison"
     poison.mkdir()
     os.mkfifo(poison / "pipe.txt")
@@ -138,6 +143,7 @@ def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path) -> N
     }.items():
         (poison / name).write_text(text)
     rows = batch(poison, ring, "--starts", 2, *TINY)
+    assert capsys.readouterr().out.endswith(f"; {tmp_path / 'out/results.csv'} says why\n")
     told = {row["name"]: row["message"] for row in rows if row["status"] == "failed"}
     assert len(rows) == 16
     assert [row["name"] for row in rows if row["status"] != "failed"] == ["ring", "ring"]
@@ -221,6 +227,7 @@ def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkey
         (["none.txt"], "none.txt: there is no such file"),
         (["3_1", "--scheduler", "tcp://127.0.0.1:9"], "tcp://127.0.0.1:9: no Dask scheduler answers there"),
         (["3_1", "--scheduler", "nonsense"], "nonsense: no Dask scheduler answers there"),
+        (["3_1", "--scheduler", "tls://127.0.0.1:9"], "tls://127.0.0.1:9: no Dask scheduler answers there"),
     ],
 )
 def test_one_sentence(
@@ -260,6 +267,26 @@ def test_workers_of_another_version_are_refused(ring: Path, tmp_path: Path) -> N
     row = relaxed(Job("ring", 1, None, str(ring), None, str(tmp_path / "out"), {}, False, version="0.0"))
     assert row.failed
     assert "and 0.0 is wanted" in row.message
+
+
+def test_modules_where_it_is_called_are_not_its_own(
+    batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "queue.py").write_text("raise RuntimeError\n")
+    monkeypatch.chdir(tmp_path)
+    sandbox.close_all()  # so that another child starts here
+    assert pick(batch(ring, *TINY), "status") != [("failed",)]
+
+
+def test_codes_in_files_and_names_that_are_no_text(batch: Batch, ring: Path, tmp_path: Path) -> None:
+    (tmp_path / "trefoil.pd").write_text("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]")
+    (tmp_path / "knot.stl").touch()
+    odd = ring.with_name(os.fsdecode(b"n\xff.txt"))
+    ring.rename(odd)
+    rows = batch(tmp_path / "trefoil.pd", tmp_path / "knot.stl", odd, *TINY)
+    assert pick(rows, "name", "type_before") == [("knot", ""), ("n\\xff", "unknot"), ("trefoil", "3_1")]
+    assert "unknown suffix '.stl'" in rows[0]["message"]
+    assert read_curve(tmp_path / "out" / "n\\xff" / "curve.txt")
 
 
 def test_knot_inputs_are_what_the_command_knot_makes(batch: Batch, tmp_path: Path) -> None:

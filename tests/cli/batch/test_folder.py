@@ -1,11 +1,11 @@
 """Folders of results: whole or not there."""
 
+import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from mobius_flow.cli.batch.folder import new_folder, sweep
-from mobius_flow.cli.batch.job import Job
 from mobius_flow.core import MobiusFlowError
 
 
@@ -57,11 +57,17 @@ def test_two_at_once_make_one(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_sweeping_is_for_one_s_own_runs(tmp_path: Path) -> None:
+def test_sweeping_leaves_what_another_batch_may_be_filling(tmp_path: Path) -> None:
     fill(tmp_path / "a", "done")
-    rooms = [new_folder(tmp_path / name) for name in ("b.x", "b.x-2", "c")]
-    for room in rooms:
-        (room.__enter__() / "curve.txt").touch()  # and killed
-    jobs = [Job(name, 1, None, None, None, str(tmp_path / name), {}, False) for name in ("a", "b.x")]
-    sweep(tmp_path, jobs)
-    assert sorted(path.name.rsplit(".", 2)[0] for path in tmp_path.iterdir()) == [".b.x-2", ".c", "a"]
+    (tmp_path / "other.partial").mkdir()
+    blocks = [new_folder(tmp_path / name) for name in "bc"]
+    killed, filled = (block.__enter__() for block in blocks)
+    for room in (tmp_path / "a", tmp_path / "other.partial", killed):
+        os.utime(room, (0, 0))
+    sweep(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"a", "other.partial", filled.name}
+
+
+def test_the_longest_names_have_results(tmp_path: Path) -> None:
+    fill(tmp_path / ("n" * 255), "done")
+    assert contents(tmp_path / ("n" * 255)) == ["done", "done"]

@@ -29,6 +29,22 @@ def test_files_directories_and_patterns() -> None:
     assert inputs(["b.txt"]) == [Input("b", Path("b.txt").absolute())]
 
 
+def test_codes_are_files(tmp_path: Path) -> None:
+    Path("more/trefoil.pd").write_text("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]")
+    assert names("more") == ["c", "trefoil"]
+
+
+@pytest.mark.parametrize(
+    ("file", "name"), [("..txt", "..txt"), ("...txt", "...txt"), (b"n\xff.txt", "n\\xff"), ("a b ü.txt", "a b ü")]
+)
+def test_any_file_has_a_name_for_its_results(file: str | bytes, name: str) -> None:
+    try:
+        Path(os.fsdecode(file)).write_text("0 0 0\n")
+    except OSError:
+        pytest.skip("the file system has no such names")
+    assert names(os.fsdecode(file)) == [name]
+
+
 def test_knots_and_ranges_in_the_table_s_order() -> None:
     assert names("3_1..6_1") == ["3_1", "4_1", "5_1", "5_2", "6_1"]
     assert names("8_21..9_2") == ["8_21", "9_1", "9_2"]
@@ -57,6 +73,9 @@ def test_a_file_comes_before_a_knot() -> None:
         ("3_1..m4_1", "no mirror images"),
         ("3_1..T(2,9)", "none of the table"),
         ("..", "holds no curve files"),
+        ("DT: [4 6 2]", "codes name no folder; put it in a file that ends in .pd"),
+        ("Gauss: O1+U2+ / U1+O2+", "codes name no folder"),
+        ("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", "codes name no folder"),
     ],
 )
 def test_words_that_name_nothing(word: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,7 @@ def of_all_pairs(curve: Curve, furthest: float = np.inf) -> float:
     return float(distance[chosen].min(initial=np.inf))
 
 
-@pytest.mark.parametrize("name", ["3_1", "8_19", "T(7,8)", "L6a4"])
+@pytest.mark.parametrize("name", ["3_1", "8_19", "T(7,8)", "L6a4", "overhand"])
 def test_they_are_those_of_all_pairs(name: str) -> None:
     curve = knot(name)
     for furthest in (0.01 * curve.length, 0.1 * curve.length, np.inf):

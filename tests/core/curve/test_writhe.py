@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, CurveError
+from mobius_flow.core import Curve, CurveError, Mesh
 from mobius_flow.core.curve.writhe import writhe_and_crossings
 from mobius_flow.core.diagrams import views
 from mobius_flow.core.knots import knot, smooth_knot
@@ -46,6 +46,13 @@ def test_blocks_of_rows_make_no_difference(monkeypatch: pytest.MonkeyPatch) -> N
     together = writhe_and_crossings(curve)
     monkeypatch.setattr("mobius_flow.core.curve.writhe._ROWS", 7)
     assert writhe_and_crossings(curve) == pytest.approx(together, abs=1e-12)
+
+
+def test_the_arcs_without_one_edge_have_all_pairs_of_edges_but_those_with_it() -> None:
+    curve = smooth_knot("5_2", 40)
+    arcs = [Curve(np.roll(curve.vertices, k, axis=0), Mesh((40,), (False,))) for k in range(40)]
+    total = np.sum([writhe_and_crossings(arc) for arc in arcs], axis=0)
+    np.testing.assert_allclose(total, 38 * np.array(writhe_and_crossings(curve)), rtol=1e-12)
 
 
 def test_only_in_space() -> None:

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, MoebiusEnergy, Objective, OptionError
+from mobius_flow.core import Curve, MoebiusEnergy, Objective, OptionError, RelaxOptions
+from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.energies.repulsion import Repulsion
 from mobius_flow.core.energies.repulsion.repulsion import OUTDATED, THETA
@@ -192,3 +193,51 @@ def test_thin_triangles_give_numbers() -> None:
     value, derivative = repulsion(soup(corners), THETA).value_and_derivative(wavy(30, 2.0))
     assert np.isfinite(value)
     assert np.isfinite(derivative).all()
+
+
+def test_second_derivatives_of_arcs() -> None:
+    """Which have fewer edges than vertices."""
+    curve = Curve.from_components([wavy(20).vertices, wavy(30).vertices + 5.0], [False, True])
+    for obstacle in (BALL, FRAME):
+        term, v = repulsion(obstacle), np.random.default_rng(5).normal(size=curve.vertices.shape)
+        product = term.hessian_product(curve, v)
+        np.testing.assert_allclose(term.sparse_hessian(curve) @ v.ravel(), product.ravel(), atol=1e-10)
+        assert hessian_slope(term.frozen_at(curve), curve, v, largest=1e-3) == pytest.approx(3.0, abs=0.1)
+
+
+def test_stiffness_is_the_second_derivative_away_from_a_plane_or_a_line() -> None:
+    """Φ'' = 4π/h³ of both, integrated along an edge at the distance h, beside which others count little."""
+    far, h = 1e4, 0.01
+    plane = Obstacle([[-far, -far, 0], [far, -far, 0], [0, far, 0]], [[0, 1, 2]])
+    line = Obstacle([[-far, 0, 0], [far, 0, 0]], [[0, 1]])
+    strip = Curve([[0.0, 0, h], [1.0, 0, h], [0.5, 0, h + 40.0]])
+    up = np.array([[0.0, 0, 1], [0.0, 0, 1], [0.0, 0, 0]])
+    for obstacle in (plane, line):
+        term = repulsion(obstacle)
+        assert term.stiffness(strip)[0] == pytest.approx(0.5 * 4 * np.pi / h**3, rel=1e-2)
+        assert np.sum(up * term.hessian_product(strip, up)) == pytest.approx(4 * np.pi / h**3, rel=2e-2)
+        assert np.all(term.stiffness(strip) >= 0.0)
+
+
+def test_stiffness_becomes_part_of_the_metric() -> None:
+    curve, options = wavy(24), RelaxOptions(vertices=24, avoid=[BALL])
+    point = start_problem(curve, options).at_curve(curve)
+    (term,) = point.problem.objective.potentials
+    expected = point.problem.metric.at(point.curve).dense() + np.diag(term.stiffness(point.curve))
+    assert np.allclose(point.inner_product.dense(), expected, rtol=1e-12, atol=0.0)
+
+
+def test_what_has_no_area_repels_nothing() -> None:
+    """Clusters of it alone have no centroid; meshes have some."""
+    point, needle = [[5.0, 0.0, 0.0]] * 3, [[5.0, 0.0, 0.0], [6.0, 0.0, 0.0], [5.5, 0.0, 0.0]]
+    corners = np.array([point, point, needle])
+    flat = Obstacle(corners.reshape(-1, 3), np.arange(9).reshape(3, 3))
+    assert Repulsion.of([flat]) == ()
+    both = Obstacle(np.concatenate([sphere(3).corners.reshape(-1, 3), flat.vertices]), _counted(sphere(3), flat))
+    alone = Repulsion.of([sphere(3)])[0].clusters
+    np.testing.assert_array_equal(Repulsion.of([both])[0].clusters.spread, alone.spread)
+
+
+def _counted(*obstacles: Obstacle) -> np.ndarray:
+    """Faces of the obstacles' corners, one after the other."""
+    return np.arange(3 * sum(len(obstacle.faces) for obstacle in obstacles)).reshape(-1, 3)
