@@ -271,7 +271,7 @@ def test_pins_of_a_refined_mesh_keep_the_numbers_of_its_coarse_keys():
     motion = Motion(at_rest(1))
     motion.add(iterate(0, coarse.vertices, coarse, pins=(3,)))
     shifted = fine.vertices + 0.1
-    shifted[6] = fine.vertices[6] + 1e-8
+    shifted[6] = fine.vertices[6] + 1e-6
     motion.add(iterate(1, fine.vertices, fine, path=(), pins=(6,)))
     motion.add(iterate(2, shifted, fine, pins=(6,)))
     frames = np.stack([key.points for key in motion.keys(lambda *_: True).keys])
