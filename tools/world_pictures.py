@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from mobius_flow.core import Curve, Obstacle, RelaxOptions, minimize, read_obstacle
 from mobius_flow.core.knots import knot, overhand
+from mobius_flow.core.types import FloatArray
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -24,16 +25,15 @@ def fitted(curve: Curve, radius: float) -> Curve:
     return curve.with_vertices(radius / np.linalg.norm(centred, axis=1).max() * centred)
 
 
-def draw(axes: Any, curve: Curve, obstacles: Sequence[Obstacle], pins: Sequence[int]) -> None:
-    """One curve, the pins as dots, the obstacles transparent."""
+def draw(axes: Any, curve: Curve, obstacles: Sequence[Obstacle], pins: Sequence[int], frame: FloatArray) -> None:
+    """One curve, the pins as dots, the obstacles transparent; the points of a frame are in sight."""
     for obstacle in obstacles:
         axes.add_collection3d(Poly3DCollection(obstacle.corners, facecolor=(0.4, 0.5, 0.7, 0.06), edgecolor="none"))
     for number, (points, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
         axes.plot(*np.concatenate([points, points[: int(closed)]]).T, color=f"C{number}", linewidth=2)
     if pins:
         axes.scatter(*curve.vertices[list(pins)].T, color="black", s=25, depthshade=False)
-    corners = [curve.vertices, *(obstacle.vertices for obstacle in obstacles)]
-    low, high = np.min([x.min(axis=0) for x in corners], axis=0), np.max([x.max(axis=0) for x in corners], axis=0)
+    low, high = frame.min(axis=0), frame.max(axis=0)
     half, middle = 0.42 * float(np.max(high - low)), 0.5 * (low + high)
     axes.set(xlim=middle[0] + [-half, half], ylim=middle[1] + [-half, half], zlim=middle[2] + [-half, half])
     axes.set_box_aspect((1, 1, 1))
@@ -47,9 +47,11 @@ def picture(name: str, curve: Curve, **options: Any) -> None:
     iterates: list[Any] = []
     result = minimize(curve, wanted, iterates.append)
     print(f"{name}: {result.message}; certified {result.certified}")
+    shown = [iterates[0], iterates[-1]]
+    frame = np.concatenate([*(i.curve.vertices for i in shown), *(each.vertices for each in wanted.avoid)])
     figure = Figure(figsize=(7, 3.5), layout="constrained")
-    for k, iterate in enumerate((iterates[0], iterates[-1])):
-        draw(figure.add_subplot(1, 2, k + 1, projection="3d"), iterate.curve, wanted.avoid, iterate.pins)
+    for k, iterate in enumerate(shown):
+        draw(figure.add_subplot(1, 2, k + 1, projection="3d"), iterate.curve, wanted.avoid, iterate.pins, frame)
     figure.savefig(TARGET / f"world-{name}.png", dpi=90)
 
 
@@ -60,7 +62,7 @@ def main() -> None:
     picture("components", knot("L6a4"), vertices=240)
     picture("open", arc, max_iterations=12)
     picture("pins", arc, pins=(0, 59), pin_tangents=True)
-    picture("obstacles", fitted(knot("6_2"), 1.3), avoid=(sphere,), max_iterations=200)
+    picture("obstacles", fitted(knot("4_1"), 1.3), avoid=(sphere,), vertices=120, max_iterations=60)
 
 
 if __name__ == "__main__":
