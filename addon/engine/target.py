@@ -24,9 +24,9 @@ def target_of(curve: Curve, options: RelaxOptions) -> Target | None:
 
     A closed component has at least the energy of a circle, which a knotted one is far from: a curve whose Alexander
     polynomial shows that it is knotted has no target. An arc has at least that of a segment, which it comes near to
-    where its ends are free.
+    where its ends are free. Pins and obstacles keep curves far above that.
     """
-    if options.energy != "moebius" or options.pins:
+    if options.energy != "moebius" or options.pins or options.avoid:
         return None
     closed = curve.mesh.closed
     if closed == (False,):

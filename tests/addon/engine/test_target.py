@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.addon.engine.target import CIRCLE, target_of
-from mobius_flow.core import Curve, Mesh, MoebiusEnergy, RelaxOptions, minimize
+from mobius_flow.core import Curve, Mesh, MoebiusEnergy, Obstacle, RelaxOptions, minimize
 from mobius_flow.core.knots import knot, overhand
 from shapes import hopf_link, torus_trefoil
 
@@ -56,5 +56,7 @@ def test_arcs_add_nothing_to_the_floor():
     assert target_of(link, MOEBIUS).label == "floor = 8"
 
 
-def test_pins_keep_curves_from_it():
+def test_pins_and_obstacles_keep_curves_from_it():
     assert target_of(overhand(60), RelaxOptions(pins=(0, 59))) is None
+    post = Obstacle([[0.0, 0.0, -9.0], [0.0, 0.0, 9.0]], [[0, 1]])
+    assert target_of(knot("culprit"), RelaxOptions(avoid=(post,))) is None
