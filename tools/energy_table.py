@@ -1,9 +1,9 @@
 """Write the table of least energies in docs/energies.md from the results of a batch.
 
     mobius-flow batch 0_1..10_165 L2a1..L7n2 -o results --extrapolate --escape-saddles
-    python tools/energy_table.py results/results.csv
+    python tools/energy_table.py results/results.csv [MORE.csv ...]
 
-Of several starts the lowest counts.  The table stands between ``<!-- table: least energies -->`` and ``<!-- end -->``.
+Of several runs of a type the lowest counts.  The table stands after ``<!-- table: least energies -->`` in the page.
 """
 
 import csv
@@ -50,8 +50,7 @@ def _with_error(row: Row) -> str:
 
 def main() -> None:
     """Rewrite the table."""
-    with open(sys.argv[1], encoding="utf-8", newline="") as file:
-        rows = least(csv.DictReader(file))
+    rows = least(row for path in sys.argv[1:] for row in csv.DictReader(Path(path).read_text("utf-8").splitlines(True)))
     page = PAGE.read_text(encoding="utf-8")
     PAGE.write_text(_REGION.sub(lambda _: f"\n{table(rows)}\n", page), encoding="utf-8")
     print(f"{len(rows)} types")

@@ -90,7 +90,7 @@ def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
     context.view_layer.update()
     objects = selected_curves(context)
     keys = BakedKeys(objects)
-    options = relax_options({**values, "pins": pinned_vertices(objects, keys.mesh)})
+    options = relax_options({**values, "balance": False, "pins": pinned_vertices(objects, keys.mesh)})
     return Rest.of(keys.curves[-1], replace(options, avoid=Surroundings.of(values["avoid"], objects).obstacles))
 
 

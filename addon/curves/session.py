@@ -187,6 +187,8 @@ class Session:
         pins = tuple(sorted({*options.pins, *group.pins}))
         if pins or obstacles:
             self._key_options.check_place()
+        if obstacles and options.balance:
+            raise OptionError(Phrase("Balance does not go with what is avoided; leave it out, or avoid nothing"))
         if group.continues:  # the keys that are there have as many points as the curves have now
             options = replace(options, vertices=len(group.curve), mesh="fixed")
         return replace(options, pins=pins, avoid=obstacles)

@@ -94,4 +94,4 @@ def _with_handles(bezier: FloatArray, closed: bool) -> tuple[FloatArray, FloatAr
 def _fill_nurbs(spline: "bpy.types.Spline", control: Frame) -> None:
     spline.points.add(len(control) - 1)
     spline.points.foreach_set("co", np.pad(control, ((0, 0), (0, 1)), constant_values=1.0).ravel())
-    spline.order_u, spline.use_endpoint_u = 4, True  # which a cyclic spline has no use for
+    spline.order_u, spline.use_endpoint_u = 4, not spline.use_cyclic_u

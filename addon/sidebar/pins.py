@@ -27,7 +27,7 @@ class VIEW3D_PT_mobius_flow_pins(InSidebar, bpy.types.Panel):  # noqa: N801 - Bl
         column = layout.column(align=True)
         column.operator(CURVE_OT_mobius_flow_pin.bl_idname, icon="PINNED")
         row = column.row(align=True)
-        row.operator(CURVE_OT_mobius_flow_pin_ends.bl_idname, icon="TRACKING_CLEAR_FORWARDS")
+        row.operator(CURVE_OT_mobius_flow_pin_ends.bl_idname, icon="PINNED")
         row.operator(CURVE_OT_mobius_flow_unpin.bl_idname, icon="UNPINNED")
         count = sum(pins.count(obj.data) for obj in curves_at_hand(context))
         if count:

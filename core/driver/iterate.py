@@ -31,10 +31,10 @@ class Iterate:
         True if every leg from the start of the run to here was proved free of contact.
     edge_length_error
         max |log ℓ/ℓ⁰| over the edges.
-    grown
-        How many times the lengths of the start, as they were to be there, those of this curve are to be.
     method
         Name of the method that took the step; another one than was asked for where that one was stuck.
+    grown
+        How many times the lengths of the start, as they were to be there, those of this curve are to be.
     pins
         Vertices of this curve that are held, counted from 0: those asked for, and those that cannot move between them.
     """
@@ -47,6 +47,6 @@ class Iterate:
     path: tuple[FloatArray, ...]
     certified: bool
     edge_length_error: float
-    grown: float
     method: str
+    grown: float = 1.0
     pins: tuple[int, ...] = ()

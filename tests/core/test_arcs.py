@@ -7,10 +7,9 @@ import pytest
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, RelaxOptions, Result, Status, minimize
 from mobius_flow.core.driver import Trajectory
 from mobius_flow.core.driver.interventions.split_links import split
-from mobius_flow.core.knots import overhand
+from mobius_flow.core.knots import knot_type, overhand
 from mobius_flow.core.knots.alexander import linking_numbers, signature
 from mobius_flow.core.knots.composite import knotted_ball
-from mobius_flow.core.knots.recognition import names_alike
 from mobius_flow.core.units import Units
 from mobius_flow.core.verify import verify
 from shapes import half_circle, opened, regular_polygon, straight_arc, torus_trefoil
@@ -56,9 +55,9 @@ def test_energies(tmp_path: Path, energy: str) -> None:
 
 
 def test_single_edges(tmp_path: Path) -> None:
-    result = relaxed(
-        tmp_path, Curve([[0, 0, 0], [1, 0, 0], [0, 0.1, 1], [0, 1, 1]], Mesh((2, 2), (False, False))), vertices=4
-    )
+    edges = Curve([[0, 0, 0], [1, 0, 0], [0, 0.1, 1], [0, 1, 1]], Mesh((2, 2), (False, False)))
+    result = relaxed(tmp_path, edges, vertices=4, max_iterations=50)
+    assert result.final_energy < 0.1 * result.energies[0]  # they drift apart for ever
     np.testing.assert_allclose(result.curve.edge_lengths, [1.0, 0.9])
 
 
@@ -76,7 +75,7 @@ def test_overhand_arcs_are_knotted() -> None:
         points = overhand(vertices).vertices
         ends = [3 * points[end] - 2 * points[inner] for end, inner in ((-1, -5), (0, 4))]
         closed = Curve([*points, ends[0], (ends[0] + ends[1]) / 2 + [0, 40, 0], ends[1]])
-        assert names_alike(closed, 3) == ["3_1"]
+        assert str(knot_type(closed)) == "3_1"
 
 
 def test_overhand_arcs_slip_out(tmp_path: Path) -> None:
@@ -142,7 +141,7 @@ def test_what_only_closed_components_have() -> None:
     for function in (signature, linking_numbers):
         with pytest.raises(CurveError, match=r"^component 1 is open; .* are for closed components$"):
             function(arc)
-    assert names_alike(arc, 3) == []
+    assert knot_type(arc).names == ()
     assert knotted_ball(arc) is None
     with pytest.raises(CurveError, match=r"component 1 is open; Möbius images of equal energy"):
         minimize(arc, RelaxOptions(balance=True))

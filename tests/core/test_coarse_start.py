@@ -39,7 +39,7 @@ def relaxed(curve: Curve, **options: object) -> tuple[list[Iterate], Trajectory]
 @pytest.mark.usefixtures("everywhere")
 @pytest.mark.parametrize(
     "curve",
-    [bent(torus_trefoil(900)), hard_unknot(20, seed=3), bent(knot("L2a1", 1500))],
+    [bent(torus_trefoil(900)), hard_unknot(20, seed=3), bent(knot("L2a1", 900))],
     ids=["trefoil", "hard unknot", "Hopf link"],
 )
 def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve, tmp_path: Path) -> None:

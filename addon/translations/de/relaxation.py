@@ -146,8 +146,8 @@ _OPTIONS = {
         "Gewicht von Längenfehlern in den Strafmethoden; 0: das der Methode"
     ),
     "What is minimised, with a barrier between strands": "Was minimiert wird, mit einer Barriere zwischen Strängen",
-    "Which random motions hops begin with: equal numbers, equal motions": (
-        "Mit welchen zufälligen Bewegungen Sprünge beginnen: gleiche Zahlen, gleiche Bewegungen"
+    "Of random motions, of hops and of scrambled starts: equal numbers, equal motions": (
+        "Der zufälligen Bewegungen, von Sprüngen und durchmischten Anfängen: gleiche Zahlen, gleiche Bewegungen"
     ),
     "the method's own": "die der Methode",
 }

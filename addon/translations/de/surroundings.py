@@ -31,6 +31,9 @@ SENTENCES = {
         "Ein Punkt von '{name}' ist nicht endlich oder unermesslich weit weg; reparieren oder löschen"
     ),
     "Avoided": "Gemieden",
+    "Balance does not go with what is avoided; leave it out, or avoid nothing": (
+        "Ausgleichen geht nicht, wo etwas gemieden wird; eines von beiden weglassen"
+    ),
     "Curves never touch {names}": "Kurven berühren nie {names}",
     "Nothing in it is visible": "Nichts darin ist sichtbar",
     "Nothing is near the selected curves but what they avoid": (

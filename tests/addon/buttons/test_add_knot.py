@@ -102,8 +102,10 @@ def test_not_in_edit_mode():
 def test_strands_wound_tightly_do_not_take_all_pairs_of_points(monkeypatch, p, q):
     """All pairs within the thickest tube of T(60, 61) would be a hundred million."""
     looked_at = []
-    counted = strands.arc_distance_of_pairs
-    monkeypatch.setattr(strands, "arc_distance_of_pairs", lambda c, i, j: looked_at.append(len(i)) or counted(c, i, j))
+    counted = strands.arc_distance_of_vertices
+    monkeypatch.setattr(
+        strands, "arc_distance_of_vertices", lambda c, i, j: looked_at.append(len(i)) or counted(c, i, j)
+    )
     bpy.ops.curve.mobius_flow_add_knot(kind="TORUS", p=p, q=q)
     obj = bpy.context.object
     assert obj.data.bevel_depth > 0

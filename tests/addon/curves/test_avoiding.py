@@ -135,7 +135,7 @@ def test_an_empty_name_avoids_nothing(capfd):
     assert "proved free of contact with itself\n" in capfd.readouterr().out
 
 
-@pytest.mark.parametrize("further", ["bake_again", "continue", "balance"])
+@pytest.mark.parametrize("further", ["bake_again", "continue"])
 def test_what_goes_on_avoids_it_too(capfd, further):
     tube, moving = torus(), add_curve([ring()], "Ring")
     avoid(tube)
@@ -144,6 +144,16 @@ def test_what_goes_on_avoids_it_too(capfd, further):
     assert getattr(bpy.ops.curve, f"mobius_flow_{further}")() == {"FINISHED"}
     assert capfd.readouterr().out.count("and with 'Torus'") == 2
     assert free(moving, Surroundings.of([tube], []).obstacles)
+
+
+def test_images_of_equal_energy_are_not_taken():
+    add_curve([ring()], "Ring")
+    avoid(torus())
+    said = "Balance does not go with what is avoided; leave it out, or avoid nothing"
+    assert refused(balance=True) == said
+    relax(**SHORT)
+    with pytest.raises(RuntimeError, match=said):
+        bpy.ops.curve.mobius_flow_balance()
 
 
 def refused(**options):

@@ -22,7 +22,7 @@ def iterate(index, vertices, mesh_of, path=None, **changes):
     curve = mesh_of.with_vertices(vertices)
     path = ((vertices,) if index else ()) if path is None else path
     values = {"energy": 0.0, "gradient_norm": 1.0, "step_size": 0.1, "certified": True, "edge_length_error": 0.0}
-    values |= {"method": "lbfgs"}
+    values |= {"method": "lbfgs", "grown": 1.0}
     return Iterate(index=index, curve=curve, path=path, **(values | changes))
 
 
@@ -248,3 +248,31 @@ def test_a_hop_is_keyed_like_a_step():
     keys = motion.keys(is_free)
     assert len(keys.keys) < 2 * len(iterates)
     assert_proved(keys, iterates[-1].curve.mesh)
+
+
+def test_pinned_points_keep_the_numbers_of_the_start():
+    """However they are rounded: here by turns to either side of what lies halfway between two 32-bit numbers."""
+    curve = torus_trefoil(40)
+    step = np.spacing(np.float32(1.0)).astype(np.float64)
+    motion = Motion(at_rest(1))
+    for k in range(4):
+        vertices = curve.vertices + 0.01 * k
+        vertices[7] = 1.0 + 0.5 * step + (-1) ** k * 1e-12
+        motion.add(iterate(k, vertices, curve, pins=(7,)))
+    frames = np.stack([key.points for key in motion.keys(lambda *_: True).keys])
+    np.testing.assert_array_equal(frames[:, 7], np.broadcast_to(frames[0, 7], (4, 3)))
+    assert not np.array_equal(frames[0], frames[-1])
+
+
+def test_pins_of_a_refined_mesh_keep_the_numbers_of_its_coarse_keys():
+    coarse = torus_trefoil(20)
+    pieces = np.full(20, 2)
+    fine = subdivide(coarse, pieces)
+    motion = Motion(at_rest(1))
+    motion.add(iterate(0, coarse.vertices, coarse, pins=(3,)))
+    shifted = fine.vertices + 0.1
+    shifted[6] = fine.vertices[6] + 1e-6
+    motion.add(iterate(1, fine.vertices, fine, path=(), pins=(6,)))
+    motion.add(iterate(2, shifted, fine, pins=(6,)))
+    frames = np.stack([key.points for key in motion.keys(lambda *_: True).keys])
+    np.testing.assert_array_equal(frames[:, 6], np.broadcast_to(coarse.vertices[3].astype(np.float32), (3, 3)))

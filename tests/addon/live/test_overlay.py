@@ -8,9 +8,11 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_trefoil  # noqa: E402
+from mobius_flow.addon.curves import pins  # noqa: E402
 from mobius_flow.addon.engine.contrast import contrast  # noqa: E402
 from mobius_flow.addon.live import overlay, registry  # noqa: E402
 from mobius_flow.core.knots import knot  # noqa: E402
+from shapes import torus_trefoil  # noqa: E402
 
 
 @pytest.fixture
@@ -141,3 +143,18 @@ def test_drawing_ends_with_the_extension(addon):
     finally:
         addon.register()
     assert len(overlay._handles) == 1
+
+
+def test_pinned_points_are_marked(drawn, monkeypatch):
+    obj = add_curve([torus_trefoil(12).vertices])
+    obj.location.x = 2
+    bpy.context.view_layer.update()
+    pins.pin(obj.data.splines[0], np.arange(12) < 2)
+    monkeypatch.setattr(overlay, "location_3d_to_region_2d", lambda _region, _data, place: place[:2])
+    here = view()
+    here.mode, here.selected_objects = "OBJECT", [obj]
+    overlay._pins(here)
+    ((_, corners, _, kind),) = drawn
+    middles = np.reshape(corners, (2, -1, 2)).mean(axis=1)
+    np.testing.assert_allclose(middles, torus_trefoil(12).vertices[:2, :2] + [2, 0], atol=1e-5)
+    assert kind == "LINES"
