@@ -62,7 +62,7 @@ def main() -> None:
     picture("components", knot("L6a4"), vertices=240)
     picture("open", arc, max_iterations=12)
     picture("pins", arc, pins=(0, 59), pin_tangents=True)
-    picture("obstacles", fitted(knot("4_1"), 1.3), avoid=(sphere,), vertices=120, max_iterations=60)
+    picture("confined", fitted(knot("4_1"), 1.3), avoid=(sphere,), vertices=120, max_iterations=60)
 
 
 if __name__ == "__main__":
