@@ -161,7 +161,7 @@ def test_verify_tells_how_far_it_is(
     trajectory: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     tqdm = pytest.importorskip("tqdm")
-    monkeypatch.setattr(progress, "_bar", lambda **options: tqdm.tqdm(mininterval=0, leave=False, **options))
+    monkeypatch.setattr(progress, "bar", lambda **options: tqdm.tqdm(mininterval=0, leave=False, **options))
     seen: list[tuple[int, int]] = []
     assert verify(trajectory, lambda *counts: seen.append(counts)).accepted
     assert seen == [(1, 2), (2, 2)]

@@ -13,6 +13,9 @@ from mobius_flow.core import (
     minimize,
     relax,
 )
+from mobius_flow.core.collision import Contact
+from mobius_flow.core.curve.places import at_edges
+from mobius_flow.core.descent import NoStep
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
@@ -82,15 +85,11 @@ def test_a_curve_stays_on_its_side_of_a_rod(tmp_path):
     assert angles[-1] - angles[0] == pytest.approx(2 * np.pi)
 
 
-def test_a_stalled_run_names_the_obstacle():
-    """An ellipse in a box without room for it to become rounder."""
-    ring = regular_polygon(24)
-    ellipse = ring.with_vertices(ring.vertices * [2.0, 1.0, 1.0])
-    sides = np.abs(ellipse.vertices).max(axis=0) + 1e-9
-    tight = Obstacle(box(-1.0, 1.0).vertices * sides, box(-1.0, 1.0).faces, "box")
-    result = minimize(ellipse, RelaxOptions(vertices=24, mesh="fixed", edge_lengths="keep", avoid=(tight,)))
-    assert result.outcome.place is not None
-    assert "and obstacle box are so near to each other" in result.message
+def test_what_no_step_gets_past_is_named():
+    stuck = NoStep.because(Contact((4,), "obstacle box"))
+    assert stuck.reason == "edge 5 and obstacle box are so near to each other that no step is free of contact"
+    assert stuck.limited_by is not None
+    assert at_edges(regular_polygon(24), stuck.limited_by.edges).vertices == (4, 5)
 
 
 def test_a_start_that_pierces_is_refused():
