@@ -63,6 +63,8 @@ def main() -> None:
     picture("open", arc, max_iterations=12)
     picture("pins", arc, pins=(0, 59), pin_tangents=True)
     picture("confined", fitted(knot("4_1"), 1.3), avoid=(sphere,), vertices=120, max_iterations=60)
+    small = fitted(knot("3_1"), 0.5)
+    picture("growth", small, avoid=(sphere,), vertices=60, mesh="finer", grow=12.0, max_iterations=90)
 
 
 if __name__ == "__main__":
