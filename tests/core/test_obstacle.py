@@ -108,7 +108,7 @@ def test_curve_files_are_closed_polygons(tmp_path, suffix):
         ("f 1 2 5\n", r"line 5: vertex 5 does not exist; there are 4"),
         ("f 1 2 0\n", r"line 5: vertex 0 does not exist; OBJ counts from 1"),
         ("f 1 2 x\n", r"line 5: 'x' is not a whole number"),
-        ("v nan 0 0\nf 1 2 3\n", r"mesh\.obj: mesh\.obj: vertex 5, \(nan, 0, 0\), is not finite"),
+        ("v nan 0 0\nf 1 2 3\n", r"mesh\.obj: vertex 5, \(nan, 0, 0\), is not finite"),
     ],
 )
 def test_files_that_are_no_obstacles_are_refused(tmp_path, text, said):
