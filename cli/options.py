@@ -7,6 +7,7 @@ from typing import Any
 
 from ..core import RelaxOptions
 from ..core.curve.io import CurveFile
+from ..core.errors import OptionError
 from ..core.option import Option, declared
 
 
@@ -35,7 +36,12 @@ def inputs(arguments: argparse.Namespace) -> dict[str, str]:
 
 def _value(option: Option, given: Any) -> Any:
     """What is given, with words turned into the items of a tuple."""
-    return tuple(item for word in given for item in option.read(word)) if option.repeated else given
+    if not option.repeated:
+        return given
+    again = next((word for word in given if given.count(word) > 1), None)
+    if again is not None:
+        raise OptionError(f"{flag(option)} names {again:.60} more than once")
+    return tuple(item for word in given for item in option.read(word))
 
 
 def about(file: CurveFile, options: RelaxOptions) -> RelaxOptions:

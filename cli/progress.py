@@ -5,22 +5,19 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import TracebackType
-from typing import Any
+from typing import Any, Self
 
 from ..core import Iterate, RelaxOptions
+from ..core.driver.termination import gradient_bound
 
 
-class Progress:
-    """A bar that runs from the first gradient norm down to the tolerance, on a logarithmic scale."""
+class WithBar:
+    """What shows a bar, if there is one, and takes it away in the end."""
 
-    def __init__(self, options: RelaxOptions, shown: bool) -> None:
-        self._options = options
-        self._bar: Any = None
-        self._start: float | None = None
-        if shown:
-            self._bar = bar(total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}")
+    def __init__(self, shown: bool, **options: Any) -> None:
+        self._bar = bar(**options) if shown else None
 
-    def __enter__(self) -> "Progress":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -29,11 +26,20 @@ class Progress:
         if self._bar is not None:
             self._bar.close()
 
+
+class Progress(WithBar):
+    """A bar that runs from the first gradient norm down to the tolerance, on a logarithmic scale."""
+
+    def __init__(self, options: RelaxOptions, shown: bool) -> None:
+        super().__init__(shown, total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}")
+        self._options = options
+        self._start: float | None = None
+
     def update(self, iterate: Iterate) -> None:
         """Show an iterate."""
         if self._bar is None:
             return
-        bound = self._options.tolerance * math.sqrt(abs(iterate.energy))
+        bound = gradient_bound(self._options, iterate.curve.mesh, iterate.energy)
         distance = math.log(max(iterate.gradient_norm, bound) / bound)
         if self._start is None:
             self._start = max(distance, 1e-9)

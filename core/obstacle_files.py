@@ -18,7 +18,7 @@ def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
     """Read an obstacle, which gets the file's name.
 
     In an ``.obj`` file faces ``f`` count, polygons cut into triangles, and polylines ``l``, open ones too; in any other
-    curve file its closed polygons.
+    curve file its polygons.
 
     Parameters
     ----------

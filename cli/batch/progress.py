@@ -1,17 +1,16 @@
 """How far a batch is, on a terminal."""
 
 import sys
-from types import TracebackType
 from typing import TYPE_CHECKING
 
-from ..progress import bar
+from ..progress import WithBar
 from .table import Row
 
 if TYPE_CHECKING:
     from distributed import Client
 
 
-class Progress:
+class Progress(WithBar):
     """A bar of the runs that are done, with the numbers of those that failed and that are running, and the time left.
 
     Above it stands where the cluster's dashboard is.
@@ -21,16 +20,7 @@ class Progress:
         self._client, self._failed = client, 0
         if shown:
             print(f"mobius-flow: dashboard at {client.dashboard_link}", file=sys.stderr)
-        self._bar = bar(total=total, unit="run", smoothing=0.1) if shown else None
-
-    def __enter__(self) -> "Progress":
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._bar is not None:
-            self._bar.close()
+        super().__init__(shown, total=total, unit="run", smoothing=0.1)
 
     def show(self, row: Row) -> None:
         """Count a run that has ended."""

@@ -110,3 +110,10 @@ def test_the_help_says_that_it_may_be_given_several_times(capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert "--avoid MESH.obj" in said
     assert "may be given several times" in said
+
+
+def test_an_obstacle_that_is_named_twice_would_repel_twice(tmp_path, capsys):
+    (tmp_path / "wall.obj").write_text("v 9 0 0\nv 9 1 0\nv 9 0 1\nf 1 2 3\n")
+    wall = str(tmp_path / "wall.obj")
+    assert main(["relax", wall, str(tmp_path / "out.txt"), "--avoid", wall, "--avoid", wall]) == 2
+    assert capsys.readouterr().err == f"mobius-flow: --avoid names {wall:.60} more than once\n"
