@@ -1,5 +1,6 @@
 """Runs on a Dask cluster: this machine's cores, or one that is running already."""
 
+import asyncio
 import logging
 import os
 from collections.abc import Iterable, Iterator
@@ -68,6 +69,7 @@ def _joined(address: str) -> "Iterator[Client]":
     from distributed import Client
 
     try:
+        asyncio.run(_greet(address))
         client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError, TypeError) as error:  # TypeError: where TLS is not set up
         raise MobiusFlowError(f"{address}: no Dask scheduler answers there") from error
@@ -77,6 +79,15 @@ def _joined(address: str) -> "Iterator[Client]":
         except TimeoutError as error:
             raise MobiusFlowError(f"{address}: no worker has joined in {_PATIENCE:.0f} s") from error
         yield client
+
+
+async def _greet(address: str) -> None:
+    """Connect and part; a client that cannot connect would be left half made, and hang when it is collected."""
+    from distributed.comm import connect
+    from distributed.security import Security
+
+    comm = await connect(address, timeout=_PATIENCE, **Security().get_connection_args("client"))
+    await comm.close()
 
 
 def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator[tuple[Job, Row]]:

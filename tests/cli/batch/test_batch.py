@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -236,7 +237,9 @@ def test_one_sentence(
     pytest.importorskip("distributed")
     monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
     monkeypatch.chdir(tmp_path)
+    threads = threading.enumerate()
     assert main(["batch", *words, "-o", "out"]) == 2
+    assert threading.enumerate() == threads, "a client that is left half made"
     said = capsys.readouterr().err
     assert said.startswith("mobius-flow: ")
     assert told in said
