@@ -1,4 +1,4 @@
-"""Two linked rings, both selected, are relaxed together; with one of them selected the panel names the other."""
+"""Two linked rings: relaxed together; one alone, with the other named; one around the other, which it avoids."""
 
 from collections.abc import Sequence
 
@@ -28,6 +28,7 @@ def case() -> Steps:
     yield from moved(before)
     yield from removed(before)
     yield from one_alone(before)
+    yield from one_avoids_the_other(before)
 
 
 def escaped(before: list[np.ndarray]) -> Steps:
@@ -92,10 +93,10 @@ def removed(before: list[np.ndarray]) -> Steps:
 def one_alone(before: list[np.ndarray]) -> Steps:
     """With one of them selected the panel names the other, which stays as it is."""
     with here():
-        bpy.ops.ed.undo_push(message="Whole")
         window().scene.mobius_flow.vertices = 0
         rings()[0].select_set(False)
         window().view_layer.objects.active = rings()[1]
+        bpy.ops.ed.undo_push(message="One selected")
         assert bpy.ops.curve.mobius_flow_relax.poll()
         named = addon("curves.neighbours").warning(bpy.context, [rings()[1]])
     assert named == "'A' nearby is neither selected nor avoided, and may be crossed", named
@@ -106,6 +107,28 @@ def one_alone(before: list[np.ndarray]) -> Steps:
     assert rings()[0].data.shape_keys is None
     assert np.array_equal(points(rings()[0]), before[0])
     yield from picture("links-6-one-relaxed", differs_from="links-5-one-selected")
+    yield from key("Z", ctrl=True)
+    yield from until(lambda: rings()[1].data.shape_keys is None, "undo of Relax")
+    are_whole(before)
+
+
+def one_avoids_the_other(before: list[np.ndarray]) -> Steps:
+    """What is avoided stays as it is, and the other one around it at every key."""
+    yield from button("curve.mobius_flow_avoid")
+    yield from until(lambda: window().scene.mobius_flow_surroundings.avoid is not None, "the collection")
+    yield from button("curve.mobius_flow_relax")
+    yield from is_("done")
+    print("MEASURED", run_message(), flush=True)
+    assert run_message().endswith("free of contact with itself, and with 'A'"), run_message()
+    still, moving = rings()
+    assert still.data.shape_keys is None
+    assert np.array_equal(points(still), before[0])
+    blocks = moving.data.shape_keys.key_blocks
+    assert len(blocks) > 2
+    assert {linking_number(*in_world([before[0], key_points(each)])) for each in blocks} == {
+        linking_number(*in_world(before))
+    }
+    yield from picture("links-7-avoided", differs_from="links-6-one-relaxed")
 
 
 def add_rings() -> None:
