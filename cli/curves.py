@@ -71,6 +71,12 @@ def text_of(curve: Curve, form: Format) -> str:
     return text.getvalue().rstrip("\n")
 
 
+def check_regular(path: str | os.PathLike[str]) -> None:
+    """Raise a CurveFileError unless there is a regular file: a pipe might never end."""
+    if not os.path.isfile(path):
+        raise CurveFileError(os.fspath(path), "cannot be read: it is missing, or no regular file")
+
+
 @contextmanager
 def refusals(file: CurveFile) -> Iterator[None]:
     """Add the file's name and the line to errors about its curve."""

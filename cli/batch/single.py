@@ -1,6 +1,5 @@
 """One run of a batch, from its start to its folder of results."""
 
-import os
 import time
 from contextlib import nullcontext
 from dataclasses import replace
@@ -76,9 +75,8 @@ def _options(job: Job) -> RelaxOptions:
 
 
 def _load(path: str) -> CurveFile:
-    """Read a file; a pipe, which might never end, is none."""
-    if not os.path.isfile(path):
-        raise CurveFileError(path, "cannot be read: it is missing, or no regular file")
+    """Read a curve file; a CurveFileError tells why it cannot be read."""
+    curves.check_regular(path)
     form = FORMATS.get(Path(path).suffix.lower())
     if form is None:
         raise CurveFileError(path, wrong_suffix(path, FORMATS, "curve files"))
