@@ -29,7 +29,7 @@ from .. import curves
 from ..main import explained
 from ..options import about
 from ..provenance import environment
-from .folder import new_folder, write_report
+from .folder import check_name, new_folder, write_report
 from .job import CURVE, TRAJECTORY, Job
 from .table import Row
 
@@ -48,6 +48,7 @@ def relaxed(job: Job) -> Row:
 
 def _relaxed(job: Job) -> Row:
     began = time.perf_counter()
+    check_name(Path(job.folder))
     options = _options(job)
     file = None if job.file is None else _load(job.file)
     if file is not None:
