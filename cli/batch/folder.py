@@ -55,7 +55,7 @@ def check_replaceable(path: Path) -> None:
 
 
 def check_name(path: Path) -> None:
-    """Raise a MobiusFlowError if no folder can be called so, mostly for length: it is told before the work, not after."""
+    """Raise a MobiusFlowError if no folder can be called so, as names too long cannot: before work is put into it."""
     try:
         path.lstat()  # each file system has its own limit
     except FileNotFoundError:

@@ -107,7 +107,7 @@ def planar_text(diagram: Diagram) -> str:
 def gauss_text(diagram: Diagram) -> str:
     """Gauss code with signs, crossings numbered from 1."""
     signs = ["+" if sign > 0 else "-" for sign in diagram.signs]
-    parts = ("".join(f"{'UO'[over]}{c + 1}{signs[c]}" for c, over in part) for part in diagram.passes)
+    parts = ("".join(f"{'UO'[over]}{c + 1}{signs[c]}" for c, over in part) or "[]" for part in diagram.passes)
     return f"Gauss: {' / '.join(parts)}"
 
 

@@ -74,6 +74,8 @@ def test_code_files(tmp_path, run):
         2,
         f"mobius-flow: {tmp_path}/b.dt: DT codes are only read; use .pd or .gauss\n",
     )
+    (tmp_path / "empty.dt").write_text("# the cinquefoil\n")
+    assert "empty.dt: the code is empty; write such as DT: [4 6 2]" in run("info", tmp_path / "empty.dt")[2]
     (tmp_path / "bad.pd").write_text("PD[X[1,2,3,4]]")
     status, _, said = run("info", tmp_path / "bad.pd")
     assert status == 2
