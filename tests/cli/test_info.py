@@ -72,7 +72,7 @@ def test_code_files(tmp_path, run):
     assert " 5_1 (proved" in text
     assert run("knot", "3_1", tmp_path / "b.dt")[::2] == (
         2,
-        f"mobius-flow: {tmp_path}/b.dt: DT codes are only read; use .pd or .gauss\n",
+        f"mobius-flow: {tmp_path}/b.dt: this format is only read; choose another one to write\n",
     )
     (tmp_path / "empty.dt").write_text("# the cinquefoil\n")
     assert "empty.dt: the code is empty; write such as DT: [4 6 2]" in run("info", tmp_path / "empty.dt")[2]
