@@ -111,6 +111,14 @@ def test_refusals(trefoil, tmp_path, run):
     assert run("info", crossed)[0] == 2
 
 
+def test_arcs_have_no_type(tmp_path, run):
+    assert run("knot", "overhand", tmp_path / "arc.txt")[0] == 0
+    assert (
+        "type                    none: only closed curves have a knot type, and this one is open\n"
+        in (run("info", tmp_path / "arc.txt")[1])
+    )
+
+
 def test_a_relaxed_shape_of_many_vertices(tmp_path, run):
     (tmp_path / "knot.txt").write_text(
         "\n".join(" ".join(map(repr, point)) for point in smooth_knot("7_4", 2000).vertices.tolist())

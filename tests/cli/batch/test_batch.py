@@ -204,6 +204,18 @@ def test_an_interrupt_leaves_the_table(
     assert capsys.readouterr().err == "mobius-flow: interrupted\n"
 
 
+@pytest.mark.parametrize("loaded", [True, False])
+def test_a_dashboard_is_named_where_there_is_one(
+    loaded: bool, scheduler: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    module = "distributed.dashboard.scheduler"
+    monkeypatch.setitem(sys.modules, module, sys)
+    if not loaded:
+        del sys.modules[module]
+    with cluster.connected(scheduler) as client, Progress(client, 1, shown=True):
+        assert ("mobius-flow: dashboard at http://" in capsys.readouterr().err) == loaded
+
+
 def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster, "WINDOW", 3)
     monkeypatch.setattr(sandbox, "run", lambda job, _limit: Row.failure(job, "as asked for"))
