@@ -33,7 +33,7 @@ class Progress(WithBar):
 
 
 def _has_dashboard(client: "Client") -> bool:
-    """Whether the scheduler shows one: not where bokeh is missing, or nobody wants it, though it has a link even then."""
+    """Whether the scheduler shows one: there is a link even where bokeh is missing, or nobody wants it."""
 
     def loaded() -> bool:  # a local function travels by value: the scheduler need not have this package
         return "distributed.dashboard.scheduler" in sys.modules
