@@ -1,10 +1,9 @@
 """Curves from and to files and, as ``-``, the standard streams."""
 
 import argparse
-import io
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -19,13 +18,14 @@ INPUT, OUTPUT = "standard input", "standard output"
 MAX_VERTICES = 200_000  # of curves that any command takes
 
 
-def add_format(parser: argparse.ArgumentParser) -> None:
+def add_format(parser: argparse.ArgumentParser, suffixes: Iterable[str] = FORMATS) -> None:
     """Add the option that tells what the suffix does not."""
+    names = [suffix[1:] for suffix in suffixes]
     parser.add_argument(
         "--format",
         metavar="F",
-        choices=[suffix[1:] for suffix in FORMATS],
-        help=f"what - and files without a known suffix hold: {', '.join(s[1:] for s in FORMATS)} (default for -: txt)",
+        choices=names,
+        help=f"what - and files without a known suffix hold: {', '.join(names)} (default for -: txt)",
     )
 
 
@@ -59,16 +59,15 @@ def write(path: str, curve: Curve, name: str | None = None) -> None:
         write_curve(path, curve, form)
         return
     try:
-        emit(text_of(curve, form))
+        emit(form.text(curve).rstrip("\n"))
     except OutputStreamError as error:
         raise MobiusFlowError(str(error)) from error
 
 
-def text_of(curve: Curve, form: Format) -> str:
-    """What a file of the curve would hold, without its last line end; raises CurveError if the format can't hold it."""
-    text = io.StringIO()
-    form.write(curve, text)
-    return text.getvalue().rstrip("\n")
+def check_regular(path: str | os.PathLike[str]) -> None:
+    """Raise a CurveFileError unless there is a regular file: a pipe might never end."""
+    if not os.path.isfile(path):
+        raise CurveFileError(os.fspath(path), "cannot be read: it is missing, or no regular file")
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from ..core.errors import OutputError, wrong_suffix
 from ..core.system.files import atomic_write
 from .batch.job import CSV, CURVE, folder_name
 from .batch.table import FAILED
+from .curves import check_regular
 from .figures import figure_class
 from .places import check_place
 from .progress import bar
@@ -73,6 +74,8 @@ def run(options: argparse.Namespace) -> int:
 def _results(directory: Path) -> list[Shown]:
     """The rows of a table that have results; a MobiusFlowError tells where there are none."""
     try:
+        if not (directory / CSV).is_file():
+            raise FileNotFoundError  # also for a pipe, which might never end
         with (directory / CSV).open(encoding="utf-8", newline="") as stream:
             rows = [row for row in csv.DictReader(stream) if row["status"] != FAILED]
         found = [_shown(directory, row) for row in rows]
@@ -80,6 +83,8 @@ def _results(directory: Path) -> list[Shown]:
         raise MobiusFlowError(f"{directory}: holds no results of mobius-flow batch") from error
     if not found:
         raise MobiusFlowError(f"{directory}: none of the runs has a result")
+    for each in found:
+        check_regular(each.curve)  # before pictures, which take time
     return found
 
 

@@ -4,7 +4,7 @@ import argparse
 from typing import Any
 
 from ..core import CurveError
-from ..core.knots import FORMATS, UnknownKnotError, knot, knot_names, smooth_knot
+from ..core.knots import WRITTEN_FORMATS, UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 from .streams import emit
@@ -31,8 +31,8 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help='such as 3_1, L7a3, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)" or a code, "DT: [4 6 2]"',
     )
-    parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(FORMATS)}, or - for standard output")
-    curves.add_format(parser)
+    parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(WRITTEN_FORMATS)}, or - for standard output")
+    curves.add_format(parser, WRITTEN_FORMATS)
     parser.add_argument(
         "--vertices", type=int, metavar="N", help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough)"
     )

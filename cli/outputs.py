@@ -11,7 +11,7 @@ from ..core import Curve, Iterate, MobiusFlowError, Result
 from ..core.curve import check_closed
 from ..core.curve.io import Format
 from ..core.errors import wrong_suffix
-from ..core.knots import FORMATS
+from ..core.knots import FORMATS, WRITTEN_FORMATS
 from . import curves
 from .progress import show_frames
 
@@ -45,7 +45,7 @@ def _curve_output(name: str | None, form: Format) -> Output:
         curves.write(path, result.curve, name)
 
     def admit(curve: Curve) -> None:
-        curves.text_of(curve, form)
+        form.text(curve)
 
     return Output(write, admit)
 
@@ -77,7 +77,7 @@ def _write_movie(path: str, _result: Result, iterates: Sequence[Iterate], shown:
 
 
 OUTPUTS: Mapping[str, Output] = MappingProxyType(
-    {suffix: _curve_output(None, form) for suffix, form in FORMATS.items()}
+    {suffix: _curve_output(None, FORMATS[suffix]) for suffix in WRITTEN_FORMATS}
     | {
         ".blend": _blender_output(_blender_writer("write_blend")),
         ".mp4": _blender_output(_write_movie),
@@ -96,7 +96,7 @@ def output_for(path: str, name: str | None = None) -> Output:
     """
     suffix = Path(path).suffix
     if suffix.lower() not in OUTPUTS:
-        if name is None and path != curves.STREAM:
+        if name is None and path != curves.STREAM and suffix.lower() not in FORMATS:
             raise MobiusFlowError(f"{path}: {wrong_suffix(path, OUTPUTS, 'outputs')}{curves.unless_told(path)}")
         return _curve_output(name, curves.format_for(path, name))
     output = OUTPUTS[suffix.lower()]

@@ -57,6 +57,8 @@ def add_to(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Relax everything that is not finished, write the table, and print a line about it."""
+    if not options.output:
+        raise OptionError("output is empty; name the directory of the results")
     if options.starts < 1:
         raise OptionError(f"starts is {options.starts}; it must be 1 or more")
     if options.time_limit is not None and not 0.0 < options.time_limit < float("inf"):

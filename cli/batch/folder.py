@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core import MobiusFlowError
+from ...core.errors import reason_of
 from .job import REPORT, Job
 from .table import Row
 
@@ -51,6 +52,18 @@ def check_replaceable(path: Path) -> None:
     """Raise a MobiusFlowError if there is something else than results."""
     if os.path.lexists(path) and not (path / REPORT).is_file():
         raise MobiusFlowError(f"{path}: is there already, and holds no results; move it, or name another directory")
+
+
+def check_name(path: Path) -> None:
+    """Raise a MobiusFlowError if no folder can be called so, as names too long cannot: before work is put into it."""
+    try:
+        path.lstat()  # each file system has its own limit
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise MobiusFlowError(
+            f"{path.name} cannot be the name of a folder: {reason_of(error)}; give a file with another name"
+        ) from error
 
 
 def sweep(directory: Path) -> None:

@@ -1,6 +1,5 @@
 """One run of a batch, from its start to its folder of results."""
 
-import os
 import time
 from contextlib import nullcontext
 from dataclasses import replace
@@ -30,7 +29,7 @@ from .. import curves
 from ..main import explained
 from ..options import about
 from ..provenance import environment
-from .folder import new_folder, write_report
+from .folder import check_name, new_folder, write_report
 from .job import CURVE, TRAJECTORY, Job
 from .table import Row
 
@@ -49,6 +48,7 @@ def relaxed(job: Job) -> Row:
 
 def _relaxed(job: Job) -> Row:
     began = time.perf_counter()
+    check_name(Path(job.folder))
     options = _options(job)
     file = None if job.file is None else _load(job.file)
     if file is not None:
@@ -76,9 +76,8 @@ def _options(job: Job) -> RelaxOptions:
 
 
 def _load(path: str) -> CurveFile:
-    """Read a file; a pipe, which might never end, is none."""
-    if not os.path.isfile(path):
-        raise CurveFileError(path, "cannot be read: it is missing, or no regular file")
+    """Read a curve file; a CurveFileError tells why it cannot be read."""
+    curves.check_regular(path)
     form = FORMATS.get(Path(path).suffix.lower())
     if form is None:
         raise CurveFileError(path, wrong_suffix(path, FORMATS, "curve files"))

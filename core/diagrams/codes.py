@@ -4,11 +4,13 @@
     Gauss: 1 -2 3 -1 2 -3                      Gauss: O1+U2+O3+U1+O2+U3+
 
 PD codes and Gauss codes with signs say everything; DT codes and Gauss codes without signs leave mirror images open, of
-which that one is taken whose first crossing is positive.
+which that one is taken whose first crossing is positive.  Components of Gauss codes of either kind stand in brackets,
+on lines of their own, or with /, | or ; between them; [] is a circle that crosses nothing.
 """
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from itertools import count
 from types import MappingProxyType
 from typing import cast
 
@@ -23,8 +25,11 @@ _MAX_LENGTH = 100_000  # characters
 _TOKEN = re.compile(r"[\[({]|[\])}]|[+-]?\d+|[\s,;]+|.", re.ASCII | re.DOTALL)
 _MAX_DIGITS = 9
 _LETTERS = re.compile(r"[A-Za-z]+")
-_SIGNED = re.compile(r"([OU])(\d{1,9})([+-])\s*", re.ASCII | re.IGNORECASE)
-_PREFIX = re.compile(r"\s*(PD|DT|Gauss(?:\s?code)?)\b\s*(?:code\b\s*)?[:=]?\s*(?=\S)", re.IGNORECASE)
+_SIGNED = re.compile(r"([OU])(\d{1,9})([+-])", re.ASCII | re.IGNORECASE)
+_PREFIX = re.compile(r"\s*(PD|DT|Gauss(?:\s?code)?)\b\s*(?:code\b\s*)?[:=]?\s*", re.IGNORECASE)
+_BETWEEN = re.compile(r"\s*[/|;]\s*|\s*\n\s*")
+_FOREIGN = re.compile(r"[^\s\[\](){}|/;,]+")
+_EXAMPLES = {"pd": "PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", "dt": "DT: [4 6 2]", "gauss": "Gauss: 1 -2 3 -1 2 -3"}
 
 Nested = Sequence["int | Nested"]
 
@@ -56,7 +61,10 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
         kind, text = match[1].split()[0], text[match.end() :]
     if kind is None:
         raise CurveError("the code does not say what it is; begin it with PD:, DT: or Gauss:")
-    diagram = _READERS[kind.lower().removesuffix("code")](text.strip())
+    kind = kind.lower().removesuffix("code")
+    if not text.strip(" \t\n,;"):
+        raise CurveError(f"the code is empty; write such as {_EXAMPLES[kind]}")
+    diagram = _READERS[kind](text.strip())
     _check_count(diagram.crossings)
     return diagram
 
@@ -112,26 +120,35 @@ def _spelled(word: str) -> list[list[int]]:
 def _gauss(text: str) -> Diagram:
     if _SIGNED.search(text):
         return _signed_gauss(text)
-    parts = _components(text)
+    parts = _gauss_components(text)
     _check_count(sum(map(len, parts)) // 2)
     return realized(_numbered([[(abs(number), number > 0) for number in part] for part in parts])[0])
 
 
 def _signed_gauss(text: str) -> Diagram:
-    parts, signs = [], dict[int, str]()
-    for word in filter(None, re.split(r"[\[\](){}|/;,\n]+\s*", text)):
-        if foreign := _SIGNED.sub("", word).strip():
-            raise CurveError(f"{foreign[:30]!a} is no part of a Gauss code such as O1+U2+O3+U1+O2+U3+")
-        parts.append([(int(number), level in "Oo") for level, number, _ in _SIGNED.findall(word)])
-        for _, number, sign in _SIGNED.findall(word):
-            if signs.setdefault(int(number), sign) != sign:
-                raise CurveError(f"crossing {number} of the Gauss code has both signs")
-    passes, numbers = _numbered(parts)
+    if foreign := _FOREIGN.search(_SIGNED.sub("", text)):
+        raise CurveError(f"{foreign[0][:30]!a} is no part of a Gauss code such as O1+U2+O3+U1+O2+U3+")
+    found, signs = _SIGNED.findall(text), dict[int, str]()
+    for _, number, sign in found:
+        if signs.setdefault(int(number), sign) != sign:
+            raise CurveError(f"crossing {number} of the Gauss code has both signs")
+    place = count()
+    places = _gauss_components(_SIGNED.sub(lambda _: f"{next(place)} ", text))
+    passes, numbers = _numbered([[(int(found[k][1]), found[k][0] in "Oo") for k in part] for part in places])
     _check_count(len(numbers))
     diagram = Diagram(tuple(map(tuple, passes)), tuple(1 if signs[number] == "+" else -1 for number in numbers))
     if not Faces(diagram).is_planar:
         raise CurveError("the Gauss code with these signs is of no diagram in the plane")
     return diagram
+
+
+def _gauss_components(text: str) -> list[list[int]]:
+    """Lists of numbers, one per component."""
+    if any(bracket in text for bracket in "[({"):
+        text = text.replace("\n", " ")  # lines may end anywhere within brackets
+    if not all(_BETWEEN.split(text)):
+        raise CurveError("a component of the Gauss code is empty; write [] for a circle that crosses nothing")
+    return _components(f"[{_BETWEEN.sub('],[', text)}]")
 
 
 def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[list[list[Pass]], list[int]]:
@@ -149,7 +166,9 @@ def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[list[list[Pass]], list[i
 def _components(text: str) -> list[list[int]]:
     """Lists of numbers, one per component."""
     rows = _unwrapped(_nested(text))
-    return [_integers(rows)] if all(isinstance(each, int) for each in rows) else [_integers(row) for row in rows]
+    if all(isinstance(each, int) for each in rows):
+        return [_integers(rows)]
+    return [_integers(row if isinstance(row, int) else _unwrapped(row)) for row in rows]
 
 
 def _integers(row: "int | Nested") -> list[int]:

@@ -44,7 +44,7 @@ def realized(passes: Sequence[Sequence[Pass]]) -> Diagram:
     """
     count = sum(map(len, passes)) // 2
     whole = Diagram(tuple(map(tuple, passes)), (1,) * count)
-    if len(whole.pieces()) > 1:
+    if sum(bool(piece.crossings) for piece in whole.pieces()) > 1:
         raise CurveError("the code falls apart into parts that share no crossing; give each by itself")
     if not count:
         return whole
@@ -72,7 +72,7 @@ def _simple_curve(diagram: Diagram) -> list[_Visit]:
     """Smooth one crossing after the other so that components join, and none falls in two."""
     curves: list[list[_Visit]] = []
     i = 0
-    for part in diagram.passes:
+    for part in filter(None, diagram.passes):
         curves.append([_Visit(c, (i + k, False), (i + k, True)) for k, (c, _) in enumerate(part)])
         i += len(part)
     for crossing in range(diagram.crossings):

@@ -4,7 +4,7 @@ arcs.
 
 from .arcs import ARCS, overhand
 from .closures import braid_closure
-from .coded import FORMATS, coded_knot
+from .coded import FORMATS, WRITTEN_FORMATS, coded_knot
 from .contacts import rope, spiral
 from .drawings import Drawing
 from .knot_type import KnotType, knot_type
@@ -25,6 +25,7 @@ __all__ = [
     "FORMATS",
     "HARD_UNKNOTS",
     "KNOTS",
+    "WRITTEN_FORMATS",
     "Drawing",
     "KnotType",
     "UnknownKnotError",

@@ -107,23 +107,21 @@ def planar_text(diagram: Diagram) -> str:
 def gauss_text(diagram: Diagram) -> str:
     """Gauss code with signs, crossings numbered from 1."""
     signs = ["+" if sign > 0 else "-" for sign in diagram.signs]
-    parts = ("".join(f"{'UO'[over]}{c + 1}{signs[c]}" for c, over in part) for part in diagram.passes)
+    parts = ("".join(f"{'UO'[over]}{c + 1}{signs[c]}" for c, over in part) or "[]" for part in diagram.passes)
     return f"Gauss: {' / '.join(parts)}"
-
-
-def _no_text(_diagram: Diagram) -> str:
-    raise CurveError("DT codes are only read; use .pd or .gauss")
 
 
 _CODES: Mapping[str, Format] = MappingProxyType(
     {
-        suffix: Format(description, partial(_read, kind), partial(_write, text_of))
+        suffix: Format(description, partial(_read, kind), text_of and partial(_write, text_of))
         for suffix, kind, description, text_of in (
             (".pd", "PD", "planar diagram code of a knot or link, PD[X[1,5,2,4], ...]", planar_text),
-            (".dt", "DT", "Dowker-Thistlethwaite code, DT: [4 6 2] or DT: cacbca (read only)", _no_text),
+            (".dt", "DT", "Dowker-Thistlethwaite code, DT: [4 6 2] or DT: cacbca (read only)", None),
             (".gauss", "Gauss", "Gauss code, 1 -2 3 ... or with signs O1+U2+O3+...", gauss_text),
         )
     }
 )
 FORMATS: Mapping[str, Format] = MappingProxyType({**CURVES, **_CODES})
 """Formats of curves, and of diagrams that are drawn as curves."""
+WRITTEN_FORMATS = [suffix for suffix, form in FORMATS.items() if form.write is not None]
+"""Those that are not only read."""

@@ -58,12 +58,15 @@ class KnotType:
         With the fewest crossings that were found; None if none was looked for.
     evidence
         What tells the names from others.
+    untold
+        Why no diagram was looked for; empty if one was.
     """
 
     names: tuple[str, ...]
     proved: bool
     diagram: Diagram | None
     evidence: tuple[str, ...]
+    untold: str = ""
 
     def __str__(self) -> str:
         return _UNKNOT.sub("unknot", " or ".join(self.names)) if self.names else "not told"
@@ -90,7 +93,7 @@ class KnotType:
     def sentence(self) -> str:
         """The short form, and how that is known."""
         if self.diagram is None:
-            return "not told: this is for closed curves in space of at most " + f"{MAX_VERTICES:,} vertices"
+            return self.untold
         most = f"a diagram of {counted(self.diagram.crossings, 'crossing')}"
         if not self.names:
             polynomial = "" if self.alexander is None else f"Alexander polynomial {list(self.alexander)}, "
@@ -107,9 +110,20 @@ def knot_type(curve: Curve) -> KnotType:
     are told factor by factor.  How long it takes is bounded by counts: diagrams that keep too many crossings are not
     told.
     """
-    if curve.dimension != 3 or len(curve) > MAX_VERTICES or not curve.mesh.all_closed:
-        return KnotType((), False, None, ())
-    return type_of_diagram(_simplest(curve))
+    untold = _untold(curve)
+    return KnotType((), False, None, (), untold) if untold else type_of_diagram(_simplest(curve))
+
+
+def _untold(curve: Curve) -> str:
+    """Why a curve has no type, or too many vertices to tell it; empty for all others."""
+    if not curve.mesh.all_closed:
+        which = "this one is open" if len(curve.mesh.component_sizes) == 1 else "some parts of this one are open"
+        return f"none: only closed curves have a knot type, and {which}"
+    if curve.dimension != 3:
+        return f"none: only curves in space have a knot type, and this one is in dimension {curve.dimension}"
+    if len(curve) > MAX_VERTICES:
+        return f"not told: the curve has {len(curve):,} vertices, more than {MAX_VERTICES:,}"
+    return ""
 
 
 def type_of_diagram(diagram: Diagram) -> KnotType:

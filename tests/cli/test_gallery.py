@@ -1,6 +1,7 @@
 """A page with the results of a batch."""
 
 import csv
+import os
 import sys
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -10,7 +11,7 @@ import pytest
 from mobius_flow.addon.pictures import export
 from mobius_flow.cli import gallery, main
 from mobius_flow.cli.batch.table import Row
-from mobius_flow.core import Curve, write_curve
+from mobius_flow.core import Curve, MobiusFlowError, write_curve
 from mobius_flow.core.curve.bending import bending
 from shapes import regular_polygon, torus_trefoil
 
@@ -86,6 +87,22 @@ def test_other_tables_are_no_results(
     (results / "results.csv").write_text(text, encoding="latin-1")
     assert main(["gallery", str(results), "-o", str(results / "page.png")]) == 2
     assert capsys.readouterr().err == f"mobius-flow: {results}: holds no results of mobius-flow batch\n"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names")
+@pytest.mark.parametrize(
+    ("pipe", "told"),
+    [
+        ("results.csv", "{}: holds no results of mobius-flow batch"),
+        ("round/curve.txt", "{}/round/curve.txt: cannot be read: it is missing, or no regular file"),
+    ],
+)
+def test_a_pipe_is_no_result(pipe: str, told: str, results: Path) -> None:
+    (results / pipe).unlink()
+    os.mkfifo(results / pipe)
+    with pytest.raises(MobiusFlowError) as refusal:
+        gallery._results(results)
+    assert str(refusal.value) == told.format(results)
 
 
 def test_rendered_by_blender(results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

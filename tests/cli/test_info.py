@@ -72,8 +72,10 @@ def test_code_files(tmp_path, run):
     assert " 5_1 (proved" in text
     assert run("knot", "3_1", tmp_path / "b.dt")[::2] == (
         2,
-        f"mobius-flow: {tmp_path}/b.dt: DT codes are only read; use .pd or .gauss\n",
+        f"mobius-flow: {tmp_path}/b.dt: this format is only read; choose another one to write\n",
     )
+    (tmp_path / "empty.dt").write_text("# the cinquefoil\n")
+    assert "empty.dt: the code is empty; write such as DT: [4 6 2]" in run("info", tmp_path / "empty.dt")[2]
     (tmp_path / "bad.pd").write_text("PD[X[1,2,3,4]]")
     status, _, said = run("info", tmp_path / "bad.pd")
     assert status == 2
@@ -107,6 +109,14 @@ def test_refusals(trefoil, tmp_path, run):
     crossed = tmp_path / "crossed.txt"
     crossed.write_text("0 0 0\n1 1 0\n1 0 0\n0 1 0\n")
     assert run("info", crossed)[0] == 2
+
+
+def test_arcs_have_no_type(tmp_path, run):
+    assert run("knot", "overhand", tmp_path / "arc.txt")[0] == 0
+    assert (
+        "type                    none: only closed curves have a knot type, and this one is open\n"
+        in (run("info", tmp_path / "arc.txt")[1])
+    )
 
 
 def test_a_relaxed_shape_of_many_vertices(tmp_path, run):

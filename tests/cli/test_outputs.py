@@ -13,6 +13,7 @@ from mobius_flow.cli import main, outputs, recovery
 from mobius_flow.cli import relax as relax_command
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.errors import MobiusFlowError
+from mobius_flow.core.knots import FORMATS
 from mobius_flow.core.system.files import atomic_write
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
@@ -263,3 +264,26 @@ def test_what_cannot_be_kept_leaves_nothing(trefoil: str) -> None:
 
     assert recovery.kept("nowhere/o.txt", failing) == ["no"]
     assert os.listdir("scratch") == []
+
+
+def written_formats(command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
+    """The suffixes that the help of a command has at OUT."""
+    assert main([command, "--help"]) == 0
+    (told,) = re.findall(r"\n  OUT +(.*?) or -", capsys.readouterr().out, re.DOTALL)
+    return re.findall(r"\.\w+", told)
+
+
+@pytest.mark.parametrize("command", ["relax", "knot"])
+def test_formats_that_are_only_read_are_no_outputs(
+    command: str, trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = written_formats(command, capsys)
+    curve = regular_polygon(12)
+    for suffix in set(FORMATS) & set(told):
+        if suffix != ".pd":  # which has no circles
+            assert FORMATS[suffix].text(curve)
+    only_read = set(FORMATS) - set(told)
+    assert only_read == {".dt"}
+    for words in (["o.dt"], ["-", "--format", "dt"]):
+        assert refused([command, trefoil if command == "relax" else "3_1", *words], capsys, monkeypatch)
+    assert not Path("o.dt").exists()

@@ -1,5 +1,6 @@
 """The table of curve formats, and the two functions that look into it."""
 
+import io
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -27,12 +28,20 @@ class Format:
     read
         Turn the text into polygons; raises CurveFileError.
     write
-        Write the curve to a text stream; raises CurveError if the format cannot hold it.
+        Write the curve to a text stream; raises CurveError if the format cannot hold it. None for what is only read.
     """
 
     description: str
     read: Callable[[Source], list[Polygon]]
-    write: Callable[[Curve, TextIO], None]
+    write: Callable[[Curve, TextIO], None] | None
+
+    def text(self, curve: Curve) -> str:
+        """What a file of the curve holds; raises CurveError if the format cannot hold it, or is only read."""
+        if self.write is None:
+            raise CurveError("this format is only read; choose another one to write")
+        stream = io.StringIO()
+        self.write(curve, stream)
+        return stream.getvalue()
 
 
 _COLUMNS = Format(
@@ -170,7 +179,7 @@ def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None 
     form = format_of(path) if form is None else form
     try:
         with atomic_write(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as stream:
-            form.write(curve, stream)
+            stream.write(form.text(curve))
     except CurveError as error:
         raise CurveFileError(path, str(error)) from error
     except (OSError, ValueError) as error:  # a ValueError for a path with a null character

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mobius_flow.cli import main
-from mobius_flow.cli.batch import cluster, sandbox
+from mobius_flow.cli.batch import cluster, sandbox, single
 from mobius_flow.cli.batch.job import Job
 from mobius_flow.cli.batch.progress import Progress
 from mobius_flow.cli.batch.table import Row
@@ -204,6 +204,18 @@ def test_an_interrupt_leaves_the_table(
     assert capsys.readouterr().err == "mobius-flow: interrupted\n"
 
 
+@pytest.mark.parametrize("loaded", [True, False])
+def test_a_dashboard_is_named_where_there_is_one(
+    loaded: bool, scheduler: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    module = "distributed.dashboard.scheduler"
+    monkeypatch.setitem(sys.modules, module, sys)
+    if not loaded:
+        del sys.modules[module]
+    with cluster.connected(scheduler) as client, Progress(client, 1, shown=True):
+        assert ("mobius-flow: dashboard at http://" in capsys.readouterr().err) == loaded
+
+
 def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster, "WINDOW", 3)
     monkeypatch.setattr(sandbox, "run", lambda job, _limit: Row.failure(job, "as asked for"))
@@ -220,6 +232,7 @@ def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkey
 @pytest.mark.parametrize(
     ("words", "told"),
     [
+        (["3_1", "-o", ""], "output is empty; name the directory of the results"),
         (["3_1", "--starts", "0"], "starts is 0; it must be 1 or more"),
         (["3_1", "--seed", "-1"], "seed is -1; it must be 0 or more"),
         (["3_1", "--time-limit", "0"], "time-limit is 0.0; it must be"),
@@ -238,7 +251,7 @@ def test_one_sentence(
     monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
     monkeypatch.chdir(tmp_path)
     threads = threading.enumerate()
-    assert main(["batch", *words, "-o", "out"]) == 2
+    assert main(["batch", "-o", "out", *words]) == 2
     assert threading.enumerate() == threads, "a client that is left half made"
     said = capsys.readouterr().err
     assert said.startswith("mobius-flow: ")
@@ -265,9 +278,7 @@ def test_a_missing_library_is_named(
 
 
 def test_workers_of_another_version_are_refused(ring: Path, tmp_path: Path) -> None:
-    from mobius_flow.cli.batch.single import relaxed
-
-    row = relaxed(Job("ring", 1, None, str(ring), None, str(tmp_path / "out"), {}, False, version="0.0"))
+    row = single.relaxed(Job("ring", 1, None, str(ring), None, str(tmp_path / "out"), {}, False, version="0.0"))
     assert row.failed
     assert "and 0.0 is wanted" in row.message
 
@@ -290,6 +301,13 @@ def test_codes_in_files_and_names_that_are_no_text(batch: Batch, ring: Path, tmp
     assert pick(rows, "name", "type_before") == [("knot", ""), ("n\\xff", "unknot"), ("trefoil", "3_1")]
     assert "unknown suffix '.stl'" in rows[0]["message"]
     assert read_curve(tmp_path / "out" / "n\\xff" / "curve.txt")
+
+
+def test_a_name_too_long_for_a_folder_is_told_before_the_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(single, "minimize", lambda *_: pytest.fail("work for nothing"))
+    name = f"braid({','.join(['1'] * 151)})"
+    row = single.relaxed(Job(name, 1, None, None, None, str(tmp_path / name), {"avoid": {}}, False))
+    assert row.message == f"{name} cannot be the name of a folder: File name too long; give a file with another name"
 
 
 def test_knot_inputs_are_what_the_command_knot_makes(batch: Batch, tmp_path: Path) -> None:

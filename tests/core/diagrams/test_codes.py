@@ -10,6 +10,7 @@ from mobius_flow.core.diagrams.codes import MAX_CROSSINGS, diagram_from_code, is
 from mobius_flow.core.diagrams.faces import Faces
 from mobius_flow.core.knots import KNOTS
 from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from mobius_flow.core.knots.coded import gauss_text
 from spherogram import Link
 
 TREFOIL = {2: 1, 6: 1, 8: -1}
@@ -30,7 +31,22 @@ TREFOILS = [
     "gauss code: o7+u2+o3+u7+o2+u3+",
 ]
 SCRAPS = ["", "1", "-", "[", "]", ",", "X", "O1+", "é", " 2"]
-HOPFS = ["PD[X[1,3,2,4],X[3,1,4,2]]", "Gauss: [[1,-2],[2,-1]]", "Gauss: O1+U2+ / U1+O2+", "DT: [(4),(2)]", "DT: bbaaba"]
+HOPFS = [
+    "PD[X[1,3,2,4],X[3,1,4,2]]",
+    "Gauss: [[1,-2],[2,-1]]",
+    "Gauss: [[1, -2],\n[2, -1]]",
+    "Gauss: 1 -2 / 2 -1",
+    "Gauss: [1 -2 | 2 -1]",
+    "Gauss: 1,-2; 2,-1",
+    "Gauss: 1 -2\n2 -1",
+    "Gauss: O1+U2+ / U1+O2+",
+    "Gauss: [O0+, U7+] / [U0+, O7+]",
+    "Gauss: {{O1+,U2+},{U1+,O2+}}",
+    "Gauss: O1+U2+\nU1+O2+",
+    "DT: [(4),(2)]",
+    "DT: bbaaba",
+]
+HOPF = ((0, True), (1, False)), ((0, False), (1, True))
 
 
 @pytest.mark.parametrize("code", TREFOILS)
@@ -46,7 +62,28 @@ def test_spellings_of_the_hopf_link(code: str) -> None:
     assert jones(diagram) == {1: -1, 5: -1}
 
 
-@pytest.mark.parametrize("code", ["PD[]", "DT: []", "Gauss: 1 -1", "PD[X[2,1,1,2]]", "DT: 2"])
+@pytest.mark.parametrize(
+    "diagram",
+    [
+        Diagram(((),), ()),
+        Diagram(((), ()), ()),
+        Diagram((*HOPF, ()), (1, 1)),
+        Diagram(((), *HOPF), (1, 1)),
+        Diagram(HOPF, (-1, -1)),
+    ],
+)
+def test_gauss_codes_come_back_with_their_circles(diagram: Diagram) -> None:
+    assert diagram_from_code(gauss_text(diagram)) == diagram
+
+
+@pytest.mark.parametrize("code", ["[1 -2] / [2 -1] / []", "[] / [1 -2] / [2 -1]"])
+def test_circles_do_not_matter_to_codes_without_signs(code: str) -> None:
+    whole, hopf = diagram_from_code(f"Gauss: {code}"), diagram_from_code("Gauss: 1 -2 / 2 -1")
+    assert sorted(piece.crossings for piece in whole.pieces()) == [0, 2]
+    assert whole.signs == hopf.signs
+
+
+@pytest.mark.parametrize("code", ["PD[]", "DT: []", "Gauss: []", "Gauss: 1 -1", "PD[X[2,1,1,2]]", "DT: 2"])
 def test_unknots(code: str) -> None:
     assert jones(diagram_from_code(code)) == {0: 1}
 
@@ -109,6 +146,13 @@ def test_codes_without_signs_are_realized_where_any_signs_are_planar() -> None:
         ("Gauss: O1+U1-", "both signs"),
         ("Gauss: O1+O2+U1+U2+", "no diagram in the plane"),
         ("Gauss: O1+Q2+", "'Q2+' is no part"),
+        ("Gauss: 1 -2 / 2 -1 /", "write [] for a circle"),
+        ("Gauss: O1+U2+ // U1+O2+", "write [] for a circle"),
+        ("PD:", "the code is empty; write such as PD[X["),
+        ("PD", "the code is empty"),
+        ("DT: ", "the code is empty; write such as DT: [4 6 2]"),
+        ("Gauss code:\n", "the code is empty; write such as Gauss: 1"),
+        ("Gauss: ;", "the code is empty"),
         ("DT: [" + " ".join(str(2 * k) for k in range(1, MAX_CROSSINGS + 2)) + "]", "at most 1000"),
         ("PD: " + "1 2 3 4 " * 1_000_000, "at most 100000"),
         ("4 6 2", "begin it with PD:, DT: or Gauss:"),

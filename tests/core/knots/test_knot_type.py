@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve
+from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.knots import (
     HARD_UNKNOTS,
     KNOTS,
@@ -91,12 +91,23 @@ def test_types_beyond_the_table_are_not_told() -> None:
     assert found.diagram.crossings == 13
 
 
-def test_curves_of_other_dimensions_or_too_many_vertices_are_not_told() -> None:
+@pytest.mark.parametrize(
+    ("step", "dimension", "ends", "told"),
+    [
+        (1, 3, (), "not told: the curve has 20,001 vertices, more than 20,000"),
+        (1000, 2, (), "none: only curves in space have a knot type, and this one is in dimension 2"),
+        (1000, 3, (7,), "none: only closed curves have a knot type, and this one is open"),
+        (1000, 3, (7, 14), "none: only closed curves have a knot type, and some parts of this one are open"),
+    ],
+)
+def test_why_a_curve_has_no_type(step: int, dimension: int, ends: tuple[int, ...], told: str) -> None:
     angle = np.linspace(0.0, 2.0 * np.pi, MAX_VERTICES + 1)
-    circle = np.column_stack([np.cos(angle), np.sin(angle), np.sin(2 * angle)])
-    for curve in (Curve(circle), Curve(circle[::1000, :2])):
-        assert knot_type(curve) == KnotType((), False, None, ())
-        assert "at most 20,000 vertices" in knot_type(curve).sentence
+    circle = np.column_stack([np.cos(angle), np.sin(angle), np.sin(2 * angle)])[::step, :dimension]
+    sizes = np.diff([0, *ends[:-1], len(circle)]).tolist()
+    closed = [not ends] + [True] * (len(sizes) - 1)
+    found = knot_type(Curve(circle, Mesh(sizes, closed)))
+    assert found == KnotType((), False, None, (), told)
+    assert found.sentence == told
 
 
 def test_lattice_polygons_whose_edges_hide_each_other() -> None:
