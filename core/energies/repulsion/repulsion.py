@@ -61,10 +61,10 @@ class Repulsion:
 
         Those without area or length repel nothing, and clusters of them alone would have no centroid.
         """
-        corners = [obstacle.corners.transpose(1, 2, 0) for obstacle in obstacles]
-        solid = [each[:, :, Simplices(each).sizes > 0.0] for each in corners]
-        kinds = ([each for each in solid if len(each) == count and each.size] for count in (3, 2))
-        return tuple(cls(Clusters.of(np.concatenate(kind, axis=2)), weight) for kind in kinds if kind)
+        kinds = zip(*((obstacle.triangles, obstacle.segments) for obstacle in obstacles), strict=True)
+        corners = (np.concatenate(kind).transpose(1, 2, 0) for kind in kinds)
+        solid = (each[:, :, Simplices(each).sizes > 0.0] for each in corners)
+        return tuple(cls(Clusters.of(each), weight) for each in solid if each.size)
 
     def frozen_at(self, curve: Curve) -> "Repulsion":
         """The smooth function that the schedule of ``curve`` makes of it, or that its own does if it suits."""
