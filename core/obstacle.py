@@ -71,13 +71,13 @@ class Obstacle:
     @property
     def triangles(self) -> FloatArray:
         """Corners of the triangles proper, shape (t, 3, 3)."""
-        return self.corners[~self._are_segments].reshape(-1, 3, 3)
+        return np.asarray(self.corners[~self._are_segments].reshape(-1, 3, 3))
 
     @property
     def segments(self) -> FloatArray:
         """Ends of the segments, and twice the same of what is a point; shape (s, 2, 3)."""
         named = self.faces[self._are_segments]
-        return self.vertices[np.stack([named.min(axis=1), named.max(axis=1)], axis=1)]
+        return np.asarray(self.vertices[np.stack([named.min(axis=1), named.max(axis=1)], axis=1)])
 
     @property
     def _are_segments(self) -> BoolArray:

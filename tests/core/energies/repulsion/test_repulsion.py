@@ -220,6 +220,26 @@ def test_stiffness_is_the_second_derivative_away_from_a_plane_or_a_line() -> Non
         assert np.all(term.stiffness(strip) >= 0.0)
 
 
+def test_clearance_is_the_distance_of_a_plane_or_a_line() -> None:
+    """On an edge that is along it; the others are further away. Of several obstacles the nearest counts."""
+    far, h = 1e4, 0.01
+    plane = Obstacle([[-far, -far, 0], [far, -far, 0], [0, far, 0]], [[0, 1, 2]])
+    line = Obstacle([[-far, 0, 0], [far, 0, 0]], [[0, 1]])
+    strip = Curve([[0.0, 0, h], [1.0, 0, h], [0.5, 0, h + 40.0]])
+    for obstacles in ([plane], [line], [plane, Obstacle(line.vertices - [0, 0, h], line.faces)]):
+        clearance = Objective.of(MoebiusEnergy(), obstacles).clearance(strip)
+        assert clearance[0] == pytest.approx(h, rel=1e-2)
+        assert (clearance[1:] > 2.0 * h).all()
+    assert np.array_equal(Objective.of(MoebiusEnergy()).clearance(strip), np.full(3, np.inf))
+
+
+def test_clearance_is_in_the_units_of_the_user() -> None:
+    curve = wavy(24).with_vertices(1000.0 * wavy(24).vertices + 7.0)
+    ball = Obstacle(1000.0 * BALL.vertices + 7.0, BALL.faces)
+    clearance = start_problem(curve, RelaxOptions(vertices=24, avoid=[ball])).clearance(curve)
+    assert clearance == pytest.approx(1000.0 * Objective.of(MoebiusEnergy(), [BALL]).clearance(wavy(24)), rel=1e-3)
+
+
 def test_stiffness_becomes_part_of_the_metric() -> None:
     curve, options = wavy(24), RelaxOptions(vertices=24, avoid=[BALL])
     point = start_problem(curve, options).at_curve(curve)
