@@ -6,6 +6,7 @@ import numpy as np
 
 from ...constraints import weighted_barycenter
 from ...curve import Curve
+from ...curve.pins import spans
 from ...curve.refine import affordable_pieces, subdivide
 from ...curve.remesh import SPLIT, graded_spacing
 from ...descent import Leg, NoStep, Point, Step
@@ -84,7 +85,8 @@ class Grow:
         """The shortest motion in the metric to what can be had of the change that is left; None if it is nothing."""
         point, problem = self._run.point, self._run.problem
         space, change = point.tangent_space, float(np.clip(left, -self._fastest, self._fastest))
-        while abs(change) >= min(SLOWEST, abs(left)):
+        least = self._slowest(left)
+        while abs(change) >= least:
             constraints = problem.constraints.scaled(np.exp(change), problem.mesh)
             base = point.within(replace(problem, constraints=constraints))
             aim = base.vertices - space.pseudo_inverse(base.residual)
@@ -96,11 +98,18 @@ class Grow:
         self._settled *= LATER
         return None
 
+    def _slowest(self, left: float) -> float:
+        """The least change worth an iteration: of an arc that is all but straight, half of its slack."""
+        spanned = spans(self._run.point.curve, self._run.problem.constraints.pins.vertices)
+        slack = (0.5 * float(np.log(span.length / span.distance)) for span in spanned if not span.taut)
+        return min(SLOWEST, abs(left), *slack)
+
     def _is_cheap(self, end: Point) -> bool:
         return end.energy - self._run.point.energy <= RISE * self._energy_scale
 
     @property
     def _energy_scale(self) -> float:
+        """What rises and decreases of the objective are relative to: arcs may have as good as no energy."""
         return energy_scale(self._run.problem.mesh, self._run.point.energy)
 
     def _resolved(self, point: Point) -> Point | None:
