@@ -1,4 +1,4 @@
-"""What a curve must not touch: a still surface of triangles, or polylines."""
+"""What a curve must not touch: still surfaces of triangles, and polylines."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import CurveError
-from .types import FloatArray, IntArray, frozen
+from .types import BoolArray, FloatArray, IntArray, frozen
 
 NAMELESS = "obstacle"
 MAX_COORDINATE = 1e40  # as for curves: powers of it are still numbers
@@ -15,10 +15,11 @@ MAX_COORDINATE = 1e40  # as for curves: powers of it are still numbers
 
 @dataclass(frozen=True, eq=False)
 class Obstacle:
-    """A set of triangles or segments in space, which share vertices.
+    """A set of triangles and segments in space, which share vertices.
 
-    Triangles without area are welcome, for meshes have some: they are the segments, or points, that they are. So are
-    open meshes, meshes that cross themselves, and triangles of either orientation: there is no inside and no outside.
+    A segment among triangles is one that names a vertex twice. Triangles whose vertices are in a line are welcome, for
+    meshes have some. So are open meshes, meshes that cross themselves, and triangles of either orientation: there is no
+    inside and no outside.
 
     Parameters
     ----------
@@ -66,6 +67,23 @@ class Obstacle:
     def corners(self) -> FloatArray:
         """The simplices' vertices, shape (f, 3, 3) or (f, 2, 3)."""
         return frozen(self.vertices[self.faces])
+
+    @property
+    def triangles(self) -> FloatArray:
+        """Corners of the triangles proper, shape (t, 3, 3)."""
+        return np.asarray(self.corners[~self._are_segments].reshape(-1, 3, 3))
+
+    @property
+    def segments(self) -> FloatArray:
+        """Ends of the segments, and twice the same of what is a point; shape (s, 2, 3)."""
+        named = self.faces[self._are_segments]
+        return np.asarray(self.vertices[np.stack([named.min(axis=1), named.max(axis=1)], axis=1)])
+
+    @property
+    def _are_segments(self) -> BoolArray:
+        """Whether each simplex has fewer than three vertices."""
+        i, j, k = self.faces[:, [0, 1, -1]].T
+        return np.asarray((i == j) | (j == k) | (k == i))
 
     @cached_property
     def size(self) -> float:

@@ -6,6 +6,7 @@ change; equal edge lengths are left to the flow.
 """
 
 import heapq
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,10 +40,14 @@ class Resolution:
         How many there would be if no strands were near; None for 200 per component.
     edges_per_gap
         How many edges are to fit in between near strands.
+    clearance
+        How far obstacles are from each edge of a curve, both in the user's units; shape (edges,), or inf if there are
+        none.
     """
 
     vertices: int | None = None
     edges_per_gap: float = 1.0
+    clearance: Callable[[Curve], FloatArray | float] = lambda _: np.inf
 
 
 def refine(curve: Curve, vertices: int | None = None) -> Curve:

@@ -17,12 +17,13 @@ from .refine import Resolution, subdivide, target_spacing
 SPLIT = 1.5  # edges longer than this many times the spacing wanted are split
 COLLAPSE = 0.5  # two edges are joined if they are shorter than this many times the spacing, each
 GRADING = 1.3  # ratio of the spacings wanted on neighbouring edges, at most
+EDGES_PER_CLEARANCE = 2.0  # of obstacles: a curve bends as narrowly as it is near to them
 MIN_VERTICES = 16  # edges that a component, or an arc between pins, keeps, if it had as many
 
 
 def graded_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
     """Edge length wanted on every edge, varying by a bounded ratio from edge to edge; shape (edges,)."""
-    spacing = target_spacing(curve, resolution)
+    spacing = np.minimum(target_spacing(curve, resolution), resolution.clearance(curve) / EDGES_PER_CLEARANCE)
     for part, closed in zip(curve.mesh.edge_slices, curve.mesh.closed, strict=True):
         # one sweep each way, twice round where there is a way round, spreads every minimum as far as it reaches
         for direction in (1, -1):

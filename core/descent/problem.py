@@ -92,6 +92,11 @@ class Problem:
         """The point of a curve in the user's units, whose coordinates are kept to the last digit."""
         return Point(self, self.units.from_user(curve.vertices), curve.vertices)
 
+    def clearance(self, curve: Curve) -> FloatArray:
+        """How far obstacles are from each edge of a curve, both in the user's units; shape (edges,)."""
+        own = curve.with_vertices(self.units.from_user(curve.vertices))
+        return self.units.scale * self.objective.clearance(own)
+
     @property
     def unconfined(self) -> bool:
         """Whether every shape of the curves is allowed: they are closed, and no pins hold them, nor do obstacles."""

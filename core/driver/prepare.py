@@ -195,7 +195,10 @@ def _check_growth(start: Curve, constraints: Constraints, options: RelaxOptions,
     if not method.geometry.prescribes:
         raise OptionError(f"grow prescribes lengths, but method {method.name} penalises them; choose another method")
     if not len(free_edges(start.mesh, pins)):
-        raise OptionError("grow changes lengths, but all edges lie between pinned vertices; leave some of the pins out")
+        raise OptionError(
+            "grow changes lengths, but all edges lie between pinned vertices or on straight arcs between them; "
+            "leave some of the pins out, or bend the arcs"
+        )
     _check_spans(start, constraints.scaled(options.grow, start.mesh).lengths, pins, "grow")
 
 

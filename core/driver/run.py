@@ -46,7 +46,7 @@ class Run:
 
     def __init__(self, problem: Problem, start: Curve, options: RelaxOptions) -> None:
         self.options = options
-        self.resolution = Resolution(options.vertices)
+        self.resolution = Resolution(options.vertices, clearance=problem.clearance)
         self.method = METHODS[options.method]
         self.sampled_errors: SampledErrors | None = None
         self.point = problem.at_curve(start).anchored

@@ -40,6 +40,9 @@ class Potential(LocalTerm, Protocol):
     def stiffness(self, curve: Curve) -> FloatArray:
         """By how much force, at most, the vertices are driven back for the way they go, not below 0; shape (n,)."""
 
+    def clearance(self, curve: Curve) -> FloatArray:
+        """How far from each edge a wall would be that acts on it as strongly; shape (edges,)."""
+
 
 @runtime_checkable
 class Energy(Term, Protocol):

@@ -80,6 +80,11 @@ class Objective:
         product = self._twice_differentiable(energy).hessian_product(curve, v)
         return product + sum(term.hessian_product(curve, v) for term in local)
 
+    def clearance(self, curve: Curve) -> FloatArray:
+        """How far from each edge a wall would be that acts as the nearest potential does; shape (edges,)."""
+        nowhere = np.full(curve.mesh.edges, np.inf)
+        return np.asarray(np.min([nowhere, *(potential.clearance(curve) for potential in self.potentials)], axis=0))
+
     @property
     def has_hessian(self) -> bool:
         """Whether the energy comes with a second derivative."""

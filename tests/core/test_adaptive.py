@@ -51,6 +51,16 @@ def test_spacing_follows_gaps_and_is_graded():
     assert ratios.min() >= 1 / GRADING * (1 - 1e-12)
 
 
+def test_spacing_follows_obstacles_and_is_graded():
+    """Two edges are to fit in between the curve and a wall."""
+    curve = regular_polygon(200)
+    rule = replace(RULE, clearance=lambda each: 0.005 + np.abs(each.midpoints[:, 0] - 1.0))
+    spacing, plain = graded_spacing(curve, rule), graded_spacing(curve, RULE)
+    assert (spacing <= 0.5 * rule.clearance(curve) * (1 + 1e-12)).all()
+    assert spacing[100] == pytest.approx(plain[100])
+    assert (spacing / spacing[curve.mesh.previous]).max() <= GRADING * (1 + 1e-12)
+
+
 def test_remesh_reaches_the_rule():
     curve = near_strands(0.01)
     spacing = graded_spacing(curve, RULE)

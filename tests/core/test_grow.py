@@ -8,6 +8,8 @@ import pytest
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
 from mobius_flow.core.constraints import Constraints, weighted_barycenter
 from mobius_flow.core.curve.pins import Pins
+from mobius_flow.core.curve.remesh import EDGES_PER_CLEARANCE, SPLIT
+from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
@@ -59,8 +61,17 @@ def test_edges_are_split_as_strands_come_near_and_keyframes_can_follow():
             assert {tuple(v) for v in before} <= {tuple(v) for v in after}
 
 
+def test_edges_are_split_as_walls_come_near():
+    """In the end, too: a curve that has grown bends as narrowly as walls are near."""
+    result = minimize(SADDLED, in_the_box(3.0, mesh="finer", max_iterations=60))
+    assert result.last.grown == pytest.approx(3.0, rel=1e-12)
+    problem = start_problem(result.curve, RelaxOptions(vertices=len(result.curve), avoid=[WALLS]))
+    coarse = result.curve.edge_lengths * EDGES_PER_CLEARANCE / problem.clearance(result.curve)
+    assert 0.5 < coarse.max() < 1.1 * SPLIT
+
+
 def test_a_fixed_mesh_stays():
-    result = minimize(SADDLED, in_the_box(3.0, mesh="fixed", max_iterations=30))
+    result = minimize(SADDLED, in_the_box(3.0, mesh="fixed", max_iterations=40))
     assert len(result.curve) == 32
     assert result.last.grown == pytest.approx(3.0, rel=1e-12)
 
@@ -91,7 +102,7 @@ def test_what_has_no_room_stops_and_says_how_far_it_has_come():
     loop = regular_polygon(24)
     loop = Curve(np.column_stack([loop.vertices[:, :2], np.zeros(24)]))
     rods = [rod(0.5, 0.0), rod(-0.5, 0.0)]
-    result = minimize(loop, RelaxOptions(grow=0.1, avoid=rods, vertices=24, max_iterations=100))
+    result = minimize(loop, RelaxOptions(grow=0.1, avoid=rods, vertices=24, max_iterations=150))
     assert result.certified
     assert result.status is Status.STALLED
     assert 1.0 / np.pi < result.last.grown < 0.4  # the loop is π times as long as it is around the rods
@@ -116,6 +127,18 @@ def test_arcs_between_pins_grow_and_shrink_to_the_distance_of_their_ends():
         relax(curve, RelaxOptions(grow=0.6, pins=(0, 12), vertices=24))
     with pytest.raises(OptionError, match="all edges lie between pinned vertices"):
         relax(curve, RelaxOptions(grow=2.0, pins=tuple(range(24)), vertices=24))
+
+
+def test_arcs_that_are_all_but_straight_grow_as_well():
+    """Their energy is next to nothing, and motions are not measured by that."""
+    x = np.linspace(0.0, 1.0, 24)
+    arc = Curve.from_components([np.column_stack([x, 0.1 * x * (1.0 - x), 0.0 * x])], [False])
+    result = minimize(arc, RelaxOptions(grow=2.0, pins=(0, 23), vertices=24, max_iterations=60))
+    assert result.status is Status.CONVERGED
+    assert result.last.grown == pytest.approx(2.0, rel=1e-12)
+    arc = arc.with_vertices(arc.vertices * [1.0, 0.0, 0.0])
+    with pytest.raises(OptionError, match=r"or on straight arcs between them; .* or bend the arcs"):
+        relax(arc, RelaxOptions(grow=2.0, pins=(0, 23), vertices=24))
 
 
 def test_edges_between_pins_keep_their_lengths():

@@ -84,9 +84,11 @@ def test_polylines_are_segments_open_or_closed(tmp_path):
     np.testing.assert_array_equal(obstacle.faces, [[0, 1], [1, 2], [2, 3]])
 
 
-def test_polylines_beside_faces_are_triangles_without_area(tmp_path):
+def test_polylines_beside_faces_name_a_vertex_twice(tmp_path):
     obstacle = read_obstacle(obj(tmp_path, "l 3 4\nf 1 2 3\n"))
     np.testing.assert_array_equal(obstacle.faces, [[0, 1, 2], [2, 3, 3]])
+    np.testing.assert_array_equal(obstacle.triangles, [SQUARE[:3]])
+    np.testing.assert_array_equal(obstacle.segments, [SQUARE[2:]])
 
 
 @pytest.mark.parametrize("suffix", [".txt", ".xyz", ".vect", ".json", ".obj"])

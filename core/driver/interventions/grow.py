@@ -6,11 +6,13 @@ import numpy as np
 
 from ...constraints import weighted_barycenter
 from ...curve import Curve
+from ...curve.pins import spans
 from ...curve.refine import affordable_pieces, subdivide
 from ...curve.remesh import SPLIT, graded_spacing
 from ...descent import Leg, NoStep, Point, Step
 from ...descent.searches.normal_step import on_target
 from ...descent.step import attempt
+from ...energies.components import energy_scale
 from ...errors import MobiusFlowError
 from ...types import IntArray
 from ...units import Units
@@ -21,11 +23,10 @@ from ..run import Run
 from .finer_mesh import FINEST
 
 FASTEST, SLOWEST = 0.2, 0.01  # logarithmic change of the lengths in one motion; less is not worth an iteration
-RISE = 0.25  # of the objective in one motion, relative to it: more is made by contacts that it takes long to relax from
-SETTLED = 0.01  # relative decrease of the objective in a step, from which on the next motion may come
+RISE = 0.25  # of the objective's scale in one motion: more is made by contacts that it takes long to relax from
+SETTLED = 0.01  # decrease of the objective in a step, relative to its scale, from which on the next motion may come
 LATER = 0.1  # factor of that after no motion was found
 EDGES_PER_GAP = 2.0  # what is packed bends as narrowly as strands are near
-EVEN_RATIO = 2.0  # of spacings to their median: where walls are near, as spacings do not see, it bends as narrowly, too
 REACHED = 1e-9  # logarithm of what may be missing
 
 
@@ -36,20 +37,23 @@ class Grow:
         self._run = run
         self._fastest, self._settled = FASTEST, SETTLED
         self._energy = np.inf  # after the last event
+        self._is_done = run.options.grow == 1.0
         self._resolution = replace(run.resolution, edges_per_gap=EDGES_PER_GAP)
 
     def __call__(self, event: Event) -> Event | Change:
         """Look at the start, at steps that gained little, and where the run would end with other lengths."""
-        left = float(np.log(self._run.options.grow / self._run.iterate.grown))
-        if abs(left) <= REACHED or (isinstance(event, Outcome) and not event.converged):
+        if self._is_done or (isinstance(event, Outcome) and not event.converged):
             return event
-        if not (self._run.problem.obstacles or len(self._run.problem.constraints.pins)):
+        left = float(np.log(self._run.options.grow / self._run.iterate.grown))
+        if abs(left) > REACHED and not (self._run.problem.obstacles or len(self._run.problem.constraints.pins)):
             return self._scaled(left)
-        step = self._step(left) if self._is_due(event) else None
-        if step is not None:
-            self._energy = step.point.energy
-            return Change((step,), self._resolved(step.point))
-        return event.stalling(CROWDED) if isinstance(event, Outcome) else event
+        if not self._is_due(event):
+            return event
+        resolved = self._resolved(self._run.point)  # before the next motion: right after one strands are too near
+        if resolved is not None:
+            return Change(point=resolved)
+        self._is_done = abs(left) <= REACHED
+        return event if self._is_done else self._grown(left, event)
 
     def _is_due(self, event: Event) -> bool:
         """Whether there is nothing else to do, or the curve has its lengths and has all but come to rest."""
@@ -57,7 +61,15 @@ class Grow:
         if isinstance(event, NoStep | Outcome):
             return True
         gained = before - self._energy if isinstance(event, Step) else 0.0
-        return on_target(self._run.point) and gained <= self._settled * abs(self._energy)
+        return on_target(self._run.point) and gained <= self._settled * self._energy_scale
+
+    def _grown(self, left: float, event: Event) -> Event | Change:
+        """A motion; where there is none the event, which is no convergence."""
+        step = self._step(left)
+        if step is not None:
+            self._energy = step.point.energy
+            return Change((step,))
+        return event.stalling(CROWDED) if isinstance(event, Outcome) else event
 
     def _scaled(self, left: float) -> Change:
         """With nothing in the way: the whole curve scaled about its barycenter."""
@@ -73,7 +85,8 @@ class Grow:
         """The shortest motion in the metric to what can be had of the change that is left; None if it is nothing."""
         point, problem = self._run.point, self._run.problem
         space, change = point.tangent_space, float(np.clip(left, -self._fastest, self._fastest))
-        while abs(change) >= min(SLOWEST, abs(left)):
+        least = self._slowest(left)
+        while abs(change) >= least:
             constraints = problem.constraints.scaled(np.exp(change), problem.mesh)
             base = point.within(replace(problem, constraints=constraints))
             aim = base.vertices - space.pseudo_inverse(base.residual)
@@ -85,9 +98,19 @@ class Grow:
         self._settled *= LATER
         return None
 
+    def _slowest(self, left: float) -> float:
+        """The least change worth an iteration: of an arc that is all but straight, half of its slack."""
+        spanned = spans(self._run.point.curve, self._run.problem.constraints.pins.vertices)
+        slack = (0.5 * float(np.log(span.length / span.distance)) for span in spanned if not span.taut)
+        return min(SLOWEST, abs(left), *slack)
+
     def _is_cheap(self, end: Point) -> bool:
-        before = self._run.point.energy
-        return end.energy - before <= RISE * abs(before)
+        return end.energy - self._run.point.energy <= RISE * self._energy_scale
+
+    @property
+    def _energy_scale(self) -> float:
+        """What rises and decreases of the objective are relative to: arcs may have as good as no energy."""
+        return energy_scale(self._run.problem.mesh, self._run.point.energy)
 
     def _resolved(self, point: Point) -> Point | None:
         """The point on a mesh and in units for its length; None if the present ones do, or are all that there are."""
@@ -110,7 +133,6 @@ class Grow:
         if self._run.options.mesh == "fixed":
             return whole
         spacing = graded_spacing(curve, self._resolution)
-        spacing = np.minimum(spacing, EVEN_RATIO * np.median(spacing))
         if not (curve.edge_lengths > SPLIT * spacing).any():
             return whole
         return affordable_pieces(curve, spacing, FINEST)

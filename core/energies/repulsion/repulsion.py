@@ -61,10 +61,10 @@ class Repulsion:
 
         Those without area or length repel nothing, and clusters of them alone would have no centroid.
         """
-        corners = [obstacle.corners.transpose(1, 2, 0) for obstacle in obstacles]
-        solid = [each[:, :, Simplices(each).sizes > 0.0] for each in corners]
-        kinds = ([each for each in solid if len(each) == count and each.size] for count in (3, 2))
-        return tuple(cls(Clusters.of(np.concatenate(kind, axis=2)), weight) for kind in kinds if kind)
+        kinds = zip(*((obstacle.triangles, obstacle.segments) for obstacle in obstacles), strict=True)
+        corners = (np.concatenate(kind).transpose(1, 2, 0) for kind in kinds)
+        solid = (each[:, :, Simplices(each).sizes > 0.0] for each in corners)
+        return tuple(cls(Clusters.of(each), weight) for each in solid if each.size)
 
     def frozen_at(self, curve: Curve) -> "Repulsion":
         """The smooth function that the schedule of ``curve`` makes of it, or that its own does if it suits."""
@@ -104,10 +104,17 @@ class Repulsion:
 
         A plane at the distance h, and so a straight line, has Φ'' = 4π/h³ = Φ³/(2π²).
         """
-        edges = Edges.of(curve.mesh, curve.vertices)
-        potential = Integrals.of(edges, self.clusters, self._schedule(curve)).potential
-        half = 0.25 / np.pi**2 * self.weight * edges.length * potential**3
+        half = 0.25 / np.pi**2 * self.weight * curve.edge_lengths * self._means(curve) ** 3
         return curve.mesh.scatter(half, half)
+
+    def clearance(self, curve: Curve) -> FloatArray:
+        """2π over the mean of Φ on every edge: its distance from a plane or a straight line; shape (edges,)."""
+        return np.asarray(2.0 * np.pi / self._means(curve))
+
+    def _means(self, curve: Curve) -> FloatArray:
+        """Those of Φ on every edge, shape (edges,)."""
+        edges = Edges.of(curve.mesh, curve.vertices)
+        return Integrals.of(edges, self.clusters, self._schedule(curve)).potential
 
     def _schedule(self, curve: Curve) -> Schedule:
         """The schedule that counts at a curve: its own, or that of the curve."""

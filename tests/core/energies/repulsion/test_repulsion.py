@@ -12,6 +12,7 @@ from mobius_flow.core.energies.repulsion.repulsion import OUTDATED, THETA
 from mobius_flow.core.obstacle import Obstacle
 from mobius_flow.core.taylor import derivative_slope, hessian_slope
 from repulsion_references import potential_by_quadrature, repulsion, soup, sphere, wavy
+from shapes import hopf_link
 
 BALL = sphere(2)
 FRAME = Obstacle([[1.2, -1, -1], [1.2, 1, -1], [1.2, 1, 1], [1.1, -1, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
@@ -219,12 +220,57 @@ def test_stiffness_is_the_second_derivative_away_from_a_plane_or_a_line() -> Non
         assert np.all(term.stiffness(strip) >= 0.0)
 
 
+def test_clearance_is_the_distance_of_a_plane_or_a_line() -> None:
+    """On an edge that is along it; the others are further away. Of several obstacles the nearest counts."""
+    far, h = 1e4, 0.01
+    plane = Obstacle([[-far, -far, 0], [far, -far, 0], [0, far, 0]], [[0, 1, 2]])
+    line = Obstacle([[-far, 0, 0], [far, 0, 0]], [[0, 1]])
+    strip = Curve([[0.0, 0, h], [1.0, 0, h], [0.5, 0, h + 40.0]])
+    for obstacles in ([plane], [line], [plane, Obstacle(line.vertices - [0, 0, h], line.faces)]):
+        clearance = Objective.of(MoebiusEnergy(), obstacles).clearance(strip)
+        assert clearance[0] == pytest.approx(h, rel=1e-2)
+        assert (clearance[1:] > 2.0 * h).all()
+    assert np.array_equal(Objective.of(MoebiusEnergy()).clearance(strip), np.full(3, np.inf))
+
+
+def test_clearance_is_in_the_units_of_the_user() -> None:
+    curve = wavy(24).with_vertices(1000.0 * wavy(24).vertices + 7.0)
+    ball = Obstacle(1000.0 * BALL.vertices + 7.0, BALL.faces)
+    clearance = start_problem(curve, RelaxOptions(vertices=24, avoid=[ball])).clearance(curve)
+    assert clearance == pytest.approx(1000.0 * Objective.of(MoebiusEnergy(), [BALL]).clearance(wavy(24)), rel=1e-3)
+
+
 def test_stiffness_becomes_part_of_the_metric() -> None:
     curve, options = wavy(24), RelaxOptions(vertices=24, avoid=[BALL])
     point = start_problem(curve, options).at_curve(curve)
     (term,) = point.problem.objective.potentials
     expected = point.problem.metric.at(point.curve).dense() + np.diag(term.stiffness(point.curve))
     assert np.allclose(point.inner_product.dense(), expected, rtol=1e-12, atol=0.0)
+
+
+@pytest.mark.parametrize("named", [[0, 1, 1], [0, 0, 1], [1, 0, 1]])
+def test_segments_among_triangles_repel_as_segments(named: list[int]) -> None:
+    """They are triangles that name a vertex twice."""
+    mixed = Obstacle(
+        np.concatenate([BALL.vertices, FRAME.vertices]), [*BALL.faces, *(FRAME.faces[:, named] + len(BALL.vertices))]
+    )
+    curve, v = wavy(24), direction_for(wavy(24))
+    objective = Objective.of(MoebiusEnergy(), [mixed])
+    assert [len(term.clusters.simplices.corners) for term in objective.potentials] == [3, 2]
+    assert objective.value(curve) == pytest.approx(Objective.of(MoebiusEnergy(), [BALL, FRAME]).value(curve), rel=1e-12)
+    frozen = objective.frozen_at(curve)
+    assert derivative_slope(frozen, curve, v, largest=1e-3) == pytest.approx(2, abs=0.01)
+    assert hessian_slope(frozen, curve, v, largest=1e-3) == pytest.approx(3, abs=0.05)
+
+
+def test_a_polyline_repels_as_another_component_does() -> None:
+    """What the two have in common of the Möbius energy, of which the midpoint sums leave an error of second order."""
+    energy, (curve, other) = MoebiusEnergy(), hopf_link(300).components
+    alone = sum(energy.value(Curve(each)) for each in (curve, other))
+    following = np.arange(len(other)) + 1
+    polyline = Obstacle(other, np.stack([following - 1, following % len(other)], axis=1))
+    expected = energy.value(Curve.from_components([curve, other])) - alone
+    assert repulsion(polyline, THETA).value(Curve(curve)) == pytest.approx(expected, rel=1e-3)
 
 
 def test_what_has_no_area_repels_nothing() -> None:
