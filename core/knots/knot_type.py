@@ -90,7 +90,7 @@ class KnotType:
     def sentence(self) -> str:
         """The short form, and how that is known."""
         if self.diagram is None:
-            return "not told: this is for closed curves in space of at most " + f"{MAX_VERTICES:,} vertices"
+            return f"not told: that takes closed components in space, of at most {MAX_VERTICES:,} vertices in all"
         most = f"a diagram of {counted(self.diagram.crossings, 'crossing')}"
         if not self.names:
             polynomial = "" if self.alexander is None else f"Alexander polynomial {list(self.alexander)}, "
