@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from .collision import check_embedded, check_gap, minimal_gap
 from .collision.thickness import thickness
 from .curve import Curve, check_is_curve
@@ -13,6 +11,7 @@ from .descent import Point
 from .driver import RelaxOptions
 from .driver.prepare import start_problem
 from .driver.stability import stability
+from .driver.termination import gradient_bound
 from .knots import KnotType, knot_type
 from .measure import MAX_VERTICES as PAIRS_UP_TO
 from .measure import measure
@@ -34,7 +33,7 @@ class Rest:
     gradient_norm
         Of the projected gradient in the metric J_C, edge lengths being prescribed.
     bound
-        At most this at rest: a tolerance times √E, as `relax` has it by default.
+        At most this at rest, as `relax` has it by default (`gradient_bound`).
     index
         Number of negative eigenvalues of the Hessian, 0 at a minimum; None away from rest, and for many vertices.
     """
@@ -126,7 +125,7 @@ def info(curve: Curve) -> Info:
 
 def _rest(curve: Curve) -> Rest:
     point = _point(curve, RelaxOptions(edge_lengths="keep"))
-    bound = RelaxOptions().tolerance * float(np.sqrt(abs(point.energy)))
+    bound = gradient_bound(RelaxOptions(), curve.mesh, point.energy)
     index = None
     if point.gradient_norm <= bound and len(curve) <= INDEX_UP_TO:
         index = stability(point).index

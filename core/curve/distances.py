@@ -65,6 +65,12 @@ def arc_distance_of_pairs(curve: Curve, i: IntArray, j: IntArray, t: float = 0.0
     return _shorter_way(curve, component[i], component[j], np.abs(position[i] - position[j]))
 
 
+def arc_distance_of_points(curve: Curve, i: IntArray, s: FloatArray, j: IntArray, t: FloatArray) -> FloatArray:
+    """ϱ between points at lengths s from the tails of edges ``i`` and t from those of ``j``; inf across components."""
+    start, component = curve.arc_starts, curve.mesh.edge_component
+    return _shorter_way(curve, component[i], component[j], np.abs(start[i] + s - start[j] - t))
+
+
 def arc_distance_of_vertices(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
     """ϱ between vertices ``i`` and ``j``, elementwise; inf across components."""
     position, component = vertex_positions(curve), curve.mesh.component

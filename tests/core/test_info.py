@@ -59,6 +59,17 @@ def test_arcs_have_all_but_a_type() -> None:
     assert found.writhe == pytest.approx(0.0, abs=1e-12)
 
 
+def test_an_arc_that_relax_takes_for_converged_is_at_rest() -> None:
+    """Its energy is about 0, and √E no measure of its gradient."""
+    result = minimize(half_circle(40), RelaxOptions(mesh="fixed"))
+    assert result.outcome.converged
+    found = info(result.curve)
+    assert found.rest is not None
+    assert found.rest.objective < 1e-4
+    assert found.rest.at_rest
+    assert found.type.sentence == "not told: that takes closed components in space, of at most 20,000 vertices in all"
+
+
 def test_what_takes_too_long_is_left_out() -> None:
     found = info(circle(INDEX_UP_TO + 1)).rest
     assert found is not None
