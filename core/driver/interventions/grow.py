@@ -11,6 +11,7 @@ from ...curve.remesh import SPLIT, graded_spacing
 from ...descent import Leg, NoStep, Point, Step
 from ...descent.searches.normal_step import on_target
 from ...descent.step import attempt
+from ...energies.components import energy_scale
 from ...errors import MobiusFlowError
 from ...types import IntArray
 from ...units import Units
@@ -21,8 +22,9 @@ from ..run import Run
 from .finer_mesh import FINEST
 
 FASTEST, SLOWEST = 0.2, 0.01  # logarithmic change of the lengths in one motion; less is not worth an iteration
-RISE = 0.25  # of the objective in one motion, relative to it: more is made by contacts that it takes long to relax from
-SETTLED = 0.01  # relative decrease of the objective in a step, from which on the next motion may come
+SLIGHTEST = 1e-9  # the same where greater lengths are out of reach: what is all but taut bows out by degrees
+RISE = 0.25  # of the objective in one motion, by its scale: more is made by contacts that it takes long to relax from
+SETTLED = 0.01  # decrease of the objective in a step, by its scale, from which on the next motion may come
 LATER = 0.1  # factor of that after no motion was found
 EDGES_PER_GAP = 2.0  # what is packed bends as narrowly as strands are near
 EVEN_RATIO = 2.0  # of spacings to their median: where walls are near, as spacings do not see, it bends as narrowly, too
@@ -57,7 +59,9 @@ class Grow:
         if isinstance(event, NoStep | Outcome):
             return True
         gained = before - self._energy if isinstance(event, Step) else 0.0
-        return on_target(self._run.point) and gained <= self._settled * abs(self._energy)
+        return on_target(self._run.point) and gained <= self._settled * energy_scale(
+            self._run.problem.mesh, self._energy
+        )
 
     def _scaled(self, left: float) -> Change:
         """With nothing in the way: the whole curve scaled about its barycenter."""
@@ -73,7 +77,8 @@ class Grow:
         """The shortest motion in the metric to what can be had of the change that is left; None if it is nothing."""
         point, problem = self._run.point, self._run.problem
         space, change = point.tangent_space, float(np.clip(left, -self._fastest, self._fastest))
-        while abs(change) >= min(SLOWEST, abs(left)):
+        slowest = min(SLOWEST, self._fastest)
+        while abs(change) >= min(slowest, abs(left)):
             constraints = problem.constraints.scaled(np.exp(change), problem.mesh)
             base = point.within(replace(problem, constraints=constraints))
             aim = base.vertices - space.pseudo_inverse(base.residual)
@@ -81,13 +86,14 @@ class Grow:
             if isinstance(found, Leg):
                 self._fastest, self._settled = min(2.0 * abs(change), FASTEST), SETTLED
                 return Step((found,), 0.0, None)
+            slowest = SLIGHTEST if found.trial is None and left > 0 else SLOWEST
             change *= 0.5
         self._settled *= LATER
         return None
 
     def _is_cheap(self, end: Point) -> bool:
         before = self._run.point.energy
-        return end.energy - before <= RISE * abs(before)
+        return end.energy - before <= RISE * energy_scale(end.problem.mesh, before)
 
     def _resolved(self, point: Point) -> Point | None:
         """The point on a mesh and in units for its length; None if the present ones do, or are all that there are."""
