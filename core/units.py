@@ -11,6 +11,9 @@ from .obstacle import Obstacle
 from .types import FloatArray, frozen
 
 MAX_COORDINATE = 1e40  # coordinate, and the inverse of the smallest size: even seventh powers of both are still numbers
+MAX_REACH = (
+    1e12  # of obstacles, in the program's units: beyond, their repulsion is lost in the rounding of their corners
+)
 
 
 def check_units(curve: Curve) -> None:
@@ -55,8 +58,15 @@ class Units:
         return np.asarray((vertices - self.offset) / self.scale)
 
     def obstacle_from_user(self, obstacle: Obstacle) -> Obstacle:
-        """An obstacle in the program's units."""
-        return Obstacle(self.from_user(obstacle.vertices), obstacle.faces, obstacle.name)
+        """An obstacle in the program's units; a CurveError if it is too large, or too far away, for the curve."""
+        vertices = self.from_user(obstacle.vertices)
+        reach = float(np.abs(vertices).max())
+        if reach > MAX_REACH:
+            raise CurveError(
+                f"{obstacle.title} reaches some {reach:.0e} times as far as the curve is long; "
+                "cut off what is far away, or leave it out"
+            )
+        return Obstacle(vertices, obstacle.faces, obstacle.name)
 
     def to_user(self, vertices: FloatArray) -> FloatArray:
         """Vertices in the user's units, rounded to the doubles that are proved and written, read-only; shape (n, m)."""

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -58,7 +59,7 @@ class Curve:
                 raise CurveError(
                     f"component {k + 1} has shape {array.shape}; all components must be arrays (n, m) with one m"
                 )
-        mesh = Mesh(tuple(len(array) for array in arrays), tuple(closed))
+        mesh = Mesh(tuple(len(array) for array in arrays), cast(tuple[bool, ...], closed))  # which checks it
         return cls(np.concatenate(arrays), mesh)
 
     def __reduce__(self) -> tuple[type["Curve"], tuple[FloatArray, Mesh]]:

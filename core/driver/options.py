@@ -20,6 +20,7 @@ EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
 SOLVERS = ("auto", "dense", "hierarchical")
 MAX_GROWTH = 1000.0  # what is packed takes more vertices than there is time for long before
+MIN_GROWTH = 1 / MAX_GROWTH  # and what shrinks far more than that is so small that powers of its size are 0
 _advanced = partial(option, group="advanced")
 _scripted = partial(_advanced, scripted=True)
 
@@ -173,7 +174,7 @@ class RelaxOptions:
         "Grow",
         "multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and "
         "pins leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
-        low=0,
+        low=MIN_GROWTH,
         high=MAX_GROWTH,
         metavar="F",
     )

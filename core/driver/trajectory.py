@@ -22,8 +22,9 @@ class Trajectory:
     Arrays ``stage_000``, ``stage_001``, … of shape (k, n, m), each with ``component_sizes_000``, … and, unless all
     components are closed, ``component_closed_000``, … of truth values; a new stage begins where the mesh changes.
     What was avoided is in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``, shape (f, 3) or (f, 2),
-    ….  Coordinates are the user's, in double: what was proved is about exactly these numbers.  Where the run came from
-    is kept as JSON in ``provenance``, an array of one string, which `verify` does not look at.
+    ….  ``pins``, shape (k, m), are the places of the vertices that were held, if there were any.  Coordinates are the
+    user's, in double: what was proved is about exactly these numbers.  Where the run came from is kept as JSON in
+    ``provenance``, an array of one string, which `verify` does not look at.
 
     Parameters
     ----------
@@ -36,6 +37,7 @@ class Trajectory:
     def __init__(self, provenance: Mapping[str, object] | None = None, obstacles: Sequence[Obstacle] = ()) -> None:
         self._provenance, self._obstacles = provenance, obstacles
         self._stages: list[tuple[Mesh, list[FloatArray]]] = []
+        self._pins: FloatArray = np.empty((0, 0))
         self._last: Curve | None = None
         self._last_index = -1
 
@@ -59,6 +61,8 @@ class Trajectory:
             self._stages[-1][1].extend(iterate.path)
         else:  # the start, or the same curve on another mesh
             self._stages.append((iterate.curve.mesh, [iterate.curve.vertices]))
+        if self._last is None:
+            self._pins = iterate.curve.vertices[list(iterate.pins)]
         self._last, self._last_index = iterate.curve, iterate.index
 
     def _follows(self, iterate: Iterate) -> bool:
@@ -74,6 +78,8 @@ class Trajectory:
         for k, obstacle in enumerate(self._obstacles):
             named[f"obstacle_{k:03d}_vertices"] = obstacle.vertices
             named[f"obstacle_{k:03d}_faces"] = obstacle.faces
+        if len(self._pins):
+            named["pins"] = self._pins
         for k, (mesh, frames) in enumerate(self._stages):
             named[f"stage_{k:03d}"] = np.stack(frames)
             named[f"component_sizes_{k:03d}"] = np.array(mesh.component_sizes, dtype=np.intp)

@@ -1,5 +1,7 @@
 """Check that a trajectory is an isotopy: no two non-neighbour edges ever meet, nor any obstacle, and stages fit.
 
+Vertices that are pinned must not move, besides.
+
 Why this is enough: if two neighbour edges fold onto each other, or an edge shrinks to a point, then an edge meets the
 one after its neighbour at the same moment, in every closed polygon of 4 or more vertices. A triangle, which has no such
 edges, is one as long as no vertex lies on the opposite edge. Of an open polygon the first edge can fold onto the second
@@ -22,8 +24,9 @@ import numpy as np
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .obstacles import Obstacles
+from .pins import HeldVertices, LostPinError
 from .segments import Point, meet
-from .trajectory import Components, TrajectoryError, count_legs, stages, still_parts
+from .trajectory import Components, TrajectoryError, count_legs, held_points, stages, still_parts
 from .transition import DifferentCurveError, common_vertices, straightened
 from .triangles import meet_triangle
 from .verdict import ContactError, Verdict
@@ -34,12 +37,13 @@ class _Progress:
     stages: int = 0
     legs: int = 0
     obstacles: int = 0
+    pins: int = 0
     frame: int | None = None
     tell: Callable[[int], None] = lambda legs: None
 
     def verdict(self, **values: Any) -> Verdict:
         """The verdict, with what has been counted."""
-        return Verdict(stages=self.stages, legs=self.legs, obstacles=self.obstacles, **values)
+        return Verdict(stages=self.stages, legs=self.legs, obstacles=self.obstacles, pins=self.pins, **values)
 
 
 def verify(path: Path | str, callback: Callable[[int, int], None] | None = None) -> Verdict:
@@ -55,7 +59,7 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
         _check_file(path, progress)
     except TrajectoryError as error:
         return progress.verdict(accepted=False, reason=str(error))
-    except (ContactError, DifferentCurveError) as failure:
+    except (ContactError, DifferentCurveError, LostPinError) as failure:
         what = {"edges": failure.edges, "obstacle": failure.obstacle} if isinstance(failure, ContactError) else {}
         place = {"stage": progress.stages - 1, "frame": progress.frame}
         return progress.verdict(accepted=False, reason=str(failure), **place, **what)
@@ -66,7 +70,8 @@ def _check_file(path: Path | str, progress: _Progress) -> None:
     last: FloatArray | None = None
     before: Components = ()
     obstacles = Obstacles.of(still_parts(path))
-    progress.obstacles = len(obstacles)
+    pins = held_points(path)
+    progress.obstacles, progress.pins = len(obstacles), len(pins)
     for stage in stages(path):
         progress.stages, progress.frame = progress.stages + 1, None
         heads = _heads(stage.components)
@@ -76,10 +81,12 @@ def _check_file(path: Path | str, progress: _Progress) -> None:
         if last is not None:
             _check_transition(last, before, first, stage.components, obstacles)
         progress.frame = 0
+        held = HeldVertices.among(first, pins)
         _check_leg(first, first, heads, obstacles)  # a single frame is a polygon, too
         last, before = first, stage.components
         for frame in stage.frames:
             progress.legs += 1
+            held.check(frame)
             _check_leg(last, frame, heads, obstacles)
             last, progress.frame = frame, progress.frame + 1
             progress.tell(progress.legs)

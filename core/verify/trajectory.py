@@ -4,8 +4,9 @@ A file is a zip archive of .npy arrays, as numpy.savez writes it: ``stage_000``,
 float64, and ``component_sizes_000``, … with the numbers of vertices of the components. Where some of them are open
 polygons, ``component_closed_000``, … tells which are closed; without it all are. There may be obstacles,
 ``obstacle_000_vertices``, … each (k, 3) and float64, and ``obstacle_000_faces``, … each (f, 3) or (f, 2), of whole
-numbers. Of the stages only one frame is in memory at a time (in Fortran order, one stage of bounded size), and memory
-is taken only for data that the file really has.
+numbers, at least one; and ``pins``, (k, m) and float64, the points at which a vertex stays. Of the stages only one
+frame is in memory at a time (in Fortran order, one stage of bounded size), and memory is taken only for data that the
+file really has.
 """
 
 import ast
@@ -14,6 +15,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -64,14 +66,9 @@ def stages(path: Path | str) -> Iterator[Stage]:
     TrajectoryError
         If the file is none or is damaged, also while frames are read.
     """
-    try:
-        with zipfile.ZipFile(path) as archive:
-            for number in range(_count(archive)):
-                yield _stage(archive, number)
-    except TrajectoryError:
-        raise
-    except (*_DAMAGE, ValueError) as error:  # ValueError: a path with a null character
-        raise TrajectoryError(f"the file cannot be read: {error}") from error
+    with _opened(path) as archive:
+        for number in range(_count(archive)):
+            yield _stage(archive, number)
 
 
 def still_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
@@ -82,12 +79,30 @@ def still_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
     TrajectoryError
         If the file cannot be read, or an index has no vertex.
     """
+    with _opened(path) as archive:
+        return [_obstacle(archive, name) for name in _obstacle_names(archive)]
+
+
+def held_points(path: Path | str) -> FloatArray:
+    """The places of the pins of a file, shape (k, m); (0, 0) if it has none. Raises as `stages` does."""
+    with _opened(path) as archive:
+        if "pins.npy" not in archive.namelist():
+            return np.empty((0, 0))
+        points = _whole(archive, "pins", "f")
+    if points.dtype != np.dtype("<f8") or not np.isfinite(points).all():
+        raise TrajectoryError(f"pins is a table of {points.dtype}; it must be one of finite numbers, float64")
+    return np.array(points, dtype=np.float64, order="C")
+
+
+@contextmanager
+def _opened(path: Path | str) -> Iterator[zipfile.ZipFile]:
+    """The archive; whatever damage is met while it is read is a TrajectoryError."""
     try:
         with zipfile.ZipFile(path) as archive:
-            return [_obstacle(archive, name) for name in _obstacle_names(archive)]
+            yield archive
     except TrajectoryError:
         raise
-    except (*_DAMAGE, ValueError) as error:
+    except (*_DAMAGE, ValueError) as error:  # ValueError: a path with a null character
         raise TrajectoryError(f"the file cannot be read: {error}") from error
 
 
@@ -178,9 +193,11 @@ def _obstacle(archive: zipfile.ZipFile, name: str) -> tuple[FloatArray, IntArray
         raise TrajectoryError(f"{name}_vertices is an array {found}; it must be (k, 3) of float64")
     if faces.shape[1] not in (2, 3):
         raise TrajectoryError(f"{name}_faces has shape {faces.shape}; it must be (f, 3) or (f, 2)")
+    if not len(faces):
+        raise TrajectoryError(f"{name}_faces is empty; an obstacle has at least one")
     if not np.isfinite(vertices).all():
         raise TrajectoryError(f"{name}_vertices: a coordinate is not finite")
-    if faces.size and not (faces.min() >= 0 and faces.max() < len(vertices)):
+    if not (faces.min() >= 0 and faces.max() < len(vertices)):
         raise TrajectoryError(f"{name}_faces: an index has no vertex")
     return np.array(vertices, dtype=np.float64, order="C"), faces.astype(np.intp)
 

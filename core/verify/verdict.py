@@ -26,6 +26,8 @@ class Verdict:
         The edges that meet, or the one that meets an obstacle, from 0; None if that is not the reason.
     obstacles
         How many there are.
+    pins
+        How many vertices are held, in every frame.
     obstacle
         The one that an edge meets, from 0; None if that is not the reason.
     """
@@ -39,11 +41,13 @@ class Verdict:
     edges: tuple[int, ...] | None = None
     obstacles: int = 0
     obstacle: int | None = None
+    pins: int = 0
 
     def __str__(self) -> str:
         if self.accepted:
             nor = f", nor with {counted(self.obstacles, 'obstacle')}" if self.obstacles else ""
-            return f"accepted: no contact on {counted(self.legs, 'leg')} in {counted(self.stages, 'stage')}{nor}"
+            held = f"; {counted(self.pins, 'pin')} in place" if self.pins else ""
+            return f"accepted: no contact on {counted(self.legs, 'leg')} in {counted(self.stages, 'stage')}{nor}{held}"
         place = "" if self.stage is None else f"stage {self.stage}"
         place += "" if self.frame is None else f", frame {self.frame}"
         return f"rejected: {place}: {self.reason}" if place else f"rejected: {self.reason}"

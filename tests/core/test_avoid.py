@@ -99,6 +99,25 @@ def test_a_start_that_pierces_is_refused():
         relax(regular_polygon(30, dimension=2), RelaxOptions(avoid=(plate(0.3),)))
 
 
+@pytest.mark.parametrize(
+    ("size", "unit", "reach"), [(1e14, 1.0, r"\de\+1[34]"), (1e40, 1.0, r"\de\+(39|40)"), (9.0, 1e-20, r"\de\+(19|20)")]
+)
+def test_an_obstacle_too_large_for_its_repulsion_is_refused(size, unit, reach):
+    """Its size is told, not coordinates in units that nobody knows."""
+    curve, wall = torus_trefoil(30), plate(-2.0, size, "wall")
+    wall = Obstacle(wall.vertices * [1.0, 1.0, unit], wall.faces, "wall")
+    with pytest.raises(CurveError, match=f"^obstacle wall reaches some {reach} times as far as the curve is long; cut"):
+        relax(curve.with_vertices(unit * curve.vertices), RelaxOptions(avoid=(wall,), vertices=30))
+
+
+def test_the_repulsion_of_large_obstacles_is_right():
+    """Beyond some size the objective sees no difference any more, up to the largest that is not refused."""
+    curve = torus_trefoil(30)
+    options = [RelaxOptions(avoid=(plate(-2.0, size),), vertices=30, max_iterations=0) for size in (1e7, 1e11)]
+    energies = [minimize(curve, each).energies[0] for each in options]
+    assert energies[1] == pytest.approx(energies[0], rel=1e-6)
+
+
 @pytest.mark.parametrize("value", [plate(1.0), "wall.obj", [[0.0, 0.0]], 3, None])
 def test_what_is_no_tuple_of_obstacles_is_refused(value):
     with pytest.raises(OptionError, match=r"avoid is .*; it must be an? (tuple|obstacle), such as \(?Obstacle\("):

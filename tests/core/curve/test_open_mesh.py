@@ -92,6 +92,9 @@ def test_refusals(sizes, closed, reason) -> None:
     with pytest.raises(CurveError) as caught:
         Mesh(sizes, closed)
     assert str(caught.value) == reason
+    if closed is False:
+        with pytest.raises(CurveError, match=r"^closed is False; it must have"):
+            Curve.from_components([np.eye(3)], closed)
 
 
 def test_what_is_for_closed_components_says_so() -> None:

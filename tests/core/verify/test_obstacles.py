@@ -101,6 +101,10 @@ GOOD: dict[str, object] = {"obstacle_000_vertices": np.eye(3) + 9.0, "obstacle_0
         ({"obstacle_000_faces": np.array([[0, 1, -1]])}, "obstacle_000_faces: an index has no vertex"),
         ({"obstacle_000_faces": np.array([[0.0, 1.0, 2.0]])}, "must be a table of numbers"),
         ({"obstacle_000_faces": np.array([[0, 1, 2, 2]])}, r"it must be (f, 3) or (f, 2)"),
+        (
+            {"obstacle_000_faces": np.empty((0, 3), dtype=int)},
+            "obstacle_000_faces is empty; an obstacle has at least one",
+        ),
         ({"obstacle_000_faces": np.array([0, 1, 2])}, "must be a table of numbers"),
         ({"obstacle_000_vertices": np.eye(3) * np.nan}, "a coordinate is not finite"),
         ({"obstacle_000_vertices": np.eye(3)[:, :2]}, "it must be (k, 3) of float64"),
