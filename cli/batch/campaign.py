@@ -8,10 +8,11 @@ from pathlib import Path
 from ...core import RelaxOptions
 from ...core.errors import OutputError
 from .. import signals
+from ..places import check_place
 from . import cluster
 from .folder import check_replaceable, finished, sweep
 from .inputs import inputs
-from .job import Job, jobs
+from .job import CSV, PARQUET, Job, jobs
 from .progress import Progress
 from .table import Row, Table
 
@@ -42,6 +43,8 @@ def _prepare(directory: Path, planned: list[Job]) -> None:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(directory, error) from error
+    for name in (CSV, PARQUET):
+        check_place(str(directory / name))
     for job in planned:
         check_replaceable(Path(job.folder))
 

@@ -266,6 +266,20 @@ def test_other_people_s_folders_are_left_alone(tmp_path: Path, capsys: pytest.Ca
     assert [path.name for path in tmp_path.rglob("*")] == ["out", "3_1"]
 
 
+def test_a_directory_that_cannot_be_written_is_told_before_the_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(cluster, "connected", lambda *_: pytest.fail("work for nothing"))
+    words = ["batch", "3_1", "-o", str(tmp_path)]
+    with monkeypatch.context() as read_only:
+        read_only.setattr(os, "access", lambda path, _mode: Path(path) != tmp_path)  # root may write everywhere
+        assert main(words) == 2
+    assert capsys.readouterr().err == f"mobius-flow: {tmp_path}/results.csv: is write-protected\n"
+    (tmp_path / "results.parquet").mkdir()
+    assert main(words) == 2
+    assert capsys.readouterr().err == f"mobius-flow: {tmp_path}/results.parquet: is a directory; name a file\n"
+
+
 @pytest.mark.parametrize("library", ["distributed", "pyarrow"])
 def test_a_missing_library_is_named(
     library: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
