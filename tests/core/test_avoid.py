@@ -1,5 +1,7 @@
 """Relaxations among obstacles: whatever the method and the mesh, no motion touches one, and the verifier agrees."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mobius_flow.core import (
@@ -9,6 +11,7 @@ from mobius_flow.core import (
     Obstacle,
     OptionError,
     RelaxOptions,
+    Status,
     Trajectory,
     minimize,
     relax,
@@ -22,6 +25,8 @@ from shapes import regular_polygon, torus_trefoil
 from solids import box, plate, rod
 
 NEAR = (plate(0.95, name="ceiling"), plate(-0.95, name="floor"))  # a relaxed trefoil would rise through them
+
+SHARP = {"method": "trust-region", "tolerance": 1e-7}
 
 
 def verified(curve, options, tmp_path):
@@ -61,6 +66,19 @@ def test_changes_of_mesh_and_shape_stay_clear(more, tmp_path):
     low, high = float(curve.vertices.min()), float(curve.vertices.max())
     container = box(low - 0.02 * (high - low), high + 0.02 * (high - low))
     verified(curve, RelaxOptions(max_iterations=40, avoid=[container], **more), tmp_path)
+
+
+@pytest.mark.parametrize("half", [1.05, 1.3])
+def test_little_is_left_to_gain_where_a_run_has_converged(half):
+    """Though the energy of the walls, most of the objective, makes the bound on the gradient wider."""
+    t = 2.0 * np.pi * np.arange(48) / 48
+    ring = Curve(np.column_stack([np.cos(t), np.sin(t), 0.3 * np.cos(2 * t) + 0.1 * np.sin(3 * t)]))
+    options = RelaxOptions(avoid=[box(-half, half)], vertices=48)
+    usual, sharp = (minimize(ring, replace(options, **more)) for more in ({}, SHARP))
+    assert usual.status is sharp.status is Status.CONVERGED
+    assert usual.last.energy > 5.0 * usual.final_energy
+    assert 0.0 < usual.last.energy / sharp.last.energy - 1.0 < 1e-6
+    assert usual.final_energy == pytest.approx(sharp.final_energy, rel=1e-3)
 
 
 def test_a_coarse_start_stays_clear(tmp_path):
