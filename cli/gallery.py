@@ -30,7 +30,8 @@ example:
   mobius-flow batch 3_1..7_7 -o results && mobius-flow gallery results -o gallery.png
 
 Converged curves are shown as the Möbius image, of the same energy, that bends least, but for open ones and those that
-were pinned or had obstacles. A picture takes some three seconds of processor time. The energy is that of the smooth curve, with its error, where batch was told to --extrapolate it.
+were pinned or had obstacles. A picture takes some three seconds of processor time. The energy is that of the smooth
+curve, with its error, where batch was told to --extrapolate it.
 
 exit status: 0; 2 where there are no results, something is not installed, or OUT cannot be written; 130 interrupted
 """

@@ -29,7 +29,7 @@ def stadium(cuts: Sequence[float]) -> Curve:
     angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 41)
     turn = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
     across = np.array([[5.0 - cut, 1.0, 0.0] for cut in cuts])
-    half = np.concatenate([turn + [5.0, 0.0, 0.0], across])
+    half = np.concatenate([turn + np.array([5.0, 0.0, 0.0]), across])
     return Curve(np.concatenate([half, half * [-1.0, -1.0, 1.0]]))
 
 
