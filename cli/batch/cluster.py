@@ -83,7 +83,7 @@ def _joined(address: str) -> "Iterator[Client]":
 
 async def _greet(address: str) -> None:
     """Connect and part; a client that cannot connect would be left half made, and hang when it is collected."""
-    from distributed.comm import connect
+    from distributed.comm.core import connect
     from distributed.security import Security
 
     comm = await connect(address, timeout=_PATIENCE, **Security().get_connection_args("client"))
