@@ -44,7 +44,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--methods", metavar="A,B,…", help=f"names, comma separated (default: all: {','.join(METHODS)})"
     )
-    parser.add_argument("--time-limit", type=float, default=30.0, metavar="S", help="seconds per method (30)")
+    parser.add_argument("--time-limit", type=float, default=30.0, metavar="S", help="seconds per method (default: 30)")
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"one of {', '.join(WRITERS)}")
     relax_options.add_to(parser, method=False)
 

@@ -2,6 +2,7 @@
 
 import argparse
 import csv
+import json
 import math
 import sys
 import tempfile
@@ -10,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..addon.pictures import export
-from ..core import MobiusFlowError, Status, read_curve
+from ..core import Curve, MobiusFlowError, Status, read_curve
 from ..core.driver.balance import balanced
 from ..core.errors import OutputError, wrong_suffix
 from ..core.system.files import atomic_write
@@ -24,12 +25,14 @@ from .progress import bar
 SIZE = 300  # pixels of a picture's side
 INCHES, HEAD = 2.4, 0.45  # of a picture's side, and of the lines above it
 ASPECT = 1.4  # of the page, about
+HOLDING = {"avoid", "pins"}  # options that Möbius images do not keep
 _EPILOG = """\
 example:
   mobius-flow batch 3_1..7_7 -o results && mobius-flow gallery results -o gallery.png
 
-Converged curves are shown as the Möbius image, of the same energy, that bends least. A picture takes some three seconds
-of processor time. The energy is that of the smooth curve, with its error, where batch was told to --extrapolate it.
+Converged curves are shown as the Möbius image, of the same energy, that bends least, but for open ones and those that
+were pinned or had obstacles. A picture takes some three seconds of processor time. The energy is that of the smooth
+curve, with its error, where batch was told to --extrapolate it.
 
 exit status: 0; 2 where there are no results, something is not installed, or OUT cannot be written; 130 interrupted
 """
@@ -44,11 +47,16 @@ def add_to(parser: argparse.ArgumentParser) -> None:
 
 @dataclass(frozen=True)
 class Shown:
-    """A result: where its curve is, what it is called, and whether it has come to rest."""
+    """A result: where its curve is, what it is called, and whether its Möbius images are at rest as well."""
 
     curve: Path
     title: str
-    converged: bool
+    free: bool
+
+    def look(self) -> Curve:
+        """The curve as it is shown."""
+        curve = read_curve(self.curve)
+        return balanced(curve) if self.free and curve.mesh.all_closed else curve
 
 
 def run(options: argparse.Namespace) -> int:
@@ -63,8 +71,7 @@ def run(options: argparse.Namespace) -> int:
         pictures = [Path(room, f"{k}.png") for k in range(len(shown))]
         progress = bar(total=len(shown), unit=" pictures") if sys.stderr.isatty() else None
         for each, picture in zip(shown, pictures, strict=True):
-            curve = read_curve(each.curve)
-            export.write_picture(picture, balanced(curve) if each.converged else curve, SIZE, SIZE)
+            export.write_picture(picture, each.look(), SIZE, SIZE)
             if progress is not None:
                 progress.update()
         _write_page(options.output, [each.title for each in shown], pictures)
@@ -94,7 +101,8 @@ def _shown(directory: Path, row: dict[str, str]) -> Shown:
         energy = f"{float(row['extrapolated_energy']):.4f} ± {float(row['extrapolated_energy_error']):.1g}"
     else:
         energy = f"{float(row['energy']):.4f}"
-    return Shown(directory / folder / CURVE, f"{folder}\n{energy}", row["status"] == Status.CONVERGED.value)
+    free = row["status"] == Status.CONVERGED.value and HOLDING.isdisjoint(json.loads(row["options"]))
+    return Shown(directory / folder / CURVE, f"{folder}\n{energy}", free)
 
 
 def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path]) -> None:

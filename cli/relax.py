@@ -40,7 +40,7 @@ _EPILOG = """\
 examples:
   mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
   mobius-flow relax knot.txt film.mp4 --method trust-region
-  mobius-flow relax knot.txt relaxed.txt --avoid bunny.obj --trajectory path.npz
+  mobius-flow relax knot.txt relaxed.txt --avoid walls.obj --trajectory path.npz
   mobius-flow relax loop.obj relaxed.obj --pin 12,40
   mobius-flow knot 8_19 - | mobius-flow relax - - --format txt | mobius-flow energy -
 

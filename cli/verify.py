@@ -23,7 +23,7 @@ _PIECE = 1 << 20
 _EPILOG = """\
 examples:
   mobius-flow verify path.npz
-  mobius-flow relax knot.txt out.txt --quiet --trajectory /dev/stdout | mobius-flow verify - --json
+  mobius-flow relax knot.txt out.txt --quiet --trajectory - | mobius-flow verify - --json
 
 In JSON stages and frames are counted from 0, edges and the obstacle, as in "reason", from 1.
 

@@ -61,7 +61,7 @@ def options() -> str:
         (f"`{each.name}`", each.help, _default(each), "yes" if each.is_setting else "no")
         for each in declared(RelaxOptions)
     ]
-    return _table(("option", "what it does", "default", "in Blender"), rows)
+    return _table(("option", "what it does", "default", "setting in Blender"), rows)
 
 
 def formats() -> str:

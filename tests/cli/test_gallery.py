@@ -13,7 +13,7 @@ from mobius_flow.cli import gallery, main
 from mobius_flow.cli.batch.table import Row
 from mobius_flow.core import Curve, MobiusFlowError, write_curve
 from mobius_flow.core.curve.bending import bending
-from shapes import regular_polygon, torus_trefoil
+from shapes import half_circle, regular_polygon, torus_trefoil
 
 CURVES = {"round": regular_polygon(24), "knot": torus_trefoil(60), "knot-2": torus_trefoil(50)}
 
@@ -74,6 +74,19 @@ def test_every_result_has_its_picture_name_and_energy(
     assert np.array_equal(drawn[1].vertices, CURVES["knot-2"].vertices)
     page = image.imread(tmp_path / "page.png")
     assert [np.isclose(page[..., :3], 0.1 * k, atol=0.01).all(axis=2).sum() > 20_000 for k in (1, 2, 3)] == [True] * 3
+
+
+@pytest.mark.parametrize("options", ["{}", '{"avoid": [{"name": "ball.obj"}]}', '{"pins": [0]}'])
+@pytest.mark.parametrize("curve", [half_circle(30), torus_trefoil(60)])
+def test_curves_whose_moebius_images_are_something_else_are_shown_as_they_are(
+    tmp_path: Path, curve: Curve, options: str
+) -> None:
+    row = {"name": "k", "start": "1", "extrapolated_energy": "", "energy": "1", "status": "converged"}
+    (tmp_path / "k").mkdir()
+    write_curve(tmp_path / "k" / "curve.txt", curve)
+    shown = gallery._shown(tmp_path, row | {"options": options})
+    moved = not np.array_equal(shown.look().vertices, curve.vertices)
+    assert moved == (options == "{}" and curve.mesh.all_closed)
 
 
 @pytest.mark.parametrize(
