@@ -45,7 +45,7 @@ CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "unknot-60-4": (partial(lattice_unknot, 60, 4), PATIENT),
     "haken": (partial(knot, "haken"), replace(PATIENT, mesh="fixed")),
 }
-MOST_VERTICES = 2500  # of a curve whose index is looked at: dense matrices of 3 GB
+MOST_VERTICES = 2500  # of a curve whose index is looked at: dense matrices of 2 GB
 
 
 def limited(minutes: float, curve: Curve, options: RelaxOptions, trajectory: Trajectory) -> Result:
