@@ -5,8 +5,8 @@
 
 Processor time is limited, for each run by itself; one that is cut short ends with its lowest curve.
 
-A row tells where a run ends without hops and with how many vertices; if it is at rest, the index there (0: a minimum)
-and what is left of its energy on a mesh with every edge halved; then where it ends with hops, whether the verifier
+A row tells where a run ends without hops and with how many vertices; if it is at rest, the index there (0: a minimum),
+and with every edge halved its energy and, in brackets, its index; then where it ends with hops, whether the verifier
 accepts the whole way, and the processor time of both runs.
 """
 
@@ -45,7 +45,7 @@ CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "unknot-60-4": (partial(lattice_unknot, 60, 4), PATIENT),
     "haken": (partial(knot, "haken"), replace(PATIENT, mesh="fixed")),
 }
-MOST_VERTICES = 2500  # of a curve whose index is looked at: dense matrices
+MOST_VERTICES = 2500  # of a curve whose index is looked at: dense matrices of 2 GB
 
 
 def limited(minutes: float, curve: Curve, options: RelaxOptions, trajectory: Trajectory) -> Result:
@@ -58,28 +58,25 @@ def limited(minutes: float, curve: Curve, options: RelaxOptions, trajectory: Tra
         signal.setitimer(signal.ITIMER_PROF, 0.0)
 
 
-def at_rest(curve: Curve, **changes: object) -> Result:
-    """The curve relaxed on on its own mesh."""
-    options = RelaxOptions(mesh="fixed", vertices=len(curve), edge_lengths="keep")
-    return minimize(curve, replace(options, **changes))
+def at_rest(minutes: float, curve: Curve) -> Result:
+    """The curve relaxed on on its own mesh, with its index unless that takes too much memory to tell."""
+    tells = len(curve) <= MOST_VERTICES
+    options = RelaxOptions(mesh="fixed", vertices=len(curve), edge_lengths="keep", stability=tells)
+    return limited(minutes, curve, options, Trajectory())
 
 
-def index(curve: Curve) -> str:
-    """How many ways lead down from a curve at rest; a dash where that takes too long to tell."""
-    if len(curve) > MOST_VERTICES:
-        return "–"
-    return str(at_rest(curve, stability=True).outcome.negative_eigenvalues)
+def index(result: Result) -> str:
+    """How many ways lead down from a curve at rest; a dash where that is not known."""
+    count = result.outcome.negative_eigenvalues
+    return "–" if count is None else str(count)
 
 
-def halved(curve: Curve) -> str:
-    """The energy that is left with two edges in place of each."""
-    return f"{at_rest(subdivide(curve, np.full(len(curve), 2))).final_energy:.2f}"
-
-
-def rest(result: Result) -> str:
-    """Index and energy of the refined curve, where a run has come to rest; else that it is stuck, or was cut short."""
+def rest(minutes: float, result: Result) -> str:
+    """Where a run has come to rest, the index, and energy and index with edges halved; else why it has not."""
     if result.status is Status.CONVERGED:
-        return f"{index(result.curve)} | {halved(result.curve)}"
+        curve = result.curve
+        finer = at_rest(minutes, subdivide(curve, np.full(len(curve), 2)))
+        return f"{index(at_rest(minutes, curve))} | {finer.final_energy:.2f} ({index(finer)})"
     return f"{'stuck' if result.status is Status.STALLED else 'cut short'} | –"
 
 
@@ -101,8 +98,8 @@ def row(name: str, hops: int, minutes: float) -> str:
     result, verified = hopped(minutes, make(), replace(options, hops=hops))
     seconds = time.process_time() - began
     return (
-        f"| {name} | {len(plain.curve)} | {plain.final_energy:.2f} | {rest(plain)} | {result.final_energy:.2f} | "
-        f"{'yes' if verified else 'NO'} | {seconds:.0f} s |"
+        f"| {name} | {len(plain.curve)} | {plain.final_energy:.2f} | {rest(minutes, plain)} | "
+        f"{result.final_energy:.2f} | {'yes' if verified else 'NO'} | {seconds:.0f} s |"
     )
 
 

@@ -1,4 +1,4 @@
-"""Times and errors of the repulsion of obstacles: python benchmarks/repulsion.py [vertices ...]
+"""Times and errors of the repulsion of obstacles: python benchmarks/repulsion.py [vertices ...] [--latitudes N]
 
 One line per obstacle, a sphere of triangles or the net of their sides, and curve, a torus knot well inside or one that
 comes near: the simplices, those that an edge sees one by one and the clusters it sees, then the tree, the schedule of a
@@ -6,7 +6,7 @@ curve, the test whether it still suits, and R with its derivative, all in millis
 vertices also the relative error. Run it with one BLAS thread on a quiet machine.
 """
 
-import sys
+import argparse
 
 import numpy as np
 from collision import best, torus_knot
@@ -16,38 +16,42 @@ from mobius_flow.core.energies.repulsion.repulsion import KEPT
 from mobius_flow.core.energies.repulsion.schedule import Schedule
 from mobius_flow.core.obstacle import Obstacle
 
-LATITUDES = 120
 MOST_DENSE = 1_000
 
 
-def sphere() -> Obstacle:
-    """The unit sphere by its latitudes and longitudes, 28,560 triangles."""
-    theta = np.pi * (np.arange(LATITUDES) + 0.5) / LATITUDES
-    phi = 2 * np.pi * np.arange(LATITUDES) / LATITUDES
+def sphere(latitudes: int) -> Obstacle:
+    """The unit sphere by its latitudes and as many longitudes: 28,560 triangles of 120."""
+    theta = np.pi * (np.arange(latitudes) + 0.5) / latitudes
+    phi = 2 * np.pi * np.arange(latitudes) / latitudes
     circles = np.stack(
         np.broadcast_arrays(
             np.sin(theta)[:, None] * np.cos(phi), np.sin(theta)[:, None] * np.sin(phi), np.cos(theta)[:, None]
         ),
         axis=2,
     )
-    index = np.arange(LATITUDES**2).reshape(LATITUDES, LATITUDES)
+    index = np.arange(latitudes**2).reshape(latitudes, latitudes)
     a, b, c, d = index[:-1], np.roll(index, -1, axis=1)[:-1], index[1:], np.roll(index, -1, axis=1)[1:]
     faces = np.concatenate([np.stack(corners, axis=2).reshape(-1, 3) for corners in ((a, b, d), (a, d, c))])
     return Obstacle(circles.reshape(-1, 3), faces, "sphere")
 
 
-def net() -> Obstacle:
+def net(surface: Obstacle) -> Obstacle:
     """The sides of the same triangles."""
-    surface = sphere()
     sides = np.sort(np.concatenate([surface.faces[:, [i, i - 1]] for i in range(3)]), axis=1)
     return Obstacle(surface.vertices, np.unique(sides, axis=0), "net")
 
 
-def main(sizes: list[int]) -> None:
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("vertices", nargs="*", type=int, default=[512, 2_048, 8_192])
+    parser.add_argument("--latitudes", type=int, default=120, metavar="N", help="of the sphere (default: 120)")
+    arguments = parser.parse_args()
+    surface = sphere(arguments.latitudes)
     titles = ("simplices", "single", "clusters", "tree", "schedule", "suits", "R and DR", "error")
     print(f"{'obstacle':10}{'curve':8}{'vertices':>9}" + "".join(f"{title:>10}" for title in titles))
-    for n in sizes:
-        for obstacle in (sphere(), net()):
+    for n in arguments.vertices:
+        for obstacle in (surface, net(surface)):
             for name, radius in (("inside", 0.6), ("near", 0.99)):
                 curve = Curve(radius / 3.0 * torus_knot(n))
                 print(f"{obstacle.name:10}{name:8}{n:9d}" + line(obstacle, curve, 3), flush=True)
@@ -72,4 +76,4 @@ def line(obstacle: Obstacle, curve: Curve, repetitions: int) -> str:
 
 
 if __name__ == "__main__":
-    main([int(x) for x in sys.argv[1:]] or [512, 2_048, 8_192])
+    main()

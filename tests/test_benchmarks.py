@@ -14,9 +14,10 @@ ARGUMENTS = {
     "hops": ["T34", "--hops", "1"],
     "metric": ["100"],
     "obstacles": ["--vertices", "60"],
-    "repulsion": ["60"],
+    "repulsion": ["60", "--latitudes", "12"],
     "resolution": ["3_1"],
     "soak": ["--flows", "2"],
+    "tries": ["T35", "--seeds", "1"],
 }
 
 
@@ -28,6 +29,6 @@ def test_every_benchmark_is_tried():
 def test_it_runs(name, tmp_path):
     done = finished([sys.executable, str(BENCHMARKS / f"{name}.py"), *ARGUMENTS[name]], cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
-    few = {"batch": 1, "soak": 1, "resolution": 3, "hops": 3}
+    few = {"batch": 1, "soak": 1, "resolution": 3, "hops": 3, "tries": 3}
     least = few.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least
