@@ -9,7 +9,7 @@ from typing import TextIO
 import numpy as np
 
 from ..collision import check_embedded
-from ..curve import Curve, refine
+from ..curve import Curve, check_closed, refine
 from ..curve.io import FORMATS as CURVES
 from ..curve.io import Format
 from ..curve.io.polygons import Polygon
@@ -90,6 +90,7 @@ def _write(text_of: Callable[[Diagram], str], curve: Curve, stream: TextIO) -> N
     """Write the code of a view of the curve; raises CurveError if there is no clear one."""
     if curve.dimension != 3:
         raise CurveError(f"codes are of curves in space, not of dimension {curve.dimension}; use .json")
+    check_closed(curve, "codes of diagrams")
     found = min(views(curve, _VIEWS), key=lambda diagram: diagram.crossings, default=None)
     if found is None:
         raise CurveError("strands are so near to each other that no view of the curve tells which one is in front")

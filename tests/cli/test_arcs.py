@@ -57,6 +57,9 @@ def test_what_is_for_closed_components(tmp_path, capsys, monkeypatch):
     for output in ("o.blend", "o.mp4", "o.png"):
         assert run("relax", tmp_path / "a.txt", tmp_path / output) == 2
         assert "component 1 is open; scenes, films and pictures are for closed components" in capsys.readouterr().err
+    for output in ("o.pd", "o.dt", "o.gauss"):
+        assert run("relax", tmp_path / "a.txt", tmp_path / output) == 2
+        assert f"{output}: component 1 is open; codes of diagrams are for closed comp" in capsys.readouterr().err
     assert run("relax", tmp_path / "a.txt", tmp_path / "o.txt", "--balance") == 2
     assert "Möbius images of equal energy" in capsys.readouterr().err
 
