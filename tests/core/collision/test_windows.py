@@ -22,7 +22,7 @@ def exact_window(before: list[float], after: list[float]) -> tuple[Fraction, Fra
 def test_windows_are_never_too_narrow() -> None:
     """Roots are rounded, but boxes that touch for a moment only are found."""
     rng = np.random.default_rng(41)
-    gaps = rng.uniform(-1.0, 1.0, size=(2, 4, 400))
+    gaps = rng.uniform(-1.0, 1.0, size=(2, 2, 400))
     gaps[:, 1] = -gaps[:, 0]  # one gap opens as another one closes: at the same time
     enter, leave = contact_window(gaps)
     found = 0
