@@ -21,7 +21,7 @@ DIRECTIONS, CLAIMS = "tests/core/descent/test_directions.py", "tests/core/descen
 FIRST_TRIAL, METRIC_AGE = "tests/core/descent/test_first_trial.py", "tests/core/descent/test_metric_age.py"
 RESTORATION, ADAPTIVE = "tests/core/test_restoration.py", "tests/core/test_adaptive.py"
 AVOID, OBSTACLES = "tests/core/test_avoid.py", "tests/core/collision/test_obstacles_exactly.py"
-CERTIFICATE, VERIFY = "tests/core/test_certificate.py", "tests/core/verify"
+CERTIFICATE, VERIFY, GROW = "tests/core/test_certificate.py", "tests/core/verify", "tests/core/test_grow.py"
 
 
 class Mutant(NamedTuple):
@@ -213,8 +213,8 @@ MUTANTS = (
     Mutant(
         "triangles that collapse",
         "core/verify/filter.py",
-        "chain([_triangles(heads)], _overlapping(",
-        "chain([], _overlapping(",
+        "chain([_triangles(heads), _ends(heads)], _overlapping(",
+        "chain([_ends(heads)], _overlapping(",
         f"{VERIFY}/test_forgeries.py::test_forgeries_are_refused",
     ),
     Mutant(
@@ -262,16 +262,44 @@ MUTANTS = (
     Mutant(
         "a verifier that forgets obstacles",
         "core/verify/check.py",
-        "_check_obstacles(obstacles, obstacles.doubtful(start, end, heads), first, last)",
+        "_check_obstacles(heads, obstacles, obstacles.doubtful(start, end, heads), first, last)",
         "pass",
         f"{VERIFY}/test_obstacles.py::test_refuses_a_leg_through_an_obstacle",
     ),
     Mutant(
         "a verifier that forgets obstacles where the mesh changes",
         "core/verify/check.py",
-        "_check_obstacles(obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)",
+        "_check_obstacles(heads, obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)",
         "pass",
         f"{VERIFY}/test_obstacles.py::test_rounding_of_inserted_vertices_is_checked_for_obstacles",
+    ),
+    Mutant(
+        "a verifier that forgets pins",
+        "core/verify/check.py",
+        "            held.check(frame)\n",
+        "",
+        f"{VERIFY}/test_pins.py::test_a_pinned_vertex_that_moves_is_named",
+    ),
+    Mutant(
+        "pins that are not put back",
+        "core/curve/pins.py",
+        "        placed[self.vertices] = positions\n",
+        "",
+        "tests/core/test_pins.py",
+    ),
+    Mutant(
+        "edges between pins that grow",
+        "core/constraints.py",
+        "lengths[free] *= factor",
+        "lengths *= factor",
+        f"{GROW}::test_edges_between_pins_keep_their_lengths",
+    ),
+    Mutant(
+        "growth that costs too much for an arc",
+        "core/driver/interventions/grow.py",
+        "RISE * energy_scale(end.problem.mesh, before)",
+        "RISE * abs(before)",
+        f"{GROW}::test_a_straight_arc_grows",
     ),
     Mutant(
         "converged in the metric of another curve",

@@ -1,11 +1,13 @@
 """What changes an object with time: what is avoided must stand still, as must curves that avoid it."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from ..engine.phrase import Phrase
 from .deforming import nodes_of
 from .fcurves import fcurves_of
+from .ingredients import ingredients, metaballs
 from .moving import what_moves
 
 if TYPE_CHECKING:
@@ -57,23 +59,37 @@ def _unsteady_curve(obj: "bpy.types.Object") -> Phrase | None:
 def what_changes(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"] = ()) -> Phrase | None:
     """Say what may move an object or change its shape, or return None if nothing does.
 
-    Objects that its shape is made with may be relaxed, or be moved themselves.
+    What its shape is made with may be relaxed, or move or change itself.
     """
-    return what_moves(obj) or next(_changes(obj, relaxed), None)
+    return _changed(obj, relaxed, set())
 
 
-def _changes(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> Iterator[Phrase]:
-    def moves(block: "bpy.types.bpy_struct") -> bool:
-        return any(each in relaxed or what_moves(each) or _is_animated(each) for each in _objects_of(block))
+def _changed(
+    obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"], seen: "set[bpy.types.ID]"
+) -> Phrase | None:
+    seen.add(obj)
+    return what_moves(obj) or next(_changes(obj, relaxed, seen), None)
+
+
+def _changes(
+    obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"], seen: "set[bpy.types.ID]"
+) -> Iterator[Phrase]:
+    """Reasons why a shape may change, but for what was seen already."""
+
+    def changing(blocks: "Iterable[bpy.types.ID]") -> bool:
+        found = (each for each in blocks if each not in seen)
+        return any(_changed(each, relaxed, seen) if each.id_type == "OBJECT" else _is_animated(each) for each in found)
 
     if obj in relaxed:
         yield Phrase("the relaxation itself")
     if any(map(_is_animated, (obj, obj.data, getattr(obj.data, "shape_keys", None)))):
         yield Phrase("animation of its shape")
-    if obj.data is not None and moves(obj.data):
+    if obj.pose is not None and any(not each.mute for bone in obj.pose.bones for each in bone.constraints):
+        yield Phrase("a constraint")
+    if obj.data is not None and changing(chain(ingredients(obj.data), metaballs(obj))):
         yield Phrase("an object that its shape is made with")
     for modifier in obj.modifiers:
-        if modifier.show_viewport and (_is_changing(modifier) or moves(modifier)):
+        if modifier.show_viewport and (_is_changing(modifier) or changing(ingredients(modifier))):
             yield Phrase("the modifier '{modifier}'", modifier=modifier.name)
 
 
@@ -85,15 +101,6 @@ def _is_animated(block: "bpy.types.ID | None") -> bool:
     curves = [*(fcurves_of(block) if animation.action else ()), *animation.drivers]
     paths = _SHAPING if block.id_type == "OBJECT" else ""
     return bool(animation.nla_tracks) or any(curve.data_path.startswith(paths) for curve in curves)
-
-
-def _objects_of(block: "bpy.types.bpy_struct") -> Iterator["bpy.types.Object"]:
-    """Yield the objects that a modifier or other data refers to."""
-    for each in block.bl_rna.properties:
-        if each.type == "POINTER" and each.fixed_type.identifier == "Object":
-            target = getattr(block, each.identifier)
-            if target is not None:
-                yield target
 
 
 def _is_changing(modifier: "bpy.types.Modifier") -> bool:

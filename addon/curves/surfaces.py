@@ -43,6 +43,7 @@ def surfaces(
         if source.session_uid not in looked_at:
             looked_at.add(source.session_uid)
             _check(source, relaxed)
+        _check_kind(source, instance.object.type)
         piece = _surface(instance)
         # curves, texts and so on are shown a second time, as the meshes that are made of them
         if piece is not None and not any(map(piece.equals, pieces)):
@@ -62,10 +63,19 @@ def _check(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> No
     """Refuse an object that is shown somewhere and cannot be avoided."""
     if said := unsteady_object(obj, relaxed):
         raise MobiusFlowError(said)
-    if obj.type not in SOLID | WITHOUT_SHAPE | {"EMPTY"}:
-        kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
+
+
+def _check_kind(obj: "bpy.types.Object", shown: str) -> None:
+    """Refuse what is neither a mesh nor can be made one: an object's type, or that of a part which it shows besides.
+
+    Geometry nodes can give an object parts of other types, such as points; of curves among them no mesh is made.
+    """
+    unknown = shown not in SOLID | WITHOUT_SHAPE | {"EMPTY"}
+    if unknown or shown not in (obj.type, "MESH"):
+        kind = obj.bl_rna.properties["type"].enum_items[shown].name
         sentence = "'{name}' is of type {type}, which cannot be avoided; convert it to a mesh, or leave it out"
-        raise MobiusFlowError(Phrase(sentence, name=obj.name, type=kind))
+        beside = "'{name}' shows a {type} too, which cannot be avoided; convert it to a mesh, or leave it out"
+        raise MobiusFlowError(Phrase(sentence if shown == obj.type else beside, name=obj.name, type=kind))
 
 
 def _surface(instance: "bpy.types.DepsgraphObjectInstance") -> Surface | None:

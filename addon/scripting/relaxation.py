@@ -171,6 +171,8 @@ def _objects(avoid: Iterable["bpy.types.Object"]) -> list["bpy.types.Object"]:
     """What is to be avoided; raises MobiusFlowError if something is no object."""
     import bpy
 
+    if not isinstance(avoid, Iterable):
+        raise MobiusFlowError(f"avoid is of type {type(avoid).__name__}; give a list of objects")
     found = list(avoid)
     wrong = [each for each in found if not isinstance(each, bpy.types.Object)]
     if wrong:

@@ -24,6 +24,9 @@ SENTENCES = {
     "'{name}' is of type {type}, which cannot be avoided; convert it to a mesh, or leave it out": (
         "'{name}' ist vom Typ {type}, der nicht gemieden werden kann; in ein Mesh konvertieren oder weglassen"
     ),
+    "'{name}' shows a {type} too, which cannot be avoided; convert it to a mesh, or leave it out": (
+        "'{name}' zeigt auch etwas vom Typ {type}, das nicht zu meiden ist; in ein Mesh konvertieren oder weglassen"
+    ),
     "'{name}' shows neither faces nor edges; leave it out of what is avoided": (
         "'{name}' zeigt weder Flächen noch Kanten; nicht meiden"
     ),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...checks import check_fields
+from ...energies.components import energy_scale
 from ...saddle import TangentSpace
 from ...types import FloatArray
 from ..problem import Point
@@ -68,7 +69,7 @@ class TowardsTargets:
     least_share
         Of that step, taken even where it costs more energy than can be gained.
     allowance
-        Part of the energy that reaching the targets may cost where there is nothing left to gain.
+        Part of the energy, by its scale, that reaching the targets may cost where there is nothing left to gain.
     """
 
     length_change: float = 0.25
@@ -84,5 +85,6 @@ class TowardsTargets:
             return NormalStep(np.zeros_like(point.vertices), 0.0, 1.0, 1.0, 0.0)
         full = space.pseudo_inverse(-point.residual)
         longest = min(1.0, self.length_change / point.infeasibility)
-        cost, allowance = float(np.sum(point.derivative * full)), self.allowance * abs(point.energy)
+        cost = float(np.sum(point.derivative * full))
+        allowance = self.allowance * energy_scale(point.problem.mesh, point.energy)
         return NormalStep(full, cost, longest, self.least_share * longest, allowance)

@@ -207,6 +207,8 @@ def test_scripts_name_objects(wrong):
     add_curve([ring()], "Ring")
     with pytest.raises(MobiusFlowError, match="which is no object"):
         Relaxation(bpy.data.objects["Ring"]).relax(avoid=[wrong])
+    with pytest.raises(MobiusFlowError, match="avoid is of type NoneType; give a list of objects"):
+        Relaxation(bpy.data.objects["Ring"]).relax(avoid=None)
 
 
 def test_obstacles_are_left_alone():

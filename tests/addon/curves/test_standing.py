@@ -72,6 +72,126 @@ def falling(obj, _helper):
     return "physics"
 
 
+def wave(obj):
+    obj.modifiers.new("Wave", "WAVE")
+
+
+def cut_by_what_waves(obj, _helper):
+    bpy.ops.mesh.primitive_cube_add()
+    wave(bpy.context.object)
+    obj.modifiers.new("Cut", "BOOLEAN").object = bpy.context.object
+    return "the modifier 'Cut'"
+
+
+def cut_by_a_collection(obj, helper):
+    helper.keyframe_insert("location", frame=1)
+    cutters = bpy.data.collections.new("Cutters")
+    cutters.objects.link(helper)
+    cut = obj.modifiers.new("Cut", "BOOLEAN")
+    cut.operand_type, cut.collection = "COLLECTION", cutters
+    return "the modifier 'Cut'"
+
+
+def bent_by_a_lattice(obj, _helper):
+    lattice = show(bpy.data.objects.new("Lattice", bpy.data.lattices.new("Lattice")))
+    lattice.shape_key_add(name="Basis")
+    lattice.shape_key_add(name="Other").keyframe_insert("value", frame=1)
+    obj.modifiers.new("Bend", "LATTICE").object = lattice
+    return "the modifier 'Bend'"
+
+
+def posed_by_constraints(obj, helper):
+    rig = show(bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig")))
+    bpy.ops.object.mode_set(mode="EDIT")
+    rig.data.edit_bones.new("Bone").tail = (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    rig.pose.bones["Bone"].constraints.new("COPY_LOCATION").target = helper
+    obj.modifiers.new("Rig", "ARMATURE").object = rig
+    return "the modifier 'Rig'"
+
+
+def textured(obj, _helper):
+    texture = bpy.data.textures.new("Clouds", "CLOUDS")
+    texture.keyframe_insert("noise_scale", frame=1)
+    obj.modifiers.new("Bumps", "DISPLACE").texture = texture
+    return "the modifier 'Bumps'"
+
+
+def nodes(obj, kind):
+    """A node of a group within the nodes of a modifier."""
+    inner, outer = (bpy.data.node_groups.new(name, "GeometryNodeTree") for name in ("Inner", "Outer"))
+    outer.nodes.new("GeometryNodeGroup").node_tree = inner
+    obj.modifiers.new("Nodes", "NODES").node_group = outer
+    return inner.nodes.new(kind)
+
+
+def node_keyed(obj, _helper):
+    nodes(obj, "GeometryNodeMeshCube").inputs["Size"].keyframe_insert("default_value", frame=1)
+    return "the modifier 'Nodes'"
+
+
+def node_of_an_object(obj, helper):
+    helper.keyframe_insert("location", frame=1)
+    nodes(obj, "GeometryNodeObjectInfo").inputs["Object"].default_value = helper
+    return "the modifier 'Nodes'"
+
+
+def node_of_a_collection(obj, helper):
+    helper.keyframe_insert("location", frame=1)
+    collection = bpy.data.collections.new("Shown")
+    collection.objects.link(helper)
+    nodes(obj, "GeometryNodeCollectionInfo").inputs["Collection"].default_value = collection
+    return "the modifier 'Nodes'"
+
+
+def input_of_nodes(obj, helper):
+    helper.keyframe_insert("location", frame=1)
+    nodes(obj, "GeometryNodeMeshCube")
+    tree = obj.modifiers["Nodes"].node_group
+    socket = tree.interface.new_socket("Object", in_out="INPUT", socket_type="NodeSocketObject")
+    obj.modifiers["Nodes"][socket.identifier] = helper
+    return "the modifier 'Nodes'"
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        cut_by_what_waves,
+        cut_by_a_collection,
+        bent_by_a_lattice,
+        posed_by_constraints,
+        textured,
+        node_keyed,
+        node_of_an_object,
+        node_of_a_collection,
+        input_of_nodes,
+    ],
+)
+def test_what_it_is_made_with_stands_still_too(cube, helper, act):
+    assert what_changes(cube) is None
+    assert act(cube, helper) == what_changes(cube)
+
+
+def test_metaballs_are_one_surface():
+    balls = []
+    for name in ("Ball", "Ball.001", "Other"):
+        bpy.ops.object.metaball_add()
+        bpy.context.object.name = name
+        balls.append(bpy.context.object)
+    balls[1].keyframe_insert("location", frame=1)
+    said = [what_changes(ball) for ball in balls]
+    assert said == ["an object that its shape is made with", "animation", None]
+
+
+def test_objects_that_are_made_with_each_other_stand_still(cube):
+    bpy.ops.mesh.primitive_cube_add()
+    for one, other in ((cube, bpy.context.object), (bpy.context.object, cube)):
+        one.modifiers.new("Wrap", "SHRINKWRAP").target = other
+    assert what_changes(cube) is None
+    wave(bpy.context.object)
+    assert what_changes(cube) == "the modifier 'Wrap'"
+
+
 @pytest.mark.parametrize(
     "act", [located, carried, shape_keyed, modifier_keyed, hooked, waving, scattering, timed, falling]
 )

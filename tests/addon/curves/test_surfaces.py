@@ -134,17 +134,47 @@ def test_instances_of_geometry_nodes_are_avoided(of_another):
     np.testing.assert_allclose(faces.vertices.mean(axis=0)[2], 4.5, atol=1e-5)
 
 
+def instance(obj):
+    """An empty that shows an object, by a collection of its own."""
+    collection = bpy.data.collections.new("Copied")
+    collection.objects.link(obj)
+    empty = show(bpy.data.objects.new("Instance", None))
+    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    return empty
+
+
 def test_what_is_copied_must_stand_still():
     source = cube("Source")
     source.keyframe_insert("location", frame=1)
     with pytest.raises(MobiusFlowError, match="'Source' is moved by animation, and what is avoided must stand still"):
+        obstacles(instance(source))
+    with pytest.raises(MobiusFlowError, match="'Column' is moved by the modifier 'Copies'"):
         obstacles(copies(cube("Column"), source))
 
 
 def test_a_copy_of_what_is_relaxed_moves():
     ring = add_curve([regular_polygon(20).vertices], "Ring")
     with pytest.raises(MobiusFlowError, match="'Ring' is moved by the relaxation itself"):
+        obstacles(instance(ring), relaxed=[ring])
+    with pytest.raises(MobiusFlowError, match="'Column' is moved by the modifier 'Copies'"):
         obstacles(copies(cube("Column"), ring), relaxed=[ring])
+
+
+@pytest.mark.parametrize(
+    ("node", "kind"), [("GeometryNodeCurvePrimitiveCircle", "Curve"), ("GeometryNodePoints", "Point Cloud")]
+)
+def test_parts_that_are_no_mesh_are_refused(node, kind):
+    """Geometry nodes can show curves and points beside a mesh."""
+    obj = cube()
+    tree = bpy.data.node_groups.new("Both", "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    join, out = map(tree.nodes.new, ("GeometryNodeJoinGeometry", "NodeGroupOutput"))
+    for name in (node, "GeometryNodeMeshCube"):
+        tree.links.new(tree.nodes.new(name).outputs[0], join.inputs[0])
+    tree.links.new(join.outputs[0], out.inputs[0])
+    obj.modifiers.new("Both", "NODES").node_group = tree
+    with pytest.raises(MobiusFlowError, match=f"'Cube' shows a {kind} too, which cannot be avoided; convert it to"):
+        obstacles(obj)
 
 
 def test_points_alone_are_nothing_to_avoid():
