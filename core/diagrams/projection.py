@@ -15,16 +15,17 @@ _TILT = 0.02  # radians, about, by which the flattest view is turned, so that no
 _CLEAR = 1e-9  # of an edge, or of the curve's size: what is nearer to the limit than that might be a rounding error
 
 
-def views(curve: Curve, count: int, seed: int = 20217) -> Iterator[Diagram]:
+def views(curve: Curve, count: int, seed: int = 20217, clear: float = _CLEAR) -> Iterator[Diagram]:
     """Diagrams of a closed polygon in space: first from where it looks flattest, then from random directions.
 
-    Directions in which it can not be told for certain what crosses what are left out.
+    Directions in which it can not be told for certain what crosses what are left out: where a crossing is nearer to
+    another strand, or to the end of an edge, than ``clear``, a fraction of the curve's size or the edge's length.
     """
     rng = np.random.default_rng(seed)
     middle = curve.vertices - curve.vertices.mean(axis=0)
     flattest = np.linalg.svd(middle, full_matrices=False)[2] + _TILT * rng.normal(size=(3, 3))
     for frame in (flattest, *rng.normal(size=(count - 1, 3, 3))):
-        found = _seen(curve, middle @ _rotation(frame))
+        found = _seen(curve, middle @ _rotation(frame), clear)
         if found is not None:
             yield found
 
@@ -36,7 +37,7 @@ def _rotation(frame: FloatArray) -> FloatArray:
     return np.asarray(q * [1.0, 1.0, np.sign(np.linalg.det(q))])
 
 
-def _seen(curve: Curve, points: FloatArray) -> Diagram | None:
+def _seen(curve: Curve, points: FloatArray, clear: float) -> Diagram | None:
     """The diagram of points, shape (n, 3), as seen along z; None if it is unclear."""
     found = plane_crossings(curve.mesh, points)
     edges = np.stack([found.first, found.second])
@@ -47,7 +48,7 @@ def _seen(curve: Curve, points: FloatArray) -> Diagram | None:
     margin = min(
         at.min(initial=1.0), 1.0 - at.max(initial=0.0), np.abs(heights[0] - heights[1]).min(initial=size) / size
     )
-    if margin < _CLEAR:
+    if margin < clear:
         return None
     signs = np.sign(np.where(above, found.turn, -found.turn)).astype(int).tolist()
     along = (edges + at).ravel()

@@ -1,9 +1,14 @@
 """The quick signature: right on the table, blind to position, and never wrong about equal types."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
+from mobius_flow.core import Curve, CurveError
+from mobius_flow.core.diagrams.alexander import PRIME, _matrices, values
 from mobius_flow.core.knots import hard_unknot, knot, scramble, spiral, torus_knot
-from mobius_flow.core.knots.alexander import _PRIME, signature
+from mobius_flow.core.knots.alexander import signature
+from mobius_flow.core.knots.braid_diagrams import braid_diagram
 from shapes import hopf_link, regular_polygon
 
 DETERMINANTS = {"0_1": 1, "3_1": 3, "4_1": 5, "5_1": 5, "5_2": 7, "6_1": 9, "6_2": 11, "6_3": 13, "7_7": 21, "8_19": 3}
@@ -12,7 +17,7 @@ DETERMINANTS = {"0_1": 1, "3_1": 3, "4_1": 5, "5_1": 5, "5_2": 7, "6_1": 9, "6_2
 @pytest.mark.parametrize("name", DETERMINANTS)
 def test_determinants(name):
     value = signature(knot(name)).alexander[0][0]
-    assert min(value, _PRIME - value) == DETERMINANTS[name]
+    assert min(value, PRIME - value) == DETERMINANTS[name]
 
 
 def test_trefoil_at_a_root_of_unity():
@@ -45,3 +50,37 @@ def test_unknots(curve):
 def test_linking_numbers():
     assert [abs(x) for x in signature(hopf_link(20)).linking] == [1]
     assert signature(knot("L6a4")).linking == (0, 0, 0)
+
+
+def test_strands_that_nearly_touch_are_told_apart():
+    gap = 1e-12
+    curve = Curve([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, gap], [0.0, 1.0, gap]])
+    assert signature(curve).is_trivial
+
+
+def test_curves_that_touch_themselves_have_none():
+    once = knot("3_1").vertices
+    with pytest.raises(CurveError, match="the curve touches itself"):
+        signature(Curve(np.concatenate([once, once])))
+
+
+@pytest.mark.parametrize("word", [(1, 1, 1), (1, -2) * 5, (1, 2, 3, -4) * 8 + (1, 2, 3)])
+def test_determinants_by_elimination_are_those_of_fractions(word):
+    """|Δ(−1)| by the shared elimination modulo the prime, against one in rational numbers."""
+    diagram = braid_diagram(word)
+    minus_one = np.array([PRIME - 1])
+    rows = [[Fraction((int(x) + 2) % PRIME - 2) for x in row] for row in _matrices(diagram, minus_one)[0]]
+    value = int(values(diagram, minus_one)[0])
+    assert min(value, PRIME - value) == abs(determinant(rows)) % PRIME
+
+
+def determinant(rows):
+    """Of a square matrix of fractions."""
+    if not rows:
+        return Fraction(1)
+    k = next((k for k, row in enumerate(rows) if row[0]), None)
+    if k is None:
+        return Fraction(0)
+    pivot, *rest = [rows[k], *rows[:k], *rows[k + 1 :]]
+    below = [[x - row[0] / pivot[0] * y for x, y in zip(row[1:], pivot[1:], strict=True)] for row in rest]
+    return (-1) ** k * pivot[0] * determinant(below)
