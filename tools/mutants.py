@@ -253,6 +253,27 @@ MUTANTS = (
         f"{VERIFY}/test_obstacles.py::test_a_segment_meets_a_triangle_if_it_does_so_at_some_time",
     ),
     Mutant(
+        "segments among triangles that repel nothing",
+        "core/obstacle.py",
+        "return np.asarray((i == j) | (j == k) | (k == i))",
+        "return np.full(len(self.faces), self.faces.shape[1] == 2)",
+        "tests/core/energies/repulsion/test_repulsion.py::test_segments_among_triangles_repel_as_segments",
+    ),
+    Mutant(
+        "meshes that do not see walls",
+        "core/driver/run.py",
+        "Resolution(options.vertices, clearance=problem.clearance)",
+        "Resolution(options.vertices)",
+        "tests/core/test_grow.py::test_edges_are_split_as_walls_come_near",
+    ),
+    Mutant(
+        "growth measured by energies of 0",
+        "core/driver/interventions/grow.py",
+        "return energy_scale(self._run.problem.mesh, self._run.point.energy)",
+        "return abs(self._run.point.energy)",
+        "tests/core/test_grow.py::test_arcs_that_are_all_but_straight_grow_as_well",
+    ),
+    Mutant(
         "vertices rounded onto obstacles",
         "core/collision/rounding.py",
         " and clears(curve, obstacles, float(1.1 * rounding))",
