@@ -2,10 +2,11 @@
 
 from itertools import pairwise
 
+from ..energies.components import energy_scale
 from .iterate import Iterate
 from .outcome import REMESHED, ROSE, Outcome
 
-RISE = 1e-9  # relative increase of the energy that is told of; less is rounding
+RISE = 1e-9  # increase of the energy, by its scale, that is told of; less is rounding
 NAMED = 3  # changes of mesh whose energies are told one by one
 
 
@@ -48,7 +49,8 @@ class Rises:
 
 def _rise(before: Iterate, after: Iterate) -> float:
     """By how much the energy went up; 0 if it did not."""
-    return after.energy - before.energy if after.energy > (1.0 + RISE) * before.energy else 0.0
+    rise = after.energy - before.energy
+    return rise if rise > RISE * energy_scale(before.curve.mesh, before.energy) else 0.0
 
 
 def _total(change: list[Iterate]) -> float:

@@ -60,3 +60,4 @@ def test_lengths_do_not_creep_where_the_energy_vanishes() -> None:
     result = minimize(arc, options)
     assert result.certified
     assert result.curve.length == pytest.approx(2.0, rel=1e-9)
+    assert "rose" not in result.message
