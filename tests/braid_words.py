@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from fractions import Fraction
 
-_BASE = 10**6  # t is set to this number, whose digits are then the coefficients
+_BASE = 10**15  # t is set to this number, whose digits are then the coefficients
 
 
 def burau_alexander(word: Sequence[int], strands: int) -> tuple[int, ...]:

@@ -10,9 +10,10 @@ import numpy as np
 
 from ..curve import Curve, check_closed
 from ..diagrams import Diagram, views
-from ..diagrams.alexander import PRIME, root_of_unity, values
+from ..diagrams.alexander import FIELDS, values
 from ..errors import CurveError
 
+FIELD = FIELDS[0]
 _ORDERS = (2, 3, 5, 7)
 _VIEWS = 12
 
@@ -64,13 +65,13 @@ def _values(knot: Diagram) -> tuple[int, ...]:
     """Values of the Alexander polynomial of one component, one after the other: matrices may be large."""
     if knot.crossings < 3:
         return TRIVIAL
-    found = (values(knot, np.array([root_of_unity(q)]))[0] for q in _ORDERS)
+    found = (values(knot, np.array([FIELD.root_of_unity(q)]), FIELD)[0] for q in _ORDERS)
     return tuple(_smallest_associate(int(value), q) for value, q in zip(found, _ORDERS, strict=True))
 
 
 def _smallest_associate(value: int, q: int) -> int:
-    units = (pow(root_of_unity(q), k, PRIME) for k in range(q))
-    return min(x for unit in units for x in (value * unit % PRIME, -value * unit % PRIME))
+    units = (pow(FIELD.root_of_unity(q), k, FIELD.prime) for k in range(q))
+    return min(x for unit in units for x in (value * unit % FIELD.prime, -value * unit % FIELD.prime))
 
 
 TRIVIAL = tuple(_smallest_associate(1, q) for q in _ORDERS)

@@ -94,3 +94,8 @@ def test_circles() -> None:
 def test_what_is_too_large_is_not_computed() -> None:
     assert alexander(braid_diagram((1,) * (MAX_CROSSINGS + 1))) is None
     assert jones(braid_diagram(tuple(range(1, 24)) * 24)) is None
+
+
+@pytest.mark.parametrize("word", [(1, -2) * 25, (1, -2, 3) * 19, (1,) * 59])
+def test_coefficients_above_half_a_prime(word: tuple[int, ...]) -> None:
+    assert alexander(braid_diagram(word)) == burau_alexander(word, max(map(abs, word)) + 1)

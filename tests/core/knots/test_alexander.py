@@ -5,9 +5,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError
-from mobius_flow.core.diagrams.alexander import PRIME, _matrices, values
+from mobius_flow.core.diagrams.alexander import _matrices, values
 from mobius_flow.core.knots import hard_unknot, knot, scramble, spiral, torus_knot
-from mobius_flow.core.knots.alexander import signature
+from mobius_flow.core.knots.alexander import FIELD, signature
 from mobius_flow.core.knots.braid_diagrams import braid_diagram
 from shapes import hopf_link, regular_polygon
 
@@ -17,7 +17,7 @@ DETERMINANTS = {"0_1": 1, "3_1": 3, "4_1": 5, "5_1": 5, "5_2": 7, "6_1": 9, "6_2
 @pytest.mark.parametrize("name", DETERMINANTS)
 def test_determinants(name):
     value = signature(knot(name)).alexander[0][0]
-    assert min(value, PRIME - value) == DETERMINANTS[name]
+    assert min(value, FIELD.prime - value) == DETERMINANTS[name]
 
 
 def test_trefoil_at_a_root_of_unity():
@@ -68,10 +68,12 @@ def test_curves_that_touch_themselves_have_none():
 def test_determinants_by_elimination_are_those_of_fractions(word):
     """|Δ(−1)| by the shared elimination modulo the prime, against one in rational numbers."""
     diagram = braid_diagram(word)
-    minus_one = np.array([PRIME - 1])
-    rows = [[Fraction((int(x) + 2) % PRIME - 2) for x in row] for row in _matrices(diagram, minus_one)[0]]
-    value = int(values(diagram, minus_one)[0])
-    assert min(value, PRIME - value) == abs(determinant(rows)) % PRIME
+    minus_one = np.array([FIELD.prime - 1])
+    rows = [
+        [Fraction((int(x) + 2) % FIELD.prime - 2) for x in row] for row in _matrices(diagram, minus_one, FIELD.prime)[0]
+    ]
+    value = int(values(diagram, minus_one, FIELD)[0])
+    assert min(value, FIELD.prime - value) == abs(determinant(rows)) % FIELD.prime
 
 
 def determinant(rows):
