@@ -264,14 +264,14 @@ MUTANTS = (
         "core/driver/run.py",
         "Resolution(options.vertices, clearance=problem.clearance)",
         "Resolution(options.vertices)",
-        "tests/core/test_grow.py::test_edges_are_split_as_walls_come_near",
+        f"{GROW}::test_edges_are_split_as_walls_come_near",
     ),
     Mutant(
         "growth measured by energies of 0",
         "core/driver/interventions/grow.py",
         "return energy_scale(self._run.problem.mesh, self._run.point.energy)",
         "return abs(self._run.point.energy)",
-        "tests/core/test_grow.py::test_arcs_that_are_all_but_straight_grow_as_well",
+        f"{GROW}::test_a_straight_arc_grows",
     ),
     Mutant(
         "vertices rounded onto obstacles",
@@ -314,13 +314,6 @@ MUTANTS = (
         "lengths[free] *= factor",
         "lengths *= factor",
         f"{GROW}::test_edges_between_pins_keep_their_lengths",
-    ),
-    Mutant(
-        "growth that costs too much for an arc",
-        "core/driver/interventions/grow.py",
-        "RISE * energy_scale(end.problem.mesh, before)",
-        "RISE * abs(before)",
-        f"{GROW}::test_a_straight_arc_grows",
     ),
     Mutant(
         "converged in the metric of another curve",
