@@ -67,7 +67,7 @@ def test_an_arc_that_relax_takes_for_converged_is_at_rest() -> None:
     assert found.rest is not None
     assert found.rest.objective < 1e-4
     assert found.rest.at_rest
-    assert found.type.sentence == "not told: that takes closed components in space, of at most 20,000 vertices in all"
+    assert found.type.sentence == "none: only closed curves have a knot type, and this one is open"
 
 
 def test_what_takes_too_long_is_left_out() -> None:
