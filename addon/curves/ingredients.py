@@ -44,10 +44,12 @@ def _pointers(block: "bpy.types.bpy_struct") -> "Iterator[Any]":
 
 
 def _inputs(block: "bpy.types.bpy_struct") -> "Iterator[Any]":
-    """Values of sockets: of a node, and of a modifier, which has them among its custom properties."""
+    """Values of sockets: of a node, and of a modifier, which before Blender 5.2 has them as custom properties."""
     import bpy
 
     if isinstance(block, bpy.types.Node):
         yield from (getattr(socket, "default_value", None) for socket in block.inputs)
+    elif isinstance(block, bpy.types.NodesModifier) and hasattr(block, "properties"):
+        yield from (getattr(socket, "value", None) for socket in _pointers(block.properties.inputs))
     elif isinstance(block, bpy.types.NodesModifier):
         yield from (value for _, value in block.items())

@@ -59,7 +59,7 @@ class Stage:
 
 
 def stages(path: Path | str) -> Iterator[Stage]:
-    """Yield the stages of a file, in order.
+    """Yield the stages of a file, in order; frames of a stage can be read until the next one is asked for.
 
     Raises
     ------
@@ -68,7 +68,8 @@ def stages(path: Path | str) -> Iterator[Stage]:
     """
     with _opened(path) as archive:
         for number in range(_count(archive)):
-            yield _stage(archive, number)
+            with _member(archive, f"stage_{number:03d}") as file:
+                yield _stage(archive, file, number)
 
 
 def still_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
@@ -131,10 +132,10 @@ def _count(archive: zipfile.ZipFile) -> int:
     return len(found)
 
 
-def _stage(archive: zipfile.ZipFile, number: int) -> Stage:
+def _stage(archive: zipfile.ZipFile, file: IO[bytes], number: int) -> Stage:
+    """A stage, whose frames are read as long as its file is open."""
     components = _components(archive, number)
     name = f"stage_{number:03d}"
-    file = _member(archive, name)
     shape, dtype, fortran = _header(file, name)
     if dtype != np.dtype("<f8") or len(shape) != 3:
         raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be (k, n, m) of float64")
@@ -244,18 +245,16 @@ def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], "np.dtype[np.g
 
 
 def _frames(file: IO[bytes], name: str, count: int, shape: tuple[int, int]) -> Iterator[FloatArray]:
-    with file:
-        for k in range(count):
-            data = _exactly(file, 8 * shape[0] * shape[1], name)
-            yield _finite(np.frombuffer(data, "<f8").reshape(shape), name, k)
-        _check_end(file, name)
+    for k in range(count):
+        data = _exactly(file, 8 * shape[0] * shape[1], name)
+        yield _finite(np.frombuffer(data, "<f8").reshape(shape), name, k)
+    _check_end(file, name)
 
 
 def _scattered_frames(file: IO[bytes], name: str, shape: tuple[int, int, int]) -> Iterator[FloatArray]:
     """The frames of an array in Fortran order, in which the number of the frame runs fastest."""
-    with file:
-        data = _exactly(file, 8 * shape[0] * shape[1] * shape[2], name)
-        _check_end(file, name)
+    data = _exactly(file, 8 * shape[0] * shape[1] * shape[2], name)
+    _check_end(file, name)
     for k, frame in enumerate(np.frombuffer(data, "<f8").reshape(shape, order="F")):
         yield _finite(frame, name, k)
 

@@ -149,7 +149,11 @@ def input_of_nodes(obj, helper):
     nodes(obj, "GeometryNodeMeshCube")
     tree = obj.modifiers["Nodes"].node_group
     socket = tree.interface.new_socket("Object", in_out="INPUT", socket_type="NodeSocketObject")
-    obj.modifiers["Nodes"][socket.identifier] = helper
+    modifier = obj.modifiers["Nodes"]
+    if hasattr(modifier, "properties"):  # since Blender 5.2
+        getattr(modifier.properties.inputs, socket.identifier).value = helper
+    else:
+        modifier[socket.identifier] = helper
     return "the modifier 'Nodes'"
 
 
