@@ -69,7 +69,7 @@ def _joined(address: str) -> "Iterator[Client]":
     from distributed import Client
 
     try:
-        asyncio.run(_greet(address))
+        asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))  # a peer may take the call and say nothing
         client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError, TypeError) as error:  # TypeError: where TLS is not set up
         raise MobiusFlowError(f"{address}: no Dask scheduler answers there") from error

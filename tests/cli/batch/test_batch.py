@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import socket
 import sys
 import threading
 from collections.abc import Callable
@@ -16,7 +17,7 @@ from mobius_flow.cli.batch import cluster, sandbox, single
 from mobius_flow.cli.batch.job import Job
 from mobius_flow.cli.batch.progress import Progress
 from mobius_flow.cli.batch.table import Row
-from mobius_flow.core import read_curve, write_curve
+from mobius_flow.core import MobiusFlowError, read_curve, write_curve
 from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
@@ -328,3 +329,12 @@ def test_knot_inputs_are_what_the_command_knot_makes(batch: Batch, tmp_path: Pat
     start = knot("4_1")
     batch("4_1", "--vertices", len(start), "--max-iterations", 0)
     assert np.array_equal(read_curve(tmp_path / "out/4_1/curve.txt").vertices, start.vertices)
+
+
+def test_a_peer_that_takes_the_call_and_says_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
+    with socket.create_server(("127.0.0.1", 0)) as peer:
+        address = f"tcp://127.0.0.1:{peer.getsockname()[1]}"
+        with pytest.raises(MobiusFlowError, match="no Dask scheduler answers there"), cluster.connected(address):
+            pass
