@@ -96,6 +96,12 @@ def _bounds(option: Option) -> dict[str, Any]:
 def settings(options: set[str]) -> dict[str, Any]:
     """Declare the settings as properties with the given options."""
     return {option.name: _property(option, options) for option in shown()} | {
+        "pin_tangents": BoolProperty(
+            name="Pin Tangents",
+            description=("Pin the neighbours of pinned points in the refined start, and so the direction there"),
+            default=False,
+            options=options,
+        ),
         "keyframes": EnumProperty(
             name="Keyframes",
             description="What the animation is written as",
@@ -195,7 +201,7 @@ def relax_options(values: dict[str, Any]) -> RelaxOptions:
     """The core's options from the values of the settings; raises OptionError."""
     wanted = {option.name: values[option.name] for option in shown()}
     automatic = [option.name for option in shown() if option.default is None and wanted[option.name] in (0, _AUTOMATIC)]
-    return RelaxOptions(**wanted | dict.fromkeys(automatic), pins=values.get("pins", ())).keyed
+    return RelaxOptions(**wanted | dict.fromkeys(automatic)).keyed
 
 
 def key_options(values: dict[str, Any]) -> KeyOptions:

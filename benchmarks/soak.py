@@ -11,11 +11,10 @@ import time
 import traceback
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from mobius_flow.core import METHODS, Curve, Iterate, MobiusFlowError, Obstacle, RelaxOptions, Trajectory, relax
+from mobius_flow.core import METHODS, Curve, Iterate, MobiusFlowError, Obstacle, RelaxOptions, Task, Trajectory, relax
 from mobius_flow.core.collision.clearance import clears
 from mobius_flow.core.driver.options import EDGE_LENGTHS, MESHES
 from mobius_flow.core.energies import ENERGIES
@@ -83,19 +82,19 @@ def random_obstacles(rng: np.random.Generator, curve: Curve) -> list[Obstacle]:
     return [each for each in found if clears(curve, [each], 1e-9 * half)]
 
 
-def in_the_world(rng: np.random.Generator, curve: Curve, options: RelaxOptions) -> tuple[Curve, RelaxOptions]:
+def in_the_world(rng: np.random.Generator, curve: Curve) -> Task:
     """Some components opened, some vertices pinned, and obstacles."""
     closed = rng.random(len(curve.components)) < 0.5
     curve = Curve.from_components(curve.components, closed.tolist())
     pins = rng.choice(len(curve), size=int(rng.integers(0, 5)), replace=False)
     tangents = bool(rng.random() < 0.3)
     avoid = random_obstacles(rng, curve)
-    return curve, replace(options, pins=tuple(pins.tolist()), pin_tangents=tangents, avoid=avoid)
+    return Task(curve=curve, obstacles=avoid, pins=pins, pin_tangents=tangents and len(pins) > 0)
 
 
-def is_accepted(iterates: Sequence[Iterate], options: RelaxOptions) -> bool:
+def is_accepted(iterates: Sequence[Iterate], task: Task) -> bool:
     """Whether the independent check accepts the way, and every pin has kept its place."""
-    trajectory = Trajectory(obstacles=options.avoid)
+    trajectory = Trajectory(obstacles=task.obstacles)
     for iterate in iterates:
         trajectory.add(iterate)
     with tempfile.TemporaryDirectory() as room:
@@ -109,18 +108,19 @@ def flow(rng: np.random.Generator, world: bool = False) -> str:
     """Run one flow and say how it went: "ok", "refused", "type", "contact", "nan" or "exception"."""
     try:
         curve = random_curve(rng)
+        task = Task(curve=curve)
         options = random_options(rng, len(curve))
         if world:
-            curve, options = in_the_world(rng, curve, options)
-        iterates = list(relax(curve, options))
+            task = in_the_world(rng, curve)
+        iterates = list(relax(task, options))
     except MobiusFlowError:
         return "refused"
     numbers = [value for i in iterates for value in (i.energy, i.gradient_norm, *i.curve.vertices[0])]
     if not np.isfinite(numbers).all():
         return "nan"
-    if world and not is_accepted(iterates, options):
+    if world and not is_accepted(iterates, task):
         return "contact"
-    if not curve.mesh.all_closed:
+    if not task.curve.mesh.all_closed:
         return "ok"
     return "ok" if signature(curve) == signature(iterates[-1].curve) else "type"
 

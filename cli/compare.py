@@ -47,6 +47,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--time-limit", type=float, default=30.0, metavar="S", help="seconds per method (default: 30)")
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"one of {', '.join(WRITERS)}")
     relax_options.add_to(parser, method=False)
+    relax_options.add_task(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -62,8 +63,8 @@ def run(options: argparse.Namespace) -> int:
     check_places(relax_options.inputs(options), {"OUT": options.output})
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
-        wanted = relax_options.about(file, relax_options.from_arguments(options))
-        planned = compare(file.curve, names, wanted, options.time_limit)
+        task, wanted = relax_options.task(options, file), relax_options.from_arguments(options)
+        planned = compare(task, names, wanted, options.time_limit)
         options.notes.show()
         runs, ended_by = _collected(planned)
     if runs:

@@ -2,10 +2,9 @@
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
-from ..core import RelaxOptions
+from ..core import RelaxOptions, Task, read_obstacle
 from ..core.curve.io import CurveFile
 from ..core.errors import OptionError
 from ..core.option import Option, declared
@@ -29,6 +28,42 @@ def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     return RelaxOptions(**wanted)
 
 
+def add_task(parser: argparse.ArgumentParser) -> None:
+    """Add what a curve is to respect."""
+    group = parser.add_argument_group("what stands still")
+    text = "OBJ file of triangles or polylines, in the curve's units, that it never touches; may be given several times"
+    group.add_argument("--avoid", metavar="MESH.obj", action="append", default=[], help=text)
+    text = (
+        "vertices of the input that stay exactly where they are, counted from 1; nothing can move on an arc that is "
+        "straight from one of them to the next; may be given several times"
+    )
+    group.add_argument("--pin", dest="pins", metavar="V,V,…", type=_indices, action="extend", default=[], help=text)
+    text = "pin the neighbours that pinned vertices have in the refined start too, and so the curve's direction there"
+    group.add_argument("--pin-tangents", action="store_true", help=text)
+
+
+def task(arguments: argparse.Namespace, file: CurveFile) -> Task:
+    """The curve of a file with its obstacles and pins, which a file's own numbers stand for."""
+    again = next((path for path in arguments.avoid if arguments.avoid.count(path) > 1), None)
+    if again is not None:
+        raise OptionError(f"--avoid names {again:.60} more than once")
+    return Task(
+        curve=file.curve,
+        obstacles=tuple(map(read_obstacle, arguments.avoid)),
+        pins=tuple(map(file.index_of, arguments.pins)),
+        pin_tangents=arguments.pin_tangents,
+    )
+
+
+def _indices(text: str) -> tuple[int, ...]:
+    """Indices of vertices that are counted from 1, with commas between."""
+    words = [word.strip() for word in text.split(",")]
+    wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and int(word[:20]) > 0)), None)
+    if wrong is not None:
+        raise OptionError(f"{wrong!r:.40} is no vertex to pin; give numbers from 1, such as 12,40")
+    return tuple(int(word[:20]) - 1 for word in words)
+
+
 def inputs(arguments: argparse.Namespace) -> dict[str, str]:
     """The files that are read, by what they are on the command line."""
     return {"IN": arguments.input, **{f"--avoid {path}": path for path in arguments.avoid}}
@@ -42,11 +77,6 @@ def _value(option: Option, given: Any) -> Any:
     if again is not None:
         raise OptionError(f"{flag(option)} names {again:.60} more than once")
     return tuple(item for word in given for item in option.read(word))
-
-
-def about(file: CurveFile, options: RelaxOptions) -> RelaxOptions:
-    """The options with the vertices that a file's own numbers stand for; raises CurveFileError if it has none such."""
-    return replace(options, pins=tuple(map(file.index_of, options.pins)))
 
 
 def flag(option: Option) -> str:

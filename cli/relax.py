@@ -8,7 +8,6 @@ from functools import partial
 from typing import NamedTuple
 
 from ..core import (
-    Curve,
     Iterate,
     MobiusFlowError,
     Obstacle,
@@ -16,6 +15,7 @@ from ..core import (
     RelaxOptions,
     Result,
     Status,
+    Task,
     Trajectory,
     relax,
     write_curve,
@@ -80,6 +80,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
+    relax_options.add_task(parser)
 
 
 def _extra(path: str) -> str:
@@ -101,11 +102,12 @@ def run(options: argparse.Namespace) -> int:
     outputs = {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
     check_places(relax_options.inputs(options), outputs)
     file = curves.read(options.input, options.format)
-    wanted = relax_options.about(file, wanted)
-    admit(output, options.output, file.curve)
-    origin = provenance(wanted, file)
     with curves.refusals(file):
-        result, iterates = _relax(file.curve, wanted, output, options)
+        task = relax_options.task(options, file)
+    admit(output, options.output, file.curve)
+    origin = provenance(wanted, task, file)
+    with curves.refusals(file):
+        result, iterates = _relax(task, wanted, output, options)
     _write_all(options, output, result, iterates, origin)
     if not options.quiet:
         print(_summary(result), file=sys.stderr)
@@ -113,13 +115,13 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _relax(
-    curve: Curve, wanted: RelaxOptions, output: Output, options: argparse.Namespace
+    task: Task, wanted: RelaxOptions, output: Output, options: argparse.Namespace
 ) -> tuple[Result, list[Iterate]]:
     """Run to the end or an interrupt. Signals interrupt steps only: neither what is recorded nor the end is lost."""
     iterates: list[Iterate] = []
     recorded = output.needs_iterates or options.trajectory is not None
     notes: Notes = options.notes
-    relaxation = relax(curve, wanted)
+    relaxation = relax(task, wanted)
     signals.hold()
     with Progress(wanted, shown=not options.quiet and sys.stderr.isatty()) as progress:
 
@@ -130,7 +132,7 @@ def _relax(
                 notes.show()  # the curve is accepted: there will be no refusal
             progress.update(iterate)
 
-        return finish(_interruptible(relaxation), wanted, on_iterate), iterates
+        return finish(_interruptible(relaxation), task, wanted, on_iterate), iterates
 
 
 def _interruptible(relaxation: Relaxation) -> Relaxation:
@@ -194,7 +196,7 @@ def _jobs(
 ) -> Iterator[_Job]:
     for path, write in (
         (options.report, lambda path: _write_report(path, result, origin)),
-        (options.trajectory, lambda path: _trajectory(iterates, origin, result.obstacles).save(path)),
+        (options.trajectory, lambda path: _trajectory(iterates, origin, result.task.obstacles).save(path)),
     ):
         if path is not None:
             yield _Job(path, write, interruptible=not is_file(path))

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from ..core.errors import OptionError
 from ..core.speed import ASYMPTOTIC, SIZES, Machine, Row, exponents, fixed_mesh, speed
 from . import options as relax_options
-from .provenance import environment, plain
+from .provenance import environment
 from .streams import emit
 
 _MILLI, _MEGA = 1e-3, 1e6
@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     machine = Machine.measured()
     rows = speed(sizes, wanted)
     if options.json:
-        emit(json.dumps(_report(machine, list(rows)) | {"options": plain(wanted)} | environment(), indent=1))
+        emit(json.dumps(_report(machine, list(rows)) | {"options": vars(wanted)} | environment(), indent=1))
     else:
         _print(machine, rows)
     return 0

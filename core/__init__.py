@@ -11,6 +11,7 @@ from .energies import MoebiusEnergy, Objective
 from .errors import CurveError, CurveFileError, MobiusFlowError, OptionError
 from .obstacle import Obstacle
 from .obstacle_files import read_obstacle
+from .task import Task
 
 __all__ = [
     "METHODS",
@@ -28,6 +29,7 @@ __all__ = [
     "RelaxOptions",
     "Result",
     "Status",
+    "Task",
     "Trajectory",
     "WithOutcome",
     "minimize",

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .curve import Curve
-from .curve.pins import Pins
 from .curve.refine import subdivide
 from .driver import RelaxOptions, minimize
+from .task import Task
 
 ORDER = 2  # of the midpoint rule's error in the edge length
 ORDERS = (1.0, 3.0)  # observed orders that still are the rule's, disturbed by terms of higher order
@@ -65,43 +65,26 @@ class Extrapolation:
         return low <= self.order <= high
 
 
-def extrapolated(curve: Curve, options: RelaxOptions) -> Extrapolation | None:
+def extrapolated(given: Task | Curve, options: RelaxOptions) -> Extrapolation | None:
     """Relax a relaxed curve on with every edge halved, and halved again; None if one of the runs does not converge.
 
     There are twice and four times as many vertices, and few iterations.
 
     Parameters
     ----------
-    curve
-        A converged curve, in the user's units.
+    given
+        A converged curve, in the user's units, or a task with its pins and obstacles.
     options
-        How it was relaxed, its pins those of this curve; tolerances above `TOLERANCE` are taken for that.
+        How it was relaxed; tolerances above `TOLERANCE` are taken for that.
     """
-    pinned = curve.vertices[list(options.pins)]
-    energies: list[float] = []
+    task, energies = Task.of(given), []
     for pieces in (1, 2, 2):
-        start = subdivide(curve, np.full(curve.mesh.edges, pieces))
-        result = minimize(start, _on_mesh_of(start, options, Pins.at(start, pinned)))
+        finer = subdivide(task.curve, np.full(task.curve.mesh.edges, pieces))
+        task = replace(task, curve=finer, pins=tuple(task.held.on(finer).vertices.tolist()))
+        result = minimize(task, replace(options.at_rest(finer), tolerance=min(options.tolerance, TOLERANCE)))
         if not result.outcome.converged:
             return None
-        curve = result.curve
+        task = replace(task, curve=result.curve)
         energies.append(result.final_energy)
     coarse, middle, fine = energies
     return Extrapolation((coarse, middle, fine))
-
-
-def _on_mesh_of(curve: Curve, options: RelaxOptions, pins: Pins) -> RelaxOptions:
-    """The same method on a mesh that stays as it is, without what leaves a minimum that was found."""
-    return replace(
-        options,
-        tolerance=min(options.tolerance, TOLERANCE),
-        mesh="fixed",
-        vertices=len(curve),
-        edge_lengths="keep",
-        stability=False,
-        escape_saddles=False,
-        balance=False,
-        hops=0,
-        pins=tuple(pins.vertices.tolist()),
-        pin_tangents=False,
-    )

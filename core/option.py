@@ -53,7 +53,7 @@ class Option:
     metavar
         What stands for its value in the command line's help.
     group
-        Whom it is for: everybody, those who know the mathematics, or those who pin vertices.
+        Whom it is for: everybody, or those who know the mathematics.
     keyframes
         Whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
         leave out vertices on the way is among Blender's settings.
@@ -81,7 +81,7 @@ class Option:
     objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
     metavar: str = "NAME"
-    group: Literal["basic", "advanced", "pins"] = "basic"
+    group: Literal["basic", "advanced"] = "basic"
     keyframes: bool = True
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
     repeated: bool = False

@@ -17,12 +17,14 @@ from .descent import NoStep, Point, Step
 from .descent.methods import METRIC_STEPS
 from .descent.step import leg
 from .driver import RelaxOptions
-from .driver.prepare import prepared_start, start_problem
+from .driver.prepare import start_problem
 from .driver.run import Run
-from .driver.solver import Solver, max_vertices
+from .driver.solver import max_vertices
 from .energies.near_pairs import near_pairs
 from .errors import OptionError
+from .hierarchy import HierarchicalMoebiusEnergy
 from .knots import torus_knot
+from .task import Task
 
 SIZES = (200, 592, 1000, 2000, 5000, 10_000)
 MIN_SIZE = 60  # vertices with which the bent knot is still a trefoil
@@ -160,7 +162,7 @@ def exponents(rows: Sequence[Row]) -> dict[str, float]:
 
 def _row(curve: Curve, options: RelaxOptions) -> Row:
     run = _started(curve, options)
-    hierarchical = Solver.of_problem(options, run.problem).hierarchical
+    hierarchical = isinstance(run.problem.objective.energy, HierarchicalMoebiusEnergy)
     start, step = run.point, run.step()
     if isinstance(step, NoStep):
         raise OptionError(f"method {options.method} has no step to measure: {step.reason}")
@@ -176,8 +178,8 @@ def _row(curve: Curve, options: RelaxOptions) -> Row:
 
 
 def _started(curve: Curve, options: RelaxOptions) -> Run:
-    start = prepared_start(curve, options.vertices, [options])
-    return Run(start_problem(start, options), start, options)
+    start = Task(curve=curve).refined(options.vertices)
+    return Run(start_problem(start, options), start.curve, options)
 
 
 def _phases(start: Point, step: Step, options: RelaxOptions) -> Iterator[tuple[str, Callable[[], object]]]:

@@ -4,20 +4,20 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from mobius_flow.core import Curve, RelaxOptions
+from mobius_flow.core import Curve
 from mobius_flow.core.descent import Point, State, Step
 from mobius_flow.core.descent.problem import Geometry
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.types import FloatArray
 from mobius_flow.core.verify.filter import doubtful_pairs
+from tasks import wanted
 
 ROUNDING = 1e-13  # of the energy
 
 
 def point_on(curve: Curve, **options: object) -> Point:
     """A curve as a point of the problem that options make of it, its own lengths prescribed."""
-    settings = {"vertices": len(curve), "edge_lengths": "keep", **options}
-    return start_problem(curve, RelaxOptions(**settings)).at_curve(curve)  # type: ignore[arg-type]
+    return start_problem(*wanted(curve, **{"vertices": len(curve), "edge_lengths": "keep", **options})).at_curve(curve)
 
 
 def with_geometry(point: Point, geometry: Geometry) -> Point:

@@ -10,7 +10,7 @@ def unlike_default(option: Option) -> object:
     if option.kind is bool:
         return not option.default
     if option.repeated:
-        return (4, 0, 7)
+        return (("bending", 0.25),)
     if option.choices is not None:
         return next(name for name in reversed(list(option.choices)) if name != option.default)
     if math.isfinite(option.high):

@@ -52,10 +52,10 @@ def edge_integral(corners: np.ndarray, start: np.ndarray, end: np.ndarray, break
         return float(total * mp.sqrt(_dot(e, e)))
 
 
-def repulsion(obstacle: Obstacle, theta: float = 0.0, weight: float = 1.0) -> Repulsion:
+def repulsion(obstacle: Obstacle, theta: float = 0.0) -> Repulsion:
     """Of one obstacle; by default simplex by simplex."""
-    (only,) = Repulsion.of([obstacle], weight)
-    return Repulsion(only.clusters, weight, theta)
+    (only,) = Repulsion.of([obstacle])
+    return Repulsion(only.clusters, theta)
 
 
 def sphere(subdivisions: int, radius: float = 1.0) -> Obstacle:

@@ -51,6 +51,15 @@ PLUGINS = {
             Line("            TANGENT_POINT_ENERGY,", "            INVERSE_CUBE,"),
         ),
     ),
+    "term": Plugin(
+        "core/energies",
+        "height.py",
+        "core/energies/__init__.py",
+        (
+            Line("from .energy import ", "from .height import Height"),
+            Line("            Bending(),", "            Height(),"),
+        ),
+    ),
     "metric": Plugin(
         "core/metrics",
         "lumped.py",
@@ -177,7 +186,15 @@ def test_the_lists_of_the_command_line(command):
     assert re.search(r"length +print it", command("--help"))
     assert "inverse-cube" in command("energy", "--help")
     shown = " ".join(command("relax", "--help").split())
-    for text in ("inverse-cube", "lumped", "heavy-ball", ".csv", "--patience", "how long to wait (default: always)"):
+    for text in (
+        "inverse-cube",
+        "height",
+        "lumped",
+        "heavy-ball",
+        ".csv",
+        "--patience",
+        "how long to wait (default: always)",
+    ):
         assert text in shown
 
 
@@ -194,6 +211,7 @@ def test_the_energy_and_the_subcommand_compute(command, trefoil):
     "words",
     [
         ["--energy", "inverse-cube"],
+        ["--term", "height=0.01"],
         ["--metric", "lumped", "--method", "cg"],
         ["--method", "flow-lumped"],
         ["--method", "heavy-ball"],
@@ -210,6 +228,9 @@ def test_relaxing_with_it(words, command, trefoil, tmp_path):
     assert all(after < before for before, after in zip(report["energy"], report["energy"][1:], strict=False))
     assert report["certified"]
     for flag, value in zip(words[::2], words[1::2], strict=True):
+        if flag == "--term":
+            assert report["options"]["terms"] == [["height", 0.01]]
+            continue
         assert str(report["options"][flag[2:].replace("-", "_")]) == value
     command("verify", "t.npz")
 

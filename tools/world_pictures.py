@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from mobius_flow.core import Curve, Obstacle, RelaxOptions, minimize, read_obstacle
+from mobius_flow.core import Curve, Obstacle, RelaxOptions, Task, minimize, read_obstacle
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.types import FloatArray
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -43,15 +43,16 @@ def draw(axes: Any, curve: Curve, obstacles: Sequence[Obstacle], pins: Sequence[
 
 def picture(name: str, curve: Curve, **options: Any) -> None:
     """The refined curve on the left, the relaxed one on the right."""
-    wanted = RelaxOptions(**options)
+    still = {name: options.pop(name) for name in ("obstacles", "pins", "pin_tangents") if name in options}
+    task = Task(curve=curve, **still)
     iterates: list[Any] = []
-    result = minimize(curve, wanted, iterates.append)
+    result = minimize(task, RelaxOptions(**options), iterates.append)
     print(f"{name}: {result.message}; certified {result.certified}")
     shown = [iterates[0], iterates[-1]]
-    frame = np.concatenate([*(i.curve.vertices for i in shown), *(each.vertices for each in wanted.avoid)])
+    frame = np.concatenate([*(i.curve.vertices for i in shown), *(each.vertices for each in task.obstacles)])
     figure = Figure(figsize=(7, 3.5), layout="constrained")
     for k, iterate in enumerate(shown):
-        draw(figure.add_subplot(1, 2, k + 1, projection="3d"), iterate.curve, wanted.avoid, iterate.pins, frame)
+        draw(figure.add_subplot(1, 2, k + 1, projection="3d"), iterate.curve, task.obstacles, iterate.pins, frame)
     figure.savefig(TARGET / f"world-{name}.png", dpi=90)
 
 
@@ -62,9 +63,9 @@ def main() -> None:
     picture("components", knot("L6a4"), vertices=240)
     picture("open", arc, max_iterations=12)
     picture("pins", arc, pins=(0, 59), pin_tangents=True)
-    picture("confined", fitted(knot("4_1"), 1.3), avoid=(sphere,), vertices=120, max_iterations=60)
+    picture("confined", fitted(knot("4_1"), 1.3), obstacles=(sphere,), vertices=120, max_iterations=60)
     small = fitted(knot("3_1"), 0.5)
-    picture("growth", small, avoid=(sphere,), vertices=60, mesh="finer", grow=12.0, max_iterations=90)
+    picture("growth", small, obstacles=(sphere,), vertices=60, mesh="finer", grow=12.0, max_iterations=90)
 
 
 if __name__ == "__main__":

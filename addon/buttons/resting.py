@@ -1,12 +1,11 @@
 """Where a relaxed curve rests: told, and left for a better shape or a lower energy."""
 
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any
 
 import bpy
 
-from ...core import MobiusFlowError
+from ...core import MobiusFlowError, Task
 from ..curves.baked_keys import BakedKeys
 from ..curves.pins import pinned_vertices
 from ..curves.surroundings import Surroundings
@@ -90,8 +89,12 @@ def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
     context.view_layer.update()
     objects = selected_curves(context)
     keys = BakedKeys(objects)
-    options = relax_options({**values, "balance": False, "pins": pinned_vertices(objects, keys.mesh)})
-    return Rest.of(keys.curves[-1], replace(options, avoid=Surroundings.of(values["avoid"], objects).obstacles))
+    task = Task(
+        curve=keys.curves[-1],
+        obstacles=Surroundings.of(values["avoid"], objects).obstacles,
+        pins=pinned_vertices(objects, keys.mesh),
+    )
+    return Rest.of(task, relax_options({**values, "balance": False}))
 
 
 def _told(context: bpy.types.Context, rest: Rest) -> Phrase:

@@ -6,8 +6,9 @@ knows of no custom properties), copies, joined objects. Where edges are refined,
 pinned too, and no others.
 """
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +22,29 @@ from .snapshot import control_points
 if TYPE_CHECKING:
     import bpy
 
+
+@dataclass(frozen=True)
+class Held:
+    """What is pinned beside the points that are marked.
+
+    Attributes
+    ----------
+    points
+        Indices of points, counted from 0 through all splines of all objects.
+    tangents
+        Whether the neighbours of pinned points in the refined curve are pinned too.
+    """
+
+    points: tuple[int, ...] = ()
+    tangents: bool = False
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> "Held":
+        """What settings ask for."""
+        return cls(values.get("pins", ()), values["pin_tangents"])
+
+
+FREE = Held()
 _MARK = "weight_softbody"
 _PINNED, _FREE = 100.0, 1.0
 

@@ -21,6 +21,7 @@ from ...core import (
     Outcome,
     RelaxOptions,
     Status,
+    Task,
     WithOutcome,
     relax,
 )
@@ -38,6 +39,7 @@ from ..engine.words import named
 from . import bake, bevel
 from .exchange import stretch
 from .group import Group
+from .pins import FREE, Held
 from .surroundings import NOTHING, Surroundings
 
 if TYPE_CHECKING:
@@ -167,12 +169,14 @@ class Session:
         key_options: KeyOptions,
         continues: bool = False,
         surroundings: Surroundings = NOTHING,
+        held: Held = FREE,
     ) -> None:
         key_options.check_room(options.max_iterations)
         self.surroundings = surroundings
         self._key_options = key_options
         self.group = Group(objects, continues)
         try:
+            self.task = self._task(held)
             self.options = self._fitting(options)
         except BaseException:
             self.group.restore()
@@ -181,17 +185,26 @@ class Session:
         self._size: Size | None = None
         self.outcome: Outcome | None = None
 
-    def _fitting(self, options: RelaxOptions) -> RelaxOptions:
-        """The requested options, with what is pinned and avoided; raises MobiusFlowError if they do not go together."""
-        group, obstacles = self.group, self.surroundings.obstacles
-        pins = tuple(sorted({*options.pins, *group.pins}))
-        if pins or obstacles:
+    def _task(self, held: Held) -> Task:
+        """The curves with what is pinned and avoided; raises MobiusFlowError if they do not go together."""
+        pins = tuple(sorted({*held.points, *self.group.pins}))
+        task = Task(
+            curve=self.group.curve,
+            obstacles=self.surroundings.obstacles,
+            pins=pins,
+            pin_tangents=held.tangents and bool(pins),
+        )
+        if task.pins or task.obstacles:
             self._key_options.check_place()
-        if obstacles and options.balance:
+        return task
+
+    def _fitting(self, options: RelaxOptions) -> RelaxOptions:
+        """The requested options; raises OptionError if they do not go with the task."""
+        if self.task.obstacles and options.balance:
             raise OptionError(Phrase("Balance does not go with what is avoided; leave it out, or avoid nothing"))
-        if group.continues:  # the keys that are there have as many points as the curves have now
-            options = replace(options, vertices=len(group.curve), mesh="fixed")
-        return replace(options, pins=pins, avoid=obstacles)
+        if self.group.continues:  # the keys that are there have as many points as the curves have now
+            return replace(options, vertices=len(self.group.curve), mesh="fixed")
+        return options
 
     def run(self) -> Report:
         """Do the whole job. Objects are touched at its end only, and put back if that fails.
@@ -214,7 +227,7 @@ class Session:
 
     def _relaxed(self) -> Prepared:
         try:
-            run = WithOutcome(relax(self.group.curve, self.options))
+            run = WithOutcome(relax(self.task, self.options))
             for iterate in run:
                 self.take(iterate)
         except CurveError as error:
@@ -226,22 +239,22 @@ class Session:
     @property
     def _avoided(self) -> tuple[Obstacle, ...]:
         """What is avoided, in the common space."""
-        return in_common_space(self.options.avoid, self.group.link)
+        return in_common_space(self.task.obstacles, self.group.link)
 
     def lost(self) -> Phrase | None:
         """Say what somebody did to one of the objects, or to what they avoid, that makes going on impossible."""
-        return self.group.lost(alone=not self.options.avoid) or self.surroundings.lost()
+        return self.group.lost(alone=not self.task.obstacles) or self.surroundings.lost()
 
     def told(self, error: CurveError) -> CurveError:
         """The core's error in Blender's words; those about options use the names that options have."""
         if isinstance(error, OptionError):
             return error
-        sentence = self.group.told(str(error), self.options.avoid)
+        sentence = self.group.told(str(error), self.task.obstacles)
         return CurveError(sentence[:1].upper() + sentence[1:], error.place)
 
     def end(self, outcome: Outcome) -> None:
         """Take in how the relaxation ended."""
-        message = self.group.told(outcome.message, self.options.avoid)
+        message = self.group.told(outcome.message, self.task.obstacles)
         self.outcome = replace(outcome, message=as_phrase(message.rstrip(".")))
 
     def take(self, iterate: Iterate) -> None:

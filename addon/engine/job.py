@@ -13,11 +13,11 @@ from .placement import Frame, Link
 
 def messages(job: wire.Message) -> Iterator[wire.Message]:
     """Yield the iterates of a job as messages, or one message with the reason why it cannot be done."""
-    curve, options, link = wire.unpack_job(job)
-    obstacles = in_common_space(options.avoid, link)
+    task, options, link = wire.unpack_job(job)
+    obstacles = in_common_space(task.obstacles, link)
     last: Frame | None = None
     try:
-        run = WithOutcome(relax(curve, options))
+        run = WithOutcome(relax(task, options))
         for iterate in run:
             frames = frames_of(link, iterate)
             proved = _proved(iterate, link, [*([] if last is None else [last]), *frames], obstacles)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from ...core import Curve, CurveError, RelaxOptions, Status, minimize
+from ...core import CurveError, RelaxOptions, Status, Task, minimize
 from .phrase import Phrase
 
 MAX_POINTS = 1500  # a dense eigenvalue problem: some fifteen seconds
@@ -25,7 +25,7 @@ class Rest:
     words: str
 
     @classmethod
-    def of(cls, curve: Curve, options: RelaxOptions) -> "Rest":
+    def of(cls, task: Task, options: RelaxOptions) -> "Rest":
         """Look at the end of a relaxation that was done with these options.
 
         Raises
@@ -33,16 +33,16 @@ class Rest:
         MobiusFlowError
             If the curve has too many points, or the options leave no way to tell.
         """
-        if len(curve) > MAX_POINTS:
+        if len(task.curve) > MAX_POINTS:
             raise CurveError(
                 Phrase(
                     "The curves have {count} points; minimum or saddle is told up to {most}",
-                    count=len(curve),
+                    count=len(task.curve),
                     most=MAX_POINTS,
                 )
             )
-        options = replace(options, vertices=len(curve), max_iterations=_ITERATIONS)
-        result = minimize(curve, replace(options, stability=True, escape_saddles=False, balance=False))
+        options = replace(options.at_rest(task.curve), max_iterations=_ITERATIONS, stability=True)
+        result = minimize(task, options)
         index = result.outcome.negative_eigenvalues
         if result.status is Status.ITERATION_LIMIT:
             return cls(None, Phrase("not at rest yet; press Continue first"))

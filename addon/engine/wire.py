@@ -4,7 +4,7 @@ import hashlib
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, fields
 from typing import IO, Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from ...core import (
     Outcome,
     RelaxOptions,
     Status,
+    Task,
 )
 from ...core.errors import Place
 from ...core.types import FloatArray
@@ -57,20 +58,32 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
     return data
 
 
-def pack_job(curve: Curve, options: RelaxOptions, link: Link) -> Message:
+def pack_job(task: Task, options: RelaxOptions, link: Link) -> Message:
     """What the worker is asked to do."""
-    wanted, avoided = _pack_options(options)
-    header = {**_pack_mesh(curve.mesh), "options": wanted, "counts": link.counts}
+    header = {**_pack_mesh(task.curve.mesh), "options": asdict(options), "counts": link.counts}
+    header |= {
+        "pins": task.pins,
+        "pin_tangents": task.pin_tangents,
+        "obstacles": [each.name for each in task.obstacles],
+    }
     linear = np.stack([placement.linear for placement in link.placements])
     origins = np.stack([placement.origin for placement in link.placements])
-    return header, [curve.vertices, linear, origins, *avoided]
+    obstacles = [array for each in task.obstacles for array in (each.vertices, each.faces.astype(np.float64))]
+    return header, [task.curve.vertices, linear, origins, *obstacles]
 
 
-def unpack_job(message: Message) -> tuple[Curve, RelaxOptions, Link]:
+def unpack_job(message: Message) -> tuple[Task, RelaxOptions, Link]:
     """The inverse of `pack_job`."""
-    header, (vertices, linear, origins, *avoided) = message
+    header, (vertices, linear, origins, *arrays) = message
     link = Link(tuple(map(Placement, linear, origins)), tuple(header["counts"]))
-    return Curve(vertices, _unpack_mesh(header)), _unpack_options((header["options"], avoided)), link
+    faces = [each.astype(np.intp) for each in arrays[1::2]]
+    task = Task(
+        curve=Curve(vertices, _unpack_mesh(header)),
+        obstacles=tuple(map(Obstacle, arrays[::2], faces, header["obstacles"])),
+        pins=header["pins"],
+        pin_tangents=header["pin_tangents"],
+    )
+    return task, RelaxOptions(**header["options"]), link
 
 
 def _pack_mesh(mesh: Mesh) -> dict[str, Any]:
@@ -79,19 +92,6 @@ def _pack_mesh(mesh: Mesh) -> dict[str, Any]:
 
 def _unpack_mesh(header: dict[str, Any]) -> Mesh:
     return Mesh(tuple(header["sizes"]), tuple(header["closed"]))
-
-
-def _pack_options(options: RelaxOptions) -> Message:
-    """Options as JSON has them; vertices and faces of obstacles are arrays."""
-    header = asdict(replace(options, avoid=())) | {"avoid": [each.name for each in options.avoid]}
-    return header, [array for each in options.avoid for array in (each.vertices, each.faces.astype(np.float64))]
-
-
-def _unpack_options(message: Message) -> RelaxOptions:
-    header, arrays = message
-    faces = [each.astype(np.intp) for each in arrays[1::2]]
-    avoid = tuple(map(Obstacle, arrays[::2], faces, header["avoid"]))
-    return RelaxOptions(**header | {"avoid": avoid})
 
 
 def pack_iterate(iterate: Iterate, proved: Sequence[str]) -> Message:

@@ -14,7 +14,7 @@ from typing import IO
 import numpy as np
 import scipy
 
-from ...core import Curve, Iterate, MobiusFlowError, Outcome, RelaxOptions
+from ...core import Iterate, MobiusFlowError, Outcome, RelaxOptions, Task
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.types import FloatArray
@@ -37,15 +37,15 @@ class Worker:
 
     Parameters
     ----------
-    curve, options
+    task, options
         What is to be relaxed, as for `core.relax`.
     link
         Where Blender stores the vertices: motions of the stored ones are proved too.
     """
 
-    def __init__(self, curve: Curve, options: RelaxOptions, link: Link) -> None:
-        self._job = wire.pack_job(curve, options, link)
-        self._obstacles = in_common_space(options.avoid, link)
+    def __init__(self, task: Task, options: RelaxOptions, link: Link) -> None:
+        self._job = wire.pack_job(task, options, link)
+        self._obstacles = in_common_space(task.obstacles, link)
         self._proved: set[str] = set()
         self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
         self._closed = threading.Event()

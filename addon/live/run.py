@@ -16,6 +16,7 @@ from ...core import CurveError, Iterate, MobiusFlowError, Outcome, RelaxOptions,
 from ...core.errors import Place
 from ..curves.group import Group
 from ..curves.imprint import Imprint
+from ..curves.pins import FREE, Held
 from ..curves.session import Report, Session
 from ..curves.surroundings import NOTHING, Surroundings
 from ..engine.key_options import KeyOptions
@@ -90,6 +91,7 @@ class Run:
         continues: bool,
         refresh: Refresh,
         surroundings: Surroundings = NOTHING,
+        held: Held = FREE,
     ) -> None:
         self.state = State.RUNNING
         self.message = ""
@@ -103,9 +105,9 @@ class Run:
         self._left: Imprint | None = None  # what the objects were at its end
         self.history = History()
         self._refresh = refresh
-        self._session = Session(objects, options, key_options, continues, surroundings)
+        self._session = Session(objects, options, key_options, continues, surroundings, held)
         try:
-            self._worker = Worker(self.group.curve, self._session.options, self.group.link)
+            self._worker = Worker(self._session.task, self._session.options, self.group.link)
         except BaseException:
             self.group.restore()
             raise
@@ -133,7 +135,7 @@ class Run:
     @cached_property
     def target(self) -> Target | None:
         """The least energy that there can be."""
-        return target_of(self.group.curve, self._session.options)
+        return target_of(self._session.task, self._session.options)
 
     def concerns(self, obj: "bpy.types.Object | None") -> bool:
         """Whether it is about an object: always while it goes on, and afterwards if the object is as it was left."""

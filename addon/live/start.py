@@ -6,6 +6,7 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..curves import bake
+from ..curves.pins import Held
 from ..curves.session import Report
 from ..curves.surroundings import Surroundings
 from ..engine.key_options import KeyOptions
@@ -77,7 +78,7 @@ class LiveRelax(Listening):
             options, refresh = self.key_options(context, values), Refresh(values["view_every"])
             objects = selected_curves(context)
             surroundings = Surroundings.of(values["avoid"], objects)
-            run = Run(objects, relax_options(values), options, self.continues, refresh, surroundings)
+            run = Run(objects, relax_options(values), options, self.continues, refresh, surroundings, Held.of(values))
             registry.begin(run)
         except MobiusFlowError as error:
             self.report({"ERROR"}, rpt_(str(error)))

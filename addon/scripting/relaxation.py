@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from ...core import Curve, MobiusFlowError
 from ..curves import bake
 from ..curves.baked_keys import BakedKeys
+from ..curves.pins import Held
 from ..curves.session import Report, Session
 from ..curves.surroundings import Surroundings
 from ..live import checks
@@ -153,7 +154,7 @@ class Relaxation:
         options = key_options(values)
         options = bake.continued(self.objects, options) if continues else options
         surroundings = Surroundings.of(_objects(avoid), self.objects)
-        return Session(self.objects, relax_options(values), options, continues, surroundings).run()
+        return Session(self.objects, relax_options(values), options, continues, surroundings, Held.of(values)).run()
 
     @staticmethod
     def _evaluate() -> None:

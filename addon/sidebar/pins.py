@@ -10,7 +10,6 @@ from ..buttons.pinning import (
 )
 from ..curves import pins
 from ..live.checks import curves_at_hand
-from ..properties import shown
 from ..translations import iface_
 from .layout import InSidebar, settings_column
 
@@ -32,7 +31,7 @@ class VIEW3D_PT_mobius_flow_pins(InSidebar, bpy.types.Panel):  # noqa: N801 - Bl
         count = sum(pins.count(obj.data) for obj in curves_at_hand(context))
         if count:
             layout.label(text=iface_("{count} points pinned", count=count), icon="INFO", translate=False)
-        settings_column(layout, settings, *(option.name for option in shown("pins")))
+        settings_column(layout, settings, "pin_tangents")
         layout.operator(CURVE_OT_mobius_flow_close.bl_idname, icon="CURVE_BEZCIRCLE")
 
 

@@ -53,6 +53,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
+    relax_options.add_task(parser)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -12,7 +12,7 @@ from ..places import check_place
 from . import cluster
 from .folder import check_replaceable, finished, sweep
 from .inputs import inputs
-from .job import CSV, PARQUET, Job, jobs
+from .job import CSV, PARQUET, STILL, Job, jobs
 from .progress import Progress
 from .table import Row, Table
 
@@ -21,7 +21,8 @@ def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
     """Do the runs that are not finished; the table is written in the end, also of an interrupted batch."""
     cluster.require()
     directory = Path(options.output).resolve()
-    planned = jobs(inputs(options.inputs), options.starts, directory, wanted, options.avoid, options.extrapolate)
+    still = {name: getattr(options, name) for name in STILL}
+    planned = jobs(inputs(options.inputs), options.starts, directory, wanted, still, options.extrapolate)
     _prepare(directory, planned)
     rows = _found(planned)
     left = [job for job in planned if job not in rows]

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from ... import __version__
 from ...core import MobiusFlowError, RelaxOptions
@@ -14,6 +15,7 @@ from ...core.curve.io.source import MAX_BYTES
 from .inputs import Input
 
 CURVE, REPORT, TRAJECTORY = "curve.txt", "report.json", "trajectory.npz"
+STILL = ("avoid", "pins", "pin_tangents")  # options of a task, beside those of its relaxation
 CSV, PARQUET = "results.csv", "results.parquet"
 
 
@@ -77,13 +79,16 @@ def jobs(
     starts: int,
     directory: Path,
     options: RelaxOptions,
-    avoid: Iterable[str],
+    still: Mapping[str, Any],
     extrapolate: bool,
 ) -> list[Job]:
-    """The runs of a batch, ``avoid`` its obstacles' files; a MobiusFlowError tells where two would share a folder."""
+    """The runs of a batch; a MobiusFlowError tells where two would share a folder.
+
+    ``still`` are the obstacles' files, pins and pin_tangents of all of them.
+    """
     made = []
-    obstacles = {str(Path(path).resolve()): _hash(Path(path)) for path in avoid}
-    values = vars(options) | {"avoid": obstacles}
+    obstacles = {str(Path(path).resolve()): _hash(Path(path)) for path in still["avoid"]}
+    values = {**vars(options), **still, "avoid": obstacles}
     for each in inputs:
         sha256 = None if each.file is None else _hash(each.file)
         for start in range(1, starts + 1):

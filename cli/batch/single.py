@@ -13,6 +13,7 @@ from ...core import (
     MobiusFlowError,
     RelaxOptions,
     Result,
+    Task,
     Trajectory,
     minimize,
     read_obstacle,
@@ -27,10 +28,9 @@ from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves
 from ..main import explained
-from ..options import about
 from ..provenance import environment
 from .folder import check_name, new_folder, write_report
-from .job import CURVE, TRAJECTORY, Job
+from .job import CURVE, STILL, TRAJECTORY, Job
 from .table import Row
 
 GAP = 0.5  # of the mean edge length that scrambled strands keep: nearer ones would need thousands of vertices
@@ -49,17 +49,17 @@ def relaxed(job: Job) -> Row:
 def _relaxed(job: Job) -> Row:
     began = time.perf_counter()
     check_name(Path(job.folder))
-    options = _options(job)
+    values: dict[str, Any] = {name: value for name, value in job.options.items() if name not in STILL}
+    options = RelaxOptions(**values)
     file = None if job.file is None else _load(job.file)
     if file is not None:
-        options = about(file, options)
         job = replace(job, sha256=file.source.sha256)  # of what is really relaxed
     origin = {"options": job.options, "input": {"name": job.file or job.name, "sha256": job.sha256}, **environment()}
-    trajectory = Trajectory(origin, options.avoid)
     with nullcontext() if file is None else curves.refusals(file):
-        start = _start(knot(job.name) if file is None else file.curve, job.seed)
-        result = minimize(start, options, trajectory.add)
-    found = _findings(job, options, start, result)
+        task = _task(job, file)
+        trajectory = Trajectory(origin, task.obstacles)
+        result = minimize(task, options, trajectory.add)
+    found = _findings(job, options, task.curve, result)
     with new_folder(Path(job.folder)) as room:
         write_curve(room / CURVE, result.curve)
         trajectory.save(room / TRAJECTORY)
@@ -69,10 +69,13 @@ def _relaxed(job: Job) -> Row:
     return row
 
 
-def _options(job: Job) -> RelaxOptions:
-    """Those of the relaxation, with its obstacles read."""
-    values: dict[str, Any] = {**job.options}
-    return RelaxOptions(**values | {"avoid": tuple(map(read_obstacle, values["avoid"]))})
+def _task(job: Job, file: CurveFile | None) -> Task:
+    """The start with its obstacles, which are read, and its pins, by a file's own numbers if it has some."""
+    still: dict[str, Any] = {name: job.options[name] for name in STILL}
+    pins = tuple(still["pins"] if file is None else map(file.index_of, still["pins"]))
+    start = _start(knot(job.name) if file is None else file.curve, job.seed)
+    obstacles = tuple(map(read_obstacle, still["avoid"]))
+    return Task(curve=start, obstacles=obstacles, pins=pins, pin_tangents=still["pin_tangents"])
 
 
 def _load(path: str) -> CurveFile:
@@ -97,7 +100,8 @@ def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> 
     """What the row tells of a result."""
     smooth = None
     if job.extrapolate and result.outcome.converged:
-        smooth = extrapolated(result.curve, replace(options, pins=result.last.pins, pin_tangents=False))
+        end = replace(result.task, curve=result.curve, pins=result.last.pins, pin_tangents=False)
+        smooth = extrapolated(end, options)
     return {
         "type_before": str(knot_type(start)),
         "type_after": str(knot_type(result.curve)),

@@ -72,7 +72,8 @@ class Row:
     @classmethod
     def of(cls, job: Job, **values: object) -> "Row":
         """A row of a job."""
-        defaults, options = _plain(vars(RelaxOptions()) | {"avoid": {}}), _plain(job.options)
+        nothing = {"avoid": {}, "pins": [], "pin_tangents": False}
+        defaults, options = _plain(vars(RelaxOptions()) | nothing), _plain(job.options)
         given = {name: value for name, value in options.items() if value != defaults[name]}
         return cls(name=job.name, start=job.start, seed=job.seed, options=json.dumps(given), **values)  # type: ignore[arg-type]
 

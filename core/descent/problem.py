@@ -1,16 +1,17 @@
 """What is minimised, in which metric, on which set: values at a point are computed once, on demand."""
 
+from collections.abc import Iterable
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import scipy.sparse as sp
 
 from ..collision import FreeMotion, Limit, free_motion
-from ..constraints import Constraints
+from ..constraints import Constraints, Parts, weighted_barycenter
 from ..curve import Curve, Mesh
+from ..curve.pins import Pins
 from ..energies import Objective
 from ..metrics import InnerProduct, Metric, SparseInnerProduct
 from ..obstacle import Obstacle
@@ -48,6 +49,23 @@ class Geometry(Protocol):
         """The same with another weight α of length errors; an OptionError if there is none."""
 
 
+class Solver(Protocol):
+    """How sums over all pairs of edges are evaluated, and which energy and metric they belong to."""
+
+    def on(self, curve: Curve) -> "Solver":
+        """The solver that suits a curve; a CurveError if it has too many vertices."""
+
+    def objective(self, obstacles: Iterable[Obstacle]) -> Objective:
+        """The objective among obstacles, which are in the units of curves."""
+
+    @property
+    def metric(self) -> Metric:
+        """The metric that gradients are taken in."""
+
+    def of_metric(self, metric: Metric) -> Metric:
+        """Another metric in the form that this solver works with."""
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """One minimisation: the objective, the metric, the constraints and the units it is solved in.
@@ -58,6 +76,8 @@ class Problem:
         Targets of lengths and barycenter, and pins.
     geometry
         Whether the targets are prescribed, or missing them costs energy.
+    solver
+        Where objective and metric come from, on this mesh and on others.
     obstacles
         What no motion may touch, in the user's units.
     """
@@ -68,17 +88,64 @@ class Problem:
     constraints: Constraints
     units: Units
     geometry: Geometry
+    solver: Solver
     obstacles: tuple[Obstacle, ...] = ()
 
-    def inner_product(self, curve: Curve) -> InnerProduct:
-        """The metric on functions along a curve, stiffer where potentials of the objective are.
+    @classmethod
+    def of(
+        cls,
+        curve: Curve,
+        lengths: FloatArray,
+        pins: Pins,
+        obstacles: tuple[Obstacle, ...],
+        solver: Solver,
+        geometry: Geometry,
+        parts: Parts | None = None,
+    ) -> "Problem":
+        """The problem that begins with a curve, whose lengths are to become some others, all in the user's units.
 
-        It does not see these by itself: steps near an obstacle would be as short as its repulsion changes fast.
+        Raises
+        ------
+        CurveError
+            If the curve has too many vertices for the solver, or an obstacle is too far away.
         """
-        inner = self.metric.at(curve)
-        for potential in self.objective.potentials:
-            inner = inner.plus(SparseInnerProduct(sp.diags_array(potential.stiffness(curve))))
-        return inner
+        units, solver = Units.of(curve), solver.on(curve)
+        own = curve.with_vertices(units.from_user(curve.vertices))
+        barycenter = weighted_barycenter(own, parts, pins.vertices)
+        constraints = Constraints(lengths / units.scale, barycenter, parts, pins)
+        objective = solver.objective(map(units.obstacle_from_user, obstacles))
+        return cls(curve.mesh, objective, solver.metric, constraints, units, geometry, solver, obstacles)
+
+    def on(self, curve: Curve, lengths: FloatArray | None = None) -> "Point":
+        """The point of a curve on another mesh, in the same problem there.
+
+        Pins, the parts held in place and the growth so far stay; the barycenter is that of the curve.
+
+        Parameters
+        ----------
+        curve
+            In the user's units.
+        lengths
+            Target lengths in the user's units, shape (edges,); by default those that the curve has.
+
+        Raises
+        ------
+        CurveError
+            If the curve has too many vertices for the solver.
+        """
+        pins, held = self.constraints.pins.on(curve), self.constraints
+        lengths = curve.edge_lengths if lengths is None else lengths
+        problem = Problem.of(curve, lengths, pins, self.obstacles, self.solver, self.geometry, held.parts)
+        constraints = replace(problem.constraints, grown=held.grown)
+        return replace(problem, constraints=constraints).at_curve(curve)
+
+    def inner_product(self, curve: Curve) -> InnerProduct:
+        """The metric on functions along a curve, with the stiffness of those terms of the objective that it misses.
+
+        Otherwise steps near an obstacle would be as short as its repulsion changes fast.
+        """
+        inner, stiffness = self.metric.at(curve), self.objective.stiffness(curve)
+        return inner if stiffness is None else inner.plus(SparseInnerProduct(stiffness))
 
     def at(self, vertices: FloatArray) -> "Point":
         """The point with these vertices, in the program's units; pinned ones are put back to their last digits."""

@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 
 from ..curve import Curve
 from ..errors import OptionError
+from ..task import Task
 from .loop import WithOutcome
 from .options import RelaxOptions
-from .prepare import pins_of, prepared_start, start_problem
+from .prepare import start_problem
 from .relax import relax
+from .solver import check_size
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class History:
     fallback: tuple[int, ...]
 
 
-def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_limit: float) -> Iterator[History]:
+def compare(given: Task | Curve, methods: Sequence[str], options: RelaxOptions, time_limit: float) -> Iterator[History]:
     """Give one run per method, all from the same refined curve, each ended at ``time_limit`` seconds.
 
     Whether every method can be run is looked at before the first one is. The mesh ``auto`` is a fixed one here, so that
@@ -48,16 +50,17 @@ def compare(curve: Curve, methods: Sequence[str], options: RelaxOptions, time_li
         raise OptionError(f"methods are {methods!r:.60}; give a list of names")
     if len(set(methods)) < len(methods):
         raise OptionError(f"methods are {','.join(methods):.60}; give each of them once")
-    start = prepared_start(curve, options.vertices, [replace(options, method=method) for method in methods])
-    pins = tuple(pins_of(curve, start, options).vertices.tolist())
-    options = replace(options, vertices=len(start), pins=pins, pin_tangents=False)
     each = [replace(options, method=method) for method in methods]
     for wanted in each:
-        start_problem(start, wanted)
-    return (_run(start, wanted, time_limit) for wanted in each)
+        check_size(Task.of(given).curve, wanted)
+    task = Task.of(given).refined(options.vertices)
+    each = [replace(wanted, vertices=len(task.curve)) for wanted in each]
+    for wanted in each:
+        start_problem(task, wanted)
+    return (_run(task, wanted, time_limit) for wanted in each)
 
 
-def _run(start: Curve, options: RelaxOptions, time_limit: float) -> History:
+def _run(start: Task, options: RelaxOptions, time_limit: float) -> History:
     rows: list[tuple[float, float, float]] = []
     fallback: list[int] = []
     run = WithOutcome(relax(start, options))

@@ -1,6 +1,6 @@
 """The loop of a relaxation: an event, what is done about it, the next event."""
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 
 import numpy as np
 
@@ -37,18 +37,20 @@ class WithOutcome:
         self.outcome = yield from self._relaxation
 
 
-def iterates(run: Run) -> Relaxation:
+def iterates(run: Run, interventions: Sequence[Callable[[Run], Intervention]] = INTERVENTIONS) -> Relaxation:
     """Yield the start and every accepted step or change of mesh, each once; return how it ended."""
     rises = Rises()
     yield run.iterate
-    outcome = yield from descent(run, rises)
+    outcome = yield from descent(run, rises, interventions)
     return told(outcome, run, rises)
 
 
-def descent(run: Run, rises: Rises) -> Relaxation:
+def descent(
+    run: Run, rises: Rises, interventions: Sequence[Callable[[Run], Intervention]] = INTERVENTIONS
+) -> Relaxation:
     """Yield what comes after the point that a run has reached; return how it ended, without what `told` adds."""
     try:
-        return (yield from _descent(run, [make(run) for make in INTERVENTIONS], rises))
+        return (yield from _descent(run, [make(run) for make in interventions], rises))
     except np.linalg.LinAlgError as error:
         return stalled(DEGENERATE.format(error=error))
 

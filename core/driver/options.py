@@ -1,19 +1,18 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from operator import itemgetter
+from numbers import Real
 
 import numpy as np
 
+from ..checks import check_known
+from ..curve import Curve
 from ..descent import METHODS
-from ..energies import ENERGIES, Energy
+from ..energies import ENERGIES, TERMS, Energy, Term
 from ..errors import OptionError
 from ..metrics import METRICS
-from ..obstacle import Obstacle
-from ..obstacle_files import read_obstacle
 from ..option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
@@ -22,7 +21,6 @@ SOLVERS = ("auto", "dense", "hierarchical")
 MAX_GROWTH = 1000.0  # what is packed takes more vertices than there is time for long before
 MIN_GROWTH = 1 / MAX_GROWTH  # and what shrinks far more than that is so small that powers of its size are 0
 _advanced = partial(option, group="advanced")
-_scripted = partial(_advanced, scripted=True)
 
 
 def _are_lengths(value: object) -> bool:
@@ -35,21 +33,24 @@ def _are_lengths(value: object) -> bool:
     return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
 
 
-def _is_obstacle(value: object) -> bool:
-    return isinstance(value, Obstacle)
+def _is_weighted(value: object) -> bool:
+    """Whether a value is a pair of a term, or the name of one, and a number."""
+    if not (isinstance(value, tuple | list) and len(value) == 2):
+        return False
+    term, weight = value
+    if isinstance(term, str):
+        check_known("term", term, TERMS)
+    known = isinstance(term, str) or (isinstance(term, Term) and not isinstance(term, type))
+    return known and isinstance(weight, Real) and not isinstance(weight, bool) and bool(np.isfinite(float(weight)))
 
 
-def _read_obstacles(path: str) -> tuple[Obstacle]:
-    return (read_obstacle(path),)
-
-
-def _indices(text: str) -> tuple[int, ...]:
-    """Indices of vertices that are counted from 1, with commas between."""
-    words = [word.strip() for word in text.split(",")]
-    wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and int(word[:20]) > 0)), None)
-    if wrong is not None:
-        raise OptionError(f"{wrong!r:.40} is no vertex to pin; give numbers from 1, such as 12,40")
-    return tuple(int(word[:20]) - 1 for word in words)
+def _weighted(text: str) -> tuple[tuple[str, float]]:
+    """A term and its weight, with = between."""
+    name, _, weight = text.partition("=")
+    try:
+        return ((name, float(weight)),)
+    except ValueError:
+        raise OptionError(f"{text!r:.40} is not NAME=WEIGHT, such as bending=0.1") from None
 
 
 @documented
@@ -97,14 +98,16 @@ class RelaxOptions:
         high=16,
         metavar="k",
     )
-    avoid: tuple[Obstacle, ...] = _scripted(
+    terms: tuple[tuple[str | Term, float], ...] = _advanced(
         (),
-        "Avoid",
-        "surfaces and polylines, in the curve's units, that it never touches: triangles or segments that stand still",
-        objects=("an obstacle, such as Obstacle(vertices, faces)", _is_obstacle),
-        example="(Obstacle(vertices, faces),)",
-        metavar="MESH.obj",
-        read=_read_obstacles,
+        "Terms",
+        f"what is added to the energy, each with its weight: {', '.join(TERMS)}, or objects of your own",
+        objects=("a pair of a term and its weight, such as ('bending', 0.1)", _is_weighted),
+        example="(('bending', 0.1),)",
+        flag="term",
+        metavar="NAME=WEIGHT",
+        read=_weighted,
+        scripted=True,
     )
     penalty: float | None = _advanced(
         None,
@@ -193,52 +196,35 @@ class RelaxOptions:
         low=0,
         metavar="S",
     )
-    pins: tuple[int, ...] = _scripted(
-        (),
-        "Pins",
-        "vertices of the input that stay exactly where they are, counted from 0 in Python and from 1 on the command "
-        "line; nothing can move on an arc that is straight from one of them to the next",
-        low=0,
-        example="(0, 5)",
-        flag="pin",
-        metavar="V,V,…",
-        read=_indices,
-    )
-    pin_tangents: bool = option(
-        False,
-        "Pin Tangents",
-        "pin the neighbours that pinned vertices have in the refined start too, and so the curve's direction there",
-        group="pins",
-    )
 
     def __post_init__(self) -> None:
         for each in declared(type(self)):
             each.check(getattr(self, each.name))
-        object.__setattr__(self, "pins", tuple(map(int, self.pins)))
-        object.__setattr__(self, "avoid", tuple(self.avoid))
-        self._check_pins()
-        if self.balance and self.avoid:
-            raise OptionError(
-                "balance takes Möbius images, which keep the energy but not the repulsion of what avoid names; "
-                "leave one of the two out"
-            )
+        object.__setattr__(self, "terms", tuple((term, float(weight)) for term, weight in self.terms))
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
-
-    def _check_pins(self) -> None:
-        pin, times = max(Counter(self.pins).items(), key=itemgetter(1), default=(0, 0))
-        if times > 1:
-            raise OptionError(f"pins names vertex {pin + 1} more than once")
-        if self.balance and self.pins:
-            raise OptionError("balance would move pins, as Möbius maps do; leave one of the two out")
 
     @property
     def ends_finer(self) -> bool:
         """Whether there are more vertices in the end where strands are near."""
         free = self.vertices is None and self.edge_lengths == "auto"
         return self.mesh in ("finer", "adaptive") or (self.mesh == "auto" and free)
+
+    def at_rest(self, curve: Curve) -> "RelaxOptions":
+        """The same for a curve that is all but relaxed: on its own mesh, and without what leaves a minimum."""
+        return replace(
+            self,
+            mesh="fixed",
+            vertices=len(curve),
+            edge_lengths="keep",
+            grow=1.0,
+            stability=False,
+            escape_saddles=False,
+            balance=False,
+            hops=0,
+        )
 
     @property
     def keyed(self) -> "RelaxOptions":

@@ -10,15 +10,16 @@ import numpy as np
 from ..curve import Curve
 from ..errors import CurveError, OptionError
 from ..hierarchy import moebius_energy
-from ..obstacle import Obstacle
+from ..task import Task
 from ..units import centred
 from .hops import hopping
 from .iterate import Iterate
 from .loop import Relaxation, WithOutcome
 from .options import RelaxOptions
 from .outcome import FEWER, INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
-from .prepare import pins_of, prepared_start, start_problem
+from .prepare import start_problem
 from .run import Run
+from .solver import check_size
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
 
@@ -41,8 +42,8 @@ class Result:
         Wall-clock time.
     method
         Name of the method that was asked for.
-    obstacles
-        What was avoided.
+    task
+        What was to be relaxed.
     """
 
     outcome: Outcome
@@ -51,7 +52,7 @@ class Result:
     fallback_steps: tuple[int, ...]
     seconds: float
     method: str
-    obstacles: tuple[Obstacle, ...] = ()
+    task: Task
 
     @property
     def curve(self) -> Curve:
@@ -101,7 +102,7 @@ class Result:
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
             "pins": list(self.last.pins),
-            "obstacles": len(self.obstacles),
+            "obstacles": len(self.task.obstacles),
             "grown": self.last.grown,
             "max_edge_length_error": self.last.edge_length_error,
             "certified": self.certified,
@@ -112,7 +113,7 @@ class Result:
         }
 
 
-def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
+def relax(task: Task | Curve, options: RelaxOptions | None = None) -> Relaxation:
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
     In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
@@ -120,8 +121,8 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
 
     Parameters
     ----------
-    curve
-        An embedded polygon, in any units and place.
+    task
+        An embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.
     options
         What is asked for.
 
@@ -135,11 +136,13 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
     options = RelaxOptions() if options is None else options
     if not isinstance(options, RelaxOptions):
         raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
-    start = prepared_start(curve, options.vertices, [options])
+    task = Task.of(task)
+    check_size(task.curve, options)
+    start = task.refined(options.vertices)
     try:
-        run = Run(start_problem(start, options, pins_of(curve, start, options)), start, options)
+        run = Run(start_problem(start, options), start.curve, options)
     except np.linalg.LinAlgError as error:
-        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start)}") from error
+        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start.curve)}") from error
     return hopping(run)
 
 
@@ -156,7 +159,7 @@ def _remedy(curve: Curve) -> str:
 
 
 def minimize(
-    curve: Curve, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
+    task: Task | Curve, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
 ) -> Result:
     """Relax a curve to the end and return the result.
 
@@ -165,11 +168,13 @@ def minimize(
     """
     if callback is not None and not callable(callback):
         raise OptionError(f"callback is of type {type(callback).__name__}; give a function of one Iterate")
-    return finish(relax(curve, options), options or RelaxOptions(), callback)
+    return finish(relax(task, options), Task.of(task), options or RelaxOptions(), callback)
 
 
-def finish(relaxation: Relaxation, options: RelaxOptions, callback: Callable[[Iterate], None] | None = None) -> Result:
-    """Run a relaxation with some options to its end, as `minimize` does."""
+def finish(
+    relaxation: Relaxation, task: Task, options: RelaxOptions, callback: Callable[[Iterate], None] | None = None
+) -> Result:
+    """Run the relaxation of a task with some options to its end, as `minimize` does."""
     started = time.perf_counter()
     energies: list[float] = []
     fallback: list[int] = []
@@ -193,4 +198,4 @@ def finish(relaxation: Relaxation, options: RelaxOptions, callback: Callable[[It
     assert last is not None, "relax yields at least its start"
     assert run.outcome is not None, "the loop is through"
     seconds = time.perf_counter() - started
-    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, options.avoid)
+    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task)

@@ -13,7 +13,6 @@ from .events import Change
 from .iterate import Iterate
 from .options import RelaxOptions
 from .outcome import DEGENERATE
-from .solver import Solver
 
 
 class Run:
@@ -27,6 +26,8 @@ class Run:
         The refined curve, in the user's units.
     options
         What is asked for.
+    max_iterations
+        How many iterations there may be, if not as many as the options allow.
 
     Attributes
     ----------
@@ -44,8 +45,11 @@ class Run:
         Of the hierarchical solver, when they were last looked at.
     """
 
-    def __init__(self, problem: Problem, start: Curve, options: RelaxOptions) -> None:
+    def __init__(
+        self, problem: Problem, start: Curve, options: RelaxOptions, max_iterations: int | None = None
+    ) -> None:
         self.options = options
+        self.max_iterations = options.max_iterations if max_iterations is None else max_iterations
         self.resolution = Resolution(options.vertices, clearance=problem.clearance)
         self.method = METHODS[options.method]
         self.sampled_errors: SampledErrors | None = None
@@ -68,7 +72,7 @@ class Run:
     @property
     def iterations_left(self) -> int:
         """How many more iterations there may be."""
-        return self.options.max_iterations - self.iterations
+        return self.max_iterations - self.iterations
 
     @property
     def iterations(self) -> int:
@@ -79,8 +83,7 @@ class Run:
         """The present method's next step, ending at a point of the present problem."""
         point = self.point
         if self.method.name != self.options.method:
-            metric = Solver.of_problem(self.options, self.problem).of_metric(self.method.metric)
-            point = point.within(replace(self.problem, metric=metric))
+            point = point.within(replace(self.problem, metric=self.problem.solver.of_metric(self.method.metric)))
         try:
             step, self._memory = self.method.rule.step(point, self._memory)
             if isinstance(step, Step):

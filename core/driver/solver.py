@@ -1,16 +1,19 @@
 """Dense or hierarchical: how sums over all pairs of edges are made, and what is solved with them."""
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import lru_cache
 
 from ..checks import named
 from ..curve import Curve
-from ..descent import METHODS, Method, Problem
-from ..energies import ENERGIES, Energy, MoebiusEnergy
-from ..errors import OptionError
+from ..descent import METHODS, Method
+from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Term, Weighted
+from ..errors import CurveError, OptionError
 from ..hierarchy import HierarchicalMoebiusEnergy, compressed
 from ..hierarchy.inner_product import block_count
 from ..hierarchy.metric import MAX_VERTICES
 from ..metrics import METRICS, Metric
+from ..obstacle import Obstacle
 from ..quadrature import Rule
 from ..saddle.iterative import Tolerances
 from .options import RelaxOptions
@@ -22,6 +25,7 @@ DENSE_UP_TO, HIERARCHICAL_FROM = 1000, 5000
 PAIRS_PER_BLOCK = 1700  # that take as long as one of them, by `bench speed` on knots and tangles
 
 
+@dataclass(frozen=True)
 class Solver:
     """The energy and the metrics of a relaxation.
 
@@ -31,33 +35,28 @@ class Solver:
         What is asked for.
     hierarchical
         Whether distant pairs of edges count cluster by cluster.
+
+    Raises
+    ------
+    OptionError
+        If an option names something unknown, or does not go together with the solver that is asked for.
     """
 
-    def __init__(self, options: RelaxOptions, hierarchical: bool) -> None:
-        self._options, self.hierarchical = options, hierarchical
-        self._method = named(METHODS, "method", options.method)
+    options: RelaxOptions
+    hierarchical: bool = False
 
-    @classmethod
-    def for_curve(cls, options: RelaxOptions, curve: Curve) -> "Solver":
-        """That with which a curve is relaxed: the one asked for, or the faster one.
+    def on(self, curve: Curve) -> "Solver":
+        """The solver for a curve: the one asked for, or the faster one; a CurveError if it has too many vertices."""
+        check_size(curve, self.options)
+        wanted = self.options.solver == "hierarchical"
+        return Solver(self.options, _may_be_hierarchical(self.options) and (wanted or _pays(curve)))
 
-        Raises
-        ------
-        OptionError
-            If an option names something unknown, or does not go together with the solver that is asked for.
-        """
-        return cls(options, _may_be_hierarchical(options) and (options.solver == "hierarchical" or _pays(curve)))
-
-    @classmethod
-    def of_problem(cls, options: RelaxOptions, problem: Problem) -> "Solver":
-        """That with which a problem is solved already."""
-        return cls(options, isinstance(problem.objective.energy, HierarchicalMoebiusEnergy))
-
-    @property
-    def energy(self) -> Energy:
-        """What is minimised."""
-        energy = _energy(self._options)
-        return HierarchicalMoebiusEnergy.instead_of(energy) if self.hierarchical else energy
+    def objective(self, obstacles: Iterable[Obstacle] = ()) -> Objective:
+        """What is minimised among obstacles, which are in the units of curves."""
+        energy = _energy(self.options)
+        further = (Weighted(_term(term), weight) for term, weight in self.options.terms)
+        energy = HierarchicalMoebiusEnergy.instead_of(energy) if self.hierarchical else energy
+        return Objective.of(energy, obstacles, further)
 
     @property
     def metric(self) -> Metric:
@@ -68,30 +67,48 @@ class Solver:
         OptionError
             If a quadrature rule is asked for, and it has none.
         """
-        metric, points = _metric(self._method, self._options), self._options.quadrature_points
+        metric, points = _metric(_method(self.options), self.options), self.options.quadrature_points
         if points is not None and metric.rule is None:
             raise OptionError(f"quadrature_points is {points}; metric {metric.name!r} has no such rule")
         return self.of_metric(metric)
 
     def of_metric(self, metric: Metric) -> Metric:
         """A metric in the form that is solved with, and by the quadrature rule if it has any."""
-        points = self._options.quadrature_points
+        points = self.options.quadrature_points
         # the energy's own rule, as Section 6.1.2 of [RS21] has it, unless another one is asked for
-        metric = metric.with_rule(_energy(self._options).rule if points is None else Rule.gauss(points))
-        return compressed(metric, Tolerances.of_norms(self._options.accuracy)) if self.hierarchical else metric
+        metric = metric.with_rule(_energy(self.options).rule if points is None else Rule.gauss(points))
+        return compressed(metric, Tolerances.of_norms(self.options.accuracy)) if self.hierarchical else metric
+
+
+def check_size(curve: Curve, options: RelaxOptions) -> None:
+    """Refuse more vertices than the method's inner products have room for, before anything is made of them.
+
+    Raises
+    ------
+    CurveError, OptionError
+        If the curve has too many vertices, or too many are asked for.
+    """
+    most, method = max_vertices(options, max(len(curve), options.vertices or 0)), options.method
+    if options.vertices is not None and options.vertices > most:
+        raise OptionError(f"vertices is {options.vertices!s:.40}; {method} has room and time for {most}")
+    if len(curve) > most:
+        raise CurveError(
+            f"the curve has {len(curve)} vertices; {method} has room and time for {most}; "
+            "thin the curve out or relax its components apart"
+        )
 
 
 def max_vertices(options: RelaxOptions, wanted: int) -> int:
-    """Number of vertices for which there is room and time, if so many are wanted; raises as `Solver.for_curve` does."""
+    """Number of vertices for which there is room and time, if so many are wanted; raises as `Solver` does."""
     if _may_be_hierarchical(options) and (options.solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
         return MAX_VERTICES
-    method = named(METHODS, "method", options.method)
+    method = _method(options)
     metrics = (_metric(method, options), *method.rule.other_metrics)
     return min(metric.most_vertices for metric in metrics)
 
 
 def _may_be_hierarchical(options: RelaxOptions) -> bool:
-    obstacle = None if options.solver == "dense" else _obstacle(options, named(METHODS, "method", options.method))
+    obstacle = None if options.solver == "dense" else _obstacle(options, _method(options))
     if obstacle is not None and options.solver == "hierarchical":
         raise OptionError(f"{obstacle}; solver={options.solver!r} does without: leave it out")
     return options.solver != "dense" and obstacle is None
@@ -118,6 +135,14 @@ def _obstacle(options: RelaxOptions, method: Method) -> str | None:
     if options.quadrature_points not in (None, 1):
         return f"{options.quadrature_points} Gauss points need all pairs of edges one by one"
     return None
+
+
+def _method(options: RelaxOptions) -> Method:
+    return named(METHODS, "method", options.method)
+
+
+def _term(term: str | Term) -> Term:
+    return named(TERMS, "term", term) if isinstance(term, str) else term
 
 
 def _energy(options: RelaxOptions) -> Energy:

@@ -5,13 +5,14 @@ from types import MappingProxyType
 
 from ..quadrature import Rule
 from .barrier import Barrier
+from .bending import Bending
 from .density import Density
 from .edge import EDGE_ENERGY
-from .energy import Energy, TwiceDifferentiable
+from .energy import Energy, Term, TwiceDifferentiable, is_moebius_invariant
 from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
 from .moebius_kpoint import moebius_kpoint
-from .objective import Objective
+from .objective import Objective, Weighted
 from .tangent_point import TANGENT_POINT_ENERGY
 from .vertex import VERTEX_ENERGY
 
@@ -30,15 +31,23 @@ ENERGIES: Mapping[str, Energy] = MappingProxyType(
 )
 """Every energy that users can choose, by name; the first is the default."""
 
+TERMS: Mapping[str, Term] = MappingProxyType({term.name: term for term in (Bending(),)})
+"""What users can add to an energy, by name."""
+
 __all__ = [
     "ENERGIES",
+    "TERMS",
     "Barrier",
+    "Bending",
     "Density",
     "Energy",
     "KPointEnergy",
     "MoebiusEnergy",
     "Objective",
     "Rule",
+    "Term",
     "TwiceDifferentiable",
+    "Weighted",
+    "is_moebius_invariant",
     "moebius_kpoint",
 ]

@@ -15,6 +15,7 @@ class ArcDensity:
 
     constant = 0.0
     scale_exponent = -2.0
+    moebius_invariant = True
 
     def value(self, pairs: PointPairs) -> FloatArray:
         """F of every pair."""

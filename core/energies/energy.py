@@ -10,6 +10,7 @@ from ..quadrature import Rule
 from ..types import FloatArray
 
 
+@runtime_checkable
 class Term(Protocol):
     """A differentiable function of the vertices: an energy, or what an objective has beside it."""
 
@@ -24,6 +25,7 @@ class Term(Protocol):
         """The term and its derivative with respect to the vertices, shape (n, m)."""
 
 
+@runtime_checkable
 class LocalTerm(Term, Protocol):
     """A term whose second derivative couples few vertices with each other."""
 
@@ -34,14 +36,31 @@ class LocalTerm(Term, Protocol):
         """The second derivative times a vector ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
 
 
-class Potential(LocalTerm, Protocol):
-    """A term of what stands around the curve, which acts on each of its points by itself."""
+@runtime_checkable
+class Stiff(Term, Protocol):
+    """A term that the metric of the energy does not see, so that steps would be too long for it."""
 
-    def stiffness(self, curve: Curve) -> FloatArray:
-        """By how much force, at most, the vertices are driven back for the way they go, not below 0; shape (n,)."""
+    def stiffness(self, curve: Curve) -> sp.sparray:
+        """A quadratic form on functions along the curve, of about the size of the second derivative; shape (n, n)."""
+
+
+@runtime_checkable
+class Confining(Term, Protocol):
+    """A term of what stands around the curve."""
 
     def clearance(self, curve: Curve) -> FloatArray:
         """How far from each edge a wall would be that acts on it as strongly; shape (edges,)."""
+
+
+def scale_exponent(term: object) -> float | None:
+    """s of E(λ P) = λˢ E(P), 0 for terms that do not see size; None where a term does not say."""
+    exponent = getattr(term, "scale_exponent", None)
+    return None if exponent is None else float(exponent)
+
+
+def is_moebius_invariant(term: object) -> bool:
+    """Whether a term says that Möbius maps change nothing of it, but for what the mesh makes of that."""
+    return bool(getattr(term, "moebius_invariant", False))
 
 
 @runtime_checkable

@@ -16,6 +16,7 @@ from ..quadrature import Rule
 from ..types import FloatArray
 from .components import ComponentShares
 from .density import Density, PointPairs, PointSet
+from .energy import is_moebius_invariant
 from .kpoint_sums import KPointSums
 
 
@@ -47,6 +48,11 @@ class KPointEnergy:
     def scale_exponent(self) -> float:
         """s of E(λ P) = λˢ E(P): the density's, and 2 for the double integral."""
         return self.density.scale_exponent + 2.0
+
+    @property
+    def moebius_invariant(self) -> bool:
+        """Whether the density says so."""
+        return is_moebius_invariant(self.density)
 
     def value(self, curve: Curve) -> float:
         """Energy of the curve."""

@@ -37,6 +37,7 @@ class MoebiusEnergy:
     name = "moebius"
     rule = MIDPOINT
     scale_exponent = 0.0
+    moebius_invariant = True
     contains_midpoint_pairs = True
     description = "Möbius energy without arc distances, midpoint rule (Ishizeki–Nagasawa density)"
 

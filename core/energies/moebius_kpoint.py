@@ -14,6 +14,7 @@ class IshizekiNagasawaDensity:
 
     constant = 4.0
     scale_exponent = -2.0
+    moebius_invariant = True
 
     def value(self, pairs: PointPairs) -> FloatArray:
         """F of every pair."""

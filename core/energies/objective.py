@@ -1,17 +1,28 @@
-"""The objective that `relax` descends on: an energy, the barrier of its near pairs, and the repulsion of obstacles."""
+"""The objective that `relax` descends on: an energy, the barrier of its near pairs, and further terms."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import TypeVar, cast
+from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
+import scipy.sparse as sp
 
 from ..curve import Curve
 from ..errors import OptionError
 from ..obstacle import Obstacle
 from ..types import FloatArray
 from .barrier import Barrier
-from .energy import Approximate, Energy, LocalTerm, Potential, Term, TwiceDifferentiable, WithMidpointPairs
+from .energy import (
+    Approximate,
+    Confining,
+    Energy,
+    LocalTerm,
+    Stiff,
+    Term,
+    TwiceDifferentiable,
+    WithMidpointPairs,
+    scale_exponent,
+)
 from .moebius import MoebiusEnergy
 from .near_pairs import replaced_pairs
 from .repulsion import Repulsion
@@ -19,9 +30,20 @@ from .repulsion import Repulsion
 _Term = TypeVar("_Term", bound=Term)
 
 
+class Weighted(NamedTuple):
+    """A term and the factor that it has in an objective."""
+
+    term: Term
+    weight: float = 1.0
+
+
 @dataclass(frozen=True)
 class Objective:
     """A sum of terms: a C² function of the vertices, infinite where edges touch each other or an obstacle.
+
+    A term has a name, a value and a derivative (`Term`). What else can be done with the objective follows from what its
+    terms can do: a second derivative (`LocalTerm`), stiffness for the metric (`Stiff`), a clearance (`Confining`), an
+    attribute ``scale_exponent`` or ``moebius_invariant``.
 
     Parameters
     ----------
@@ -29,81 +51,111 @@ class Objective:
         The energy of the curve alone, by default moebius.
     barrier
         What makes it infinite where edges touch.
-    potentials
+    further
         What else acts on the curve, such as the repulsion of obstacles.
     """
 
     energy: Energy = field(default_factory=MoebiusEnergy)
     barrier: Barrier = field(default_factory=Barrier)
-    potentials: tuple[Potential, ...] = ()
+    further: tuple[Weighted, ...] = ()
 
     name = "objective"
-    description = "moebius + barrier + repulsion of obstacles, what relax descends on"
+    description = "moebius + barrier + repulsion of obstacles + weighted terms, what relax descends on"
 
     @classmethod
-    def of(cls, energy: Energy, obstacles: Iterable[Obstacle] = (), weight: float = 1.0) -> "Objective":
+    def of(
+        cls, energy: Energy, obstacles: Iterable[Obstacle] = (), further: Iterable[Weighted] = (), weight: float = 1.0
+    ) -> "Objective":
         """The objective of any energy among obstacles, in the units of curves, whose repulsion has some weight.
 
         The barrier takes the place of what the energy has of it, or stands beside it.
         """
-        return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs), Repulsion.of(obstacles, weight))
+        walls = (Weighted(each, weight) for each in Repulsion.of(obstacles))
+        return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs), (*walls, *further))
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """The energy, to which the barrier belongs, and all further terms."""
+        return (self.energy, *(term for term, _ in self.further))
+
+    @property
+    def sees_size(self) -> bool:
+        """Whether it changes, or may change, when the curve is scaled."""
+        return any(scale_exponent(term) != 0.0 for term in self.terms)
+
+    @property
+    def has_hessian(self) -> bool:
+        """Whether all terms come with a second derivative."""
+        return self.without_hessian is None
+
+    @property
+    def without_hessian(self) -> Term | None:
+        """The first term that has no second derivative."""
+        local = (term for term, _ in self.further if not isinstance(term, LocalTerm))
+        return next(local, None) if hasattr(self.energy, "hessian_product") else self.energy
 
     def frozen_at(self, curve: Curve) -> "Objective":
         """What a search from a curve should see: approximations that stay the same for all that is near."""
-        energy, potentials = _frozen(self.energy, curve), tuple(_frozen(each, curve) for each in self.potentials)
-        same = all(a is b for a, b in zip((energy, *potentials), (self.energy, *self.potentials), strict=True))
-        return self if same else replace(self, energy=energy, potentials=potentials)
+        energy = _frozen(self.energy, curve)
+        further = tuple(each._replace(term=_frozen(each.term, curve)) for each in self.further)
+        frozen = replace(self, energy=energy, further=further)
+        return self if all(a is b for a, b in zip(frozen.terms, self.terms, strict=True)) else frozen
 
     def value(self, curve: Curve) -> float:
         """The objective at the curve."""
-        energy, local = self._terms(curve)
-        return sum(term.value(curve) for term in (energy, *local))
+        return float(sum(weight * term.value(curve) for term, weight in self._summands(curve)))
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """The objective and its derivative with respect to the vertices, shape (n, m)."""
-        energy, local = self._terms(curve)
-        values = [term.value_and_derivative(curve) for term in (energy, *local)]
-        return sum(value for value, _ in values), np.sum([derivative for _, derivative in values], axis=0)
+        energy, *rest = self._summands(curve)
+        value, derivative = energy.term.value_and_derivative(curve)
+        for term, weight in rest:
+            more, further = term.value_and_derivative(curve)
+            value, derivative = value + weight * more, derivative + weight * further
+        return value, derivative
 
     def hessian(self, curve: Curve) -> FloatArray:
         """Second derivative, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
-        energy, local = self._terms(curve)
-        matrix = self._twice_differentiable(energy).hessian(curve)
-        for term in local:
-            part = term.sparse_hessian(curve).tocoo()
-            matrix[part.coords] += part.data
+        self._check_hessian()
+        energy, *local = self._summands(curve)
+        matrix = cast(TwiceDifferentiable, energy.term).hessian(curve)
+        for term, weight in local:
+            part = cast(LocalTerm, term).sparse_hessian(curve).tocoo()
+            matrix[part.coords] += weight * part.data
         return matrix
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """The second derivative times ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
-        energy, local = self._terms(curve)
-        product = self._twice_differentiable(energy).hessian_product(curve, v)
-        return product + sum(term.hessian_product(curve, v) for term in local)
+        self._check_hessian()
+        parts = (weight * cast(LocalTerm, term).hessian_product(curve, v) for term, weight in self._summands(curve))
+        return np.asarray(sum(parts, np.zeros_like(v)))
+
+    def stiffness(self, curve: Curve) -> sp.sparray | None:
+        """What the metric is to have beside its own, that steps do not go too far for some term; shape (n, n)."""
+        forms = [weight * term.stiffness(curve) for term, weight in self.further if isinstance(term, Stiff)]
+        return sp.csr_array(sum(forms[1:], forms[0])) if forms else None
 
     def clearance(self, curve: Curve) -> FloatArray:
-        """How far from each edge a wall would be that acts as the nearest potential does; shape (edges,)."""
+        """How far from each edge a wall would be that acts as the nearest obstacle does; shape (edges,)."""
         nowhere = np.full(curve.mesh.edges, np.inf)
-        return np.asarray(np.min([nowhere, *(potential.clearance(curve) for potential in self.potentials)], axis=0))
+        walls = (term.clearance(curve) for term in self.terms if isinstance(term, Confining))
+        return np.asarray(np.min([nowhere, *walls], axis=0))
 
-    @property
-    def has_hessian(self) -> bool:
-        """Whether the energy comes with a second derivative."""
-        return hasattr(self.energy, "hessian_product")
-
-    def _terms(self, curve: Curve) -> tuple[Energy, tuple[LocalTerm, ...]]:
-        """The energy and the other terms at a curve; what the barrier would take away of the energy is not even added.
+    def _summands(self, curve: Curve) -> tuple[Weighted, ...]:
+        """The terms at a curve, the energy first; what the barrier would take away of that is not even added.
 
         At a distance g the difference would be lost in some 1/g² times the rounding error of g.
         """
-        if not self.barrier.replaces_midpoint:
-            return self.energy, (self.barrier, *self.potentials)
-        energy = cast(WithMidpointPairs, self.energy).leaving_out(replaced_pairs(curve))
-        return energy, (replace(self.barrier, left_out=True), *self.potentials)
+        energy, barrier = self.energy, self.barrier
+        if barrier.replaces_midpoint:
+            energy = cast(WithMidpointPairs, energy).leaving_out(replaced_pairs(curve))
+            barrier = replace(barrier, left_out=True)
+        return (Weighted(energy), Weighted(barrier), *self.further)
 
-    def _twice_differentiable(self, energy: Energy) -> TwiceDifferentiable:
-        if not self.has_hessian:
-            raise OptionError(f"energy {self.energy.name!r} has no second derivative; choose another energy or method")
-        return cast(TwiceDifferentiable, energy)
+    def _check_hessian(self) -> None:
+        lacking = self.without_hessian
+        if lacking is not None:
+            raise OptionError(f"{lacking.name!r} has no second derivative; choose another energy, term or method")
 
 
 def _frozen(term: _Term, curve: Curve) -> _Term:

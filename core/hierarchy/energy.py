@@ -54,6 +54,7 @@ class HierarchicalMoebiusEnergy:
     name = "moebius"
     rule = MIDPOINT
     scale_exponent = 0.0
+    moebius_invariant = True
     contains_midpoint_pairs = True
     description = "Möbius energy without arc distances, midpoint rule, distant clusters by Taylor expansion"
 

@@ -14,7 +14,7 @@ from mobius_flow.addon.engine import wire  # noqa: E402
 from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
 from mobius_flow.addon.sidebar.expert import VIEW3D_PT_mobius_flow_expert  # noqa: E402
 from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow  # noqa: E402
-from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, minimize  # noqa: E402
+from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Task, minimize  # noqa: E402
 from mobius_flow.core.option import declared, option  # noqa: E402
 from option_values import unlike_default  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
@@ -196,7 +196,7 @@ def test_the_worker_is_sent_every_option():
     options = RelaxOptions(**GIVEN)
     curve = torus_trefoil(30)
     pipe = BytesIO()
-    wire.write(pipe, wire.pack_job(curve, options, Link((Placement(np.eye(3), np.zeros(3)),), (1,))))
+    wire.write(pipe, wire.pack_job(Task(curve=curve), options, Link((Placement(np.eye(3), np.zeros(3)),), (1,))))
     pipe.seek(0)
     _, received, _ = wire.unpack_job(wire.read(pipe))
     assert received == options

@@ -1,7 +1,5 @@
 """Relaxations among obstacles: whatever the method and the mesh, no motion touches one, and the verifier agrees."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from mobius_flow.core import (
@@ -12,6 +10,7 @@ from mobius_flow.core import (
     OptionError,
     RelaxOptions,
     Status,
+    Task,
     Trajectory,
     minimize,
     relax,
@@ -23,20 +22,22 @@ from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
 from solids import box, plate, rod
+from tasks import wanted
 
 NEAR = (plate(0.95, name="ceiling"), plate(-0.95, name="floor"))  # a relaxed trefoil would rise through them
 
 SHARP = {"method": "trust-region", "tolerance": 1e-7}
 
 
-def verified(curve, options, tmp_path):
-    """The result of a run whose trajectory is accepted, with the obstacles of the options."""
-    trajectory = Trajectory(obstacles=options.avoid)
-    result = minimize(curve, options, trajectory.add)
+def verified(curve, tmp_path, **settings):
+    """The result of a run whose trajectory is accepted, with its obstacles."""
+    task, options = wanted(curve, **settings)
+    trajectory = Trajectory(obstacles=task.obstacles)
+    result = minimize(task, options, trajectory.add)
     trajectory.save(tmp_path / "T.npz")
     verdict = verify(tmp_path / "T.npz")
     assert verdict.accepted, str(verdict)
-    assert verdict.obstacles == len(options.avoid) == result.report()["obstacles"]
+    assert verdict.obstacles == len(task.obstacles) == result.report()["obstacles"]
     assert result.certified
     return result
 
@@ -48,8 +49,7 @@ def flat_trefoil(n=60):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_no_method_goes_through_a_wall(method, tmp_path):
-    options = RelaxOptions(method=method, max_iterations=6, vertices=60, mesh="fixed", avoid=NEAR)
-    result = verified(flat_trefoil(), options, tmp_path)
+    result = verified(flat_trefoil(), tmp_path, method=method, max_iterations=6, vertices=60, mesh="fixed", avoid=NEAR)
     assert np.abs(result.curve.vertices[:, 2]).max() < 0.95
 
 
@@ -65,7 +65,7 @@ def test_changes_of_mesh_and_shape_stay_clear(more, tmp_path):
     curve = scramble(knot("3_1", vertices=60), seed=3, moves=300)
     low, high = float(curve.vertices.min()), float(curve.vertices.max())
     container = box(low - 0.02 * (high - low), high + 0.02 * (high - low))
-    verified(curve, RelaxOptions(max_iterations=40, avoid=[container], **more), tmp_path)
+    verified(curve, tmp_path, max_iterations=40, avoid=[container], **more)
 
 
 @pytest.mark.parametrize("half", [1.05, 1.3])
@@ -73,8 +73,8 @@ def test_little_is_left_to_gain_where_a_run_has_converged(half):
     """Though the energy of the walls, most of the objective, makes the bound on the gradient wider."""
     t = 2.0 * np.pi * np.arange(48) / 48
     ring = Curve(np.column_stack([np.cos(t), np.sin(t), 0.3 * np.cos(2 * t) + 0.1 * np.sin(3 * t)]))
-    options = RelaxOptions(avoid=[box(-half, half)], vertices=48)
-    usual, sharp = (minimize(ring, replace(options, **more)) for more in ({}, SHARP))
+    walls = [box(-half, half)]
+    usual, sharp = (minimize(*wanted(ring, avoid=walls, vertices=48, **more)) for more in ({}, SHARP))
     assert usual.status is sharp.status is Status.CONVERGED
     assert usual.last.energy > 5.0 * usual.final_energy
     assert 0.0 < usual.last.energy / sharp.last.energy - 1.0 < 1e-6
@@ -83,21 +83,21 @@ def test_little_is_left_to_gain_where_a_run_has_converged(half):
 
 def test_a_coarse_start_stays_clear(tmp_path):
     curve = torus_trefoil(1600)
-    options = RelaxOptions(max_iterations=40, avoid=(rod(0.0, 0.0), plate(1.3), box(9.0, 10.0)))
-    result = verified(curve, options, tmp_path)
+    walls = (rod(0.0, 0.0), plate(1.3), box(9.0, 10.0))
+    result = verified(curve, tmp_path, max_iterations=40, avoid=walls)
     assert len(result.curve) >= 1600
 
 
 def test_links_that_drift_apart_stay_clear(tmp_path):
     rings = [regular_polygon(30).vertices + np.array([2.1 * k, 0.0, 0.1 * k]) for k in range(2)]
-    options = RelaxOptions(max_iterations=60, avoid=(rod(-1.2, 0.0), rod(3.4, 0.0)))
-    verified(Curve.from_components(rings), options, tmp_path)
+    rods = (rod(-1.2, 0.0), rod(3.4, 0.0))
+    verified(Curve.from_components(rings), tmp_path, max_iterations=60, avoid=rods)
 
 
 def test_a_curve_stays_on_its_side_of_a_rod(tmp_path):
     """A circle around a rod winds around it once in the end, as in the beginning."""
     curve = regular_polygon(60).with_vertices(regular_polygon(60).vertices * [3.0, 0.5, 1.0] + [2.5, 0.0, 0.0])
-    result = verified(curve, RelaxOptions(max_iterations=60, vertices=60, avoid=(rod(0.0, 0.0),)), tmp_path)
+    result = verified(curve, tmp_path, max_iterations=60, vertices=60, avoid=(rod(0.0, 0.0),))
     x, y, _ = result.curve.vertices.T
     angles = np.unwrap(np.arctan2(np.append(y, y[0]), np.append(x, x[0])))
     assert angles[-1] - angles[0] == pytest.approx(2 * np.pi)
@@ -112,9 +112,9 @@ def test_what_no_step_gets_past_is_named():
 
 def test_a_start_that_pierces_is_refused():
     with pytest.raises(CurveError, match=r"component 1: edge \d+ pierces obstacle wall at \(.*\); move one"):
-        relax(torus_trefoil(30), RelaxOptions(avoid=(plate(0.3, name="wall"),)))
+        relax(*wanted(torus_trefoil(30), avoid=(plate(0.3, name="wall"),)))
     with pytest.raises(CurveError, match="the curve has dimension 2, but obstacles are in space"):
-        relax(regular_polygon(30, dimension=2), RelaxOptions(avoid=(plate(0.3),)))
+        relax(*wanted(regular_polygon(30, dimension=2), avoid=(plate(0.3),)))
 
 
 @pytest.mark.parametrize(
@@ -125,26 +125,25 @@ def test_an_obstacle_too_large_for_its_repulsion_is_refused(size, unit, reach):
     curve, wall = torus_trefoil(30), plate(-2.0, size, "wall")
     wall = Obstacle(wall.vertices * [1.0, 1.0, unit], wall.faces, "wall")
     with pytest.raises(CurveError, match=f"^obstacle wall reaches some {reach} times as far as the curve is long; cut"):
-        relax(curve.with_vertices(unit * curve.vertices), RelaxOptions(avoid=(wall,), vertices=30))
+        relax(*wanted(curve.with_vertices(unit * curve.vertices), avoid=(wall,), vertices=30))
 
 
 def test_the_repulsion_of_large_obstacles_is_right():
     """Beyond some size the objective sees no difference any more, up to the largest that is not refused."""
     curve = torus_trefoil(30)
-    options = [RelaxOptions(avoid=(plate(-2.0, size),), vertices=30, max_iterations=0) for size in (1e7, 1e11)]
-    energies = [minimize(curve, each).energies[0] for each in options]
+    tasks = [wanted(curve, avoid=(plate(-2.0, size),), vertices=30, max_iterations=0) for size in (1e7, 1e11)]
+    energies = [minimize(*each).energies[0] for each in tasks]
     assert energies[1] == pytest.approx(energies[0], rel=1e-6)
 
 
 @pytest.mark.parametrize("value", [plate(1.0), "wall.obj", [[0.0, 0.0]], 3, None])
 def test_what_is_no_tuple_of_obstacles_is_refused(value):
-    with pytest.raises(OptionError, match=r"avoid is .*; it must be an? (tuple|obstacle), such as \(?Obstacle\("):
-        RelaxOptions(avoid=value)
+    with pytest.raises(OptionError, match=r"obstacles (is|has) .*(a tuple, such as \(Obstacle\(|must be an obstacle)"):
+        Task(curve=torus_trefoil(30), obstacles=value)
 
 
 def test_a_list_becomes_a_tuple():
     wall = plate(1.0)
-    assert RelaxOptions(avoid=[wall]).avoid == (wall,)
-    assert RelaxOptions().avoid == ()
+    assert Task(curve=torus_trefoil(30), obstacles=[wall]).obstacles == (wall,)
     assert isinstance(Trajectory(obstacles=[wall]).arrays()["obstacle_000_faces"], np.ndarray)
     assert isinstance(wall, Obstacle)

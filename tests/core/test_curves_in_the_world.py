@@ -5,19 +5,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, RelaxOptions, Result, Status, Trajectory, minimize, read_curve, read_obstacle
+from mobius_flow.core import Curve, Result, Status, Trajectory, minimize, read_curve, read_obstacle
 from mobius_flow.core.knots import overhand
 from mobius_flow.core.knots.knot_type import knot_type
 from mobius_flow.core.verify import verify
+from tasks import wanted
 
 SCENES = Path(os.environ.get("MOBIUS_FLOW_SCENES", "scenes"))
 needs_scenes = pytest.mark.skipif(not SCENES.is_dir(), reason="MOBIUS_FLOW_SCENES names no directory of scenes")
 
 
 def proved(tmp_path: Path, curve: Curve, **options: object) -> Result:
-    settings = RelaxOptions(**options)  # type: ignore[arg-type]
-    trajectory = Trajectory(obstacles=settings.avoid)
-    result = minimize(curve, settings, trajectory.add)
+    task, settings = wanted(curve, **options)
+    trajectory = Trajectory(obstacles=task.obstacles)
+    result = minimize(task, settings, trajectory.add)
     trajectory.save(tmp_path / "path.npz")
     assert result.certified
     assert verify(tmp_path / "path.npz").accepted
@@ -64,7 +65,7 @@ def test_loops_grow_in_containers(tmp_path: Path, name: str, surface: str) -> No
 @needs_scenes
 def test_straight_arcs_between_all_corners_cannot_move() -> None:
     curve = read_curve(SCENES / "loop.obj")
-    result = minimize(curve, RelaxOptions(pins=(62, 94, 126, 158, 222, 254, 286, 318)))
+    result = minimize(*wanted(curve, pins=(62, 94, 126, 158, 222, 254, 286, 318)))
     assert "nothing can move" in result.message
     np.testing.assert_array_equal(result.curve.vertices, curve.vertices)
 

@@ -1,11 +1,10 @@
 """The smooth curve's energy from three meshes: what is known of it lies within the error that is told."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Mesh, RelaxOptions, extrapolation, minimize
+from mobius_flow.core import Curve, Mesh, RelaxOptions, Task, extrapolation, minimize
 from mobius_flow.core.extrapolation import Extrapolation, extrapolated
 from mobius_flow.core.knots import knot
 from shapes import regular_polygon
@@ -70,9 +69,9 @@ def test_pins_stay_and_ends_are_free() -> None:
     """An arc between pins bends into the same shape on every mesh; halved edges have other numbers of vertices."""
     t = np.linspace(0.0, np.pi, 13)
     arc = Curve(np.column_stack([np.cos(t), 0.5 * np.sin(t), 0.2 * np.sin(2.0 * t)]), Mesh((13,), (False,)))
-    options = RelaxOptions(pins=(0, 6, 12), vertices=25)
-    result = minimize(arc, options)
-    found = extrapolated(result.curve, replace(options, pins=result.last.pins))
+    options = RelaxOptions(vertices=25)
+    result = minimize(Task(curve=arc, pins=(0, 6, 12)), options)
+    found = extrapolated(Task(curve=result.curve, pins=result.last.pins), options)
     assert found is not None
     assert 1.0 < found.order < 3.0
     assert abs(found.value - found.energies[2]) < abs(found.energies[2] - found.energies[1])

@@ -14,6 +14,7 @@ from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
 from solids import box, rod
+from tasks import wanted
 
 WALLS = box(-1.5, 1.5)
 SADDLED = regular_polygon(32).with_vertices(
@@ -22,7 +23,7 @@ SADDLED = regular_polygon(32).with_vertices(
 
 
 def in_the_box(factor, **more):
-    return RelaxOptions(**{"grow": factor, "avoid": [WALLS], "vertices": 32, "max_iterations": 45} | more)
+    return wanted(SADDLED, **{"grow": factor, "avoid": [WALLS], "vertices": 32, "max_iterations": 45} | more)
 
 
 def lengths(curve: Curve) -> np.ndarray:
@@ -32,7 +33,7 @@ def lengths(curve: Curve) -> np.ndarray:
 def test_a_curve_in_a_box_grows_to_three_times_its_length(tmp_path):
     """A circle three times as long would reach through the walls: the curve has folded."""
     trajectory = Trajectory(obstacles=[WALLS])
-    result = minimize(SADDLED, in_the_box(3.0), trajectory.add)
+    result = minimize(*in_the_box(3.0), trajectory.add)
     trajectory.save(tmp_path / "t.npz")
     assert verify(tmp_path / "t.npz").accepted
     assert result.certified
@@ -45,16 +46,17 @@ def test_a_curve_in_a_box_grows_to_three_times_its_length(tmp_path):
 
 
 def test_equal_runs_have_equal_results():
-    first, second = (minimize(SADDLED, in_the_box(2.0, max_iterations=15)) for _ in range(2))
+    first, second = (minimize(*in_the_box(2.0, max_iterations=15)) for _ in range(2))
     assert np.array_equal(first.curve.vertices, second.curve.vertices)
     assert first.energies == second.energies
 
 
 def test_edges_are_split_as_strands_come_near_and_keyframes_can_follow():
     """Each mesh has the vertices of the one before it."""
-    options = in_the_box(6.0).keyed
+    task, options = in_the_box(6.0)
+    options = options.keyed
     assert options.mesh == "finer"
-    vertices = [iterate.curve.vertices for iterate in relax(SADDLED, options)]
+    vertices = [iterate.curve.vertices for iterate in relax(task, options)]
     assert len(vertices[-1]) > 32
     for before, after in pairwise(vertices):
         if len(before) != len(after):
@@ -63,15 +65,15 @@ def test_edges_are_split_as_strands_come_near_and_keyframes_can_follow():
 
 def test_edges_are_split_as_walls_come_near():
     """In the end, too: a curve that has grown bends as narrowly as walls are near."""
-    result = minimize(SADDLED, in_the_box(3.0, mesh="finer", max_iterations=60))
+    result = minimize(*in_the_box(3.0, mesh="finer", max_iterations=60))
     assert result.last.grown == pytest.approx(3.0, rel=1e-12)
-    problem = start_problem(result.curve, RelaxOptions(vertices=len(result.curve), avoid=[WALLS]))
+    problem = start_problem(*wanted(result.curve, vertices=len(result.curve), avoid=[WALLS]))
     coarse = result.curve.edge_lengths * EDGES_PER_CLEARANCE / problem.clearance(result.curve)
     assert 0.5 < coarse.max() < 1.1 * SPLIT
 
 
 def test_a_fixed_mesh_stays():
-    result = minimize(SADDLED, in_the_box(3.0, mesh="fixed", max_iterations=40))
+    result = minimize(*in_the_box(3.0, mesh="fixed", max_iterations=40))
     assert len(result.curve) == 32
     assert result.last.grown == pytest.approx(3.0, rel=1e-12)
 
@@ -102,7 +104,7 @@ def test_what_has_no_room_stops_and_says_how_far_it_has_come():
     loop = regular_polygon(24)
     loop = Curve(np.column_stack([loop.vertices[:, :2], np.zeros(24)]))
     rods = [rod(0.5, 0.0), rod(-0.5, 0.0)]
-    result = minimize(loop, RelaxOptions(grow=0.1, avoid=rods, vertices=24, max_iterations=150))
+    result = minimize(*wanted(loop, grow=0.1, avoid=rods, vertices=24, max_iterations=150))
     assert result.certified
     assert result.status is Status.STALLED
     assert 1.0 / np.pi < result.last.grown < 0.4  # the loop is π times as long as it is around the rods
@@ -111,7 +113,7 @@ def test_what_has_no_room_stops_and_says_how_far_it_has_come():
 
 
 def test_a_run_without_iterations_enough_says_how_far_it_has_come():
-    result = minimize(SADDLED, in_the_box(3.0, max_iterations=8))
+    result = minimize(*in_the_box(3.0, max_iterations=8))
     assert result.status is Status.ITERATION_LIMIT
     assert 1.0 < result.last.grown < 3.0
     assert "of 3 times its length" in result.message
@@ -119,14 +121,14 @@ def test_a_run_without_iterations_enough_says_how_far_it_has_come():
 
 def test_arcs_between_pins_grow_and_shrink_to_the_distance_of_their_ends():
     curve = regular_polygon(24)
-    result = minimize(curve, RelaxOptions(grow=1.5, pins=(0, 12), vertices=24, mesh="fixed", max_iterations=60))
+    result = minimize(*wanted(curve, grow=1.5, pins=(0, 12), vertices=24, mesh="fixed", max_iterations=60))
     assert result.certified
     assert np.array_equal(result.curve.vertices[[0, 12]], curve.vertices[[0, 12]])
     assert result.curve.length == pytest.approx(1.5 * curve.length, rel=1e-6)
     with pytest.raises(OptionError, match=r"grow makes the arc between vertices 1 and 13, which are pinned, 0\.9"):
-        relax(curve, RelaxOptions(grow=0.6, pins=(0, 12), vertices=24))
+        relax(*wanted(curve, grow=0.6, pins=(0, 12), vertices=24))
     with pytest.raises(OptionError, match="all edges lie between pinned vertices"):
-        relax(curve, RelaxOptions(grow=2.0, pins=tuple(range(24)), vertices=24))
+        relax(*wanted(curve, grow=2.0, pins=tuple(range(24)), vertices=24))
 
 
 def bow(rise: float) -> Curve:
@@ -138,7 +140,7 @@ def bow(rise: float) -> Curve:
 @pytest.mark.parametrize("rise", [0.1, 1e-2, 1e-3])
 def test_an_arc_that_is_nearly_taut_bows_out(rise):
     """Its energy is nearly 0, and to first order no motion makes it longer."""
-    result = minimize(bow(rise), RelaxOptions(grow=2.0, pins=(0, 24), vertices=25, mesh="fixed", max_iterations=80))
+    result = minimize(*wanted(bow(rise), grow=2.0, pins=(0, 24), vertices=25, mesh="fixed", max_iterations=80))
     assert result.certified
     assert result.last.grown == pytest.approx(2.0, rel=1e-9)
     assert result.curve.length == pytest.approx(2.0 * bow(rise).length, rel=1e-6)
@@ -154,7 +156,7 @@ def test_a_straight_arc_grows(more):
 
 def test_a_straight_arc_between_pins_cannot_grow():
     with pytest.raises(OptionError, match=r"or on straight arcs between them; .* or bend the arcs"):
-        relax(bow(0.0), RelaxOptions(grow=2.0, pins=(0, 24), vertices=25))
+        relax(*wanted(bow(0.0), grow=2.0, pins=(0, 24), vertices=25))
 
 
 def test_edges_between_pins_keep_their_lengths():
@@ -173,7 +175,7 @@ def test_lengths_that_are_penalised_are_not_grown(method):
 
 @pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.geometry.prescribes])
 def test_every_other_method_grows(method):
-    result = minimize(SADDLED, in_the_box(1.1, method=method, mesh="fixed", max_iterations=12))
+    result = minimize(*in_the_box(1.1, method=method, mesh="fixed", max_iterations=12))
     assert result.certified
     assert result.last.grown > 1.0
 
@@ -185,6 +187,6 @@ def test_factors_that_are_none_are_refused(factor):
 
 
 def test_hops_do_not_grow_again():
-    result = minimize(SADDLED, in_the_box(1.2, hops=1, max_iterations=30, tolerance=1e-2))
+    result = minimize(*in_the_box(1.2, hops=1, max_iterations=30, tolerance=1e-2))
     assert result.last.grown == pytest.approx(1.2, rel=1e-12)
     assert result.curve.length == pytest.approx(1.2 * SADDLED.length, rel=1e-6)

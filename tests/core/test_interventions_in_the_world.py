@@ -9,6 +9,7 @@ from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.composite import Ball
 from shapes import opened, regular_polygon, straight_arc
 from solids import box, plate, rod
+from tasks import wanted
 
 SQUARE = Curve([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 HELD = "parts that are not linked"
@@ -25,14 +26,14 @@ def test_balance_does_not_go_with_obstacles() -> None:
 
 
 def test_where_nothing_can_move_nothing_hops() -> None:
-    result = minimize(SQUARE, RelaxOptions(pins=(0, 1, 2, 3), hops=2))
+    result = minimize(*wanted(SQUARE, pins=(0, 1, 2, 3), hops=2))
     assert result.message.endswith("nothing can move: all vertices are pinned, or on straight arcs between pins")
 
 
 def test_hops_of_what_lengths_alone_hold_lead_nowhere() -> None:
     """A vertex in the plane between two pins, at given distances from both, moves neither way."""
     corner = Curve.from_components([[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]], [False])
-    result = minimize(corner, RelaxOptions(pins=(0, 2), vertices=3, hops=1, max_iterations=5))
+    result = minimize(*wanted(corner, pins=(0, 2), vertices=3, hops=1, max_iterations=5))
     np.testing.assert_array_equal(result.curve.vertices, corner.vertices)
 
 
@@ -45,7 +46,7 @@ def test_straight_arcs_do_not_hop() -> None:
 
 def test_hops_keep_pins() -> None:
     arc = overhand(60)
-    result = minimize(arc, RelaxOptions(pins=(0, 59), hops=1, max_iterations=90))
+    result = minimize(*wanted(arc, pins=(0, 59), hops=1, max_iterations=90))
     assert "1 hop" in result.message or result.status is Status.ITERATION_LIMIT
     np.testing.assert_array_equal(result.curve.vertices[list(result.last.pins)], arc.vertices[[0, 59]])
 
@@ -54,7 +55,7 @@ def test_no_hop_is_recommended_to_what_is_confined() -> None:
     """A circle pressed flat between walls is an unknot and no circle, and can become none."""
     ellipse = regular_polygon(60).with_vertices(regular_polygon(60).vertices * [2.0, 0.4, 1.0])
     walls = [Obstacle(wall.vertices[:, [0, 2, 1]], wall.faces) for wall in (plate(0.5), plate(-0.5))]
-    result = minimize(ellipse, RelaxOptions(avoid=walls))
+    result = minimize(*wanted(ellipse, avoid=walls))
     assert result.status is Status.CONVERGED
     assert "unknot" not in result.message
 
@@ -62,7 +63,7 @@ def test_no_hop_is_recommended_to_what_is_confined() -> None:
 def test_parts_between_walls_are_not_held() -> None:
     assert separate_parts(two_rings(6.0)) == (0, 1)
     assert separate_parts(two_rings(6.0), (box(-9.0, 9.0),)) == (0, 0)
-    result = minimize(two_rings(5.0), RelaxOptions(avoid=(box(-9.0, 9.0),), vertices=60, tolerance=0.1))
+    result = minimize(*wanted(two_rings(5.0), avoid=(box(-9.0, 9.0),), vertices=60, tolerance=0.1))
     assert result.status is Status.CONVERGED
     assert HELD not in result.message
 
@@ -76,10 +77,10 @@ def test_parts_far_from_obstacles_are_held() -> None:
 def test_parts_that_are_all_pinned_are_not_said_to_be_held() -> None:
     """But one without a pin is."""
     options = {"vertices": 60, "max_iterations": 300}
-    pinned = minimize(two_rings(9.0), RelaxOptions(pins=(0, 30), **options))
+    pinned = minimize(*wanted(two_rings(9.0), pins=(0, 30), **options))
     assert pinned.status is Status.CONVERGED
     assert HELD not in pinned.message
-    assert HELD in minimize(two_rings(9.0), RelaxOptions(pins=(0,), **options)).message
+    assert HELD in minimize(*wanted(two_rings(9.0), pins=(0,), **options)).message
 
 
 def test_balls_and_obstacles() -> None:
@@ -99,7 +100,7 @@ def test_a_knotted_part_around_a_post_does_not_shrink(
     curve = knot("3_1#3_1")
     size = float(np.abs(curve.vertices).max())
     far = curve.with_vertices(curve.vertices / size * 3.0 + [20.0, 0.0, 0.0])
-    result = minimize(far, RelaxOptions(vertices=None, mesh="fixed", tolerance=0.2, avoid=(rod(*post),)))
+    result = minimize(*wanted(far, vertices=None, mesh="fixed", tolerance=0.2, avoid=(rod(*post),)))
     assert ("is composite" in result.message) == composite
 
 

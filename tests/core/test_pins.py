@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from descent_contracts import point_on
-from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, Trajectory, minimize
+from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, Task, Trajectory, minimize
 from mobius_flow.core.curve import Mesh, refine
 from mobius_flow.core.curve.pins import Pins, arcs, ends_of, spans
 from mobius_flow.core.curve.refine import subdivide
@@ -19,6 +19,7 @@ from mobius_flow.core.taylor import taylor_slope
 from mobius_flow.core.types import FloatArray
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
+from tasks import wanted
 
 
 def rough(curve: Curve) -> Curve:
@@ -94,12 +95,12 @@ PINS = (3, 30, 62)
 def checked(curve: Curve, **options: object) -> tuple[list[Iterate], str]:
     """The iterates of a run, at every one of which all pins of the start are found among the vertices, and held."""
     iterates: list[Iterate] = []
-    settings = RelaxOptions(**{"pins": PINS, **options})  # type: ignore[arg-type]
-    result = minimize(curve, settings, iterates.append)
+    task, settings = wanted(curve, **{"pins": PINS, **options})
+    result = minimize(task, settings, iterates.append)
     for iterate in iterates:
         vertices = iterate.curve.vertices[list(iterate.pins)]
-        wanted = curve.vertices[list(settings.pins)]
-        assert {tuple(v) for v in wanted.tolist()} <= {tuple(v) for v in vertices.tolist()}
+        pinned = curve.vertices[list(task.pins)]
+        assert {tuple(v) for v in pinned.tolist()} <= {tuple(v) for v in vertices.tolist()}
     return iterates, result.message
 
 
@@ -162,7 +163,7 @@ def test_arcs_keep_their_lengths_spread_evenly() -> None:
 def test_pinned_tangents_stay_on_finer_meshes() -> None:
     curve = knot("ochiai-1")
     pins = (1, 8)
-    start = minimize(curve, RelaxOptions(pins=pins, pin_tangents=True, max_iterations=0)).last
+    start = minimize(*wanted(curve, pins=pins, pin_tangents=True, max_iterations=0)).last
     end, _ = checked(curve, pins=pins, pin_tangents=True, mesh="adaptive", max_iterations=60)
     assert len(start.pins) == 6
     assert len(end[-1].curve) != len(start.curve)
@@ -236,8 +237,8 @@ def test_little_slack_is_no_obstacle() -> None:
     [
         ({"pins": (2, 90)}, "pins asks for vertex 91, but the curve has 90 vertices"),
         ({"pins": (2, 5, 2)}, "pins names vertex 3 more than once"),
-        ({"pins": (-1,)}, "pins is -1; it must be 0 or more"),
-        ({"pins": (0.5,)}, "pins is 0.5; it must be a whole number"),
+        ({"pins": (-1,)}, "pins asks for vertex 0, but the curve has 90 vertices"),
+        ({"pins": (0.5,)}, "pins has 0.5; each of them must be a whole number"),
         ({"pins": "12"}, "pins is '12'; it must be a tuple, such as (0, 5)"),
         ({"pins": 12}, "pins is 12; it must be a tuple, such as (0, 5)"),
         (
@@ -248,7 +249,7 @@ def test_little_slack_is_no_obstacle() -> None:
 )
 def test_pins_that_cannot_be_are_refused(options: dict[str, object], said: str) -> None:
     with pytest.raises(MobiusFlowError) as error:
-        minimize(BENT, RelaxOptions(**options))  # type: ignore[arg-type]
+        minimize(*wanted(BENT, **options))
     assert str(error.value) == said
 
 
@@ -261,19 +262,19 @@ def test_pins_that_cannot_be_are_refused(options: dict[str, object], said: str) 
 )
 def test_target_lengths_must_reach_from_pin_to_pin(change: tuple[slice, float], said: str) -> None:
     lengths = BENT.edge_lengths.copy()
-    kept = RelaxOptions(vertices=90, pins=(*PINS, 63), edge_lengths=tuple(lengths), max_iterations=2)
-    assert minimize(BENT, kept).certified
+    task, kept = wanted(BENT, vertices=90, pins=(*PINS, 63), edge_lengths=tuple(lengths), max_iterations=2)
+    assert minimize(task, kept).certified
     lengths[change[0]] *= change[1]
     with pytest.raises(MobiusFlowError, match=said):
-        minimize(BENT, replace(kept, edge_lengths=tuple(lengths)))
+        minimize(task, replace(kept, edge_lengths=tuple(lengths)))
 
 
 def test_lists_and_arrays_name_pins_too() -> None:
-    assert RelaxOptions(pins=[3, 5]) == RelaxOptions(pins=np.array([3, 5])) == RelaxOptions(pins=(3, 5))  # type: ignore
+    assert [Task(curve=BENT, pins=pins).pins for pins in ([3, 5], np.array([3, 5]))] == [(3, 5), (3, 5)]  # type: ignore
 
 
 def test_the_report_tells_the_pins_of_the_result() -> None:
-    result = minimize(BENT, RelaxOptions(pins=PINS, vertices=180, max_iterations=2))
+    result = minimize(*wanted(BENT, pins=PINS, vertices=180, max_iterations=2))
     pins = result.report()["pins"]
     assert isinstance(pins, list)
     np.testing.assert_array_equal(result.curve.vertices[pins], BENT.vertices[list(PINS)])
@@ -281,9 +282,9 @@ def test_the_report_tells_the_pins_of_the_result() -> None:
 
 
 def test_methods_are_compared_with_the_pins_of_the_input() -> None:
-    options = RelaxOptions(pins=PINS, pin_tangents=True, vertices=150, max_iterations=4, mesh="fixed")
-    (history,) = compare(BENT, ["lbfgs"], options, 60.0)
-    assert history.energy == minimize(BENT, options).energies
+    task, options = wanted(BENT, pins=PINS, pin_tangents=True, vertices=150, max_iterations=4, mesh="fixed")
+    (history,) = compare(task, ["lbfgs"], options, 60.0)
+    assert history.energy == minimize(task, options).energies
 
 
 def test_the_kernel_at_a_minimum_has_no_rotations_that_pins_forbid() -> None:
@@ -298,7 +299,7 @@ def test_the_kernel_at_a_minimum_has_no_rotations_that_pins_forbid() -> None:
 def test_the_lagrangians_hessian_knows_pins() -> None:
     """At a critical point it is the second derivative of the energy along the constraints."""
     pins = (3, 4, 62)
-    relaxed = minimize(BENT, RelaxOptions(pins=pins, vertices=90, mesh="fixed", method="trust-region", tolerance=1e-9))
+    relaxed = minimize(*wanted(BENT, pins=pins, vertices=90, mesh="fixed", method="trust-region", tolerance=1e-9))
     point = point_on(relaxed.curve, pins=pins)
     v = np.sin(3.0 * BENT.vertices[:, [1, 2, 0]])
     v[list(pins)] = 0.0

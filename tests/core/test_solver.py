@@ -5,7 +5,7 @@ from mobius_flow.core import Curve, Iterate, Objective, OptionError, RelaxOption
 from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
-from mobius_flow.core.driver.solver import DENSE_UP_TO, HIERARCHICAL_FROM, Solver
+from mobius_flow.core.driver.solver import DENSE_UP_TO, HIERARCHICAL_FROM
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
 from mobius_flow.core.knots import knot
 from mobius_flow.core.speed import bent_trefoil
@@ -55,7 +55,7 @@ def is_hierarchical(curve: Curve, **options: object) -> bool:
     wanted = RelaxOptions(**options)  # type: ignore[arg-type]
     problem = start_problem(curve, wanted)
     chosen = isinstance(problem.objective.energy, HierarchicalMoebiusEnergy)
-    assert Solver.of_problem(wanted, problem).hierarchical == chosen
+    assert problem.solver.hierarchical == chosen
     return chosen
 
 

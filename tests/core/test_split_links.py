@@ -10,7 +10,7 @@ from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weig
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent.directions.newton import lagrangian_hessian
 from mobius_flow.core.driver.interventions.split_links import _near, separate_parts
-from mobius_flow.core.driver.prepare import on_mesh, start_problem
+from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.metrics import METRICS
@@ -142,7 +142,7 @@ def test_held_parts_stay_held_on_another_mesh():
     curve, fine = (refine(rings(0, 5), vertices) for vertices in (30, 60))
     problem = start_problem(curve, options)
     problem = replace(problem, constraints=problem.constraints.of_parts(problem.at_curve(curve).curve, (0, 1)))
-    point = on_mesh(problem, fine, options)
+    point = problem.on(fine)
     assert point.problem.constraints.parts == (0, 1)
     np.testing.assert_allclose(point.residual[len(fine) :], np.zeros(6), atol=1e-12)
 

@@ -1,13 +1,13 @@
 """One trial: a motion out of a minimum, and the way down from where it ends."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
 
 from ...types import FloatArray
+from ..interventions import ON_A_FIXED_MESH
 from ..loop import iterates
-from ..options import RelaxOptions
 from ..run import Run
 from .motions import Motion
 
@@ -43,16 +43,10 @@ def trial(run: Run, motion: Motion, rng: np.random.Generator, below: float) -> T
     steps = list(islice(motion(run.point, rng), run.iterations_left))
     path = [leg.end.placed for step in steps for leg in step.legs]
     start = run.iterate.curve.with_vertices(path[-1]) if path else run.iterate.curve
-    relaxing = Run(run.problem, start, _plain(run.options, run.iterations_left - len(steps)))
-    for iterate in iterates(relaxing):
+    relaxing = Run(run.problem, start, run.options, run.iterations_left - len(steps))
+    for iterate in iterates(relaxing, ON_A_FIXED_MESH):
         path += iterate.path
         if iterate.energy < below:
             break
     certified = relaxing.iterate.certified and all(step.certified for step in steps)
     return Trial(relaxing, tuple(path), certified, len(steps) + relaxing.iterate.index)
-
-
-def _plain(options: RelaxOptions, iterations: int) -> RelaxOptions:
-    """The same without what is looked at in the end or changes the mesh."""
-    options = replace(options, stability=False, escape_saddles=False, balance=False)
-    return replace(options, mesh="fixed", grow=1.0, vertices=None, max_iterations=iterations)

@@ -41,3 +41,6 @@ INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
     CheckAccuracy,
 )
 """In the order in which they are asked."""
+
+ON_A_FIXED_MESH: Sequence[Callable[[Run], Intervention]] = (SplitLinks, Fallback, CheckAccuracy)
+"""Those of a trial, which neither changes the mesh nor looks for more at its end."""

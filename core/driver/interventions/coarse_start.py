@@ -1,7 +1,6 @@
 """A curve of many vertices is untangled with few of them, which is faster, and ends with all."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from ...descent import Leg, NoStep, Point, Problem, Step
 from ...types import FloatArray, IntArray
 from ..events import Change, Event, Start
 from ..outcome import Outcome
-from ..prepare import equal_lengths, on_mesh, with_parts_of
+from ..prepare import equal_lengths
 from ..run import Run
 from .remesh import proved_remesh
 
@@ -31,11 +30,10 @@ class CoarseStart:
 
     def __init__(self, run: Run) -> None:
         self._run = run
+        self._problem, constraints = run.problem, run.problem.constraints
         # what kept lengths from being equal at the start is gone in the end
-        constraints = run.problem.constraints
         lengths = equal_lengths(run.problem.mesh, constraints.lengths, constraints.pins.vertices)
-        self._problem = replace(run.problem, constraints=replace(constraints, lengths=lengths))
-        self._options = replace(run.options, vertices=None, edge_lengths="keep", mesh="fixed")
+        self._lengths = run.problem.units.scale * lengths
         self._wanted = self._is_wanted()
         self._coarse: Curve | None = None
 
@@ -72,7 +70,7 @@ class CoarseStart:
             return None
         step, remeshed = found
         self._coarse = remeshed.curve
-        return Change((step,), on_mesh(problem, remeshed.curve, self._options))
+        return Change((step,), problem.on(remeshed.curve))
 
     def _finest(self) -> Change | None:
         """The same curve with all vertices, in the problem of the start; None if doubles do not tell them apart."""
@@ -85,7 +83,7 @@ class CoarseStart:
         if not survives_rounding(finest, self._problem.obstacles):
             self._coarse = None
             return None
-        return Change(point=with_parts_of(self._run.problem, self._problem, finest))
+        return Change(point=self._run.problem.on(finest, self._lengths))
 
     def _smoother(self) -> Change | None:
         """The motion to a smooth curve through the vertices of the coarse one, as far as strands leave way for it.

@@ -23,8 +23,8 @@ class Composite:
     def __call__(self, event: Event) -> Event:
         """Look at converged curves."""
         problem = self._run.problem
-        scale_invariant = problem.objective.energy.scale_exponent == 0.0
-        may_shrink = scale_invariant and not len(problem.constraints.pins)  # between pins a part cannot without limit
+        # between pins no part can shrink without limit
+        may_shrink = not (problem.objective.sees_size or len(problem.constraints.pins))
         if not (isinstance(event, Outcome) and event.converged and may_shrink):
             return event
         parts = [part for part in split(self._run.iterate.curve, problem.constraints.parts) if _may_be_composite(part)]

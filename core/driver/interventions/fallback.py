@@ -5,7 +5,6 @@ import math
 from ...descent import METHODS, NoStep
 from ..events import Change, Event
 from ..run import Run
-from ..solver import Solver
 
 HELPER = METHODS["flow-h3-2"]  # its metric does not see how near strands are, and so does not hold them together
 HELPS = 10  # steps that it takes
@@ -38,5 +37,5 @@ class Fallback:
     def _may_help(self) -> bool:
         run = self._run
         count = len(run.point.vertices)
-        fits = count <= Solver.of_problem(run.options, run.problem).of_metric(HELPER.metric).most_vertices
+        fits = count <= run.problem.solver.of_metric(HELPER.metric).most_vertices
         return fits and run.problem.geometry.prescribes and self._asked_for is not HELPER

@@ -10,9 +10,9 @@ from ...curve.refine import STRAND_RATIO, affordable_pieces, subdivide
 from ...curve.remesh import graded_spacing
 from ...energies.near_pairs import near_pairs
 from ...errors import MobiusFlowError
+from ...task import check_refined
 from ..events import Change, Event
 from ..outcome import UNRESOLVED, Outcome
-from ..prepare import check_refined, on_mesh
 from ..run import Run
 
 EDGES_PER_GAP = 6.0  # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
@@ -43,11 +43,9 @@ class FinerMesh:
         finer = subdivide(curve, affordable_pieces(curve, graded_spacing(curve, self._resolution), FINEST))
         if len(finer) == len(curve):
             return None
-        # lengths that are kept, shorter near strands as they are, need no evening out
-        options = replace(self._run.options, vertices=None, mesh="fixed", edge_lengths="keep")
         try:
             check_refined(curve, finer, self._run.problem.obstacles)
-            point = on_mesh(self._run.problem, finer, options)
+            point = self._run.problem.on(finer)  # its lengths, shorter near strands as they are, need no evening out
         except MobiusFlowError:
             return None
         return Change(point=point, resolution=self._resolution)

@@ -14,11 +14,11 @@ from ...descent.searches.normal_step import on_target
 from ...descent.step import attempt
 from ...energies.components import energy_scale
 from ...errors import MobiusFlowError
+from ...task import check_refined
 from ...types import IntArray
 from ...units import Units
 from ..events import Change, Event
 from ..outcome import CROWDED, GREW, Outcome
-from ..prepare import check_refined, on_mesh
 from ..run import Run
 from .finer_mesh import FINEST
 
@@ -119,11 +119,10 @@ class Grow:
         if pieces.max() == 1 and Units.of(curve).scale == problem.units.scale:
             return None
         lengths = np.repeat(problem.constraints.lengths / pieces, pieces) * problem.units.scale
-        options = replace(self._run.options, vertices=None, mesh="fixed", edge_lengths=tuple(lengths.tolist()))
         finer = subdivide(curve, pieces) if pieces.max() > 1 else curve
         try:
             check_refined(curve, finer, problem.obstacles)
-            return on_mesh(problem, finer, options)
+            return problem.on(finer, lengths)
         except MobiusFlowError:
             return None
 

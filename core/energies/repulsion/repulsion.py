@@ -39,8 +39,6 @@ class Repulsion:
     ----------
     clusters
         The simplices, in the units of curves.
-    weight
-        Factor of R.
     theta
         Separation parameter of clusters; with 0 all simplices count one by one.
     schedule
@@ -48,15 +46,15 @@ class Repulsion:
     """
 
     clusters: Clusters
-    weight: float = 1.0
     theta: float = THETA
     schedule: Schedule | None = None
 
     name = "repulsion"
+    scale_exponent = 0.0
     description = "potential of still obstacles, integrated along the curve"
 
     @classmethod
-    def of(cls, obstacles: Iterable[Obstacle], weight: float = 1.0) -> "tuple[Repulsion, ...]":
+    def of(cls, obstacles: Iterable[Obstacle]) -> "tuple[Repulsion, ...]":
         """That of obstacles, in the units of curves: one for all triangles, one for all segments, if there are any.
 
         Those without area or length repel nothing, and clusters of them alone would have no centroid.
@@ -64,7 +62,7 @@ class Repulsion:
         kinds = zip(*((obstacle.triangles, obstacle.segments) for obstacle in obstacles), strict=True)
         corners = (np.concatenate(kind).transpose(1, 2, 0) for kind in kinds)
         solid = (each[:, :, Simplices(each).sizes > 0.0] for each in corners)
-        return tuple(cls(Clusters.of(each), weight) for each in solid if each.size)
+        return tuple(cls(Clusters.of(each)) for each in solid if each.size)
 
     def frozen_at(self, curve: Curve) -> "Repulsion":
         """The smooth function that the schedule of ``curve`` makes of it, or that its own does if it suits."""
@@ -81,12 +79,12 @@ class Repulsion:
         edges = Edges.of(curve.mesh, curve.vertices)
         integrals = Integrals.of(edges, self.clusters, self._schedule(curve))
         derivative = _at_vertices(curve.mesh, integrals.forces(edges))
-        return self.weight * integrals.energy(edges), self.weight * derivative
+        return integrals.energy(edges), derivative
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²R v for ``v`` of shape (n, 3); shape (n, 3)."""
         changes = self._force_changes(curve, [Edges.of(curve.mesh, v)])
-        return self.weight * _at_vertices(curve.mesh, changes[0])
+        return _at_vertices(curve.mesh, changes[0])
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²R as a sparse matrix, which couples the ends of edges only, in the order of ``vertices.ravel()``."""
@@ -97,15 +95,15 @@ class Repulsion:
         ends = np.stack([curve.mesh.tails, curve.mesh.heads])
         index = (3 * ends[:, None] + np.arange(3)[:, None]).reshape(6, edges)
         rows, columns = np.broadcast_arrays(index[None], index[:, None])
-        return sp.csr_array((self.weight * changes.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, 3 * n))
+        return sp.csr_array((changes.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, 3 * n))
 
-    def stiffness(self, curve: Curve) -> FloatArray:
-        """∫ Φ³/(2π²) ds, half of each edge's at either end; shape (n,).
+    def stiffness(self, curve: Curve) -> sp.dia_array:
+        """∫ Φ³/(2π²) ds, half of each edge's at either end; diagonal, shape (n, n).
 
         A plane at the distance h, and so a straight line, has Φ'' = 4π/h³ = Φ³/(2π²).
         """
-        half = 0.25 / np.pi**2 * self.weight * curve.edge_lengths * self._means(curve) ** 3
-        return curve.mesh.scatter(half, half)
+        half = 0.25 / np.pi**2 * curve.edge_lengths * self._means(curve) ** 3
+        return sp.diags_array(curve.mesh.scatter(half, half))
 
     def clearance(self, curve: Curve) -> FloatArray:
         """2π over the mean of Φ on every edge: its distance from a plane or a straight line; shape (edges,)."""

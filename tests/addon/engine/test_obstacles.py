@@ -10,7 +10,7 @@ from mobius_flow.addon.engine.job import messages
 from mobius_flow.addon.engine.motion import frames_of
 from mobius_flow.addon.engine.obstacles import Surface, in_common_space, obstacles
 from mobius_flow.addon.engine.placement import Link, Placement
-from mobius_flow.core import Curve, CurveError, Obstacle, RelaxOptions
+from mobius_flow.core import Curve, CurveError, Obstacle, RelaxOptions, Task
 from mobius_flow.core.collision import is_free
 from shapes import hopf_link
 
@@ -89,7 +89,8 @@ def job(avoid, placement=HERE):
     link = Link((placement,), (1,))
     stored = link.to_stored(Curve.from_components([ring]).mesh, ring).astype(np.float32)
     curve = Curve.from_components([placement.to_world(stored.astype(float))])
-    return curve, RelaxOptions(max_iterations=20, vertices=60, mesh="fixed", avoid=avoid), link
+    task = Task(curve=curve, obstacles=avoid)
+    return task, RelaxOptions(max_iterations=20, vertices=60, mesh="fixed"), link
 
 
 def circle():
@@ -103,9 +104,9 @@ def test_the_worker_is_sent_the_obstacles():
     square = Obstacle(SQUARE, TRIANGLES, "a wall")
     wire.write(pipe, wire.pack_job(*job((square, circle()))))
     pipe.seek(0)
-    _, options, _ = wire.unpack_job(wire.read(pipe))
-    assert [each.name for each in options.avoid] == ["a wall", "Circle"]
-    for sent, received in zip((square, circle()), options.avoid, strict=True):
+    task, _, _ = wire.unpack_job(wire.read(pipe))
+    assert [each.name for each in task.obstacles] == ["a wall", "Circle"]
+    for sent, received in zip((square, circle()), task.obstacles, strict=True):
         np.testing.assert_array_equal(received.vertices, sent.vertices)
         np.testing.assert_array_equal(received.faces, sent.faces)
 
@@ -113,14 +114,14 @@ def test_the_worker_is_sent_the_obstacles():
 @pytest.mark.parametrize("placement", [HERE, THERE], ids=["plain", "placed"])
 def test_the_worker_proves_motions_beside_obstacles(placement):
     """What it proves is free of the obstacle in Blender's own numbers; without it the curve would have crossed."""
-    curve, options, link = job((circle(),), placement)
-    beside = in_common_space(options.avoid, link)
-    assert _frames_are_free(curve, options, link, beside)
-    assert not _frames_are_free(curve, job((), placement)[1], link, beside)
+    task, options, link = job((circle(),), placement)
+    beside = in_common_space(task.obstacles, link)
+    assert _frames_are_free(task, options, link, beside)
+    assert not _frames_are_free(job((), placement)[0], options, link, beside)
 
 
-def _frames_are_free(curve, options, link, beside):
-    *replies, end = messages(wire.pack_job(curve, options, link))
+def _frames_are_free(task, options, link, beside):
+    *replies, end = messages(wire.pack_job(task, options, link))
     assert "outcome" in end[0]
     received = [wire.unpack_iterate(reply) for reply in replies]
     proved = {name for _, names in received for name in names}

@@ -6,6 +6,7 @@ from mobius_flow.addon.engine.target import CIRCLE, target_of
 from mobius_flow.core import Curve, Mesh, MoebiusEnergy, Obstacle, RelaxOptions, minimize
 from mobius_flow.core.knots import knot, overhand
 from shapes import hopf_link, torus_trefoil
+from tasks import wanted
 
 MOEBIUS = RelaxOptions()
 
@@ -57,6 +58,6 @@ def test_arcs_add_nothing_to_the_floor():
 
 
 def test_pins_and_obstacles_keep_curves_from_it():
-    assert target_of(overhand(60), RelaxOptions(pins=(0, 59))) is None
+    assert target_of(*wanted(overhand(60), pins=(0, 59))) is None
     post = Obstacle([[0.0, 0.0, -9.0], [0.0, 0.0, 9.0]], [[0, 1]])
-    assert target_of(knot("culprit"), RelaxOptions(avoid=(post,))) is None
+    assert target_of(*wanted(knot("culprit"), avoid=(post,))) is None

@@ -7,6 +7,7 @@ import pytest
 from mobius_flow.core import RelaxOptions, Trajectory, relax
 from mobius_flow.core.verify import Verdict, verify
 from shapes import torus_trefoil
+from tasks import wanted
 
 START = torus_trefoil(40)
 PINS = START.vertices[[3, 17]]
@@ -27,7 +28,7 @@ def moved(*vertices: int) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("mesh", ["fixed", "adaptive"])
 def test_a_run_writes_its_pins_and_they_hold_on_every_mesh(tmp_path: Path, mesh: str) -> None:
     trajectory = Trajectory()
-    for iterate in relax(START, RelaxOptions(pins=(3, 17), pin_tangents=True, mesh=mesh, max_iterations=12)):
+    for iterate in relax(*wanted(START, pins=(3, 17), pin_tangents=True, mesh=mesh, max_iterations=12)):
         trajectory.add(iterate)
     assert len(trajectory.arrays()["pins"]) == 6
     verdict = saved(tmp_path, **trajectory.arrays())  # type: ignore[arg-type]

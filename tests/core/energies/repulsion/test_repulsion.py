@@ -1,10 +1,8 @@
 """The repulsion as a term of the objective: derivatives, invariances, divergence, and what a line search sees."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, MoebiusEnergy, Objective, OptionError, RelaxOptions
+from mobius_flow.core import Curve, MoebiusEnergy, Objective, OptionError
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.energies.repulsion import Repulsion
@@ -13,6 +11,7 @@ from mobius_flow.core.obstacle import Obstacle
 from mobius_flow.core.taylor import derivative_slope, hessian_slope
 from repulsion_references import potential_by_quadrature, repulsion, soup, sphere, wavy
 from shapes import hopf_link
+from tasks import wanted
 
 BALL = sphere(2)
 FRAME = Obstacle([[1.2, -1, -1], [1.2, 1, -1], [1.2, 1, 1], [1.1, -1, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])
@@ -62,7 +61,7 @@ def test_a_sum_over_edges_and_simplices() -> None:
 @CASE
 @pytest.mark.parametrize("theta", [0.0, THETA])
 def test_derivatives(obstacle: Obstacle, curve: Curve, theta: float) -> None:
-    term, v = repulsion(obstacle, theta, weight=3.0).frozen_at(curve), direction_for(curve)
+    term, v = repulsion(obstacle, theta).frozen_at(curve), direction_for(curve)
     assert derivative_slope(term, curve, v, largest=1e-3) == pytest.approx(2, abs=0.01)
     assert hessian_slope(term, curve, v, largest=1e-3) == pytest.approx(3, abs=0.05)
 
@@ -154,7 +153,7 @@ def test_objective_is_the_sum_of_its_terms() -> None:
     obstacles = [BALL, FRAME, sphere(1, radius=2.0)]
     plain, whole = Objective.of(MoebiusEnergy()), Objective.of(MoebiusEnergy(), obstacles)
     parts = [Repulsion.of([obstacle])[0] for obstacle in obstacles]
-    assert [len(term.clusters.simplices.corners) for term in whole.potentials] == [3, 2]
+    assert [len(term.clusters.simplices.corners) for term, _ in whole.further] == [3, 2]
     assert whole.value(curve) == pytest.approx(plain.value(curve) + sum(part.value(curve) for part in parts), rel=1e-3)
     v = direction_for(curve)
     frozen = whole.frozen_at(curve)
@@ -166,7 +165,7 @@ def test_objective_is_the_sum_of_its_terms() -> None:
 
 
 def test_without_obstacles_nothing_is_new() -> None:
-    assert Objective.of(MoebiusEnergy()).potentials == ()
+    assert Objective.of(MoebiusEnergy()).further == ()
     assert Objective.of(MoebiusEnergy()).value(wavy(30)) == Objective().value(wavy(30))
 
 
@@ -178,13 +177,18 @@ def test_obstacles_have_second_derivatives_only_if_the_energy_has() -> None:
 
 
 def test_weight() -> None:
-    curve, term = wavy(20), repulsion(BALL)
-    heavy = replace(term, weight=2.5)
-    value, derivative = term.value_and_derivative(curve)
-    assert heavy.value(curve) == pytest.approx(2.5 * value)
-    np.testing.assert_allclose(heavy.value_and_derivative(curve)[1], 2.5 * derivative)
-    objective = Objective.of(MoebiusEnergy(), [BALL], weight=2.5)
-    assert [each.weight for each in objective.potentials] == [2.5]
+    curve, v = wavy(20), direction_for(wavy(20))
+    none, once, heavy = (Objective.of(MoebiusEnergy(), [BALL], weight=weight) for weight in (0.0, 1.0, 2.5))
+    for each in ("value", "hessian", "clearance"):
+        a, b, c = (np.asarray(getattr(objective, each)(curve)) for objective in (none, once, heavy))
+        expected = b if each == "clearance" else a + 2.5 * (b - a)
+        np.testing.assert_allclose(c, expected, rtol=1e-9, atol=1e-9 * np.abs(b).max())
+    products = [np.asarray(objective.hessian_product(curve, v)) for objective in (none, once, heavy)]
+    np.testing.assert_allclose(products[2] - products[0], 2.5 * (products[1] - products[0]), atol=1e-9)
+    derivatives = [objective.value_and_derivative(curve)[1] for objective in (none, once, heavy)]
+    np.testing.assert_allclose(derivatives[2] - derivatives[0], 2.5 * (derivatives[1] - derivatives[0]), atol=1e-9)
+    stiffness = [objective.stiffness(curve).diagonal() for objective in (once, heavy)]
+    np.testing.assert_allclose(stiffness[1], 2.5 * stiffness[0])
 
 
 def test_thin_triangles_give_numbers() -> None:
@@ -215,9 +219,9 @@ def test_stiffness_is_the_second_derivative_away_from_a_plane_or_a_line() -> Non
     up = np.array([[0.0, 0, 1], [0.0, 0, 1], [0.0, 0, 0]])
     for obstacle in (plane, line):
         term = repulsion(obstacle)
-        assert term.stiffness(strip)[0] == pytest.approx(0.5 * 4 * np.pi / h**3, rel=1e-2)
+        assert term.stiffness(strip).diagonal()[0] == pytest.approx(0.5 * 4 * np.pi / h**3, rel=1e-2)
         assert np.sum(up * term.hessian_product(strip, up)) == pytest.approx(4 * np.pi / h**3, rel=2e-2)
-        assert np.all(term.stiffness(strip) >= 0.0)
+        assert np.all(term.stiffness(strip).diagonal() >= 0.0)
 
 
 def test_clearance_is_the_distance_of_a_plane_or_a_line() -> None:
@@ -236,15 +240,15 @@ def test_clearance_is_the_distance_of_a_plane_or_a_line() -> None:
 def test_clearance_is_in_the_units_of_the_user() -> None:
     curve = wavy(24).with_vertices(1000.0 * wavy(24).vertices + 7.0)
     ball = Obstacle(1000.0 * BALL.vertices + 7.0, BALL.faces)
-    clearance = start_problem(curve, RelaxOptions(vertices=24, avoid=[ball])).clearance(curve)
+    clearance = start_problem(*wanted(curve, vertices=24, avoid=[ball])).clearance(curve)
     assert clearance == pytest.approx(1000.0 * Objective.of(MoebiusEnergy(), [BALL]).clearance(wavy(24)), rel=1e-3)
 
 
 def test_stiffness_becomes_part_of_the_metric() -> None:
-    curve, options = wavy(24), RelaxOptions(vertices=24, avoid=[BALL])
-    point = start_problem(curve, options).at_curve(curve)
-    (term,) = point.problem.objective.potentials
-    expected = point.problem.metric.at(point.curve).dense() + np.diag(term.stiffness(point.curve))
+    curve = wavy(24)
+    point = start_problem(*wanted(curve, vertices=24, avoid=[BALL])).at_curve(curve)
+    ((term, _),) = point.problem.objective.further
+    expected = point.problem.metric.at(point.curve).dense() + term.stiffness(point.curve).toarray()
     assert np.allclose(point.inner_product.dense(), expected, rtol=1e-12, atol=0.0)
 
 
@@ -256,7 +260,7 @@ def test_segments_among_triangles_repel_as_segments(named: list[int]) -> None:
     )
     curve, v = wavy(24), direction_for(wavy(24))
     objective = Objective.of(MoebiusEnergy(), [mixed])
-    assert [len(term.clusters.simplices.corners) for term in objective.potentials] == [3, 2]
+    assert [len(term.clusters.simplices.corners) for term, _ in objective.further] == [3, 2]
     assert objective.value(curve) == pytest.approx(Objective.of(MoebiusEnergy(), [BALL, FRAME]).value(curve), rel=1e-12)
     frozen = objective.frozen_at(curve)
     assert derivative_slope(frozen, curve, v, largest=1e-3) == pytest.approx(2, abs=0.01)

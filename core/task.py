@@ -1,0 +1,126 @@
+"""What is to be relaxed, and what stands still meanwhile."""
+
+import logging
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Integral
+from operator import itemgetter
+
+import numpy as np
+
+from .collision import check_clear, check_embedded, check_gap, survives_rounding
+from .curve import Curve, check_is_curve, refine
+from .curve.pins import NO_PINS, Pins
+from .errors import CurveError, CurveOptionError, OptionError
+from .obstacle import Obstacle
+from .units import check_units
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Task:
+    """A curve among obstacles, some of whose vertices are pinned.
+
+    Parameters
+    ----------
+    curve
+        An embedded polygon, in any units and place.
+    obstacles
+        Surfaces and polylines, in the curve's units, that it must never touch.
+    pins
+        Indices, from 0, of vertices that stay exactly where they are. Nothing can move on an arc that is straight from
+        one of them to the next.
+    pin_tangents
+        Whether the neighbours of pinned vertices in the refined curve are pinned too, and with them its direction.
+
+    Raises
+    ------
+    CurveError
+        If the curve is not a `Curve`.
+    OptionError
+        If an obstacle is not an `Obstacle`, or a pin is not a vertex of the curve or is named twice.
+    """
+
+    curve: Curve
+    obstacles: tuple[Obstacle, ...] = ()
+    pins: tuple[int, ...] = ()
+    pin_tangents: bool = False
+
+    def __post_init__(self) -> None:
+        check_is_curve(self.curve)
+        for name, kind, noun, example in (
+            ("obstacles", Obstacle, "an obstacle", "(Obstacle(vertices, faces),)"),
+            ("pins", Integral, "a whole number", "(0, 5)"),
+        ):
+            object.__setattr__(self, name, _tuple_of(name, getattr(self, name), kind, noun, example))
+        self._check_pins()
+
+    def _check_pins(self) -> None:
+        pin, times = max(Counter(self.pins).items(), key=itemgetter(1), default=(0, 0))
+        if times > 1:
+            raise OptionError(f"pins names vertex {pin + 1} more than once")
+        outside = next((pin for pin in self.pins if not 0 <= pin < len(self.curve)), None)
+        if outside is not None:
+            raise CurveOptionError(f"pins asks for vertex {outside + 1}, but the curve has {len(self.curve)} vertices")
+        if self.pin_tangents and not self.pins:
+            raise OptionError("pin_tangents pins the neighbours of pins, but there are none; give pins too")
+
+    @classmethod
+    def of(cls, given: "Task | Curve") -> "Task":
+        """The task itself, or that of a curve with nothing around it."""
+        return given if isinstance(given, Task) else cls(curve=given)
+
+    @property
+    def held(self) -> Pins:
+        """The pins, and the vertices of taut arcs between them."""
+        return Pins.of(self.curve, np.array(self.pins, dtype=np.intp)) if self.pins else NO_PINS
+
+    def refined(self, vertices: int | None = None) -> "Task":
+        """The same task with vertices inserted on the edges, as `refine` does, and all that is held among its pins.
+
+        Raises
+        ------
+        CurveError
+            If the curve touches itself or an obstacle, is degenerate or has strands too near to compute with.
+        """
+        check_units(self.curve)
+        check_embedded(self.curve)
+        check_clear(self.curve, self.obstacles)
+        start = refine(self.curve, vertices)
+        check_refined(self.curve, start, self.obstacles)
+        pins = Pins.at(start, self.curve.vertices[list(self.pins)]) if self.pins else NO_PINS
+        if len(pins) > len(self.pins):
+            more = len(pins) - len(self.pins)
+            _log.warning("%d of %d vertices are on straight arcs between pins, and held as well", more, len(start))
+        if self.pin_tangents:
+            pins = pins.with_neighbours(start)
+        return Task(curve=start, obstacles=self.obstacles, pins=tuple(pins.vertices.tolist()))
+
+
+def check_refined(curve: Curve, refined: Curve, obstacles: Sequence[Obstacle]) -> None:
+    """Refuse a refined curve that is not what the curve was, or that cannot be computed with.
+
+    Raises
+    ------
+    CurveError
+        If strands are too near to compute with, or the new vertices, rounded to doubles, might not be on their edges
+        for all that matters.
+    """
+    if len(refined) > len(curve) and not survives_rounding(refined, obstacles):
+        raise CurveError(
+            "the curve is so far from the origin, or has strands so near to each other, that there are too few digits "
+            "for vertices to be inserted; move it nearer to the origin, or its strands apart"
+        )
+    check_gap(refined)
+
+
+def _tuple_of(name: str, values: object, kind: type, noun: str, example: str) -> tuple[object, ...]:
+    """The values as a tuple; an OptionError if they are no sequence, or one of them is of another kind."""
+    if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray):
+        raise OptionError(f"{name} is {values!r:.40}; it must be a tuple, such as {example}")
+    for each in values:
+        if not isinstance(each, kind) or isinstance(each, bool):
+            raise OptionError(f"{name} has {each!r:.40}; each of them must be {noun}")
+    return tuple(int(each) if isinstance(each, Integral) else each for each in values)
