@@ -37,7 +37,7 @@ def add_task(parser: argparse.ArgumentParser) -> None:
         "vertices of the input that stay exactly where they are, counted from 1; nothing can move on an arc that is "
         "straight from one of them to the next; may be given several times"
     )
-    group.add_argument("--pin", dest="pins", metavar="V,V,…", type=_indices, action="extend", default=[], help=text)
+    group.add_argument("--pin", dest="pins", metavar="V,V,…", action="append", default=[], help=text)
     text = "pin the neighbours that pinned vertices have in the refined start too, and so the curve's direction there"
     group.add_argument("--pin-tangents", action="store_true", help=text)
 
@@ -50,12 +50,12 @@ def task(arguments: argparse.Namespace, file: CurveFile) -> Task:
     return Task(
         curve=file.curve,
         obstacles=tuple(map(read_obstacle, arguments.avoid)),
-        pins=tuple(map(file.index_of, arguments.pins)),
+        pins=tuple(file.index_of(pin) for text in arguments.pins for pin in pinned(text)),
         pin_tangents=arguments.pin_tangents,
     )
 
 
-def _indices(text: str) -> tuple[int, ...]:
+def pinned(text: str) -> tuple[int, ...]:
     """Indices of vertices that are counted from 1, with commas between."""
     words = [word.strip() for word in text.split(",")]
     wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and int(word[:20]) > 0)), None)

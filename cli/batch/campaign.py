@@ -8,11 +8,12 @@ from pathlib import Path
 from ...core import RelaxOptions
 from ...core.errors import OutputError
 from .. import signals
+from ..options import pinned
 from ..places import check_place
 from . import cluster
 from .folder import check_replaceable, finished, sweep
 from .inputs import inputs
-from .job import CSV, PARQUET, STILL, Job, jobs
+from .job import CSV, PARQUET, Job, jobs
 from .progress import Progress
 from .table import Row, Table
 
@@ -21,7 +22,8 @@ def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
     """Do the runs that are not finished; the table is written in the end, also of an interrupted batch."""
     cluster.require()
     directory = Path(options.output).resolve()
-    still = {name: getattr(options, name) for name in STILL}
+    pins = [pin for text in options.pins for pin in pinned(text)]
+    still = {"avoid": options.avoid, "pins": pins, "pin_tangents": options.pin_tangents}
     planned = jobs(inputs(options.inputs), options.starts, directory, wanted, still, options.extrapolate)
     _prepare(directory, planned)
     rows = _found(planned)

@@ -47,7 +47,7 @@ def test_defaults_are_the_librarys():
 )
 def test_every_option_can_be_given(each):
     value = unlike_default(each)
-    text = ",".join(str(index + 1) for index in value) if each.repeated else str(value)
+    text = "=".join(map(str, value[0])) if each.repeated else str(value)
     words = [relax_options.flag(each), *([] if value is True else [text])]
     assert asdict(parsed(*words)) == asdict(RelaxOptions()) | {each.name: value}
 

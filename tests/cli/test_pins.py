@@ -78,7 +78,7 @@ def test_compare_takes_pins() -> None:
         (["--pin", "9" * 30], "there is no vertex 9"),
         (["--pin", "61"], "bent.obj: there is no vertex 61 on the curve"),
         (["--pin", "5,7,5"], "pins names vertex 5 more than once"),
-        (["--pin", "5", "--pin", "5"], "--pin names 5 more than once"),
+        (["--pin", "5", "--pin", "5"], "pins names vertex 5 more than once"),
         (["--pin", "5", "--balance"], "balance would move pins, as Möbius maps do; leave one of the two out"),
     ],
 )
