@@ -16,9 +16,9 @@ from mobius_flow.core.knots import (
     scramble,
     smooth_knot,
 )
-from mobius_flow.core.knots.catalogue import AMPHICHEIRAL, crossing_number
+from mobius_flow.core.knots.catalogue import crossing_number
 from mobius_flow.core.knots.knot_type import MAX_VERTICES
-from mobius_flow.core.knots.table import ROLFSEN
+from mobius_flow.core.knots.table import AMPHICHEIRAL, ROLFSEN
 
 # The one prime knot to ten crossings whose mirror image has the same invariants of all those that are computed.
 UNTOLD = {"10_71": ("10_71", "m10_71"), "m10_71": ("10_71", "m10_71")}
