@@ -1,8 +1,8 @@
 """Curves that several tests need."""
 
 import numpy as np
+from hard_curves import lattice_knot as lattice_knot
 from mobius_flow.core import Curve, Mesh
-from mobius_flow.core.knots import braid_word, lattice_closure
 
 
 def regular_polygon(n: int, dimension: int = 3) -> Curve:
@@ -42,11 +42,6 @@ def hopf_link(n: int) -> Curve:
     first = np.stack([np.cos(t), np.sin(t), zero], axis=1)
     second = np.stack([1 + np.cos(t), zero, np.sin(t)], axis=1)
     return Curve.from_components([first, second])
-
-
-def lattice_knot(name: str) -> Curve:
-    """A coarse polygon with right angles and very unequal edges, as people have them."""
-    return lattice_closure(braid_word(name))
 
 
 def chain_of_rings(count: int, sizes: tuple[int, ...]) -> Curve:

@@ -114,9 +114,8 @@ msgstr "f"
     assert read_po(text) == {(ANY, 'a "b" c\n'): "ä c\n"}
 
 
-@pytest.mark.parametrize(
-    "broken",
-    [
+def test_broken_files_leave_their_languages_english(tmp_path, caplog):
+    broken = (
         b'msgid "a"',
         b'msgstr "a"',
         b'msgid "a"\nmsgstr "b',
@@ -126,16 +125,13 @@ msgstr "f"
         b'"a"',
         b"\xff",
         b"PK\x03\x04",
-    ],
-)
-def test_a_broken_file_leaves_its_language_english(tmp_path, caplog, broken):
+    )
+    for k, data in enumerate(broken):
+        (tmp_path / f"{k}.po").write_bytes(data)
+    (tmp_path / "directory.po").mkdir()
     shutil.copy(FOLDER / "de.po", tmp_path)
-    (tmp_path / "fr.po").write_bytes(broken)
-    (tmp_path / "it.po").mkdir()
     assert translations.tables(tmp_path) == {"de": GERMAN}
-    assert [record.message.split(" is not used")[0] for record in caplog.records] == [
-        str(tmp_path / name) for name in ("fr.po", "it.po")
-    ]
+    assert len([record for record in caplog.records if "is not used" in record.message]) == len(broken) + 1
     assert translations.tables(tmp_path / "missing") == {}
 
 

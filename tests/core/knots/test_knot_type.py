@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hard_curves import hard_unknot, lattice_closure
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.knots import (
     HARD_UNKNOTS,
@@ -9,10 +10,8 @@ from mobius_flow.core.knots import (
     KnotType,
     braid_closure,
     braid_word,
-    hard_unknot,
     knot,
     knot_type,
-    lattice_closure,
     scramble,
     smooth_knot,
 )

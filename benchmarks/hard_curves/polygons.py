@@ -1,0 +1,26 @@
+"""Polygons whose edges differ in length: a bent trefoil, and any curve with short edges put in."""
+
+import numpy as np
+from mobius_flow.core import Curve
+from mobius_flow.core.knots import torus_knot
+
+_BEND = 0.3  # the knot is 3 wide and its edges still differ by less than EVEN_RATIO, so that they are to be made equal
+
+
+def bent_trefoil(vertices: int) -> Curve:
+    """A torus knot T(2, 3) after three shears of space, which keep its type."""
+    x, y, z = torus_knot(2, 3, vertices).vertices.T
+    x = x + _BEND * np.sin(2.0 * z + 1.0)
+    z = z + _BEND * np.sin(2.0 * y)
+    y = y + _BEND * np.sin(2.0 * x)
+    return Curve(np.stack([x, y, z], axis=1))
+
+
+def uneven(curve: Curve, ratio: float, seed: int) -> Curve:
+    """The same polygon with vertices added on its edges so that edge lengths differ by ``ratio``."""
+    rng = np.random.default_rng(seed)
+    pieces = []
+    for vertex, edge in zip(curve.vertices, curve.edge_vectors, strict=True):
+        cuts = np.array([0.0]) if rng.random() > 0.1 else np.array([0.0, 1.0 / ratio])
+        pieces.append(vertex + cuts[:, None] * edge)
+    return Curve(np.concatenate(pieces))
