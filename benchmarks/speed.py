@@ -13,7 +13,7 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 from mobius_flow.cli import options as relax_options
 from mobius_flow.cli.provenance import environment, plain
@@ -36,7 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     relax_options.add_to(parser)
     given = parser.parse_args(arguments)
     try:
-        wanted = relax_options.from_arguments(given)
+        wanted = replace(relax_options.from_arguments(given), mesh="fixed")
         machine = Machine.measured()
         rows = speed(given.sizes, wanted)
         if given.json:

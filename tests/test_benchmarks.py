@@ -61,6 +61,7 @@ def test_figures_of_speed():
     report = json.loads(done.stdout)
     assert {"machine", "rows", "exponents", "options", "version", "blas_threads", "numpy", "scipy"} <= set(report)
     assert report["options"]["accuracy"] == 1e-3
+    assert report["options"]["mesh"] == "fixed"
     for row, size in zip(report["rows"], (60, 200), strict=True):
         assert (row["vertices"], row["solver"]) == (size, "hierarchical")
         assert list(row["seconds"]) == PHASES
