@@ -2,11 +2,13 @@
 
 from .contacts import rope, spiral
 from .lattice import lattice_closure, lattice_knot, lattice_unknot
-from .polygons import bent_trefoil, uneven
+from .polygons import bent_trefoil, chain_of_rings, graded_trefoil, uneven
 from .unknots import hard_unknot, unknot_word
 
 __all__ = [
     "bent_trefoil",
+    "chain_of_rings",
+    "graded_trefoil",
     "hard_unknot",
     "lattice_closure",
     "lattice_knot",

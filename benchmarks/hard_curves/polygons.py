@@ -1,4 +1,4 @@
-"""Polygons whose edges differ in length: a bent trefoil, and any curve with short edges put in."""
+"""Polygons whose edges differ in length, and a long chain."""
 
 import numpy as np
 from mobius_flow.core import Curve
@@ -24,3 +24,21 @@ def uneven(curve: Curve, ratio: float, seed: int) -> Curve:
         cuts = np.array([0.0]) if rng.random() > 0.1 else np.array([0.0, 1.0 / ratio])
         pieces.append(vertex + cuts[:, None] * edge)
     return Curve(np.concatenate(pieces))
+
+
+def graded_trefoil(n: int, ratio: float) -> Curve:
+    """The trefoil with edges that are so many times shorter at three places than halfway between them."""
+    density = np.sqrt(ratio) ** np.cos(6 * np.pi * np.arange(n) / n)
+    t = 2 * np.pi * np.cumsum(density) / density.sum()
+    radius = 2 + np.cos(3 * t)
+    return Curve(np.stack([radius * np.cos(2 * t), radius * np.sin(2 * t), np.sin(3 * t)], axis=1))
+
+
+def chain_of_rings(count: int, sizes: tuple[int, ...]) -> Curve:
+    """Round rings, each through the next one, with so many vertices in turn."""
+    rings = []
+    for k in range(count):
+        t = 2 * np.pi * np.arange(sizes[k % len(sizes)]) / sizes[k % len(sizes)]
+        ring = np.stack([np.cos(t), np.sin(t), np.zeros(len(t))], axis=1)
+        rings.append((ring if k % 2 else ring[:, [0, 2, 1]]) + np.array([1.3 * k, 0.0, 0.0]))
+    return Curve.from_components(rings)
