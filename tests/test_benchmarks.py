@@ -14,7 +14,7 @@ ARGUMENTS = {
     "collision": ["60"],
     "hierarchy": ["60"],
     "hops": ["T34", "--hops", "1"],
-    "knots": ["knots", "--only", "3_1,L2a1,unknot-scrambled", "--tolerance", "1e-2"],
+    "knots": ["knots", "--only", "3_1,L2a1,unknot-rope", "--tolerance", "1e-2"],
     "metric": ["100"],
     "obstacles": ["--vertices", "60"],
     "repulsion": ["60", "--latitudes", "12"],
@@ -40,7 +40,7 @@ def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(name, *ARGUMENTS[name])
     assert done.returncode == 0, done.stdout + done.stderr
-    few = {"batch": 1, "soak": 1, "resolution": 3, "hops": 3, "tries": 3}
+    few = {"batch": 1, "soak": 1, "resolution": 3, "hops": 3, "knots": 4, "tries": 3}
     least = few.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least
 
