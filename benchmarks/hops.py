@@ -20,16 +20,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from hard_curves import lattice_unknot
 from mobius_flow.core import Curve, RelaxOptions, Result, Status, Trajectory, minimize
 from mobius_flow.core.curve.refine import subdivide
-from mobius_flow.core.knots import knot, lattice_closure, scramble, smooth_knot, torus_knot, unknot_word
+from mobius_flow.core.knots import knot, scramble, smooth_knot, torus_knot
 from mobius_flow.core.verify import verify
-
-
-def lattice_unknot(crossings: int, seed: int) -> Curve:
-    """A coarse polygon on the cubic lattice."""
-    return lattice_closure(unknot_word(crossings, seed))
-
 
 PATIENT = RelaxOptions(max_iterations=1_000_000)  # a try takes as many as a run: the time is what is limited
 ESCAPING = replace(PATIENT, escape_saddles=True)

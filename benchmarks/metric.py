@@ -12,6 +12,7 @@ from time import process_time
 from typing import TypeVar
 
 import numpy as np
+from hard_curves import chain_of_rings, graded_trefoil
 from mobius_flow.core import Curve
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
 from mobius_flow.core.curve import refine
@@ -21,27 +22,11 @@ from mobius_flow.core.knots import knot, torus_knot
 _Value = TypeVar("_Value")
 
 
-def chain(n: int) -> Curve:
-    """Rings of 20 vertices, each through the next one."""
-    t = 2 * np.pi * np.arange(20) / 20
-    ring = np.stack([np.cos(t), np.sin(t), np.zeros(20)], axis=1)
-    turned = ring, ring[:, [0, 2, 1]]
-    return Curve.from_components([turned[k % 2] + np.array([1.3 * k, 0.0, 0.0]) for k in range(n // 20)])
-
-
-def graded(n: int) -> Curve:
-    """A trefoil with edges a hundred times shorter at three places than halfway between them."""
-    density = 10.0 ** np.cos(6 * np.pi * np.arange(n) / n)
-    t = 2 * np.pi * np.cumsum(density) / density.sum()
-    radius = 2 + np.cos(3 * t)
-    return Curve(np.stack([radius * np.cos(2 * t), radius * np.sin(2 * t), np.sin(3 * t)], axis=1))
-
-
 CURVES: dict[str, Callable[[int], Curve]] = {
     "torus knot (2,3)": lambda n: torus_knot(2, 3, n),
     "Ochiai's unknot": lambda n: refine(knot("ochiai-1"), n),
-    "chain of rings": chain,
-    "graded trefoil": graded,
+    "chain of rings": lambda n: chain_of_rings(n // 20, (20,)),
+    "graded trefoil": lambda n: graded_trefoil(n, 100.0),
 }
 
 

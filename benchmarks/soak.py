@@ -14,11 +14,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from hard_curves import hard_unknot
 from mobius_flow.core import METHODS, Curve, Iterate, MobiusFlowError, Obstacle, RelaxOptions, Task, Trajectory, relax
 from mobius_flow.core.collision.clearance import clears
 from mobius_flow.core.driver.options import EDGE_LENGTHS, MESHES
 from mobius_flow.core.energies import ENERGIES
-from mobius_flow.core.knots import KNOTS, braid_closure, hard_unknot, knot, scramble
+from mobius_flow.core.knots import KNOTS, braid_closure, knot, scramble
 from mobius_flow.core.knots.alexander import signature
 from mobius_flow.core.verify import verify
 

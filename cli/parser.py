@@ -18,7 +18,6 @@ COMMANDS = {
     "verify": "check a trajectory for contact",
     "compare": "compare descent methods on a curve",
     "knot": "write a named knot",
-    "bench": "relax a set of hard curves",
     "methods": "list the descent methods",
 }
 BAD_OPTIONS = 2

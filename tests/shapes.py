@@ -1,8 +1,10 @@
 """Curves that several tests need."""
 
 import numpy as np
+from hard_curves import chain_of_rings as chain_of_rings
+from hard_curves import graded_trefoil as graded_trefoil
+from hard_curves import lattice_knot as lattice_knot
 from mobius_flow.core import Curve, Mesh
-from mobius_flow.core.knots import braid_word, lattice_closure
 
 
 def regular_polygon(n: int, dimension: int = 3) -> Curve:
@@ -42,26 +44,6 @@ def hopf_link(n: int) -> Curve:
     first = np.stack([np.cos(t), np.sin(t), zero], axis=1)
     second = np.stack([1 + np.cos(t), zero, np.sin(t)], axis=1)
     return Curve.from_components([first, second])
-
-
-def lattice_knot(name: str) -> Curve:
-    """A coarse polygon with right angles and very unequal edges, as people have them."""
-    return lattice_closure(braid_word(name))
-
-
-def chain_of_rings(count: int, sizes: tuple[int, ...]) -> Curve:
-    """Round rings, each through the next one, with so many vertices in turn."""
-    rings = [regular_polygon(sizes[k % len(sizes)]).vertices for k in range(count)]
-    turned = [ring if k % 2 else ring[:, [0, 2, 1]] for k, ring in enumerate(rings)]
-    return Curve.from_components([ring + np.array([1.3 * k, 0.0, 0.0]) for k, ring in enumerate(turned)])
-
-
-def graded_trefoil(n: int, ratio: float) -> Curve:
-    """The trefoil with edges that are so many times shorter at three places than halfway between them."""
-    density = np.sqrt(ratio) ** np.cos(6 * np.pi * np.arange(n) / n)
-    t = 2 * np.pi * np.cumsum(density) / density.sum()
-    radius = 2 + np.cos(3 * t)
-    return Curve(np.stack([radius * np.cos(2 * t), radius * np.sin(2 * t), np.sin(3 * t)], axis=1))
 
 
 def scattered_rings(count: int, size: int, spread: float = 10.0, dimension: int = 3) -> Curve:

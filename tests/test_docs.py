@@ -95,12 +95,13 @@ def test_the_readme_has_both_commands():
 
 
 def test_data_is_installed():
-    listed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["package-data"]
-    found = [path for room in ("core", "cli", "addon") for path in (ROOT / room).rglob("*.npz")]
-    names = [(".".join(["mobius_flow", *path.parent.relative_to(ROOT).parts]), path.name) for path in found]
-    assert sorted(names) == sorted(
-        (package, name) for package, data in listed.items() for name in data if name.endswith(".npz")
-    )
+    data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["package-data"]
+    rooms = {package: ROOT.joinpath(*package.split(".")[1:]) for package in data}
+    listed = {path for package, patterns in data.items() for each in patterns for path in rooms[package].glob(each)}
+    found = {path for room in ("core", "cli", "addon") for path in (ROOT / room).rglob("*.*") if path.is_file()}
+    found = {path for path in found if "__pycache__" not in path.parts}
+    assert {path for path in found if path.suffix != ".py"} <= listed
+    assert listed <= found
 
 
 def test_every_package_is_installed():

@@ -4,10 +4,11 @@ import random
 
 import numpy as np
 import pytest
+from hard_curves import hard_unknot
 from jones import jones
 from knot_diagrams import diagram, linking_number, pairwise_linking, simplified
 from knot_type import UNKNOT, knot_invariants
-from mobius_flow.core.knots import hard_unknot, knot, scramble
+from mobius_flow.core.knots import knot, scramble
 
 NAMES = ["0_1", "3_1", "m3_1", "4_1", "5_2", "6_2", "7_7", "8_19", "9_42", "3_1#m4_1"]
 TREFOIL = {2: 1, 6: 1, 8: -1}

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from odd_files import (
+    COMMANDS,
     ENDLESS,
-    OPTIONS,
     SHORT,
     SLOW,
     TEXTS,
@@ -20,6 +20,7 @@ from odd_files import (
     command_on,
     good_file,
     mutated,
+    options_of,
     text_of,
     trajectory,
     trefoil,
@@ -119,16 +120,15 @@ def trajectories(rng: random.Random, room: Path) -> Case:
 @kind
 def bad_options(rng: random.Random, room: Path) -> Case:
     """Options with odd values, cut short, unknown."""
-    command = rng.choice(list(OPTIONS))
+    command = rng.choice(COMMANDS)
     good = good_file(room)
     words = {
         "relax": [command, good, "out.txt", *SHORT],
         "knot": [command, "3_1", "k.txt"],
         "compare": [command, good, "-o", "c.csv", "--methods", "lbfgs", *SHORT],
-        "bench": [command, "knots", "--only", "3_1", *SHORT],
         "methods": [command],
     }.get(command, [command, good])
-    option = "--" + rng.choice(OPTIONS[command].split())
+    option = rng.choice(options_of(command))
     option = rng.choice([option, option, option, option[:-1], option + "s", option.upper()])
     value = [f"{option}={rng.choice(VALUES)}"] if rng.random() < 0.5 else [option, rng.choice(VALUES)]
     return Case(words + value)
@@ -137,7 +137,7 @@ def bad_options(rng: random.Random, room: Path) -> Case:
 @kind
 def bad_words(rng: random.Random, room: Path) -> Case:
     """Arguments thrown together."""
-    words = [rng.choice([*OPTIONS, *VALUES, "relaks", "--version", "-h", "--vers"]) for _ in range(rng.randint(0, 4))]
+    words = [rng.choice([*COMMANDS, *VALUES, "relaks", "--version", "-h", "--vers"]) for _ in range(rng.randint(0, 4))]
     return Case(words)
 
 
@@ -165,7 +165,6 @@ def streams(rng: random.Random, room: Path) -> Case:
             ["relax", good, "out.txt", "--report", "/dev/stdout", *SHORT],
             ["relax", good, "out.txt", "--trajectory", "/dev/stdout", *SHORT],
             ["energy", "none.txt"],
-            ["bench", "knots", "--only", "3_1", *SHORT],
             ["knot", "3_1", "-"],
             ["energy", "-"],
             ["verify", "-"],
@@ -242,7 +241,6 @@ def interrupted(rng: random.Random, room: Path) -> Case:
         [
             ["relax", good, "out.txt", "--report", "r.json", "--trajectory", "t.npz", "--vertices", "100", *SLOW],
             ["relax", good, "out.obj", "--report", "r.json", *SLOW],
-            ["bench", "knots", *SLOW],
             ["compare", good, "-o", "c.json", "--time-limit", "0.1", *ENDLESS],
             ["energy", good, "--energy", "tangent-point"],
         ]

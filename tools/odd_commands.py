@@ -142,7 +142,7 @@ def complaints(case: Case, room: Path, before: dict[str, bytes], outcome: Outcom
     if outcome.status not in case.statuses:
         found.append(f"exit status {outcome.status}, not one of {case.statuses}")
     found += [word.decode() for word in UNFORGIVABLE if word in outcome.err + outcome.out]
-    if (case.signals or case.limits) and b"Traceback" in outcome.err and os.fsencode(ROOT) not in outcome.err:
+    if (case.signals or case.limits) and b"Traceback" in outcome.err and os.fsencode(f"{ROOT}/") not in outcome.err:
         return []  # Python itself did not start
     lines = outcome.err.replace(b"\0", b"").decode("utf-8", "replace").splitlines()  # it may be UTF-16
     several = "compare" in case.words and outcome.status == 130  # the methods that are done

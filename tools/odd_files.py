@@ -1,8 +1,11 @@
 """What odd command lines are made of: curve files and archives, damaged bytes, odd values."""
 
+import argparse
 import io
 import json
 import random
+import re
+from importlib import import_module
 from math import cos, pi, sin
 from pathlib import Path
 
@@ -82,16 +85,14 @@ VALUES = [
     "1e-999",
     "🙂",
 ]
-OPTIONS = {
-    "relax": "method max-iterations tolerance vertices energy metric quadrature-points penalty edge-lengths mesh "
-    "solver accuracy adaptive resolve stability escape-saddles report trajectory quiet format",
-    "energy": "energy json format",
-    "knot": "vertices format",
-    "compare": "methods time-limit format tolerance vertices metric",
-    "bench": "only sizes json tolerance vertices method",
-    "verify": "json",
-    "methods": "help",
-}
+COMMANDS = ("relax", "energy", "info", "knot", "compare", "verify", "methods")
+
+
+def options_of(command: str) -> list[str]:
+    """What the help of a command lists."""
+    parser = argparse.ArgumentParser()
+    import_module(f"mobius_flow.cli.{command}").add_to(parser)
+    return re.findall(r"^  (?:-\w, )?(--[\w-]+)", parser.format_help(), re.MULTILINE)
 
 
 def command_on(rng: random.Random, path: str) -> list[str]:

@@ -1,7 +1,7 @@
-"""Draw docs/pictures/speed.png from figures of mobius-flow bench speed --json.
+"""Draw docs/pictures/speed.png from figures of benchmarks/speed.py --json.
 
-mobius-flow bench speed --solver dense --sizes 200,592,1000,2000,5000 --json > dense.json
-mobius-flow bench speed --solver hierarchical --sizes 200,1000,5000,20000 --json > hierarchical.json
+python benchmarks/speed.py --solver dense --sizes 200,592,1000,2000,5000 --json > dense.json
+python benchmarks/speed.py --solver hierarchical --sizes 200,1000,5000,20000 --json > hierarchical.json
 python tools/speed_picture.py dense.json hierarchical.json docs/pictures/speed.png
 """
 

@@ -1,4 +1,4 @@
-"""Other languages than English: their tables, told to Blender, and the functions that say a sentence in the user's.
+"""Languages other than English: a ``.po`` file each, registered with Blender, and the functions that translate.
 
 Blender itself translates what classes declare: names of operators, panels and settings, and their tooltips. Sentences
 that are made when they are shown go through ``iface_``, ``tip_`` or ``rpt_``, as they are called in Blender's own
@@ -8,7 +8,9 @@ All names have a context of their own, since Blender's words for the same Englis
 table of knots has no hyperlinks.
 """
 
+import logging
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -16,11 +18,9 @@ from bpy.app import translations
 from bpy.app.translations import pgettext_iface, pgettext_rpt, pgettext_tip
 
 from ..engine.phrase import Phrase
-from . import de
+from .po import Table, read_po
 
-CONTEXT = "Möbius Flow"
-LANGUAGES = {"de": de}  # a module each, with LABELS, SENTENCES and TOOLTIPS; "de" is for de_AT too
-_ANY = "*"  # the context of tooltips: Blender looks for them nowhere else
+CONTEXT = "Möbius Flow"  # of all but tooltips, which Blender looks for in no context
 
 
 def iface_(template: str, **values: Any) -> str:
@@ -61,8 +61,8 @@ def _own_properties(cls: type) -> list[Any]:
 
 
 def register() -> None:
-    """Tell Blender the tables."""
-    translations.register(__package__, {code: _table(language) for code, language in LANGUAGES.items()})
+    """Hand Blender the tables of all languages."""
+    translations.register(__package__, tables(Path(__file__).parent))
 
 
 def unregister() -> None:
@@ -70,8 +70,15 @@ def unregister() -> None:
     translations.unregister(__package__)
 
 
-def _table(language: Any) -> dict[tuple[str, str], str]:
-    names = language.LABELS | language.SENTENCES
-    return {(CONTEXT, text): said for text, said in names.items()} | {
-        (_ANY, text): said for text, said in language.TOOLTIPS.items()
-    }
+def tables(folder: Path) -> dict[str, Table]:
+    """Read the ``.po`` files of a folder, which bear Blender's codes of languages: ``de`` serves for de_AT, too.
+
+    A file that cannot be read leaves its language in English, and a warning in the log.
+    """
+    found = {}
+    for path in sorted(folder.glob("*.po")):
+        try:
+            found[path.stem] = read_po(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            logging.getLogger(__name__).warning("%s is not used: %s", path, error)
+    return found

@@ -22,7 +22,7 @@ from .options import RelaxOptions
 DENSE_UP_TO, HIERARCHICAL_FROM = 1000, 5000
 # Between these it is what is counted: all n² pairs of edges, or the blocks of the inner product.  Of these there are as
 # many as conjugate gradients have work with, for they are many where strands are near and iterations are too.
-PAIRS_PER_BLOCK = 1700  # that take as long as one of them, by `bench speed` on knots and tangles
+PAIRS_PER_BLOCK = 1700  # that take as long as one of them, by `benchmarks/speed.py` on knots and tangles
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,8 @@ arcs.
 from .arcs import ARCS, overhand
 from .closures import braid_closure
 from .coded import FORMATS, WRITTEN_FORMATS, coded_knot
-from .contacts import rope, spiral
 from .drawings import Drawing
 from .knot_type import KnotType, knot_type
-from .lattice import lattice_closure
 from .lissajous import lissajous_knot
 from .names import UnknownKnotError, braid_word, knot, knot_names
 from .planar import diagram_knot
@@ -17,7 +15,6 @@ from .scrambles import scramble
 from .shapes import smooth_knot
 from .table import ALIASES, HARD_UNKNOTS, KNOTS
 from .torus import torus_knot
-from .unknots import hard_unknot, unknot_word
 
 __all__ = [
     "ALIASES",
@@ -35,17 +32,12 @@ __all__ = [
     "coded_knot",
     "diagram_knot",
     "double",
-    "hard_unknot",
     "knot",
     "knot_names",
     "knot_type",
-    "lattice_closure",
     "lissajous_knot",
     "overhand",
-    "rope",
     "scramble",
     "smooth_knot",
-    "spiral",
     "torus_knot",
-    "unknot_word",
 ]

@@ -89,18 +89,3 @@ def connected_sum(first: Sequence[int], second: Sequence[int]) -> Word:
     """Word whose closure is the connected sum, the second braid hung on the first one's last strand."""
     shift = max(map(abs, first), default=0)
     return (*first, *(letter + shift if letter > 0 else letter - shift for letter in second))
-
-
-def cancels(word: Sequence[int], place: int) -> bool:
-    """Whether a letter meets its inverse further on, round the end too, past letters it commutes with."""
-    letter = word[place]
-    for step in range(1, len(word)):
-        other = word[(place + step) % len(word)]
-        if abs(abs(other) - abs(letter)) < 2:
-            return other == -letter
-    return False
-
-
-def is_reduced(word: Sequence[int]) -> bool:
-    """Whether no two letters of the closed braid cancel as they stand."""
-    return not any(cancels(word, place) for place in range(len(word)))

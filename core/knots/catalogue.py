@@ -11,21 +11,13 @@ import numpy as np
 from ..diagrams import Diagram, Laurent, alexander, doubled_bracket, knot_signature, normalized_bracket
 from .braid_diagrams import braid_diagram
 from .names import braid_word
-from .table import KNOTS
+from .table import AMPHICHEIRAL, KNOTS
 
 Key = tuple[tuple[int, int], ...]  # a polynomial that can be looked up: exponents and coefficients
 
 KNOTS_TO, LINKS_TO = 10, 7  # crossings up to which no type is missing
 _NUMBER = re.compile(r"(?<![\d_an])\d+")  # of crossings, with which the name of a factor begins
 _SEVERAL = 2  # least number of factors of a sum
-
-# The knots that are their own mirror images, whatever their orientation (KnotInfo: "symmetry type"), and such links.
-AMPHICHEIRAL = frozenset(
-    """
-    0_1 4_1 6_3 8_3 8_9 8_12 8_17 8_18 10_17 10_33 10_37 10_43 10_45 10_79 10_81 10_88 10_99 10_109 10_115 10_118 10_123
-    L2a1 L6a2 L6a4
-    """.split()  # noqa: SIM905 (a table is easier to read than a list)
-)
 
 
 def key(polynomial: Laurent) -> Key:

@@ -1,101 +1,51 @@
-"""The named table: braid words of all prime knots to ten crossings and links to seven; codes of hard unknots.
+"""The named table, read from ``table.ini``: braid words of knots and links, codes of hard unknots, and other names."""
 
-Handedness is the braid word's, positive letters being right-handed crossings: 3_1 is the right-handed trefoil.
-"""
-
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from configparser import ConfigParser
+from pathlib import Path
 from types import MappingProxyType
 
 from ..diagrams import PlanarCrossing as Crossing
-from . import hard_codes, words_8, words_9, words_10
 from .braids import Word
 
-_LINKS: dict[str, Word] = {
-    "L2a1": (1, 1),
-    "L4a1": (1, 1, 1, 1),
-    "L5a1": (1, -2, 1, -2, -2),
-    "L6a1": (1, -2, -1, -1, -1, -2, -2),
-    "L6a2": (1, 1, 1, 1, 2, -1, 2),
-    "L6a3": (1, 1, 1, 1, 1, 1),
-    "L6a4": (1, -2, 1, -2, 1, -2),
-    "L6a5": (1, -2, -2, 1, -2, -2),
-    "L6n1": (1, 2, 1, 2, 1, 2),
-    "L7a1": (1, -2, 1, -2, 1, -2, -2),
-    "L7a2": (1, 1, -2, -2, 1, -2, -2),
-    "L7a3": (1, -2, -2, 1, -2, -2, -2),
-    "L7a4": (1, 2, -3, -2, 1, -2, -2, -3),
-    "L7a5": (1, 1, -2, 1, -2, -2, -2),
-    "L7a6": (1, -2, 1, -2, -2, -2, -2),
-    "L7a7": (1, -2, -2, -1, -1, -1, -2, -2),
-    "L7n1": (1, 1, 1, 2, 1, 1, 2),
-    "L7n2": (1, 1, 1, 2, -1, -1, 2),
-}
+FILE = Path(__file__).with_name("table.ini")
 
-ROLFSEN: Mapping[str, str] = MappingProxyType(
-    {
-        "2^2_1": "L2a1",
-        "4^2_1": "L4a1",
-        "5^2_1": "L5a1",
-        "6^2_1": "L6a3",
-        "6^2_2": "L6a2",
-        "6^2_3": "L6a1",
-        "6^3_1": "L6a5",
-        "6^3_2": "L6a4",
-        "6^3_3": "L6n1",
-        "7^2_1": "L7a6",
-        "7^2_2": "L7a5",
-        "7^2_3": "L7a4",
-        "7^2_4": "L7a3",
-        "7^2_5": "L7a2",
-        "7^2_6": "L7a1",
-        "7^2_7": "L7n1",
-        "7^2_8": "L7n2",
-        "7^3_1": "L7a7",
-    }
+
+def _file() -> ConfigParser:
+    """The file, with names as they are written there."""
+    parser = ConfigParser(delimiters="=", interpolation=None)
+    parser.optionxform = str  # type: ignore[assignment,method-assign]
+    parser.read_string(FILE.read_text(encoding="utf-8"))
+    return parser
+
+
+def _word(letters: str) -> Word:
+    return tuple(map(int, letters.split()))
+
+
+def _code(edges: str) -> tuple[Crossing, ...]:
+    numbers = iter(_word(edges))
+    return tuple(zip(numbers, numbers, numbers, numbers, strict=True))
+
+
+_FILE = _file()
+
+KNOTS: Mapping[str, Word] = MappingProxyType({name: _word(letters) for name, letters in _FILE["braids"].items()})
+"""Braid words of all prime knots to ten crossings and links to seven.
+
+Handedness is the word's, positive letters being right-handed crossings: 3_1 is the right-handed trefoil.
+"""
+
+HARD_UNKNOTS: Mapping[str, tuple[Crossing, ...]] = MappingProxyType(
+    {name: _code(edges) for name, edges in _FILE["hard unknots"].items()}
 )
-"""Names of links in D. Rolfsen's table (*Knots and Links*, 1976): crossings, components, number."""
-
-
-def _entries(text: str) -> Iterator[tuple[str, Word]]:
-    for line in text.split("\n"):
-        if line:
-            name, *letters = line.split()
-            yield name, tuple(map(int, letters))
-
-
-KNOTS: Mapping[str, Word] = MappingProxyType(
-    {
-        **{name: word for module in (words_8, words_9, words_10) for name, word in _entries(module.WORDS)},
-        **_LINKS,
-    }
-)
-
-
-def _codes(text: str) -> Iterator[tuple[str, tuple[Crossing, ...]]]:
-    for paragraph in text.strip().split("\n\n"):
-        name, *edges = paragraph.split()
-        numbers = iter(map(int, edges))
-        yield name, tuple(zip(numbers, numbers, numbers, numbers, strict=True))
-
-
-HARD_UNKNOTS: Mapping[str, tuple[Crossing, ...]] = MappingProxyType(dict(_codes(hard_codes.CODES)))
 """Planar diagram codes of famous unknots that are hard to untangle, from 10 to 141 crossings."""
 
-ALIASES: Mapping[str, str] = MappingProxyType(
-    {
-        "unknot": "0_1",
-        "circle": "0_1",
-        "trefoil": "3_1",
-        "figure eight": "4_1",
-        "cinquefoil": "5_1",
-        "stevedore": "6_1",
-        "septafoil": "7_1",
-        "perko": "10_161",
-        "hopf": "L2a1",
-        "solomon": "L4a1",
-        "whitehead": "L5a1",
-        "borromean": "L6a4",
-        "granny": "3_1#3_1",
-        "square": "3_1#m3_1",
-    }
-)
+AMPHICHEIRAL = frozenset(" ".join(_FILE["amphicheiral"].values()).split())
+"""The knots that are their own mirror images, whatever their orientation, and such links."""
+
+ROLFSEN: Mapping[str, str] = MappingProxyType(dict(_FILE["rolfsen"]))
+"""Names of links in D. Rolfsen's table (*Knots and Links*, 1976): crossings, components, number."""
+
+ALIASES: Mapping[str, str] = MappingProxyType(dict(_FILE["other names"]))
+"""Other names for knots and links of the table, and for sums of them."""

@@ -54,7 +54,7 @@ def test_only_what_blender_runs_is_in_the_zip(builder, empty_wheels, tmp_path):
     assert top == {"__init__.py", "blender_manifest.toml", "LICENSE", "README.md", "addon", "core", "wheels"}
     files = [name for name in names if not name.endswith("/")]
     data = [name for name in files if name.startswith(("addon/", "core/")) and not name.endswith(".py")]
-    assert data == ["core/knots/shapes.npz"]
+    assert data == ["addon/translations/de.po", "core/knots/shapes.npz", "core/knots/table.ini"]
     assert not [name for name in files if "__pycache__" in name or Path(name).name.startswith(".")]
     wheels = [name for name in files if name.startswith("wheels/")]
     assert len(wheels) == 3  # Python 3.11, 3.13 and 3.14

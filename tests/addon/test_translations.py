@@ -1,7 +1,9 @@
-"""Every text of the extension has its German, and nothing is shown that could not be said in another language."""
+"""Everything that the extension shows is translated, and nothing else."""
 
-import ast
+import importlib.util
 import re
+import shutil
+from pathlib import Path
 from string import Formatter
 from types import SimpleNamespace
 
@@ -15,39 +17,28 @@ from mobius_flow.addon.curves.turned import lay_flat  # noqa: E402
 from mobius_flow.addon.engine.phrase import Phrase  # noqa: E402
 from mobius_flow.addon.engine.words import named  # noqa: E402
 from mobius_flow.addon.pictures.filming import target  # noqa: E402
+from mobius_flow.addon.translations.po import ANY, read_po  # noqa: E402
 from mobius_flow.core import MobiusFlowError  # noqa: E402
 
-LANGUAGES = translations.LANGUAGES
-MODULES = sorted(shown_texts.ADDON.rglob("*.py"))
+FOLDER = Path(translations.__file__).parent
+TABLES = translations.tables(FOLDER)
+GERMAN = TABLES["de"]
 
 
-def tables():
-    return [(code, kind) for code in LANGUAGES for kind in ("LABELS", "TOOLTIPS", "SENTENCES")]
+@pytest.mark.parametrize("code", TABLES)
+def test_everything_shown_is_translated_and_nothing_else(code):
+    shown = {(ANY, text) for text in shown_texts.tooltips()}
+    shown |= {(translations.CONTEXT, text) for text in shown_texts.labels() | shown_texts.sentences()}
+    missing = [f'msgctxt "{context}"\nmsgid "{text}"\n' for context, text in sorted(shown - TABLES[code].keys())]
+    assert not missing, "\n".join(missing)
+    assert not TABLES[code].keys() - shown, "stale"
 
 
-@pytest.fixture
-def shown():
-    labels = shown_texts.labels()
-    return {
-        "LABELS": labels,
-        "TOOLTIPS": shown_texts.tooltips(),
-        "SENTENCES": shown_texts.sentences() - labels,
-    }
-
-
-@pytest.mark.parametrize(("code", "kind"), tables())
-def test_every_text_is_translated_and_none_that_is_no_more(shown, code, kind):
-    table = getattr(LANGUAGES[code], kind)
-    assert {"missing": sorted(shown[kind] - set(table)), "stale": sorted(set(table) - shown[kind])} == {
-        "missing": [],
-        "stale": [],
-    }
-
-
-@pytest.mark.parametrize(("code", "kind"), tables())
-def test_fields_stay_what_they_are(code, kind):
-    for text, said in getattr(LANGUAGES[code], kind).items():
-        if kind == "SENTENCES":
+@pytest.mark.parametrize("code", TABLES)
+def test_translations_have_the_form_of_their_originals(code):
+    sentences = shown_texts.sentences()
+    for (_, text), said in TABLES[code].items():
+        if text in sentences:
             assert fields(said) == fields(text), text
         assert said.strip() == said
         assert said[-1] == "." or text[-1] != ".", text
@@ -58,18 +49,13 @@ def fields(template):
 
 
 def test_german_addresses_nobody():
-    said = [text for kind in ("LABELS", "TOOLTIPS", "SENTENCES") for text in getattr(LANGUAGES["de"], kind).values()]
-    assert not [text for text in said if re.search(r"\b([Dd]u|[Dd]ein\w*|Ihr\w*|[Bb]itte)\b|\w+en Sie\b", text)]
+    address = re.compile(r"\b([Dd]u|[Dd]ein\w*|Ihr\w*|[Bb]itte)\b|\w+en Sie\b")
+    assert not [said for said in GERMAN.values() if address.search(said)]
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(shown_texts.ADDON)))
-def test_nothing_is_shown_as_it_is(path):
-    assert not list(shown_texts.unmarked(path))
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
+def test_nothing_is_shown_that_nobody_could_translate(tmp_path):
+    assert not [(path, line) for path in shown_texts.ADDON.rglob("*.py") for line in shown_texts.unmarked(path)]
+    lines = (
         "self.report({'ERROR'}, 'No')",
         "self.report({'ERROR'}, str(error))",
         "cls.poll_message_set(reason)",
@@ -78,12 +64,10 @@ def test_nothing_is_shown_as_it_is(path):
         "layout.label(text=f'Add {name}')",
         "sentence(layout, context, f'{name} is open')",
         "manager.invoke_confirm(self, event, message=f'{name} is there already')",
-    ],
-)
-def test_what_is_not_marked_is_found(tmp_path, line):
+    )
     path = tmp_path / "module.py"
-    path.write_text(f"\n{line}\n")
-    assert set(shown_texts.unmarked(path)) == {2}
+    path.write_text("\n".join(lines))
+    assert set(shown_texts.unmarked(path)) == set(range(1, len(lines) + 1)), "the search finds what is not marked"
 
 
 def test_sentences_are_found_wherever_they_are_made(tmp_path):
@@ -93,6 +77,62 @@ def test_sentences_are_found_wherever_they_are_made(tmp_path):
         "layout.operator('mesh.six', text='Seven')\nlayout.label(text='…')\nprint('eight')\n"
     )
     assert shown_texts.sentences(path) == {"One", "Two", "Three", "Four", "Seven"}
+
+
+def test_po_files_are_read_as_blenders_own_tools_read_them():
+    if importlib.util.find_spec("_bl_i18n_utils") is None:
+        pytest.skip("this Blender has no translation tools")
+    from _bl_i18n_utils.utils import I18nMessages
+
+    messages = I18nMessages("de", "PO", src=str(FOLDER / "de.po"))
+    assert not messages.parsing_errors
+    assert {key: message.msgstr for key, message in messages.msgs.items() if key[1]} == GERMAN
+
+
+def test_po_files_of_other_tools():
+    """Strings over several lines, quotes, comments; what is empty, fuzzy or obsolete is no translation."""
+    text = """msgid ""
+msgstr "Language: de"
+
+#: panel.py:3
+msgid "a \\"b\\" "
+"c\\n"
+msgstr ""
+"ä "
+"c\\n"
+
+msgid "d"
+msgstr ""
+
+#, python-format, fuzzy
+msgid "e"
+msgstr "f"
+
+#~ msgid "g"
+#~ msgstr "h"
+"""
+    assert read_po(text) == {(ANY, 'a "b" c\n'): "ä c\n"}
+
+
+def test_broken_files_leave_their_languages_english(tmp_path, caplog):
+    broken = (
+        b'msgid "a"',
+        b'msgstr "a"',
+        b'msgid "a"\nmsgstr "b',
+        b'msgid "a"\nmsgstr[0] "b"',
+        b'msgid "a"\nmsgstr "b"\nmsgid "c"\nmsgstr "d"',
+        b'msgid "a"\nmsgstr "b"\n\nmsgid "a"\nmsgstr "c"',
+        b'"a"',
+        b"\xff",
+        b"PK\x03\x04",
+    )
+    for k, data in enumerate(broken):
+        (tmp_path / f"{k}.po").write_bytes(data)
+    (tmp_path / "directory.po").mkdir()
+    shutil.copy(FOLDER / "de.po", tmp_path)
+    assert translations.tables(tmp_path) == {"de": GERMAN}
+    assert len([record for record in caplog.records if "is not used" in record.message]) == len(broken) + 1
+    assert translations.tables(tmp_path / "missing") == {}
 
 
 def test_names_have_our_context_and_blenders_own_properties_do_not():
@@ -108,10 +148,9 @@ def test_blender_is_told_the_tables_and_to_forget_them(monkeypatch):
     told = {}
     monkeypatch.setattr(translations, "translations", SimpleNamespace(register=told.__setitem__, unregister=told.pop))
     translations.register()
-    table = told["mobius_flow.addon.translations"]["de"]
-    assert table[translations.CONTEXT, "Links"] == "Verschlingungen"
-    assert table["*", "What stays"] == "Was bleibt"
-    assert len(table) == sum(len(getattr(LANGUAGES["de"], kind)) for kind in ("LABELS", "TOOLTIPS", "SENTENCES"))
+    assert told == {"mobius_flow.addon.translations": TABLES}
+    assert GERMAN[translations.CONTEXT, "Links"] == "Verschlingungen"
+    assert GERMAN["*", "What stays"] == "Was bleibt"
     translations.unregister()
     assert not told
 
@@ -124,7 +163,7 @@ def test_blender_speaks_german():
 
 
 def german(text):
-    return {**LANGUAGES["de"].LABELS, **LANGUAGES["de"].SENTENCES}[text]
+    return GERMAN[translations.CONTEXT, text]
 
 
 def test_a_refusal_in_german():
@@ -170,11 +209,3 @@ def test_errors_hand_phrases_on():
 def test_what_nobody_has_translated_stays_as_it_is():
     for text in ("a sentence of the core, {with braces}", "5_2"):
         assert translations.rpt_(text) == translations.iface_(text) == translations.tip_(text) == text
-
-
-def test_the_tables_are_written_once():
-    """A key that is there twice would silently win."""
-    for path in sorted((shown_texts.ADDON / "translations").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            keys = [key.value for key in getattr(node, "keys", []) if isinstance(key, ast.Constant)]
-            assert len(set(keys)) == len(keys), path

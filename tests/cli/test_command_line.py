@@ -189,7 +189,7 @@ def test_bad_options_are_one_line(arguments, expected, trefoil, tmp_path, capsys
     ("arguments", "expected"),
     [
         (["--nonsense"], "option --nonsense is unknown"),
-        (["bench"], "{knots,primes,speed}"),
+        (["energy"], "IN"),
     ],
 )
 def test_options_without_a_command_and_commands_without_arguments(arguments, expected, capsys):

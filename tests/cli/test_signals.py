@@ -15,7 +15,6 @@ from mobius_flow.cli import main, outputs, signals
 from mobius_flow.cli.progress import Progress
 from mobius_flow.cli.relax import _interruptible
 from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, Trajectory, read_curve, relax, write_curve
-from mobius_flow.core.bench import SETS, bench
 from mobius_flow.core.driver import finish
 from mobius_flow.core.driver.compare import History, compare
 from mobius_flow.core.system.signals import termination_raises
@@ -247,17 +246,6 @@ def test_memory_that_runs_out_keeps_the_curve(
     assert main([*command, "--max-iterations", "9"]) == 1
     check_results(tmp_path, "stalled")
     assert "memory ran out" in capsys.readouterr().err
-
-
-def test_an_interrupt_ends_the_whole_bench() -> None:
-    curves = {name: SETS["knots"][name] for name in ("3_1", "L2a1")}
-
-    def interrupting(iterate: Iterate) -> None:
-        if iterate.index == 1:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        list(bench(curves, RelaxOptions(), interrupting))
 
 
 @pytest.mark.parametrize(("memory", "status", "said"), [(False, 130, "interrupted"), (True, 1, "not enough memory")])

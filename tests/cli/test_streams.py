@@ -233,14 +233,13 @@ def test_limits_are_looked_at_before_memory_is_taken(command: str, kind: str, tm
 
 
 @pytest.mark.parametrize("count", ["200001", "1000000", "9" * 40])
-@pytest.mark.parametrize("command", ["relax", "compare", "bench"])
+@pytest.mark.parametrize("command", ["relax", "compare"])
 def test_refinement_is_limited(
     count: str, command: str, trefoil: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = {
         "relax": ["relax", str(trefoil), str(tmp_path / "o.txt")],
         "compare": ["compare", str(trefoil), "-o", str(tmp_path / "c.csv")],
-        "bench": ["bench", "knots", "--only", "3_1"],
     }[command]
     assert main([*words, "--vertices", count]) == 2
     assert f"vertices is {count}" in capsys.readouterr().err

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, RelaxOptions, Result, minimize
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, far_field
-from mobius_flow.core.speed import bent_trefoil
 
 LESS_ACCURATE = "the hierarchical solver is less accurate than asked for"
 

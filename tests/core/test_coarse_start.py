@@ -5,12 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hard_curves import hard_unknot
 from mobius_flow.core import Curve, Iterate, Outcome, RelaxOptions, Status, Trajectory, minimize
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.curve.smooth import smoothed
 from mobius_flow.core.driver.interventions import coarse_start
 from mobius_flow.core.driver.rises import Rises
-from mobius_flow.core.knots import hard_unknot, knot, scramble
+from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
 

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from hard_curves import hard_unknot, lattice_closure, unknot_word
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.constraints import ConstraintDerivative
 from mobius_flow.core.curve import refine
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
-from mobius_flow.core.knots import hard_unknot, knot, lattice_closure, unknot_word
+from mobius_flow.core.knots import knot
 from mobius_flow.core.metrics import MoebiusMetric
 from mobius_flow.core.saddle.circulant import Circulants
 from mobius_flow.core.saddle.fourier import ComponentTransform

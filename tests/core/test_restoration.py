@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from descent_contracts import point_on
+from hard_curves import uneven
 from mobius_flow.core import Curve, RelaxOptions, minimize
-from mobius_flow.core.bench import uneven
 from mobius_flow.core.constraints import Constraints, weighted_barycenter
 from mobius_flow.core.descent.constrained import Constrained
 from mobius_flow.core.saddle import TangentSpace

@@ -1,6 +1,7 @@
 """The options solver and accuracy: what they promise, and what they do not go together with."""
 
 import pytest
+from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, Iterate, Objective, OptionError, RelaxOptions, relax
 from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.prepare import start_problem
@@ -8,7 +9,6 @@ from mobius_flow.core.driver.run import Run
 from mobius_flow.core.driver.solver import DENSE_UP_TO, HIERARCHICAL_FROM
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
 from mobius_flow.core.knots import knot
-from mobius_flow.core.speed import bent_trefoil
 from shapes import torus_trefoil
 
 

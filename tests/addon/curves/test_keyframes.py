@@ -113,8 +113,8 @@ def test_thinning_keeps_first_and_last():
 
 
 def test_thinned_keys_are_proved(capfd):
+    from hard_curves import hard_unknot
     from mobius_flow.core.collision import is_free
-    from mobius_flow.core.knots import hard_unknot
 
     curve = hard_unknot(8, seed=3, vertices=80)
     obj = add_curve([curve.vertices])

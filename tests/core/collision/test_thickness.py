@@ -4,9 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from hard_curves import rope
 from mobius_flow.core import Curve
 from mobius_flow.core.collision.thickness import bending_radii, thickness
-from mobius_flow.core.knots import knot, rope, smooth_knot
+from mobius_flow.core.knots import knot, smooth_knot
 
 
 def slow_thickness(curve: Curve, count: int = 20) -> float:

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from hard_curves import hard_unknot
 from mobius_flow.core.diagrams import Diagram, factors, is_least, jones, shuffled_down, simplified, views
 from mobius_flow.core.diagrams.faces import Faces
 from mobius_flow.core.diagrams.nugatory import without_nugatory
 from mobius_flow.core.diagrams.reduction import reduced
 from mobius_flow.core.diagrams.rerouting import shortened, shuffled
-from mobius_flow.core.knots import braid_word, hard_unknot, knot, scramble
+from mobius_flow.core.knots import braid_word, knot, scramble
 from mobius_flow.core.knots.braid_diagrams import braid_diagram
 
 NAMES = ["0_1", "3_1", "m5_2", "8_19", "10_132", "L2a1", "L6a4", "L7n1", "3_1#m4_1"]

@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.descent import Point
@@ -13,7 +14,6 @@ from mobius_flow.core.energies.near_pairs import replaced_pairs
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, SampledErrors, moebius_energy, reported
 from mobius_flow.core.hierarchy.sampling import energy_error, sampled_edges, slope_error
 from mobius_flow.core.knots import knot
-from mobius_flow.core.speed import bent_trefoil
 from shapes import chain_of_rings, graded_trefoil, torus_trefoil
 
 CURVES = {

@@ -4,9 +4,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from hard_curves import hard_unknot, spiral
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.diagrams.alexander import _matrices, values
-from mobius_flow.core.knots import hard_unknot, knot, scramble, spiral, torus_knot
+from mobius_flow.core.knots import knot, scramble, torus_knot
 from mobius_flow.core.knots.alexander import FIELD, signature
 from mobius_flow.core.knots.braid_diagrams import braid_diagram
 from shapes import hopf_link, regular_polygon

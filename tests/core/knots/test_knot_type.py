@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hard_curves import hard_unknot, lattice_closure
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.knots import (
     HARD_UNKNOTS,
@@ -9,16 +10,14 @@ from mobius_flow.core.knots import (
     KnotType,
     braid_closure,
     braid_word,
-    hard_unknot,
     knot,
     knot_type,
-    lattice_closure,
     scramble,
     smooth_knot,
 )
-from mobius_flow.core.knots.catalogue import AMPHICHEIRAL, crossing_number
+from mobius_flow.core.knots.catalogue import crossing_number
 from mobius_flow.core.knots.knot_type import MAX_VERTICES
-from mobius_flow.core.knots.table import ROLFSEN
+from mobius_flow.core.knots.table import AMPHICHEIRAL, ROLFSEN
 
 # The one prime knot to ten crossings whose mirror image has the same invariants of all those that are computed.
 UNTOLD = {"10_71": ("10_71", "m10_71"), "m10_71": ("10_71", "m10_71")}

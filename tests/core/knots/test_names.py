@@ -16,9 +16,7 @@ from mobius_flow.core.knots import (
     knot,
     knot_names,
     lissajous_knot,
-    rope,
     smooth_knot,
-    spiral,
 )
 
 SAME = {
@@ -106,8 +104,6 @@ MAKERS = {
     "diagram": lambda n: knot("goeritz", n),
     "smooth": lambda n: smooth_knot("3_1", n),
     "lissajous": lambda n: lissajous_knot((3, 2, 7), vertices=n),
-    "spiral": lambda n: spiral(2.0, n),
-    "rope": lambda n: rope(2.0, 0.1, n),
 }
 
 

@@ -11,30 +11,22 @@ from dataclasses import dataclass, replace
 from statistics import fmean, median
 
 import numpy as np
+from hard_curves import bent_trefoil
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Task
+from mobius_flow.core.descent import NoStep, Point, Step
+from mobius_flow.core.descent.methods import METRIC_STEPS
+from mobius_flow.core.descent.step import leg
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.run import Run
+from mobius_flow.core.energies.near_pairs import near_pairs
+from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
 
-from .curve import Curve
-from .descent import NoStep, Point, Step
-from .descent.methods import METRIC_STEPS
-from .descent.step import leg
-from .driver import RelaxOptions
-from .driver.prepare import start_problem
-from .driver.run import Run
-from .driver.solver import max_vertices
-from .energies.near_pairs import near_pairs
-from .errors import OptionError
-from .hierarchy import HierarchicalMoebiusEnergy
-from .knots import torus_knot
-from .task import Task
-
-SIZES = (200, 592, 1000, 2000, 5000, 10_000)
-MIN_SIZE = 60  # vertices with which the bent knot is still a trefoil
 MAX_COMPARED = 3000  # vertices up to which the hierarchical solver is compared with the dense one
 ASYMPTOTIC = 2000  # vertices from which times are expected to follow a power law
 ROUNDS = 5  # of which the median counts
 GROUPS = 3  # of METRIC_STEPS iterations each: methods that keep their metric for so many make it once in a group
 PRODUCT = 1000  # rows of the matrices whose product is timed
 COPY = 100_000_000  # bytes
-_BEND = 0.3  # the knot is 3 wide and its edges still differ by less than EVEN_RATIO, so that they are to be made equal
 
 
 @dataclass(frozen=True)
@@ -106,43 +98,10 @@ class Row:
     deviation: Deviation | None
 
 
-def bent_trefoil(vertices: int) -> Curve:
-    """A torus knot T(2, 3) after three shears of space, which keep its type."""
-    x, y, z = torus_knot(2, 3, vertices).vertices.T
-    x = x + _BEND * np.sin(2.0 * z + 1.0)
-    z = z + _BEND * np.sin(2.0 * y)
-    y = y + _BEND * np.sin(2.0 * x)
-    return Curve(np.stack([x, y, z], axis=1))
-
-
-def fixed_mesh(sizes: Sequence[int], options: RelaxOptions) -> RelaxOptions:
-    """The options with which sizes are measured, whose vertices stay; what cannot be measured is refused beforehand.
-
-    Raises
-    ------
-    OptionError
-        If there are none, one is too small, too large for the solver, or there twice; or if vertices are not to stay.
-    """
-    if not sizes:
-        raise OptionError("sizes is empty; give numbers of vertices, such as 200,1000,5000")
-    if min(sizes) < MIN_SIZE:
-        raise OptionError(f"sizes has {min(sizes)}; the curve needs {MIN_SIZE} vertices or more")
-    twice = next((size for size in sizes if sizes.count(size) > 1), None)
-    if twice is not None:
-        raise OptionError(f"sizes has {twice} twice; give every number of vertices once")
-    if options.vertices is not None or options.mesh not in ("auto", "fixed"):
-        raise OptionError("the speed is that of fixed meshes; give sizes in place of vertices or another mesh")
-    most = max_vertices(options, max(sizes))
-    if max(sizes) > most:
-        raise OptionError(f"sizes has {max(sizes)!s:.40}; {options.method} has room and time for {most} vertices")
-    return replace(options, mesh="fixed")
-
-
 def speed(sizes: Sequence[int], options: RelaxOptions) -> Iterator[Row]:
-    """Measure one size after the other; raises as `fixed_mesh` does."""
-    wanted = fixed_mesh(sizes, options)
+    """Measure one size after the other, with options whose mesh is fixed."""
     for size in sizes:
-        yield _row(bent_trefoil(size), replace(wanted, vertices=size))
+        yield _row(bent_trefoil(size), replace(options, vertices=size))
 
 
 def exponents(rows: Sequence[Row]) -> dict[str, float]:
@@ -165,7 +124,7 @@ def _row(curve: Curve, options: RelaxOptions) -> Row:
     hierarchical = isinstance(run.problem.objective.energy, HierarchicalMoebiusEnergy)
     start, step = run.point, run.step()
     if isinstance(step, NoStep):
-        raise OptionError(f"method {options.method} has no step to measure: {step.reason}")
+        raise MobiusFlowError(f"method {options.method} has no step to measure: {step.reason}")
     rounds = [{name: _seconds(task) for name, task in _phases(start, step, options)} for _ in range(ROUNDS)]
     seconds = {name: median(each[name] for each in rounds) for name in rounds[0]}
     return Row(

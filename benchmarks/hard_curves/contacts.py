@@ -3,11 +3,8 @@
 import math
 
 import numpy as np
-
-from ..curve import Curve
-from ..errors import CurveError
-from ..types import FloatArray
-from .rings import MAX_VERTICES, check_whole
+from mobius_flow.core import Curve
+from mobius_flow.core.types import FloatArray
 
 
 def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> Curve:
@@ -24,23 +21,18 @@ def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> C
 
     Raises
     ------
-    CurveError
-        If a number is not allowed, or the vertices are too few for strands to stay apart.
+    ValueError
+        If the vertices are too few for strands to stay apart.
     """
-    if not 0.5 <= turns <= 500:
-        raise CurveError(f"turns is {turns}; it must be between 0.5 and 500")
-    if not abs(rise) <= 100:
-        raise CurveError(f"rise is {rise}; it must be between -100 and 100")
     smooth = _lifted(_double_spiral(turns), rise)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(smooth, axis=0), axis=1))])
     gap = 1 / (2 * turns + 1)
     # An edge of length h leaves a curve of curvature κ by at most κh²/8; here κ is at most 2π/gap, in the
     # middle, and strands can't meet while that is below gap/2.
     fewest = math.ceil(along[-1] / (0.75 * gap))
-    check_whole(vertices)
     vertices = max(60, math.ceil(along[-1] / (0.6 * gap))) if vertices is None else vertices
-    if not fewest <= vertices <= MAX_VERTICES:
-        raise CurveError(f"vertices is {vertices}; a spiral of {turns} turns takes {fewest} to {MAX_VERTICES}")
+    if vertices < fewest:
+        raise ValueError(f"vertices is {vertices}; a spiral of {turns} turns takes {fewest}")
     marks = np.linspace(0.0, along[-1], vertices + 1)[:-1]
     flat = np.stack([np.interp(marks, along, coordinate) for coordinate in smooth[:, :2].T], axis=1)
     return Curve(_lifted(flat, rise))
@@ -80,19 +72,14 @@ def rope(twists: float, gap: float, vertices: int = 200) -> Curve:
 
     Raises
     ------
-    CurveError
-        If a number is not allowed, or the vertices are fewer than 8 per twist.
+    ValueError
+        If the vertices are odd, or fewer than 8 per twist.
     """
-    if not 0 < gap <= 1:
-        raise CurveError(f"gap is {gap}; it must be above 0 and at most 1")
-    check_whole(vertices)
-    if vertices < 8 or vertices % 2 or vertices > MAX_VERTICES:
-        raise CurveError(f"vertices is {vertices}; it must be even, from 8 to {MAX_VERTICES}")
     steps = (vertices - 4) // 2
     # Cross-sections of the two strands are opposite each other, so they can't meet while an edge turns
     # by less than half a turn; a quarter leaves them a good part of the gap.
-    if not abs(twists) <= steps / 4:
-        raise CurveError(f"twists is {twists}; {vertices} vertices can follow at most {steps / 4:g}")
+    if vertices % 2 or abs(twists) > steps / 4:
+        raise ValueError(f"vertices is {vertices}; a rope of {twists} twists takes an even number, 8 per twist")
     x = np.linspace(-1.0, 1.0, steps + 1)
     angle = math.pi * twists * x
     strand = np.stack([x, gap / 2 * np.cos(angle), gap / 2 * np.sin(angle)], axis=1)

@@ -1,11 +1,9 @@
 """Unknots that don't look it: closures of long braid words that stand for the trivial knot."""
 
 import numpy as np
-
-from ..curve import Curve
-from ..errors import CurveError
-from .braids import MAX_LETTERS, Word, is_reduced
-from .closures import braid_closure
+from mobius_flow.core import Curve
+from mobius_flow.core.knots.braids import Word
+from mobius_flow.core.knots.closures import braid_closure
 
 _MOVES_PER_LETTER = 4
 _MAX_TRIALS = 500  # insertions tried per letter
@@ -28,7 +26,7 @@ def hard_unknot(crossings: int, seed: int, vertices: int | None = None, *, stran
 
     Raises
     ------
-    CurveError
+    ValueError
         If no such braid exists.
 
     Examples
@@ -66,15 +64,13 @@ def _strand_count(crossings: int) -> int:
 
 
 def _check(crossings: int, strands: int) -> None:
-    if not 0 <= crossings <= MAX_LETTERS // 10:
-        raise CurveError(f"crossings is {crossings}; it must be between 0 and {MAX_LETTERS // 10}")
     if not 1 <= strands <= crossings + 1 or (crossings - strands) % 2 == 0:
-        raise CurveError(
+        raise ValueError(
             f"no unknot is the closure of a braid of {strands} strands and {crossings} crossings; "
             "strands must be at most one more than crossings, and differ from that by an even number"
         )
     if strands <= 2 and crossings != strands - 1:
-        raise CurveError(f"on {strands} strands every trivial word cancels; {crossings} crossings need 3 or more")
+        raise ValueError(f"on {strands} strands every trivial word cancels; {crossings} crossings need 3 or more")
 
 
 def _signed(letter: int, rng: np.random.Generator) -> int:
@@ -91,9 +87,9 @@ def _grown(word: list[int], length: int, largest: int, rng: np.random.Generator)
         trial = [*word[:place], letter, -letter, *word[place:]]
         for start in (place + rng.integers(-_NEARBY, _NEARBY, size=2 * _NEARBY)).tolist():
             _relate(trial, start)
-        if is_reduced(trial):
+        if _is_reduced(trial):
             word = trial
-    raise CurveError(f"no braid of {length} crossings was found with this seed and these strands; change one of them")
+    raise ValueError(f"no braid of {length} crossings was found with this seed and these strands; change one of them")
 
 
 def _rarer(word: list[int], letters: list[int]) -> int:
@@ -106,7 +102,7 @@ def _mix(word: list[int], rng: np.random.Generator) -> None:
     for start in rng.integers(len(word), size=_MOVES_PER_LETTER * len(word)).tolist():
         old = list(word)
         _relate(word, start)
-        if word != old and not is_reduced(word):
+        if word != old and not _is_reduced(word):
             word[:] = old
 
 
@@ -131,3 +127,18 @@ def _related(a: int, b: int, c: int) -> tuple[int, int, int]:
     if a * b > 0:  # σᵢ σⱼ σᵢ = σⱼ σᵢ σⱼ
         return (j, i, j) if a > 0 else (-j, -i, -j)
     return a, b, c
+
+
+def _is_reduced(word: list[int]) -> bool:
+    """Whether no two letters of the closed braid cancel as they stand."""
+    return not any(_cancels(word, place) for place in range(len(word)))
+
+
+def _cancels(word: list[int], place: int) -> bool:
+    """Whether a letter meets its inverse further on, round the end too, past letters it commutes with."""
+    letter = word[place]
+    for step in range(1, len(word)):
+        other = word[(place + step) % len(word)]
+        if abs(abs(other) - abs(letter)) < 2:
+            return other == -letter
+    return False

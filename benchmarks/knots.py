@@ -1,0 +1,88 @@
+"""Relax hard curves, and compare their knot types before and after.
+
+    OPENBLAS_NUM_THREADS=1 python benchmarks/knots.py knots --only unknot-lattice-40,8_19
+    OPENBLAS_NUM_THREADS=1 python benchmarks/knots.py primes
+
+``knots`` are hard curves of all kinds, unknots of up to 141 crossings among them; ``primes`` are the knots to ten
+crossings and the links of the table, as coarse lattice polygons. The column "energy" is the Möbius energy of the
+result, as mobius-flow energy prints it. Exit status 1: a type changed, an unknot is no circle, or a proof is missing.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+from hard_curves import hard_unknot, lattice_knot, lattice_unknot, rope, spiral, uneven
+from mobius_flow.cli import options as relax_options
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Status, minimize
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, scramble, torus_knot
+from mobius_flow.core.knots.alexander import signature
+
+CIRCLE = 4.02  # energy below which an unknot counts as a circle
+
+Curves = Mapping[str, Callable[[], Curve]]
+HARD: Curves = {
+    **{f"unknot-{c}": partial(hard_unknot, c, seed=c) for c in (20, 60, 100, 141)},
+    **{f"unknot-lattice-{c}": partial(lattice_unknot, c, seed=c) for c in (20, 40, 60, 80, 100, 120, 141)},
+    **{
+        f"unknot-{name}": partial(knot, name) for name in HARD_UNKNOTS if name != "haken"
+    },  # whose 141 crossings it takes more vertices to untangle
+    "unknot-scrambled": lambda: scramble(knot("0_1"), seed=11),
+    "unknot-spiral": lambda: spiral(6.0),
+    "unknot-rope": lambda: rope(6.0, 0.02),
+    "unknot-edges-1000": lambda: uneven(hard_unknot(20, seed=3), 1000.0, seed=5),
+    **{name: partial(lattice_knot, name) for name in ("3_1", "6_2", "7_7", "8_19", "9_35", "10_132")},
+    "4_1-scrambled": lambda: scramble(knot("4_1"), seed=7),
+    "torus-3-5": lambda: torus_knot(3, 5),
+    **{name: partial(lattice_knot, name) for name in ("L2a1", "L5a1", "L6a4")},
+}
+PRIMES: Curves = {name: partial(lattice_knot, name) for name in KNOTS if name != "0_1"}
+SETS = {"knots": HARD, "primes": PRIMES}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print a row for each curve."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("set", choices=SETS, help="hard curves of all kinds, or the table")
+    parser.add_argument("--only", metavar="A,B,…", help=f"names, comma separated, such as {', '.join(HARD)}")
+    relax_options.add_to(parser)
+    given = parser.parse_args(arguments)
+    curves = SETS[given.set]
+    names = [name.strip() for name in given.only.split(",")] if given.only else list(curves)
+    unknown = [name for name in names if name not in curves]
+    if unknown:
+        parser.error(f"curve {unknown[0]!r} is unknown; choose from {', '.join(curves)}")
+    try:
+        wanted = relax_options.from_arguments(given)
+        width = max(map(len, ["curve", *names]))
+        print(
+            f"{'curve':{width}} {'vertices':>11} {'type':>8} {'energy':>12} {'steps':>6} {'seconds':>8}  "
+            "certified  status"
+        )
+        good = [row(name, curves[name](), wanted, width) for name in names]
+    except MobiusFlowError as error:
+        parser.error(str(error))
+    return 0 if all(good) else 1
+
+
+def row(name: str, curve: Curve, options: RelaxOptions, width: int) -> bool:
+    """Relax a curve and print what became of it; whether it is what it should be."""
+    result = minimize(curve, options)
+    if result.status is Status.INTERRUPTED:  # an interrupt ends the bench, not only the curve at hand
+        raise KeyboardInterrupt
+    before, after = signature(curve), signature(result.curve)
+    is_knot = len(curve.mesh.component_sizes) == 1
+    kind = "CHANGED" if before != after else "unknot" if after.is_trivial and is_knot else "kept"
+    print(
+        f"{name:{width}} {f'{len(curve)} → {len(result.curve)}':>11} {kind:>8} {result.final_energy:12.6f} "
+        f"{len(result.energies) - 1:6d} {result.seconds:8.1f}  {'yes' if result.certified else 'NO':9}  "
+        f"{result.status.value}",
+        flush=True,
+    )
+    round_circle = not name.startswith("unknot") or result.final_energy < CIRCLE
+    return before == after and result.certified and round_circle
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,86 @@
+"""The curves of the benchmarks are of the types that they say they are, free of contact, and awkward as asked for."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from braid_words import burau_alexander
+from curve_checks import strand_distance
+from hard_curves import bent_trefoil, hard_unknot, lattice_closure, rope, spiral, unknot_word
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from knot_type import UNKNOT, knot_invariants
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.knots import KNOTS, braid_closure, knot, scramble
+from mobius_flow.core.knots.alexander import signature
+
+WORDS = {name: KNOTS[name] for name in ("0_1", "3_1", "4_1", "8_19", "10_132", "L2a1", "L5a1", "L6a4")}
+WORDS |= {f"unknot {c}": unknot_word(c, seed=c) for c in (20, 141)}
+
+
+@pytest.mark.parametrize(("crossings", "seed"), [(0, 1), (1, 1), (2, 1), (5, 3), (10, 3), (30, 7)])
+def test_hard_unknots_are_unknots(crossings, seed):
+    assert knot_invariants(hard_unknot(crossings, seed).vertices) == UNKNOT
+
+
+@given(crossings=st.integers(0, 60), seed=st.integers(0, 2**32))
+@settings(max_examples=30, deadline=None)
+def test_words_are_long_reduced_and_trivial(crossings, seed):
+    word = unknot_word(crossings, seed)
+    assert len(word) == crossings
+    assert burau_alexander(word, max(map(abs, word), default=0) + 1) == (1,)
+    assert all(a != -b for a, b in pairwise(word + word[:1]))
+
+
+def test_the_seed_decides():
+    assert np.array_equal(hard_unknot(20, 7).vertices, hard_unknot(20, 7).vertices)
+    assert unknot_word(20, 7) != unknot_word(20, 9)
+
+
+@pytest.mark.parametrize(("crossings", "strands"), [(10, 4), (4, 7), (5, 2)])
+def test_impossible_words(crossings, strands):
+    with pytest.raises(ValueError, match="strands"):
+        unknot_word(crossings, 1, strands=strands)
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.7])
+@pytest.mark.parametrize("turns", [0.5, 2.5])
+def test_spirals_are_unknots_with_strands_apart(turns, rise):
+    curve = spiral(turns, rise=rise)
+    assert strand_distance(curve, apart=3) > min(0.5 / (2 * turns + 1), 2.5 * curve.edge_lengths.max())
+    assert knot_invariants(curve.vertices + 0.01 * curve.vertices[:, :1] ** 2 * [0, 0, 1]) == UNKNOT
+
+
+@pytest.mark.parametrize("gap", [0.2, 1e-9])
+@pytest.mark.parametrize("twists", [0.0, 3.0, -7.5])
+def test_ropes_are_unknots_with_strands_as_near_as_asked(twists, gap):
+    curve = rope(twists, gap, vertices=100)
+    opposite = np.linalg.norm(curve.vertices[:49] - curve.vertices[50:99][::-1], axis=1)
+    assert opposite == pytest.approx(gap)
+    assert knot_invariants(curve.vertices * [1, 1 / gap, 1 / gap]) == UNKNOT
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_lattice_polygons_turn_at_every_vertex_and_have_the_type_of_the_smooth_closure(name):
+    curve = lattice_closure(WORDS[name])
+    check_embedded(curve)
+    assert signature(curve) == signature(braid_closure(WORDS[name]))
+    assert np.array_equal(curve.vertices, np.round(curve.vertices))
+    assert np.all(np.count_nonzero(curve.edge_vectors, axis=1) == 1)
+    assert np.all(np.einsum("ij,ij->i", curve.edge_vectors, curve.edge_vectors[curve.mesh.previous]) == 0)
+
+
+def test_lattice_links_have_the_sign_of_their_braids():
+    assert signature(lattice_closure([1, 1])).linking == (1,)
+    assert signature(lattice_closure([-1, -1])).linking == (-1,)
+
+
+def test_the_bent_trefoil_is_one():
+    curve = bent_trefoil(60)
+    check_embedded(curve)
+    assert signature(curve) == signature(knot("3_1"))
+    assert curve.edge_lengths.max() > 2.0 * curve.edge_lengths.min()
+
+
+def test_a_scrambled_hard_unknot():
+    assert knot_invariants(scramble(hard_unknot(12, 3), 5).vertices) == UNKNOT
