@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import partial
 
-import degenerate_motions
 import motions
 import numpy as np
 import pytest
@@ -83,7 +82,7 @@ def meeting_ones(frames: FloatArray, mesh: Mesh) -> set[int]:
 
 
 def refused(frames: FloatArray, mesh: Callable[[int], Mesh]) -> Iterator[int]:
-    """Which motions `is_free` refuses; those that it does not, it is asked about together, as long as there are many."""
+    """Which motions `is_free` refuses: asked about many together, and about halves if it refuses these."""
     count = frames.shape[1]
     if is_free(mesh(count), *frames.reshape(2, 4 * count, -1)):
         return
