@@ -147,7 +147,7 @@ def test_a_degenerate_trial_is_one_that_leads_nowhere(plain: Recorded, monkeypat
 def test_a_way_is_certified_only_if_all_its_steps_are() -> None:
     def unproved(point: Point, rng: np.random.Generator) -> Iterator[Step]:
         step = next(MOTIONS[0](point, rng))
-        yield replace(step, legs=tuple(replace(leg, proof=FreeMotion(1.0, limit=Limit.UNTESTED)) for leg in step.legs))
+        yield replace(step, legs=tuple(leg._replace(proof=FreeMotion(1.0, limit=Limit.UNTESTED)) for leg in step.legs))
 
     options = replace(OPTIONS, max_iterations=2)
     run = Run(start_problem(saddle(), options), saddle(), options)
