@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ from .curve.io.source import Source
 from .errors import CurveError, CurveFileError
 from .obstacle import Obstacle
 from .triangulation import Triangle, triangulated
+
+_MAX_CUTTING = 1 << 24  # squares of the faces' numbers of corners, together: seconds; one face of 4,096 corners
 
 
 def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
@@ -44,6 +47,7 @@ def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
 
 def _from_obj(source: Source) -> Obstacle:
     content = parsed(source)
+    _check_corners(source, content.faces)
     triangles = [triangle for face in content.faces for triangle in _triangles(source, content, face)]
     segments = [(link.tail, link.head) for link in content.links]
     if not triangles and not segments:
@@ -53,6 +57,17 @@ def _from_obj(source: Source) -> Obstacle:
         return Obstacle(content.points, simplices, source.path.name)
     except CurveError as error:
         raise source.error(str(error).removeprefix(f"{source.path.name}: ")) from error
+
+
+def _check_corners(source: Source, faces: Sequence[Face]) -> None:
+    """Refuse faces that would take long to cut into triangles, which takes time like the square of their corners."""
+    for face, work in zip(faces, accumulate(len(face.words) ** 2 for face in faces), strict=True):
+        if work > _MAX_CUTTING:
+            raise source.error(
+                f"a face with {len(face.words)} corners takes too long to cut into triangles after those before it; "
+                "triangulate the mesh before exporting it",
+                face.line,
+            )
 
 
 def _triangles(source: Source, content: Content, face: Face) -> list[Triangle]:

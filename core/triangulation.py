@@ -1,6 +1,6 @@
 """Polygons in space cut into triangles, as for the faces of a mesh."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 Point = Sequence[float]
@@ -21,13 +21,30 @@ def triangulated(points: Sequence[Point]) -> list[Triangle]:
     The indices of the k − 2 triangles' vertices.
     """
     flat = _flat(points) if len(points) > 3 else []
-    left = list(range(len(points)))
-    triangles: list[Triangle] = []
+    before, after = [len(points) - 1, *range(len(points) - 1)], [*range(1, len(points)), 0]
+
+    def is_convex(k: int) -> bool:
+        return _turn(flat[before[k]], flat[k], flat[after[k]]) > 0.0
+
+    left, triangles = dict.fromkeys(range(len(points))), list[Triangle]()
+    others = {k for k in left if flat and not is_convex(k)}  # if any vertex lies in a corner, one of these does
+    candidates = [*left]  # cutting off an ear makes new ones of its neighbours only
     while len(left) > 3:
-        k = next((k for k in range(len(left)) if _is_ear(flat, left, k)), 1)
-        triangles.append(_corner(left, k))
+        # Where there is no ear, the polygon crosses itself or has no area, and any corner will do.
+        sure = not candidates
+        k = next(iter(left)) if sure else candidates.pop()
+        i, j = before[k], after[k]
+        if not sure and (k not in left or k in others or _holds((flat[i], flat[k], flat[j]), flat, others)):
+            continue
+        triangles.append((i, k, j))
+        after[i], before[j] = j, i
         del left[k]
-    return [*triangles, _corner(left, 1)]
+        others.discard(k)
+        for neighbour in (i, j):
+            (others.discard if is_convex(neighbour) else others.add)(neighbour)
+        candidates += (i, j)
+    i, j, k = left
+    return [*triangles, (i, j, k)]
 
 
 def _flat(points: Sequence[Point]) -> list[Point]:
@@ -43,15 +60,10 @@ def _turn(a: Point, b: Point, c: Point) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _corner(left: list[int], k: int) -> Triangle:
-    return left[k - 1], left[k], left[(k + 1) % len(left)]
-
-
-def _is_ear(flat: list[Point], left: list[int], k: int) -> bool:
-    """Whether a corner is convex and no other vertex lies in its triangle."""
-    corner = _corner(left, k)
-    u, v, w = (flat[each] for each in corner)
-    if _turn(u, v, w) <= 0.0:
-        return False
-    others = (flat[each] for each in left if each not in corner)
-    return not any(_turn(u, v, p) >= 0.0 and _turn(v, w, p) >= 0.0 and _turn(w, u, p) >= 0.0 for p in others)
+def _holds(corner: tuple[Point, Point, Point], flat: Sequence[Point], others: Iterable[int]) -> bool:
+    """Whether a triangle holds one of the other points, on its edges or in it, but for those at its vertices."""
+    u, v, w = corner
+    return any(
+        _turn(u, v, p) >= 0.0 and _turn(v, w, p) >= 0.0 and _turn(w, u, p) >= 0.0 and p not in corner
+        for p in map(flat.__getitem__, others)
+    )

@@ -174,3 +174,42 @@ KINDS: tuple[Callable[[Rng], Motion], ...] = (
     lattice,
     standing,
 )
+
+ARCS = 32  # more than a tree has roots: boxes above the leaves hold two edges each
+
+
+def tied_windows(rng: Rng) -> Motion:
+    """Arcs of two vertices, shape (2 ARCS, 3), the first and the third of which go through each other.
+
+    To the last bit or two, the boxes of these arcs meet when the larger boxes do that hold their neighbours too, and
+    when the fastest vertex has moved by a mean edge length, up to which time a search may look for contacts first.
+    """
+    before, after, smaller = _tie(rng)
+    start = np.zeros((ARCS, 2, 3))
+    start[0, :, 1] = -0.001, 0.001
+    start[1, :, 0], start[1, :, 1] = before - smaller, (-0.021, -0.02)
+    start[2:4, :, 0], start[2:4, :, 2], start[3, :, 1] = before, (-0.01, 0.01), 0.02
+    end = start.copy()
+    end[:4, :, 0] = np.array([after, after / 2, 0.0, before / 2])[:, None]
+    speed = np.reshape(end - start, (-1, 3)).T
+    fastest = np.abs(speed - speed.mean(axis=1, keepdims=True)).max()
+    # The other arcs stand apart, and make the mean length what it must be.
+    meeting = rng.choice([before / (before + after), 1 / (1 + after / before)])
+    length = fastest * (meeting * (1 - 16 * np.finfo(float).eps))
+    k = np.arange(4, ARCS)[:, None]
+    start[4:, :, 0], start[4:, :, 1] = -0.3 - 0.02 * k, -0.3 - 0.02 * (k % 4)
+    start[4:, :, 2] = -0.9, length * ARCS / (ARCS - 4) - 0.9
+    for _ in range(4):
+        start[-1, 1, 2] += ARCS * (length - np.linalg.norm(start[:, 1] - start[:, 0], axis=1).mean())
+    end[4:] = start[4:]
+    scale = 2.0 ** rng.integers(-30, 30)
+    return scale * start.reshape(-1, 3), scale * end.reshape(-1, 3)
+
+
+def _tie(rng: Rng) -> tuple[float, float, float]:
+    """Sizes of a gap before and after it closes, and a smaller one before, of which the rounded quotient is larger."""
+    while True:
+        before, after = rng.uniform(0.2, 0.6), rng.uniform(0.3, 0.9)
+        smaller = before - rng.integers(1, 4) * np.spacing(before / 2)
+        if smaller / (smaller + after) > before / (before + after):
+            return before, after, smaller

@@ -7,6 +7,7 @@ DIRECTIONS, CLAIMS = "tests/core/descent/test_directions.py", "tests/core/descen
 FIRST_TRIAL, METRIC_AGE = "tests/core/descent/test_first_trial.py", "tests/core/descent/test_metric_age.py"
 RESTORATION, ADAPTIVE = "tests/core/test_restoration.py", "tests/core/test_adaptive.py"
 AVOID, OBSTACLES = "tests/core/test_avoid.py", "tests/core/collision/test_obstacles_exactly.py"
+WINDOWS = "tests/core/collision/test_windows.py"
 CERTIFICATE, VERIFY, GROW = "tests/core/test_certificate.py", "tests/core/verify", "tests/core/test_grow.py"
 
 
@@ -220,8 +221,8 @@ MUTANTS = (
     Mutant(
         "ends of edges through triangles",
         "core/collision/exact_triangle.py",
-        "for way in ways if way is not None]",
-        "for way in ways if way is True]",
+        "end[k], start[2:]) for k in (0, 1)]",
+        "end[k], start[2:]) for k in ()]",
         OBSTACLES,
     ),
     Mutant(
@@ -349,5 +350,68 @@ MUTANTS = (
         "        signals.hold()\n        yield iterate",
         "        yield iterate",
         "tests/cli/test_signals.py::test_signals_wait_while_an_iterate_is_recorded",
+    ),
+    Mutant(
+        "larger boxes that meet later, by rounding",
+        "core/collision/boxes.py",
+        "root = 1 / (1 - after / before)",
+        "root = before / (before - after)",
+        f"{WINDOWS}::test_no_crossing_slips_through_where_the_search_is_split",
+    ),
+    Mutant(
+        "boxes that lose digits",
+        "core/collision/boxes.py",
+        ", axis=1) + UNDERFLOW)",
+        ", axis=1))",
+        f"{WINDOWS}::test_digits_that_scaling_costs_hide_no_crossing",
+    ),
+    Mutant(
+        "obstacles outside of boxes",
+        "core/verify/obstacles.py",
+        "ends.min(axis=0) - 4 * clearance, ends.max(axis=0) + 4 * clearance",
+        "ends.min(axis=0), ends.max(axis=0)",
+        f"{VERIFY}/test_obstacles.py::test_obstacles_outside_of_all_boxes_are_checked_where_rounding_moves_an_edge",
+    ),
+    Mutant(
+        "planes without rounding errors",
+        "core/verify/filter.py",
+        "value -= error + (",
+        "value -= 0.0 * error + (",
+        f"{VERIFY}/test_filter.py::test_an_end_on_an_edge_is_doubtful_whichever_way_is_rounded",
+    ),
+    Mutant(
+        "exact decisions without end",
+        "core/verify/check.py",
+        "if self.decided > ",
+        "if self.decided < 0.0 * ",
+        f"{VERIFY}/test_verify.py::test_decisions_about_numbers_of_very_different_size_count_for_more",
+    ),
+    Mutant(
+        "vertices that change places on an edge",
+        "core/verify/transition.py",
+        "parameter < at < 1 and",
+        "0 <= at <= 1 and",
+        f"{VERIFY}/test_transitions.py::test_vertices_on_an_edge_follow_each_other_between_its_ends",
+    ),
+    Mutant(
+        "ears without area",
+        "core/triangulation.py",
+        "flat[after[k]]) > 0.0",
+        "flat[after[k]]) >= 0.0",
+        "tests/core/test_obstacle.py::test_vertices_within_straight_edges_are_corners_of_triangles_with_area",
+    ),
+    Mutant(
+        "faces of any size",
+        "core/obstacle_files.py",
+        "if work > _MAX_CUTTING:",
+        "if False:",
+        "tests/core/test_obstacle.py::test_faces_with_thousands_of_corners",
+    ),
+    Mutant(
+        "hops by unproved steps",
+        "core/driver/hops/trial.py",
+        "certified = relaxing.iterate.certified and all(step.certified for step in steps)",
+        "certified = relaxing.iterate.certified",
+        "tests/core/test_hops.py::test_a_way_is_certified_only_if_all_its_steps_are",
     ),
 )

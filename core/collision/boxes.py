@@ -8,6 +8,7 @@ import numpy as np
 from ..curve import Mesh
 from ..curve.ordering import component_order
 from ..types import BoolArray, FloatArray, IntArray
+from .planes import UNDERFLOW
 
 CHUNK = 1 << 14  # pairs of boxes handled at once: bounds the memory whatever the curve
 _ROOTS = 24  # the coarsest level has at most this many boxes; above it a tree only costs calls
@@ -71,9 +72,12 @@ class BoxTree:
 
     @classmethod
     def over(cls, order: IntArray, corners: IntArray, points: FloatArray) -> "BoxTree":
-        """Build a tree over simplices; ``points``, shape (2 or 1, m, n), are all vertices at both times, or at all."""
+        """Build a tree over simplices; ``points``, shape (2 or 1, m, n), are all vertices at both times, or at all.
+
+        Boxes are wider than what they hold by a number that counts only where scaling has cost digits.
+        """
         ends = [points[..., vertices] for vertices in corners]
-        upper = _padded(np.concatenate([np.maximum.reduce(ends), -np.minimum.reduce(ends)], axis=1))
+        upper = _padded(np.concatenate([np.maximum.reduce(ends), -np.minimum.reduce(ends)], axis=1) + UNDERFLOW)
         levels = [_level(upper, leaves=True)]
         while upper.shape[2] > _ROOTS:
             upper = _padded(np.maximum(upper[..., 0::2], upper[..., 1::2]))
@@ -126,11 +130,15 @@ def contact_window(gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the times between which moving boxes can overlap, each of shape (pairs,); empty if first > second.
 
     ``gaps`` are the signed gaps of `Level.gaps`. They are linear in time, and boxes overlap only while none is
-    positive. Rounding makes the window wider, never narrower.
+    positive. Rounding makes the window wider, never narrower, and the window of boxes contains those of boxes in them:
+    bounds of the larger boxes are no smaller, sums, quotients and products are rounded monotonically, and each
+    operation below, where its result is used, rises or falls with either gap throughout. So larger gaps never give an
+    earlier ``enter`` or a later ``leave``, to the last bit, and a search may be split at any ``enter``. (The usual
+    before / (before − after) has its operand twice, and is not monotone when rounded.)
     """
     before, after = gaps
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = before / (before - after)  # signs differ where it is used: accurate to a few eps
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        root = 1 / (1 - after / before)  # signs differ where it is used: accurate to a few eps
     enter = np.where(before > 0, np.where(after > 0, np.inf, root), 0.0).max(axis=0)
     leave = np.where((before <= 0) & (after > 0), root, 1.0).min(axis=0)
     return enter * (1 - _SLACK), leave * (1 + _SLACK)

@@ -48,7 +48,10 @@ def clears(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> bool
 
 
 def _near(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> Iterator[tuple[int, FloatArray, Obstacle]]:
-    """Edges and obstacles not certainly further apart than a distance, with the pairs' vertices, shape (5, 3)."""
+    """Edges and obstacles not certainly further apart than a distance, with the pairs' vertices, shape (5, 3).
+
+    Certainly but for the rounding of distances, a few units of the last place: what counts on it leaves more.
+    """
     exponent = int(np.frexp(max(np.abs(curve.vertices).max(), *(each.size for each in obstacles)))[1])
     still = still_triangles(tuple(obstacles), exponent)
     given = np.concatenate([curve.vertices, still.vertices])

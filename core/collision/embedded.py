@@ -98,7 +98,8 @@ def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, i
 def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]:
     """Pairs of edges that no plane separates certainly in floating-point numbers, sorted batch by batch.
 
-    Never all at once: where thousands of edges coincide they are millions, and the first is enough.
+    Never all at once: where thousands of edges coincide they are millions, and the first is enough. No comparison of
+    boxes is rounded: a gap has the sign of the exact difference.
     """
     tree = BoxTree.build(mesh, points, points)
 

@@ -30,8 +30,7 @@ def first_contact_with_triangle(start: FloatArray, end: FloatArray, after: float
     if after <= 0 and crossing(start[0], start[1], start[2:]) is not None:
         return 0.0
     times = [first_contact(start[[0, 1, a, b]], end[[0, 1, a, b]], after) for a, b in EDGES]
-    ways = [crossing(start[k], end[k], start[2:]) for k in (0, 1)]
-    times += [max(way, after) for way in ways if way is not None]
+    times += [crossing(start[k], end[k], start[2:]) for k in (0, 1)]
     return min((time for time in times if time is not None), default=None)
 
 

@@ -98,9 +98,12 @@ def squared_segment_distances(points: FloatArray, vertices: IntArray) -> FloatAr
 
 
 def squared_gaps(signed: FloatArray) -> FloatArray:
-    """Squared distances of boxes at the first time, from their signed gaps along ±each axis."""
-    gaps = np.maximum(signed[0], 0.0)
-    return np.asarray(np.einsum("kp,kp->p", gaps, gaps))
+    """Squared distances of boxes at the first time, from their signed gaps along ±each axis.
+
+    Boxes are never further apart than those in them, to the last bit: gaps are not larger, and each product and sum is
+    rounded monotonically, in the same order for all pairs.
+    """
+    return np.asarray(sum(gap * gap for gap in np.maximum(signed[0], 0.0)))
 
 
 def _some_gap(curve: Curve, points: FloatArray) -> tuple[float, tuple[int, int] | None]:

@@ -112,7 +112,11 @@ class _Search:
         return FreeMotion(self.limit, self.met, Limit.CONTACT if self.limit > 0 else Limit.TOUCHING_START)
 
     def batches(self) -> Iterator[_Candidates]:
-        """Yield all pairs that can meet before the limit, those that can do so soon first."""
+        """Yield all pairs that can meet before the limit, those that can do so soon first.
+
+        No pair is lost between the two searches: boxes above it never meet later than its own (`contact_window`), so
+        where these meet soon no box above is dropped by the first, and the second leaves out only what that one found.
+        """
         yield self._folds()
         start, end = self.start[:, : self.mesh.size], self.end[:, : self.mesh.size]
         tree = BoxTree.build(self.mesh, start, end)

@@ -13,7 +13,7 @@ This package shares no code with ``core.collision``, which the program uses to f
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import chain
 from pathlib import Path
@@ -29,21 +29,38 @@ from .segments import Point, meet
 from .trajectory import Components, TrajectoryError, count_legs, held_points, stages, still_parts
 from .transition import DifferentCurveError, common_vertices, straightened
 from .triangles import meet_triangle
-from .verdict import ContactError, Verdict
+from .verdict import ContactError, UndecidedError, Verdict
+
+_DECISIONS = 1500.0  # exact ones of a file, about two seconds, before its length counts,
+_PER_LEG = 100.0  # and those that each leg adds. Runs need one in a hundred legs; files made to take days, millions.
+_WORD = 64  # bits of the numbers of a plain decision; more bits take more than proportionally more time
 
 
 @dataclass
 class _Progress:
+    obstacles: Obstacles = field(default_factory=lambda: Obstacles.of(()))
+    pins: int = 0
     stages: int = 0
     legs: int = 0
-    obstacles: int = 0
-    pins: int = 0
     frame: int | None = None
     tell: Callable[[int], None] = lambda legs: None
+    decided: float = 0.0
+
+    def decide(self, points: Sequence[Point]) -> None:
+        """Count an exact decision about some points; raise when there are more than this program takes on."""
+        numbers = [x for point in points for x in point]
+        bits = max(x.denominator for x in numbers).bit_length() + max(int(abs(x)) for x in numbers).bit_length()
+        self.decided += (bits / _WORD) ** 1.5
+        if self.decided > _DECISIONS + _PER_LEG * self.legs:
+            raise UndecidedError(
+                "too many edges are so near to each other that rounding hides whether they meet; "
+                "write a trajectory whose strands are further apart"
+            )
 
     def verdict(self, **values: Any) -> Verdict:
         """The verdict, with what has been counted."""
-        return Verdict(stages=self.stages, legs=self.legs, obstacles=self.obstacles, pins=self.pins, **values)
+        counts = {"stages": self.stages, "legs": self.legs, "obstacles": len(self.obstacles), "pins": self.pins}
+        return Verdict(**counts, **values)
 
 
 def verify(path: Path | str, callback: Callable[[int, int], None] | None = None) -> Verdict:
@@ -59,7 +76,7 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
         _check_file(path, progress)
     except TrajectoryError as error:
         return progress.verdict(accepted=False, reason=str(error))
-    except (ContactError, DifferentCurveError, LostPinError) as failure:
+    except (ContactError, DifferentCurveError, LostPinError, UndecidedError) as failure:
         what = {"edges": failure.edges, "obstacle": failure.obstacle} if isinstance(failure, ContactError) else {}
         place = {"stage": progress.stages - 1, "frame": progress.frame}
         return progress.verdict(accepted=False, reason=str(failure), **place, **what)
@@ -69,25 +86,25 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
 def _check_file(path: Path | str, progress: _Progress) -> None:
     last: FloatArray | None = None
     before: Components = ()
-    obstacles = Obstacles.of(still_parts(path))
+    progress.obstacles = Obstacles.of(still_parts(path))
     pins = held_points(path)
-    progress.obstacles, progress.pins = len(obstacles), len(pins)
+    progress.pins = len(pins)
     for stage in stages(path):
         progress.stages, progress.frame = progress.stages + 1, None
         heads = _heads(stage.components)
         first = next(stage.frames)
-        if len(obstacles) and first.shape[1] != 3:
+        if len(progress.obstacles) and first.shape[1] != 3:
             raise TrajectoryError(f"{stage.name} is not in space, as obstacles are")
         if last is not None:
-            _check_transition(last, before, first, stage.components, obstacles)
+            _check_transition(last, before, first, stage.components, progress)
         progress.frame = 0
         held = HeldVertices.among(first, pins)
-        _check_leg(first, first, heads, obstacles)  # a single frame is a polygon, too
+        _check_leg(first, first, heads, progress)  # a single frame is a polygon, too
         last, before = first, stage.components
         for frame in stage.frames:
             progress.legs += 1
             held.check(frame)
-            _check_leg(last, frame, heads, obstacles)
+            _check_leg(last, frame, heads, progress)
             last, progress.frame = frame, progress.frame + 1
             progress.tell(progress.legs)
 
@@ -100,15 +117,15 @@ def _heads(components: Components) -> IntArray:
     return after
 
 
-def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray, obstacles: Obstacles) -> None:
+def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray, progress: _Progress) -> None:
     """Raise if edges meet, or an edge an obstacle, while the vertices go from start to end."""
     first, last = _exact_points(start), _exact_points(end)
-    _check_pairs(heads, doubtful_pairs(start, end, heads), first, last)
-    _check_obstacles(heads, obstacles, obstacles.doubtful(start, end, heads), first, last)
+    _check_pairs(heads, progress, doubtful_pairs(start, end, heads), first, last)
+    _check_obstacles(heads, progress, progress.obstacles.doubtful(start, end, heads), first, last)
 
 
 def _check_transition(
-    old: FloatArray, before: Components, new: FloatArray, after: Components, obstacles: Obstacles
+    old: FloatArray, before: Components, new: FloatArray, after: Components, progress: _Progress
 ) -> None:
     """Raise unless two curves differ only by vertices on edges."""
     if len(before) != len(after) or old.shape[1] != new.shape[1]:
@@ -119,12 +136,12 @@ def _check_transition(
     kept = []
     for a, b, is_closed in zip(_parts(before), _parts(after), closed, strict=True):
         kept.append(common_vertices(old[a], new[b], is_closed))
-    _check_straightening(old, before, [here for here, _ in kept], obstacles)
-    _check_straightening(new, after, [sorted(there) for _, there in kept], obstacles)
+    _check_straightening(old, before, [here for here, _ in kept], progress)
+    _check_straightening(new, after, [sorted(there) for _, there in kept], progress)
 
 
 def _check_straightening(
-    points: FloatArray, components: Components, kept: Sequence[Sequence[int]], obstacles: Obstacles
+    points: FloatArray, components: Components, kept: Sequence[Sequence[int]], progress: _Progress
 ) -> None:
     """Raise unless the vertices that are not kept can move onto the edges between the others without contact."""
     moved: dict[int, Point] = {}
@@ -139,32 +156,40 @@ def _check_straightening(
         def there(k: int) -> Point:
             return moved.get(k) or here(k)
 
-        _check_pairs(heads, doubtful_pairs(points, points, heads, clearance=change), here, there)
-        _check_obstacles(heads, obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)
+        triangles = progress.obstacles.doubtful(points, points, heads, clearance=change)
+        _check_pairs(heads, progress, doubtful_pairs(points, points, heads, clearance=change), here, there)
+        _check_obstacles(heads, progress, triangles, here, there)
 
 
 def _check_pairs(
-    heads: IntArray, batches: Iterable[IntArray], first: Callable[[int], Point], last: Callable[[int], Point]
+    heads: IntArray,
+    progress: _Progress,
+    batches: Iterable[IntArray],
+    first: Callable[[int], Point],
+    last: Callable[[int], Point],
 ) -> None:
     """Decide pairs, given by their vertices, shapes (4, pairs), exactly; raise at the first that meets."""
     for corners in chain.from_iterable(batch.T.tolist() for batch in batches):
-        if meet([first(k) for k in corners], [last(k) for k in corners]):
+        start, end = [first(k) for k in corners], [last(k) for k in corners]
+        progress.decide(start + end)
+        if meet(start, end):
             raise ContactError.between(heads, *corners)
 
 
 def _check_obstacles(
     heads: IntArray,
-    obstacles: Obstacles,
+    progress: _Progress,
     batches: Iterable[IntArray],
     first: Callable[[int], Point],
     last: Callable[[int], Point],
 ) -> None:
     """The same for edges and triangles, shapes (5, pairs)."""
-    still = _exact_points(obstacles.vertices)
+    still = _exact_points(progress.obstacles.vertices)
     for x0, x1, *triangle in chain.from_iterable(batch.T.tolist() for batch in batches):
-        corners = [still(k) for k in triangle]
-        if meet_triangle([first(x0), first(x1), *corners], [last(x0), last(x1), *corners]):
-            raise ContactError.with_obstacle(heads, x0, x1, obstacles.number_of(triangle[0]))
+        corners, start, end = [still(k) for k in triangle], [first(x0), first(x1)], [last(x0), last(x1)]
+        progress.decide(start + end + corners)
+        if meet_triangle(start + corners, end + corners):
+            raise ContactError.with_obstacle(heads, x0, x1, progress.obstacles.number_of(triangle[0]))
 
 
 def _exact_points(points: FloatArray) -> Callable[[int], Point]:

@@ -75,6 +75,10 @@ class ContactError(Exception):
         return cls(f"edge {edge + 1} meets obstacle {obstacle + 1} (counted from 1)", (edge,), obstacle)
 
 
+class UndecidedError(Exception):
+    """More edges are within rounding of each other than are worth deciding exactly; the message says so."""
+
+
 def _edge_number(heads: IntArray, a: int, b: int) -> int:
     """Number of the edge between two vertices, or of one at a vertex given twice; ends of open polygons begin none."""
     tail = b if heads[b] == a != b else a - int(heads[a] == a)

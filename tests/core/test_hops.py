@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Iterate, OptionError, RelaxOptions, Result, Status, Trajectory, minimize
-from mobius_flow.core.descent import Step
+from mobius_flow.core.collision import FreeMotion, Limit
+from mobius_flow.core.descent import Point, Step
 from mobius_flow.core.driver.hops import hopping
 from mobius_flow.core.driver.hops.motions import MOTIONS, Motion
+from mobius_flow.core.driver.hops.trial import trial
 from mobius_flow.core.driver.hops.unknot import is_circle, told_of_unknot
 from mobius_flow.core.driver.loop import WithOutcome, iterates
 from mobius_flow.core.driver.outcome import IS_UNKNOT, MAY_BE_UNKNOT
@@ -141,6 +143,17 @@ def test_a_degenerate_trial_is_one_that_leads_nowhere(plain: Recorded, monkeypat
     found, result = recorded()
     assert same(found, plain[0])
     assert result.message.endswith("; 0 of 1 hop led lower")
+
+
+def test_a_way_is_certified_only_if_all_its_steps_are() -> None:
+    def unproved(point: Point, rng: np.random.Generator) -> Iterator[Step]:
+        step = next(MOTIONS[0](point, rng))
+        yield replace(step, legs=tuple(leg._replace(proof=FreeMotion(1.0, limit=Limit.UNTESTED)) for leg in step.legs))
+
+    options = replace(OPTIONS, max_iterations=2)
+    run = Run(start_problem(saddle(), options), saddle(), options)
+    for motion, certified in ((MOTIONS[0], True), (unproved, False)):
+        assert trial(run, motion, np.random.default_rng(1), np.inf).certified == certified
 
 
 @pytest.mark.parametrize("left", [0, 1, 10])

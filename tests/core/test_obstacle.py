@@ -145,6 +145,39 @@ def test_polygons_that_are_not_convex_are_covered_once(seed):
     assert area(Obstacle(points, triangles)) == pytest.approx(polygon_area(points))
 
 
+def test_vertices_within_straight_edges_are_corners_of_triangles_with_area():
+    square = [[x, y, 0.0] for x, y in ((1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1), (0, 0))]
+    for first in range(8):
+        points = [*square[first:], *square[:first]]
+        corners = Obstacle(points, triangulated(points)).corners
+        areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        assert areas.min() > 0.1
+        assert areas.sum() == pytest.approx(4.0)
+
+
+def test_a_hole_that_a_slit_joins_to_the_outline_stays_open():
+    """As exporters write faces with holes: two vertices are named twice."""
+    outline, hole = [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]], [[1, 1], [1, 3], [3, 3], [3, 1], [1, 1]]
+    points = [[*p, 0.0] for p in outline + hole]
+    obstacle = Obstacle(points, triangulated(points))
+    assert area(obstacle) == pytest.approx(12.0)
+    middles = obstacle.corners.mean(axis=1)[:, :2]
+    assert (np.abs(middles - 2.0).max(axis=1) > 1.0).all()
+
+
+def test_faces_with_thousands_of_corners(tmp_path):
+    """Cut where that is quick, and refused where it is not, alone or together, before any of it is done."""
+    turn = np.linspace(0, 2 * np.pi, 4000, endpoint=False)
+    vertices = "".join(f"v {x} {y} 0\n" for x, y in zip(np.cos(turn), np.sin(turn), strict=True))
+    face = "f " + " ".join(map(str, range(1, 4001))) + "\n"
+    (tmp_path / "disk.obj").write_text(vertices + face)
+    assert area(read_obstacle(tmp_path / "disk.obj")) == pytest.approx(np.pi, rel=1e-5)
+    for name, faces in (("two.obj", 2 * face), ("huge.obj", "f " + " ".join(["1 2 3"] * 10_000))):
+        (tmp_path / name).write_text(vertices + faces)
+        with pytest.raises(CurveFileError, match=r"corners takes too long to cut .* triangulate the mesh"):
+            read_obstacle(tmp_path / name)
+
+
 def test_polygons_without_area_keep_all_vertices():
     triangles = triangulated([[0.0, 0.0, float(k % 3)] for k in range(6)])
     assert len(triangles) == 4

@@ -47,6 +47,18 @@ def test_clearance() -> None:
     assert doubtful_pairs(link, link, heads, clearance=1e-6).size > 0
 
 
+def test_an_end_on_an_edge_is_doubtful_whichever_way_is_rounded() -> None:
+    """Heights above the edge are 0, but for rounding; as many are positive as negative."""
+    rng = np.random.default_rng(61)
+    for _ in range(100):
+        start, end = rng.integers(-(2**25), 2**25, size=(2, 4, 3)).astype(float)
+        end = start + (end[0] - start[0])  # all go the same way
+        for frame in (start, end):
+            frame[0] = 0.5 * (frame[2] + frame[3])
+        pairs = doubtful_pairs(start, end, np.array([1, 1, 3, 3]))
+        assert [0, 1, 2, 3] in np.sort(pairs, axis=0).T.tolist()
+
+
 def test_a_step_of_a_knot_needs_no_exact_decision() -> None:
     rng, knot = np.random.default_rng(5), torus_trefoil(300)
     end = knot.vertices + 0.01 * rng.normal(size=knot.vertices.shape)

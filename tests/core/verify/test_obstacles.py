@@ -91,6 +91,19 @@ def test_rounding_of_inserted_vertices_is_checked_for_obstacles(tmp_path: Path, 
     assert between == ("meets obstacle 1" in verdict.reason)
 
 
+def test_obstacles_outside_of_all_boxes_are_checked_where_rounding_moves_an_edge(tmp_path: Path) -> None:
+    """A vertex above a sloping edge moves down and to the right, out of the boxes of both edges at it."""
+    unit = 2.0**-53
+    edge = np.array([[0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.0, 2.0], [0.0, 0.0, 2.0]])
+    bent = np.insert(edge, 1, [0.5, 0.5 + 20 * unit, 1.0], axis=0)
+    more = {"stage_001": edge[None], "component_sizes_001": np.array([4])}
+    for right, up, between in ((6, 12, True), (12, 6, False)):
+        through = np.array([0.5 + right * unit, 0.5 + up * unit, 1.0])
+        needle = Obstacle(through + np.array([[0.0, 0.0, -0.25], [0.0, 0.0, 0.25]]), [[0, 1]])
+        assert verify(write(tmp_path / "B.npz", [bent], needle)).accepted
+        assert verify(write(tmp_path / "T.npz", [bent], needle, **more)).accepted != between
+
+
 GOOD: dict[str, object] = {"obstacle_000_vertices": np.eye(3) + 9.0, "obstacle_000_faces": np.array([[0, 1, 2]])}
 
 

@@ -70,3 +70,21 @@ def test_random_transitions(tmp_path: Path, unit: float) -> None:
         assert verdict.accepted == (not expected), (bent.tolist(), strand.tolist(), str(verdict))
         seen[expected] += 1
     assert min(seen.values()) > 5
+
+
+EDGE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+
+
+@pytest.mark.parametrize("places", [[0.0], [1.0], [0.5, 0.5], [0.5, 0.25], [-0.25], [1.25]])
+def test_vertices_on_an_edge_follow_each_other_between_its_ends(places: list[float]) -> None:
+    polygon = np.array([EDGE[0], *([x, 0.0, 0.0] for x in places), *EDGE[1:]])
+    with pytest.raises(DifferentCurveError, match="is not on the edge between its neighbours"):
+        straightened(polygon, [0, len(places) + 1, len(places) + 2])
+
+
+def test_rounding_is_sixteen_units_of_the_last_place_of_the_largest_coordinate() -> None:
+    kept, height = [0, 2, 3], 2.0**-48
+    near, far = (np.array([EDGE[0], [0.5, y, 0.0], *EDGE[1:]]) for y in (height, np.nextafter(height, 1.0)))
+    assert straightened(near, kept)[1] == height
+    with pytest.raises(DifferentCurveError):
+        straightened(far, kept)

@@ -189,3 +189,25 @@ def test_stages_may_end_anywhere(tmp_path: Path) -> None:
     assert (verdict.accepted, verdict.legs) == (True, 4)
     missing = verify(write(tmp_path / "T.npz", (sizes, frames[:2]), (sizes, frames[2:])))
     assert (missing.accepted, missing.stage) == (False, 1)
+
+
+def bundle(path: Path, strands: int, height: float = 0.0) -> Path:
+    """Arcs side by side, all parallel and so near that nothing but whole numbers shows them to be apart."""
+    row, column = np.divmod(np.arange(strands), 9)
+    tails = np.stack([1.0 + 2.0**-52 * row, 1.0 + 2.0**-52 * column, height * row], axis=1)
+    frame = np.stack([tails, tails + np.array([[0.5, 0.25, 0.375]])], axis=1).reshape(-1, 3)
+    sizes, closed = np.full(strands, 2), np.zeros(strands, dtype=bool)
+    np.savez(path, stage_000=frame[None], component_sizes_000=sizes, component_closed_000=closed)
+    return path
+
+
+def test_more_exact_decisions_than_there_is_time_for_are_refused(tmp_path: Path) -> None:
+    assert verify(bundle(tmp_path / "few.npz", 12)).accepted
+    verdict = verify(bundle(tmp_path / "many.npz", 80))
+    assert (verdict.accepted, verdict.stage, verdict.frame, verdict.edges) == (False, 0, 0, None)
+    assert "too many edges are so near to each other" in verdict.reason
+
+
+def test_decisions_about_numbers_of_very_different_size_count_for_more(tmp_path: Path) -> None:
+    verdict = verify(bundle(tmp_path / "wide.npz", 12, height=2.0**-1000))
+    assert "too many edges are so near to each other" in verdict.reason
