@@ -4,7 +4,8 @@ import argparse
 from typing import Any
 
 from ..core import CurveError
-from ..core.knots import WRITTEN_FORMATS, UnknownKnotError, knot, knot_names, smooth_knot
+from ..core.curve.io import WRITTEN_FORMATS
+from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 from .streams import emit

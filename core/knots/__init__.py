@@ -4,7 +4,7 @@ arcs.
 
 from .arcs import ARCS, overhand
 from .closures import braid_closure
-from .coded import FORMATS, WRITTEN_FORMATS, coded_knot
+from .coded import coded_knot
 from .contacts import rope, spiral
 from .drawings import Drawing
 from .knot_type import KnotType, knot_type
@@ -22,10 +22,8 @@ from .unknots import hard_unknot, unknot_word
 __all__ = [
     "ALIASES",
     "ARCS",
-    "FORMATS",
     "HARD_UNKNOTS",
     "KNOTS",
-    "WRITTEN_FORMATS",
     "Drawing",
     "KnotType",
     "UnknownKnotError",
