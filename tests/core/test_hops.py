@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Iterate, OptionError, RelaxOptions, Result, Status, Trajectory, minimize
+from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import Step
 from mobius_flow.core.driver.hops import hopping
 from mobius_flow.core.driver.hops.motions import MOTIONS, Motion
-from mobius_flow.core.driver.hops.unknot import is_circle, told_of_unknot
+from mobius_flow.core.driver.hops.unknot import MOST_VERTICES, is_circle, told_of_unknot
 from mobius_flow.core.driver.loop import WithOutcome, iterates
 from mobius_flow.core.driver.outcome import IS_UNKNOT, MAY_BE_UNKNOT
 from mobius_flow.core.driver.prepare import start_problem
@@ -201,6 +202,12 @@ def test_strands_that_no_view_tells_apart_leave_the_type_open() -> None:
     """A figure eight whose strands pass at 10⁻¹² of its size, as they may where a curve is stuck."""
     eight = np.array([[-1, -1, 0], [1, 1, 1e-12], [2, 0, 0], [1, -1, 0], [-1, 1, 0], [-2, 0, 0]])
     assert told_of_unknot(Curve(eight)) == MAY_BE_UNKNOT
+
+
+def test_the_type_of_a_curve_of_very_many_vertices_is_not_looked_at() -> None:
+    culprit = knot("culprit")
+    assert told_of_unknot(refine(culprit, MOST_VERTICES)) == IS_UNKNOT
+    assert told_of_unknot(refine(culprit, MOST_VERTICES + 1)) is None
 
 
 def test_knots_links_circles_and_what_is_not_in_space_are_no_case_for_it() -> None:
