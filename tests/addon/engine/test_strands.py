@@ -62,3 +62,11 @@ def test_ends_that_nearly_meet_are_near():
     ring = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
     distances = strand_distances(Curve.from_components([ring], (False,)))
     np.testing.assert_allclose(distances[[0, -1]], 2 * np.sin(0.02), rtol=1e-9)
+
+
+def test_the_two_sides_of_a_bend_are_one_strand():
+    """At the tips of a long ellipse; in its middle its sides are two."""
+    t = 2.0 * np.pi * np.arange(300) / 300
+    distances = strand_distances(Curve(np.stack([4.0 * np.cos(t), np.sin(t), 0.0 * t], axis=1)))
+    assert distances.min() > 1.0
+    assert distances[75] == pytest.approx(2.0, rel=1e-3)
