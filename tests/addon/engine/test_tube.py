@@ -40,7 +40,7 @@ def test_strands_side_by_side_have_a_gap_however_long_their_edges_are(pieces):
     x = np.linspace(-1.0, 1.0, pieces + 1)
     strands = [np.stack([x, 0 * x, 0 * x + z], axis=1) for z in (0.0, 0.1)]
     gap = strand_gap(Curve.from_components(strands, (False, False)), 2.0)
-    assert 0.05 <= gap + 1e-12
+    assert gap + 1e-12 >= 0.05
     assert gap <= 0.1
 
 
