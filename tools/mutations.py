@@ -487,13 +487,6 @@ MUTANTS = (
         f"{HIERARCHY}/test_blocks.py::test_a_list_is_of_one_mesh_only",
     ),
     Mutant(
-        "sums of inner products on different curves",
-        "core/hierarchy/inner_product.py",
-        " and other.curve is self.curve",
-        "",
-        f"{HIERARCHY}/test_inner_product.py::test_sums_with_what_is_on_another_curve",
-    ),
-    Mutant(
         "weights of vectors squared",
         "core/hierarchy/inner_product.py",
         "np.sqrt(weight) * other.vectors",

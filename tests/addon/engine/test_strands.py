@@ -65,7 +65,7 @@ def test_ends_that_nearly_meet_are_near():
 
 
 def test_the_two_sides_of_a_bend_are_one_strand():
-    """Across the leaves of a clover the way along the curve is short, too; from side to side of an ellipse it is not."""
+    """Across a leaf of a clover the way along it is short, too; from side to side of an ellipse it is not."""
     t = 2.0 * np.pi * np.arange(200) / 200
     circle = np.stack([np.cos(t), np.sin(t), 0.0 * t], axis=1)
     clover = strand_distances(Curve((1.0 + 0.3 * np.cos(3.0 * t))[:, None] * circle))
