@@ -10,9 +10,9 @@ from dataclasses import asdict
 from pathlib import Path
 
 from ..core import METHODS, MobiusFlowError
+from ..core.curve.io import FORMATS
 from ..core.driver.compare import History, compare
 from ..core.errors import OptionError, OutputError, counted, wrong_suffix
-from ..core.knots import FORMATS
 from ..core.system.files import atomic_write
 from . import curves, signals
 from . import options as relax_options

@@ -8,9 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..core import Curve, CurveError, CurveFileError, MobiusFlowError, write_curve
-from ..core.curve.io import CurveFile, Format, load_curve
+from ..core.curve.io import FORMATS, CurveFile, Format, load_curve
 from ..core.errors import wrong_suffix
-from ..core.knots import FORMATS
 from .streams import OutputStreamError, emit
 
 STREAM, DEVICE = "-", "/dev/stdout"

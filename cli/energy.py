@@ -5,8 +5,8 @@ import json
 
 from ..core import CurveError
 from ..core.checks import check_known
+from ..core.curve.io import FORMATS
 from ..core.energies import ENERGIES
-from ..core.knots import FORMATS
 from ..core.measure import measure
 from . import curves
 from .streams import emit

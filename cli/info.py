@@ -5,9 +5,10 @@ import json
 from collections.abc import Iterator, Mapping
 
 from ..core import CurveError
+from ..core.curve.io import FORMATS
 from ..core.errors import counted
 from ..core.info import Info, info
-from ..core.knots import FORMATS, KnotType
+from ..core.knots import KnotType
 from . import curves
 from .streams import emit
 

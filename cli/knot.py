@@ -4,7 +4,8 @@ import argparse
 from typing import Any
 
 from ..core import CurveError
-from ..core.knots import WRITTEN_FORMATS, UnknownKnotError, knot, knot_names, smooth_knot
+from ..core.curve.io import WRITTEN_FORMATS
+from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 from .streams import emit
@@ -16,7 +17,8 @@ examples:
   mobius-flow knot 7_4 smooth.obj --smooth
   mobius-flow knot overhand arc.txt
   mobius-flow knot "DT: [4 8 10 2 6]" coded.txt
-  mobius-flow knot "PD[X[1,5,2,4],X[3,1,4,6],X[5,3,6,2]]" coded.txt
+  mobius-flow knot "[[1,5,2,4],[3,1,4,6],[5,3,6,2]]" coded.txt
+  mobius-flow knot K11n34 larger.txt
   mobius-flow knot --list
 
 exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
@@ -29,7 +31,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "name",
         metavar="NAME",
-        help='such as 3_1, L7a3, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)" or a code, "DT: [4 6 2]"',
+        help='such as 3_1, K11n34, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)" or a code, "DT: [4 6 2]"',
     )
     parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(WRITTEN_FORMATS)}, or - for standard output")
     curves.add_format(parser, WRITTEN_FORMATS)

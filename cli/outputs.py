@@ -9,9 +9,8 @@ from types import MappingProxyType
 from ..addon.pictures import export, film
 from ..core import Curve, Iterate, MobiusFlowError, Result
 from ..core.curve import check_closed
-from ..core.curve.io import Format
+from ..core.curve.io import FORMATS, WRITTEN_FORMATS, Format
 from ..core.errors import wrong_suffix
-from ..core.knots import FORMATS, WRITTEN_FORMATS
 from . import curves
 from .progress import show_frames
 

@@ -20,9 +20,9 @@ from ..core import (
     relax,
     write_curve,
 )
+from ..core.curve.io import FORMATS
 from ..core.driver import Relaxation, finish
 from ..core.errors import OptionError, OutputError, counted
-from ..core.knots import FORMATS
 from ..core.system.files import atomic_write
 from . import curves, signals
 from . import options as relax_options

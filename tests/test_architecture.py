@@ -21,7 +21,7 @@ FLOORS = (
     {"core.curve"},
     {"core.energies", "core.collision", "core.constraints", "core.diagrams"},
     {"core.saddle", "core.knots"},
-    {"core.metrics"},
+    {"core.metrics", "core.curve.io"},
     {"core.hierarchy"},
     {"core.descent"},
     {"core.driver"},

@@ -101,7 +101,7 @@ PLUGINS = {
             Line("from .source import ", "from . import numbered"),
             Line(
                 '        ".vect": ',
-                '        ".csv": Format("number of the component, x, y, z", numbered.read, numbered.write),',
+                '        ".num": Format("number of the component, x, y, z", numbered.read, numbered.write),',
             ),
         ),
     ),
@@ -191,7 +191,7 @@ def test_the_lists_of_the_command_line(command):
         "height",
         "lumped",
         "heavy-ball",
-        ".csv",
+        ".num",
         "--patience",
         "how long to wait (default: always)",
     ):
@@ -236,12 +236,12 @@ def test_relaxing_with_it(words, command, trefoil, tmp_path):
 
 
 def test_files_in_the_format(command, trefoil, tmp_path):
-    command("relax", trefoil, "a.csv", "--max-iterations", "0", "--vertices", "40", "--quiet")
-    command("relax", "a.csv", "b.txt", "--max-iterations", "0", "--vertices", "40", "--quiet")
-    assert (tmp_path / "a.csv").read_text().startswith("1,")
+    command("relax", trefoil, "a.num", "--max-iterations", "0", "--vertices", "40", "--quiet")
+    command("relax", "a.num", "b.txt", "--max-iterations", "0", "--vertices", "40", "--quiet")
+    assert (tmp_path / "a.num").read_text().startswith("1,")
     assert (tmp_path / "b.txt").read_text() == trefoil.read_text()
     assert float(command("length", trefoil.rename(tmp_path / "c"), "--format", "txt")) == float(
-        command("length", "a.csv")
+        command("length", "a.num")
     )
 
 
@@ -295,14 +295,14 @@ def outcome_of(python, copy, *words, **more):
 
 def test_the_tests_pick_it_up(copy, python):
     files = ["tests/core/energies", "tests/core/test_relax.py", "tests/core/curve", "tests/cli/test_options.py"]
-    chosen = "inverse-cube or heavy-ball-trefoil or halving-trefoil or csv or patience"
+    chosen = "inverse-cube or heavy-ball-trefoil or halving-trefoil or num or patience"
     found = outcome_of(python, copy, "-vv", "-k", chosen, *files)
     for test in (
         "test_derivatives.py::test_taylor_slope_of_the_derivative[",
         "test_invariances.py::test_similarities[inverse-cube]",
         "test_relax.py::test_every_method_goes_down_feasibly_and_certified[heavy-ball-trefoil]",
         "test_relax.py::test_every_method_goes_down_feasibly_and_certified[halving-trefoil]",
-        "test_io_refusals.py::test_any_bytes_give_a_curve_or_one_sentence[.csv]",
+        "test_io_refusals.py::test_any_bytes_give_a_curve_or_one_sentence[.num]",
         "test_options.py::test_every_option_can_be_given[patience]",
     ):
         assert test in found

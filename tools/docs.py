@@ -18,8 +18,8 @@ from types import MappingProxyType
 import mobius_flow
 from import_map import drawn, import_map
 from mobius_flow.core import METHODS, RelaxOptions
+from mobius_flow.core.curve.io import FORMATS
 from mobius_flow.core.energies import ENERGIES
-from mobius_flow.core.knots import FORMATS
 from mobius_flow.core.metrics import METRICS
 from mobius_flow.core.option import Option, declared
 

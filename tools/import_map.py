@@ -1,8 +1,8 @@
 """Which room of the house imports which, read off the sources.
 
 A room is a package directly below `core`, `addon` or `cli`, with all that is in it, or a module that stands there
-alone. Imports inside functions and those for type checkers count like the others: whoever reads a file has to know what
-it names.
+alone. The files of curves are a room of their own: they hold codes of knots, which are made of curves. Imports inside
+functions and those for type checkers count like the others: whoever reads a file has to know what it names.
 
     python tools/import_map.py         the map as Mermaid draws it
 """
@@ -15,6 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 Map = Mapping[str, frozenset[str]]
+INNER = ("core.curve.io",)  # rooms within rooms
 
 
 class _AtRunTime(ast.NodeTransformer):
@@ -42,6 +43,9 @@ def imports(path: Path, root: Path = ROOT, *, types: bool = True) -> Iterator[st
 
 def room(name: str, root: Path = ROOT) -> str | None:
     """The room of a dotted name; None outside of the house, ``core`` for what `core` itself gives."""
+    for inner in INNER:
+        if f"{name}.".startswith(f"{inner}."):
+            return inner
     first, *rest = name.split(".")
     if first in ("addon", "cli") and (root / first).is_dir():
         return first

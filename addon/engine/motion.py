@@ -125,7 +125,7 @@ class Motion:
             return [float(index)]
         corners = [self._common(frame) for frame in (self._keys[-1].points, *frames)]
         ways = [float(np.abs(b - a).max()) for a, b in pairwise(corners)]
-        passed = np.cumsum(np.maximum(ways, 1e-3 * max(ways)))
+        passed = np.cumsum(np.maximum(ways, 1e-3 * (max(ways) or 1.0)))
         return [*(index - 1 + passed[:-1] / passed[-1]).tolist(), float(index)]
 
     def keys(self, free: Proof, limit: int | None = None, pace: Pace = Pace.ITERATE) -> Keys:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...core import MobiusFlowError
+from ...core.curve.io import FORMATS
 from ...core.diagrams.codes import is_code
-from ...core.knots import FORMATS, KNOTS, knot
+from ...core.knots import KNOTS, knot
 from ...core.knots.names import table_name
 
 
@@ -42,10 +43,12 @@ def _meant(word: str) -> Iterator[Input]:
         yield from _in_directory(Path(word))
     elif os.path.lexists(word):
         yield _of_file(Path(word))
+    elif glob.has_magic(word) and (paths := sorted(glob.glob(word, recursive=True))):
+        yield from _matching(paths)
     elif is_code(word):
         raise MobiusFlowError(f"{word[:60]}: codes name no folder; put it in a file that ends in .pd, .dt or .gauss")
     elif glob.has_magic(word):
-        yield from _matching(word)
+        raise MobiusFlowError(f"{word}: matches no file")
     elif os.path.dirname(word) or Path(word).suffix.lower() in FORMATS:
         raise MobiusFlowError(f"{word}: there is no such file")
     elif ".." in word:
@@ -68,10 +71,7 @@ def _in_directory(directory: Path) -> Iterator[Input]:
     yield from map(_of_file, paths)
 
 
-def _matching(pattern: str) -> Iterator[Input]:
-    paths = sorted(glob.glob(pattern, recursive=True))
-    if not paths:
-        raise MobiusFlowError(f"{pattern}: matches no file")
+def _matching(paths: Iterable[str]) -> Iterator[Input]:
     for path in map(Path, paths):
         yield from _in_directory(path) if path.is_dir() else [_of_file(path)]
 

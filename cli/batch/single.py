@@ -9,7 +9,6 @@ from typing import Any
 from ... import __version__
 from ...core import (
     Curve,
-    CurveFileError,
     MobiusFlowError,
     RelaxOptions,
     Result,
@@ -21,9 +20,8 @@ from ...core import (
 )
 from ...core.collision import check_embedded
 from ...core.curve.io import CurveFile, load_curve
-from ...core.errors import wrong_suffix
 from ...core.extrapolation import extrapolated
-from ...core.knots import FORMATS, knot, knot_type, scramble
+from ...core.knots import knot, knot_type, scramble
 from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves
@@ -81,10 +79,7 @@ def _task(job: Job, file: CurveFile | None) -> Task:
 def _load(path: str) -> CurveFile:
     """Read a curve file; a CurveFileError tells why it cannot be read."""
     curves.check_regular(path)
-    form = FORMATS.get(Path(path).suffix.lower())
-    if form is None:
-        raise CurveFileError(path, wrong_suffix(path, FORMATS, "curve files"))
-    return load_curve(path, form)
+    return load_curve(path)
 
 
 def _start(curve: Curve, seed: int | None) -> Curve:

@@ -78,8 +78,6 @@ def holds(mesh: Mesh, vertices: IntArray) -> BoolArray:
 
 def free_edges(mesh: Mesh, pins: IntArray) -> IntArray:
     """The edges of which not both ends are pinned."""
-    if not len(pins):
-        return np.arange(len(mesh.tails))
     held = holds(mesh, pins)
     return np.flatnonzero(~(held[mesh.tails] & held[mesh.heads]))
 

@@ -1,42 +1,49 @@
 """Diagrams from codes as people write them: PD, DT and Gauss codes with any brackets.
 
-    PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]     DT: [4 6 2]     DT: cacbca
+    PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]     DT: [4 6 2]     DT: cacbca     DT[cacbca.001]
     Gauss: 1 -2 3 -1 2 -3                      Gauss: O1+U2+O3+U1+O2+U3+
 
-PD codes and Gauss codes with signs say everything; DT codes and Gauss codes without signs leave mirror images open, of
-which that one is taken whose first crossing is positive.  Components of Gauss codes of either kind stand in brackets,
-on lines of their own, or with /, | or ; between them; [] is a circle that crosses nothing.
+Lists in brackets need no word before them, as SnapPy and KnotInfo write them: [[1,5,2,4], …] with every number twice is
+a PD code, with signs a Gauss code, and [4, 6, 2] or [(6, 8), (2, 4)] with every number once a DT code.
+
+PD codes, Gauss codes with signs and DT codes with SnapPy's flips, a 0 or 1 for each crossing, say everything; other DT
+and Gauss codes leave mirror images open, of which that one is taken whose first crossing is positive.  Components of
+Gauss codes of either kind stand in brackets, on lines of their own, or with /, | or ; between them; [] is a circle that
+crosses nothing.
 """
 
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from itertools import count
+from itertools import islice
 from types import MappingProxyType
-from typing import cast
+from typing import NamedTuple
 
 from ..errors import CurveError
 from .diagram import Diagram, Pass
 from .faces import Faces
+from .nested import Nested, components, flat, is_flat, nested, unwrapped
 from .planar_codes import diagram_of
 from .realize import realized
 
 MAX_CROSSINGS = 1000  # seconds to draw
 _MAX_LENGTH = 100_000  # characters
-_TOKEN = re.compile(r"[\[({]|[\])}]|[+-]?\d+|[\s,;]+|.", re.ASCII | re.DOTALL)
-_MAX_DIGITS = 9
-_LETTERS = re.compile(r"[A-Za-z]+")
-_SIGNED = re.compile(r"([OU])(\d{1,9})([+-])", re.ASCII | re.IGNORECASE)
-_PREFIX = re.compile(r"\s*(PD|DT|Gauss(?:\s?code)?)\b\s*(?:code\b\s*)?[:=]?\s*", re.IGNORECASE)
-_BETWEEN = re.compile(r"\s*[/|;]\s*|\s*\n\s*")
-_FOREIGN = re.compile(r"[^\s\[\](){}|/;,]+")
-_EXAMPLES = {"pd": "PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", "dt": "DT: [4 6 2]", "gauss": "Gauss: 1 -2 3 -1 2 -3"}
+_SPELLING = re.compile(r"[\s\[({\"']*([A-Za-z]+)(?:\.([01]+))?[\s\])}\"']*")
+_CROSSING = re.compile(r"(?<![A-Za-z])X(?=\s*[\[({])")
+_BRACKETS = ("[", "(", "{")
 
-Nested = Sequence["int | Nested"]
+
+class Notation(NamedTuple):
+    """A way to write diagrams: the words that may stand before it, an example, and what reads it."""
+
+    words: str
+    example: str
+    read: Callable[[str], Diagram]
 
 
 def is_code(text: str) -> bool:
-    """Whether a text begins as codes do, with PD, DT or Gauss."""
-    return _PREFIX.match(text) is not None
+    """Whether a text begins as codes do: with PD, DT or Gauss, or a bracket."""
+    return _begun(text) is not None or text.lstrip().startswith(_BRACKETS)
 
 
 def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
@@ -47,26 +54,57 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
     text
         The code; see the module.
     kind
-        PD, DT or Gauss, if the text need not say so.
+        A key of `NOTATIONS`, if the text need not say so.
 
     Raises
     ------
     CurveError
-        If it is no such code, of no diagram in the plane, or too long.
+        If it is no such code, of no diagram in the plane, or too long.  A `CodeError` knows where in the text.
     """
     if len(text) > _MAX_LENGTH:
         raise CurveError(f"the code has {len(text)} characters; at most {_MAX_LENGTH} are read")
-    match = _PREFIX.match(text)
-    if match is not None:
-        kind, text = match[1].split()[0], text[match.end() :]
-    if kind is None:
-        raise CurveError("the code does not say what it is; begin it with PD:, DT: or Gauss:")
-    kind = kind.lower().removesuffix("code")
+    if (begun := _begun(text)) is not None:
+        kind, start = begun
+    else:
+        start = len(text) - len(text.lstrip(" \t\n,;"))
+    text = " " * start + text[start:].rstrip()  # so that errors count characters from where the text begins
+    kind = kind or _kind_of_list(text)
     if not text.strip(" \t\n,;"):
-        raise CurveError(f"the code is empty; write such as {_EXAMPLES[kind]}")
-    diagram = _READERS[kind](text.strip())
+        raise CurveError(f"the code is empty; write such as {NOTATIONS[kind].example}")
+    diagram = NOTATIONS[kind].read(text)
     _check_count(diagram.crossings)
     return diagram
+
+
+def _begun(text: str) -> tuple[str, int] | None:
+    """The notation that a text begins with the words of, and where the code begins."""
+    for kind, notation in NOTATIONS.items():
+        match = re.match(rf"\s*{notation.words}\b\s*(?:code\b\s*)?[:=]?\s*", text, re.IGNORECASE)
+        if match is not None:
+            return kind, match.end()
+    return None
+
+
+def _kind_of_list(text: str) -> str:
+    """The notation of a list without words before it."""
+    if not text.lstrip().startswith(_BRACKETS):
+        raise CurveError("the code does not say what it is; begin it with PD:, DT: or Gauss:")
+    parts = _parts(_without_flips(unwrapped(nested(text)))[0])
+    numbers = [number for part in parts for number in part]
+    if len(set(map(abs, numbers))) == len(numbers):
+        return "dt"
+    if len(parts) > 1 and min(numbers) >= 0:
+        return "pd"
+    if Counter(numbers) != Counter(-number for number in numbers):
+        raise CurveError(
+            "the code does not say what it is; begin it with PD:, DT: or Gauss:, or write braids as {1,1,1}"
+        )
+    return "gauss"
+
+
+def _parts(rows: Nested) -> list[list[int]]:
+    """Numbers in lists, one for each component or crossing."""
+    return [[int(each) for each in part] for part in components(rows)]
 
 
 def _check_count(crossings: int) -> None:
@@ -75,32 +113,66 @@ def _check_count(crossings: int) -> None:
 
 
 def _planar(text: str) -> Diagram:
-    rows = _unwrapped(_nested(re.sub(r"(?<![A-Za-z])X\s*(?=[\[({])", "", text)))
-    if rows and all(isinstance(each, int) for each in rows):
+    rows = unwrapped(nested(_CROSSING.sub(" ", text)))
+    if is_flat(rows):
         rows = [rows[k : k + 4] for k in range(0, len(rows), 4)]
     _check_count(len(rows))
     if not rows:
         return Diagram(((),), ())
-    return diagram_of([_integers([row] if isinstance(row, int) else row) for row in rows])
+    return diagram_of([flat([row] if isinstance(row, int | str) else row) for row in rows])
 
 
 def _dowker_thistlethwaite(text: str) -> Diagram:
-    bare = text.strip("[](){}\"' ")
-    parts = _spelled(bare) if _LETTERS.fullmatch(bare) else _components(text)
+    if spelling := _SPELLING.fullmatch(text):
+        parts, flips = _spelled(spelling[1]), list(map(int, spelling[2] or ""))
+    else:
+        rows, flips = _without_flips(unwrapped(nested(text)))
+        parts = _parts(rows)
     numbers = [number for part in parts for number in part]
     _check_count(len(numbers))
-    if sorted(map(abs, numbers)) != list(range(2, 2 * len(numbers) + 1, 2)):
-        raise CurveError(
-            f"a DT code of {len(numbers)} numbers has each of 2, 4, … {2 * len(numbers)} once, with any sign"
-        )
+    seen: set[int] = set()
+    for place, number in enumerate(numbers, start=1):
+        if number % 2 or not 0 < abs(number) <= 2 * len(numbers) or abs(number) in seen:
+            raise CurveError(
+                f"a DT code of {len(numbers)} numbers has each of 2, 4, … {2 * len(numbers)} once, with any sign, and "
+                f"its number {place} is {number}{' again' if abs(number) in seen else ''}"
+            )
+        seen.add(abs(number))
     sequence: list[Pass] = [(0, False)] * (2 * len(numbers))
     for k, number in enumerate(numbers):
         sequence[2 * k], sequence[abs(number) - 1] = (k, number > 0), (k, number < 0)
-    passes, start = [], 0
-    for part in parts:
-        passes.append(sequence[start : start + 2 * len(part)])
-        start += 2 * len(part)
-    return realized(passes)
+    rest = iter(sequence)
+    passes = [list(islice(rest, 2 * len(part))) for part in parts]
+    return _flipped(passes, flips) if flips else realized(passes)
+
+
+def _without_flips(rows: Nested) -> tuple[Nested, list[int]]:
+    """A DT code, and the list of a 0 or 1 for each crossing that may come after it."""
+    if len(rows) != 2:
+        return rows, []
+    code, flips = rows
+    if isinstance(code, int | str) or isinstance(flips, int | str) or not flips or any(k not in (0, 1) for k in flips):
+        return rows, []
+    return code, [k == 1 for k in flips]
+
+
+def _flipped(passes: Sequence[Sequence[Pass]], flips: Sequence[int]) -> Diagram:
+    """SnapPy's signs: from where a strand first comes to a crossing, the other one comes from the right, or if flipped
+    from the left.
+    """
+    first: dict[int, bool] = {}
+    for crossing, over in (each for part in passes for each in part):
+        first.setdefault(crossing, over)
+    if len(flips) != len(first):
+        raise CurveError(f"the DT code has {len(first)} crossings and {len(flips)} flips")
+    signs = (1 if first[crossing] != bool(flip) else -1 for crossing, flip in enumerate(flips))
+    return _in_the_plane(Diagram(tuple(map(tuple, passes)), tuple(signs)), "the DT code with these flips")
+
+
+def _in_the_plane(diagram: Diagram, what: str) -> Diagram:
+    if not Faces(diagram).is_planar:
+        raise CurveError(f"{what} is of no diagram in the plane")
+    return diagram
 
 
 def _spelled(word: str) -> list[list[int]]:
@@ -111,44 +183,32 @@ def _spelled(word: str) -> list[list[int]]:
     if min(sizes, default=0) < 1 or len(code) != crossings or sum(sizes) != crossings:
         raise CurveError(
             "letters of a DT code count its crossings, its components and the crossings of each, and give then a "
-            "letter for each crossing, such as DT: cacbca"
+            "letter for each crossing, such as DT: cacbca; flips may follow, such as DT: cacbca.001"
         )
     numbers = iter(2 * value for value in code)
     return [[next(numbers) for _ in range(size)] for size in sizes]
 
 
 def _gauss(text: str) -> Diagram:
-    if _SIGNED.search(text):
-        return _signed_gauss(text)
-    parts = _gauss_components(text)
+    between = r"\s*[/|;]\s*" if any(bracket in text for bracket in _BRACKETS) else r"\s*[/|;]\s*|\s*\n\s*"
+    parts = components(nested(text, between))  # within brackets lines may end anywhere
     _check_count(sum(map(len, parts)) // 2)
-    return realized(_numbered([[(abs(number), number > 0) for number in part] for part in parts])[0])
-
-
-def _signed_gauss(text: str) -> Diagram:
-    if foreign := _FOREIGN.search(_SIGNED.sub("", text)):
-        raise CurveError(f"{foreign[0][:30]!a} is no part of a Gauss code such as O1+U2+O3+U1+O2+U3+")
-    found, signs = _SIGNED.findall(text), dict[int, str]()
-    for _, number, sign in found:
-        if signs.setdefault(int(number), sign) != sign:
-            raise CurveError(f"crossing {number} of the Gauss code has both signs")
-    place = count()
-    places = _gauss_components(_SIGNED.sub(lambda _: f"{next(place)} ", text))
-    passes, numbers = _numbered([[(int(found[k][1]), found[k][0] in "Oo") for k in part] for part in places])
-    _check_count(len(numbers))
-    diagram = Diagram(tuple(map(tuple, passes)), tuple(1 if signs[number] == "+" else -1 for number in numbers))
-    if not Faces(diagram).is_planar:
-        raise CurveError("the Gauss code with these signs is of no diagram in the plane")
-    return diagram
-
-
-def _gauss_components(text: str) -> list[list[int]]:
-    """Lists of numbers, one per component."""
-    if any(bracket in text for bracket in "[({"):
-        text = text.replace("\n", " ")  # lines may end anywhere within brackets
-    if not all(_BETWEEN.split(text)):
-        raise CurveError("a component of the Gauss code is empty; write [] for a circle that crosses nothing")
-    return _components(f"[{_BETWEEN.sub('],[', text)}]")
+    if not any(isinstance(each, str) for part in parts for each in part):
+        return realized(_numbered([[(abs(int(number)), int(number) > 0) for number in part] for part in parts])[0])
+    passes: list[list[Pass]] = []
+    signs: dict[int, int] = {}
+    for part in parts:
+        passes.append([])
+        for each in part:
+            if isinstance(each, int):
+                raise CurveError(f"{each} is no part of a Gauss code with signs, such as O1+U2+O3+U1+O2+U3+")
+            crossing, sign = int(each[1:-1]), 1 if each[-1] == "+" else -1
+            if signs.setdefault(crossing, sign) != sign:
+                raise CurveError(f"crossing {crossing} of the Gauss code has both signs")
+            passes[-1].append((crossing, each[0] == "O"))
+    numbered, old = _numbered(passes)
+    diagram = Diagram(tuple(map(tuple, numbered)), tuple(signs[crossing] for crossing in old))
+    return _in_the_plane(diagram, "the Gauss code with these signs")
 
 
 def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[list[list[Pass]], list[int]]:
@@ -163,49 +223,26 @@ def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[list[list[Pass]], list[i
     return [[(number[old], over) for old, over in part] for part in parts], list(number)
 
 
-def _components(text: str) -> list[list[int]]:
-    """Lists of numbers, one per component."""
-    rows = _unwrapped(_nested(text))
-    if all(isinstance(each, int) for each in rows):
-        return [_integers(rows)]
-    return [_integers(row if isinstance(row, int) else _unwrapped(row)) for row in rows]
+def planar_text(diagram: Diagram) -> str:
+    """PD code, edges numbered from 1; raises CurveError for components without crossings, which it does not have."""
+    if not all(diagram.passes):
+        raise CurveError("PD codes have no components without crossings; use .gauss")
+    crossings = (f"X[{','.join(str(edge + 1) for edge in edges)}]" for edges in diagram.planar_code)
+    return f"PD[{', '.join(crossings)}]"
 
 
-def _integers(row: "int | Nested") -> list[int]:
-    if isinstance(row, int) or not all(isinstance(each, int) for each in row):
-        raise CurveError("brackets of the code are not where they should be: write numbers, or lists of numbers")
-    return list(cast(Sequence[int], row))
+def gauss_text(diagram: Diagram) -> str:
+    """Gauss code with signs, crossings numbered from 1."""
+    signs = ["+" if sign > 0 else "-" for sign in diagram.signs]
+    parts = ("".join(f"{'UO'[over]}{c + 1}{signs[c]}" for c, over in part) or "[]" for part in diagram.passes)
+    return f"Gauss: {' / '.join(parts)}"
 
 
-def _unwrapped(rows: Nested) -> Nested:
-    """What is within brackets around it all."""
-    while len(rows) == 1 and not isinstance(rows[0], int):
-        if rows[0] and all(isinstance(each, int) for each in rows[0]):
-            return rows[0]
-        rows = rows[0]
-    return rows
-
-
-def _nested(text: str) -> Nested:
-    """Numbers in brackets of any kind as lists."""
-    stack: list[list[object]] = [[]]
-    for token in _TOKEN.findall(text):
-        if token in "[({":
-            stack.append([])
-        elif token in "])}":
-            if len(stack) < 2:
-                raise CurveError("the code has a closing bracket too many")
-            done = stack.pop()
-            stack[-1].append(done)
-        elif token.lstrip("+-").isdigit() and len(token) <= _MAX_DIGITS:
-            stack[-1].append(int(token))
-        elif not re.fullmatch(r"[\s,;]+", token):
-            raise CurveError(f"{token[:30]!a} in the code is neither a bracket nor a whole number of at most 9 digits")
-    if len(stack) > 1:
-        raise CurveError("the code has no closing bracket")
-    return cast(Nested, stack[0])
-
-
-_READERS: Mapping[str, Callable[[str], Diagram]] = MappingProxyType(
-    {"pd": _planar, "dt": _dowker_thistlethwaite, "gauss": _gauss}
+NOTATIONS: Mapping[str, Notation] = MappingProxyType(
+    {
+        "pd": Notation("PD", "PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", _planar),
+        "dt": Notation("DT", "DT: [4 6 2]", _dowker_thistlethwaite),
+        "gauss": Notation(r"Gauss(?:\s?code)?", "Gauss: 1 -2 3 -1 2 -3", _gauss),
+    }
 )
+"""How codes may be written."""

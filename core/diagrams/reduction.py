@@ -25,14 +25,14 @@ class _Passes:
         """The crossings that a move on pass i and the next one removes."""
         sequence, j = self._diagram.sequence, self._next[i]
         (a, over), (b, also) = sequence[i], sequence[j]
-        if a in self.removed or i == j:
+        if a in self.removed:
             return set()
         if a == b:
             return {a}
         x, y = self._diagram.strands[a][not over], self._diagram.strands[b][not over]
         beside = self._next[x] == y or self._next[y] == x
-        # Equal signs are of strands that clasp round the sphere, with no empty bigon between them.
-        return {a, b} if over == also and beside and self._diagram.signs[a] != self._diagram.signs[b] else set()
+        # Where the signs are equal both crossings are nugatory: what is between them and the rest meet in each alone.
+        return {a, b} if over == also and beside else set()
 
     def _take_out(self, crossing: int) -> list[int]:
         """Unlink both passes, and return those before them, where new moves may begin."""

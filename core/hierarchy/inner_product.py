@@ -76,12 +76,12 @@ class CompressedInnerProduct:
         return conjugate_gradients(self.apply, self.model.solve, f, relative(SOLVED), MAX_ITERATIONS)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        """The sum: compressed with a sparse one, or another on the same curve, otherwise dense."""
+        """The sum: compressed with a sparse one or another compressed one, otherwise dense."""
         if isinstance(other, SparseInnerProduct):
             indicators = _indicators(self.curve)
             coupling = indicators.T @ other.matrix @ indicators
             return replace(self, local=self.local + weight * other.matrix, coupling=self.coupling + weight * coupling)
-        if isinstance(other, CompressedInnerProduct) and other.curve is self.curve:
+        if isinstance(other, CompressedInnerProduct):
             return replace(
                 self,
                 local=self.local + weight * other.local,

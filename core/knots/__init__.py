@@ -4,7 +4,7 @@ arcs.
 
 from .arcs import ARCS, overhand
 from .closures import braid_closure
-from .coded import FORMATS, WRITTEN_FORMATS, coded_knot
+from .coded import coded_knot
 from .drawings import Drawing
 from .knot_type import KnotType, knot_type
 from .lissajous import lissajous_knot
@@ -19,10 +19,8 @@ from .torus import torus_knot
 __all__ = [
     "ALIASES",
     "ARCS",
-    "FORMATS",
     "HARD_UNKNOTS",
     "KNOTS",
-    "WRITTEN_FORMATS",
     "Drawing",
     "KnotType",
     "UnknownKnotError",

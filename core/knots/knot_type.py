@@ -170,7 +170,7 @@ def _sum(names: tuple[str, ...]) -> str:
 
 
 def _order(name: str) -> tuple[int, str]:
-    return sum(map(crossing_number, name.split(" ⊔ "))), name.replace("m", "~")
+    return sum(map(crossing_number, name.split(" ⊔ "))), name
 
 
 def _factor_type(factor: Diagram) -> KnotType:
@@ -179,7 +179,7 @@ def _factor_type(factor: Diagram) -> KnotType:
         return KnotType(("0_1",), True, factor, (NO_CROSSINGS,))
     complete = _complete(factor)
     bracket = bracket_key(factor)
-    if bracket is None or (is_least(factor) and factor.crossings > complete):
+    if bracket is None:
         return KnotType((), False, factor, ())
     names = types_with(bracket, min(factor.crossings, complete))
     if is_least(factor):

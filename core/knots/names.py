@@ -1,4 +1,4 @@
-"""Knots by name: one small grammar for the table, torus knots, braids, mirror images, sums, hard unknots and arcs."""
+"""Knots by name: one small grammar for the tables, torus knots, braids, mirror images, sums, hard unknots and arcs."""
 
 import difflib
 import re
@@ -7,16 +7,19 @@ from ..curve import Curve
 from ..diagrams.codes import is_code
 from ..errors import CurveError, MobiusFlowError
 from .arcs import ARCS
-from .braids import Word, connected_sum, mirror
+from .braids import Word, checked_word, connected_sum, mirror
 from .closures import braid_closure
 from .coded import coded_knot
+from .larger_tables import larger_name, larger_word
 from .planar import diagram_knot
 from .table import ALIASES, HARD_UNKNOTS, KNOTS, ROLFSEN
 from .torus import torus_knot
 
-_CALL = re.compile(r"(t|torus|braid)\(([^()#]*)(\)?)")
+_TORUS = re.compile(r"(?:t|torus)\((?P<numbers>[^()#]*)(?P<end>\)?)")
+_BRAID = re.compile(  # braid(1,1), {1,1} as in KnotInfo, BR[2,{1,1}] as in the Knot Atlas
+    r"(?:braid\(|\{|br[\[(](?:(?P<strands>\d{1,9}),)?[\[({])(?P<numbers>[^\[\](){}#]*)(?P<end>[\])}]{0,2})"
+)
 _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
-_BEYOND = re.compile(r"[kl]?1[1-9]_?[an]_?\d+|l([89]|10)[an]\d+", re.ASCII)  # names of larger tables
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
@@ -38,10 +41,11 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link from its name.
 
     Names: the table's (``3_1`` to ``10_165``, ``L5a1``, also ``5^2_1``), the words of :data:`ALIASES` (``trefoil``,
-    ``figure-eight``), torus knots ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, mirror images
+    ``figure-eight``), those of larger tables (``K11n34``, ``L10a100``) where spherogram is installed, torus knots
+    ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, ``{1,-2,1,-2}`` or ``BR[3,{1,-2,1,-2}]``, mirror images
     ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, the diagrams of :data:`HARD_UNKNOTS`
     (``goeritz``), the open polygons of :data:`ARCS` (``overhand``), and codes of diagrams (``DT: [4 6 2]``,
-    ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``).
+    ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``, and lists in brackets as SnapPy and KnotInfo have them).
     Letter case, spaces, hyphens and a last word "knot", "unknot" or "link" don't matter.
 
     Parameters
@@ -66,7 +70,13 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     (50, 50)
     """
     name = str(name)  # a number is no name either, and is told so
-    if is_code(name):
+    squeezed = _squeezed(name)
+    if (torus := _TORUS.fullmatch(squeezed)) is not None:
+        return torus_knot(*_torus(torus, name), vertices)
+    if (braid := _BRAID.fullmatch(squeezed)) is not None:
+        word, strands = _braid(braid, name)
+        return braid_closure(word, vertices, strands=strands)
+    if is_code(name) and "#" not in name:
         return coded_knot(name, vertices)
     by_itself = _unspaced(_plain(name))
     if by_itself in ARCS:
@@ -74,10 +84,6 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     hard = _HARD.get(by_itself)
     if hard is not None:
         return diagram_knot(HARD_UNKNOTS[hard], vertices)
-    call = _call(_squeezed(name), name)
-    if call is not None and call[0] != "braid":
-        p, q = call[1]
-        return torus_knot(p, q, vertices)
     return braid_closure(braid_word(name), vertices)
 
 
@@ -109,13 +115,19 @@ def braid_word(name: str) -> Word:
 
 def _prime_word(part: str, name: str) -> Word:
     squeezed = _squeezed(part)
-    call = _call(squeezed, name)
-    if call is not None:
-        return call[1] if call[0] == "braid" else _torus_word(*call[1])
+    if (torus := _TORUS.fullmatch(squeezed)) is not None:
+        return _torus_word(*_torus(torus, name))
+    if (braid := _BRAID.fullmatch(squeezed)) is not None:
+        word, strands = _braid(braid, name)
+        if checked_word(word, strands)[1] > checked_word(word)[1]:
+            raise UnknownKnotError(f"{part[:60]!r} in {name[:60]!r} has strands without letters; leave them out")
+        return word
     if part in _WORDS:
         return braid_word(_WORDS[part])
     if squeezed in _TABLE:
         return KNOTS[_TABLE[squeezed]]
+    if (larger := larger_name(squeezed)) is not None:
+        return larger_word(larger)
     mirrors = _MIRRORS.match(part)
     if mirrors is None or mirrors.end() == len(part):
         raise _unknown(name)
@@ -123,32 +135,37 @@ def _prime_word(part: str, name: str) -> Word:
     return mirror(word) if mirrors[0].count("m") % 2 else word
 
 
-def _call(part: str, name: str) -> tuple[str, Word] | None:
-    """What stands before the bracket of T(p,q) or braid(…), and the numbers in it; None if it is none of these."""
-    match = _CALL.fullmatch(part)
-    if match is None:
-        return None
-    kind, inside, bracket = match.groups()
-    if not bracket:
+def _numbers(match: re.Match[str], name: str) -> Word:
+    """The numbers in the brackets of T(p,q) or a braid."""
+    if not match["end"]:
         raise UnknownKnotError(f"{name[:60]!r} has no closing bracket; {_FORMS}")
-    numbers = inside.split(",") if inside else []
+    numbers = match["numbers"].split(",") if match["numbers"] else []
     for number in numbers:
         if not _NUMBER.fullmatch(number):
             raise UnknownKnotError(
                 f"{number[:30]!r} in {name[:60]!r} is not a whole number of up to 18 digits; {_FORMS}"
             )
-    if kind != "braid" and len(numbers) != 2:
+    return tuple(map(int, numbers))
+
+
+def _torus(match: re.Match[str], name: str) -> tuple[int, int]:
+    """p and q."""
+    numbers = _numbers(match, name)
+    if len(numbers) != 2:
         raise UnknownKnotError(f"{name[:60]!r} does not have two numbers; write T(p,q), such as T(2,5)")
-    return kind, tuple(map(int, numbers))
+    return numbers[0], numbers[1]
+
+
+def _braid(match: re.Match[str], name: str) -> tuple[Word, int | None]:
+    """The letters and, where it is told, the number of strands."""
+    word = _numbers(match, name)
+    if word and match[0].startswith("{") and sorted(word) == sorted({side * abs(k) for k in word for side in (1, -1)}):
+        raise UnknownKnotError(f"{name[:60]!r} may be a braid or a Gauss code; write braid(...) or Gauss: ...")
+    return word, int(match["strands"]) if match.groupdict()["strands"] else None
 
 
 def _unknown(name: str) -> UnknownKnotError:
     plain = _plain(name)
-    if _BEYOND.fullmatch(_squeezed(name)):
-        return UnknownKnotError(
-            f"{name[:60]!r} has more crossings than the table here, 10 for knots and 7 for links; give its code, "
-            'such as "DT: [4 6 2]", "PD[X[1,5,2,4], ...]" or "Gauss: 1 -2 3 -1 2 -3"'
-        )
     alike = [key for key in _TABLE if "_" in plain and key.startswith(plain.partition("_")[0] + "_")]
     close = difflib.get_close_matches(plain, alike or [*_TABLE, *ALIASES, *HARD_UNKNOTS], n=3, cutoff=0.5)
     advice = f"did you mean {' or '.join(_TABLE.get(c, c) for c in close)}? " if close else ""

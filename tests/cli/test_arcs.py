@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 import pytest
+from curve_formats import OF_VERTICES
 from mobius_flow.cli import main, outputs
 from mobius_flow.core import read_curve, write_curve
-from mobius_flow.core.curve.io import FORMATS
 from shapes import half_circle
 
 
@@ -14,7 +14,7 @@ def run(*arguments):
     return main([str(argument) for argument in arguments])
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize("suffix", OF_VERTICES)
 def test_overhand_arcs_in_every_format(tmp_path, suffix):
     arc, out, report, path = (tmp_path / name for name in (f"arc{suffix}", f"out{suffix}", "r.json", "t.npz"))
     assert run("knot", "overhand", arc, "--vertices", 50) == 0

@@ -11,7 +11,7 @@ import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli.outputs import OUTPUTS
 from mobius_flow.core import read_curve, write_curve
-from mobius_flow.core.knots import FORMATS, WRITTEN_FORMATS
+from mobius_flow.core.curve.io import FORMATS, WRITTEN_FORMATS
 from processes import finished
 from shapes import torus_trefoil
 

@@ -12,8 +12,8 @@ import pytest
 from mobius_flow.cli import main, outputs, recovery
 from mobius_flow.cli import relax as relax_command
 from mobius_flow.core import read_curve, write_curve
+from mobius_flow.core.curve.io import FORMATS
 from mobius_flow.core.errors import MobiusFlowError
-from mobius_flow.core.knots import FORMATS
 from mobius_flow.core.system.files import atomic_write
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
@@ -283,7 +283,7 @@ def test_formats_that_are_only_read_are_no_outputs(
         if suffix != ".pd":  # which has no circles
             assert FORMATS[suffix].text(curve)
     only_read = set(FORMATS) - set(told)
-    assert only_read == {".dt"}
+    assert only_read == {".dt", ".pdb"}
     for words in (["o.dt"], ["-", "--format", "dt"]):
         assert refused([command, trefoil if command == "relax" else "3_1", *words], capsys, monkeypatch)
     assert not Path("o.dt").exists()

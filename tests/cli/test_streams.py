@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from curve_formats import OF_VERTICES
 from mobius_flow import __version__
 from mobius_flow.cli import main, progress
 from mobius_flow.cli.progress import leg_progress
 from mobius_flow.core import read_curve, write_curve
-from mobius_flow.core.curve.io import FORMATS
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
 
-NAMES = [suffix[1:] for suffix in FORMATS]
+NAMES = [suffix[1:] for suffix in OF_VERTICES]
 PROGRAM = f"{sys.executable} -P -m mobius_flow"
 SHORT = ["--vertices", "60", "--max-iterations", "2"]
 

@@ -1,13 +1,14 @@
 """Ways out of a minimum: proved, on the constraints, below their ceilings, and far."""
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core.descent import Point
 from mobius_flow.core.driver.hops.motions import MOTIONS, Motion
-from mobius_flow.core.driver.hops.pace import radius, root_mean_square
+from mobius_flow.core.driver.hops.pace import Pace, radius, root_mean_square
 from mobius_flow.core.driver.hops.push import Push
 from mobius_flow.core.driver.hops.soft_modes import soft_modes
 from mobius_flow.core.driver.hops.stir import Stir
@@ -58,6 +59,27 @@ def test_flows_have_no_divergence() -> None:
     x, h = np.array([[0.3, -0.2, 0.1]]), 1e-5
     divergence = sum((flow(x + h * e)[0] - flow(x - h * e)[0]) @ e for e in np.eye(3)) / (2.0 * h)
     assert abs(divergence) < 1e-8
+
+
+def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room() -> None:
+    """From a start with little room below the ceiling, and then turning about an axis, which costs nothing."""
+    start, stride = saddle(), 0.2
+    rough = np.random.default_rng(4).normal(size=start.vertices.shape)
+
+    def field(x: np.ndarray) -> np.ndarray:
+        return rough if np.array_equal(x, start.vertices) else np.cross([0.0, 0.0, 1.0], x)
+
+    steps = list(Pace(stride, shortest=1e-3).along(start, field, 1.0, 1.02 * start.energy))
+    places = [start.vertices, *(step.point.vertices for step in steps)]
+    ways = [root_mean_square(b - a) / radius(a) for a, b in pairwise(places)]
+    assert ways[0] < 0.6 * stride
+    assert max(ways) == pytest.approx(stride, rel=0.1)
+    assert 1.0 - stride < sum(ways) < 1.0 + stride
+
+
+def test_a_field_that_constraints_hold_back_moves_nothing() -> None:
+    """What is left of a translation, with the barycenter held, is rounding errors."""
+    assert not list(Stir().pace.along(saddle(), np.ones_like, 1.0, np.inf))
 
 
 # -- soft modes ------------------------------------------------------------------------------------------------------

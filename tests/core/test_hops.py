@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Iterate, OptionError, RelaxOptions, Result, Status, Trajectory, minimize
+from mobius_flow.core import Curve, Iterate, Mesh, OptionError, RelaxOptions, Result, Status, Trajectory, minimize
 from mobius_flow.core.collision import FreeMotion, Limit
+from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import Point, Step
 from mobius_flow.core.driver.hops import hopping
 from mobius_flow.core.driver.hops.motions import MOTIONS, Motion
 from mobius_flow.core.driver.hops.trial import trial
-from mobius_flow.core.driver.hops.unknot import is_circle, told_of_unknot
+from mobius_flow.core.driver.hops.unknot import MOST_VERTICES, is_circle, told_of_unknot
 from mobius_flow.core.driver.loop import WithOutcome, iterates
 from mobius_flow.core.driver.outcome import IS_UNKNOT, MAY_BE_UNKNOT
 from mobius_flow.core.driver.prepare import start_problem
@@ -165,6 +166,14 @@ def test_iterations_of_trials_count(plain: Recorded, left: int) -> None:
     assert ("0 of 1 hop led lower" in result.message) == (left > 0)
 
 
+def test_a_trial_takes_no_more_iterations_than_are_left(plain: Recorded) -> None:
+    """Its motion and its relaxation together."""
+    options = replace(OPTIONS, max_iterations=plain[1].last.index + 10)
+    run = Run(start_problem(saddle(), options), saddle(), options)
+    list(WithOutcome(hopping(run)))
+    assert plain[1].last.index < run.iterations <= options.max_iterations
+
+
 def test_the_mesh_becomes_finer_before_and_after(tmp_path: Path) -> None:
     trajectory = Trajectory()
     result = minimize(saddle(), RelaxOptions(mesh="finer", vertices=VERTICES, hops=1, seed=1), trajectory.add)
@@ -176,6 +185,17 @@ def test_the_mesh_becomes_finer_before_and_after(tmp_path: Path) -> None:
 def test_at_the_circle_there_is_nothing_to_look_for() -> None:
     result = minimize(regular_polygon(40), RelaxOptions(hops=3))
     assert "hop" not in result.message
+
+
+def test_a_circle_that_is_held_may_be_left() -> None:
+    """Only where nothing is in the way has no curve less energy."""
+    task, options = wanted(regular_polygon(16), hops=1, pins=(0, 8), vertices=16, mesh="fixed", tolerance=1e-2)
+    assert "of 1 hop led lower" in minimize(task, options).message
+
+
+def test_below_a_straight_arc_there_is_nothing() -> None:
+    arc = Curve(np.linspace(0.0, 1.0, 13)[:, None] * [1.0, 2.0, 2.0], Mesh((13,), (False,)))
+    assert "hop" not in minimize(arc, RelaxOptions(hops=1, vertices=13, mesh="fixed")).message
 
 
 def test_where_all_is_pinned_there_is_nowhere_to_go() -> None:
@@ -215,6 +235,12 @@ def test_strands_that_no_view_tells_apart_leave_the_type_open() -> None:
     """A figure eight whose strands pass at 10⁻¹² of its size, as they may where a curve is stuck."""
     eight = np.array([[-1, -1, 0], [1, 1, 1e-12], [2, 0, 0], [1, -1, 0], [-1, 1, 0], [-2, 0, 0]])
     assert told_of_unknot(Curve(eight)) == MAY_BE_UNKNOT
+
+
+def test_the_type_of_a_curve_of_very_many_vertices_is_not_looked_at() -> None:
+    culprit = knot("culprit")
+    assert told_of_unknot(refine(culprit, MOST_VERTICES)) == IS_UNKNOT
+    assert told_of_unknot(refine(culprit, MOST_VERTICES + 1)) is None
 
 
 def test_knots_links_circles_and_what_is_not_in_space_are_no_case_for_it() -> None:

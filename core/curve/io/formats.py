@@ -12,7 +12,7 @@ from typing import BinaryIO, TextIO
 from ...errors import CurveError, CurveFileError, reason_of, wrong_suffix
 from ...system.files import atomic_write
 from ..curve import Curve, check_is_curve
-from . import json_lists, obj, vect, xyz
+from . import codes, json_lists, obj, pdb, vect, xyz
 from .polygons import Polygon, assemble
 from .source import Source
 
@@ -47,7 +47,7 @@ class Format:
 _COLUMNS = Format(
     "x y z per line, a blank line between components, # comments, the line # open before an open one",
     xyz.read,
-    xyz.write,
+    xyz.separated(" "),
 )
 
 FORMATS: Mapping[str, Format] = MappingProxyType(
@@ -61,8 +61,18 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             json_lists.read,
             json_lists.write,
         ),
+        ".csv": Format(
+            "x, y, z between commas, with or without a first line of names", xyz.read, xyz.separated(",", True)
+        ),
+        ".tsv": Format("x y z between tabs, or Knoodle's crossings", codes.read_tsv, xyz.separated("\t")),
+        ".pdb": Format("Protein Data Bank, the alpha carbons of each chain as an open arc (read only)", pdb.read, None),
+        ".pd": Format("planar diagram code of a knot or link, PD[X[1,5,2,4], ...]", codes.read_pd, codes.write_pd),
+        ".dt": Format("Dowker-Thistlethwaite code, DT: [4 6 2] or DT: cacbca (read only)", codes.read_dt, None),
+        ".gauss": Format("Gauss code, 1 -2 3 ... or with signs O1+U2+O3+...", codes.read_gauss, codes.write_gauss),
     }
 )
+WRITTEN_FORMATS = [suffix for suffix, form in FORMATS.items() if form.write is not None]
+"""Those that are not only read."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,11 +1,12 @@
-"""Columns of coordinates (.txt, .xyz): one vertex per line, a blank line between components.
+"""Columns of coordinates (.txt, .xyz, .csv, .tsv): one vertex per line, a blank line between components.
 
 ``#`` starts a comment, alone or after the numbers; columns are separated by spaces, tabs, commas or
-semicolons. Three columns make a curve in space, two a plane curve. Components are closed; the line ``# open`` begins an
-open one.
+semicolons. Three columns make a curve in space, two a plane curve; under a first line with names among which are x, y
+and z other columns are ignored. Components are closed; the line ``# open`` begins an open one.
 """
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TextIO
 
@@ -31,6 +32,7 @@ def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line."""
     blocks: list[_Block] = []
     columns: int | None = None
+    chosen: list[int] | None = None
     apart, closed = True, True
     for number, line in enumerate(source.lines, start=1):
         content, sign, comment = line.partition("#")
@@ -38,8 +40,12 @@ def read(source: Source) -> list[Polygon]:
             begins_open = comment.strip() == _OPEN
             apart, closed = apart or not sign or begins_open, closed and not begins_open
             continue
-        point = _point(source, content.strip(), number, columns)
-        columns = len(point)
+        words = _SEPARATOR.split(content.strip())
+        if columns is None and (chosen := _named(words)) is not None:
+            columns = len(words)
+            continue
+        point = _point(source, words, number, columns, chosen)
+        columns = len(words)
         if apart:
             blocks.append(_Block(closed))
         blocks[-1].points.append(point)
@@ -48,11 +54,18 @@ def read(source: Source) -> list[Polygon]:
     return [Polygon(block.points, block.lines.__getitem__, block.closed) for block in blocks]
 
 
-def _point(source: Source, content: str, line: int, columns: int | None) -> tuple[float, ...]:
-    fields = _SEPARATOR.split(content)
-    point = tuple(source.number(field, line) for field in fields)
-    if columns is not None and len(point) != columns:
-        raise source.error(f"{len(point)} columns where the lines before have {columns}", line)
+def _named(words: list[str]) -> list[int] | None:
+    """The columns that a line of names has for coordinates; None if it is no such line."""
+    names = [word.strip("\"'").lower() for word in words]
+    return [names.index(axis) for axis in "xyz" if axis in names] if {"x", "y"} <= set(names) else None
+
+
+def _point(
+    source: Source, words: list[str], line: int, columns: int | None, chosen: list[int] | None
+) -> tuple[float, ...]:
+    if columns is not None and len(words) != columns:
+        raise source.error(f"{len(words)} columns where the lines before have {columns}", line)
+    point = tuple(source.number(word, line) for word in (words if chosen is None else [words[k] for k in chosen]))
     if not 2 <= len(point) <= 3:
         noun = "column" if len(point) == 1 else "columns"
         advice = "; curves of higher dimension are read from .json" if len(point) > 3 else ""
@@ -60,10 +73,18 @@ def _point(source: Source, content: str, line: int, columns: int | None) -> tupl
     return point
 
 
-def write(curve: Curve, stream: TextIO) -> None:
-    """Write the components, separated by blank lines; raises CurveError beyond three dimensions."""
-    if curve.dimension > 3:
-        raise CurveError(f"columns hold curves of dimension 2 or 3, not {curve.dimension}; use .json")
-    blocks = ("\n".join(" ".join(map(repr, point)) for point in part.tolist()) for part in curve.components)
-    heads = ("" if closed else f"# {_OPEN}\n" for closed in curve.mesh.closed)
-    stream.write("\n\n".join(head + block for head, block in zip(heads, blocks, strict=True)) + "\n")
+def separated(separator: str, head: bool = False) -> Callable[[Curve, TextIO], None]:
+    """What writes the components, separated by blank lines, under the axes' names or not.
+
+    It raises CurveError beyond three dimensions.
+    """
+
+    def write(curve: Curve, stream: TextIO) -> None:
+        if curve.dimension > 3:
+            raise CurveError(f"columns hold curves of dimension 2 or 3, not {curve.dimension}; use .json")
+        stream.write(separator.join("xyz"[: curve.dimension]) + "\n" if head else "")
+        lines = ("\n".join(separator.join(map(repr, point)) for point in part.tolist()) for part in curve.components)
+        marks = ("" if closed else f"# {_OPEN}\n" for closed in curve.mesh.closed)
+        stream.write("\n\n".join(mark + block for mark, block in zip(marks, lines, strict=True)) + "\n")
+
+    return write

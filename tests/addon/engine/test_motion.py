@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from mobius_flow.addon.engine.motion import Motion
 from mobius_flow.addon.engine.placement import Link, Placement
+from mobius_flow.addon.engine.timing import Pace
 from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.collision import free_motion, is_free
 from mobius_flow.core.curve.refine import subdivide, subdivision
@@ -172,6 +173,43 @@ def test_times_of_legs_follow_their_lengths():
     motion = collected([start, start.with_vertices(path[-1])], {1: path})
     keys = motion.keys(lambda _mesh, a, b: np.abs(b - a).max() < 3.5)
     assert [key.time for key in keys.keys] == pytest.approx([0, 0.2, 0.8, 1])
+
+
+@pytest.mark.parametrize("still", [(0.0, 1.0), (1.0, 1.0), (0.0, 0.0)])
+def test_legs_too_short_for_32_bits_have_times_of_their_own(still):
+    start = regular_polygon(4)
+    path = tuple(start.vertices + np.array([0, 0, z]) for z in still)
+    motion = collected([start, start.with_vertices(path[-1])], {1: path})
+    times = [key.time for key in motion.keys(lambda *_: False).keys]
+    assert len(times) == 3
+    assert (times[0], times[-1]) == (0, 1)
+    assert (np.diff(times) > 0).all()
+
+
+def test_rounding_of_the_start_is_a_gap_of_its_own():
+    """Also where all that follows is proved, in the numbers that Blender stores."""
+    curve = regular_polygon(4).with_vertices(0.1 * regular_polygon(4).vertices)
+    motion = collected([curve, curve.with_vertices(2.0 * curve.vertices)])
+    keys = motion.keys(lambda _mesh, a, _b: np.array_equal(a, a.astype(np.float32)))
+    assert keys.unproved == 1
+
+
+def test_thinning_keys_iterates_rather_than_the_ends_of_legs():
+    angles = np.linspace(0, np.pi, 8)  # an odd number of steps, so that the middle of all legs is within one
+    curves = [around(angle) for angle in angles]
+    halves = {k + 1: (around(0.5 * (a + b)).vertices, around(b).vertices) for k, (a, b) in enumerate(pairwise(angles))}
+    times = [key.time for key in collected(curves, halves).keys(is_free, limit=2).keys]
+    assert len(times) > 2
+    assert times == [round(time) for time in times]
+
+
+@pytest.mark.parametrize("limit", [1, 2, 3])
+def test_thinned_keys_begin_at_the_start_and_end_at_the_end(limit):
+    """However long the curve rests there."""
+    start = regular_polygon(4)
+    curves = [start.with_vertices(start.vertices + np.array([0, 0, z])) for z in (0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0)]
+    times = [key.time for key in collected(curves).keys(lambda *_: True, limit, Pace.DISTANCE).keys]
+    assert (times[0], times[-1]) == (0, 6)
 
 
 def test_one_unproved_leg_is_halved():

@@ -62,3 +62,14 @@ def test_ends_that_nearly_meet_are_near():
     ring = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
     distances = strand_distances(Curve.from_components([ring], (False,)))
     np.testing.assert_allclose(distances[[0, -1]], 2 * np.sin(0.02), rtol=1e-9)
+
+
+def test_the_two_sides_of_a_bend_are_one_strand():
+    """Across a leaf of a clover the way along it is short, too; from side to side of an ellipse it is not."""
+    t = 2.0 * np.pi * np.arange(200) / 200
+    circle = np.stack([np.cos(t), np.sin(t), 0.0 * t], axis=1)
+    clover = strand_distances(Curve((1.0 + 0.3 * np.cos(3.0 * t))[:, None] * circle))
+    np.testing.assert_array_equal(clover, clover[0])
+    ellipse = strand_distances(Curve(circle * [4.0, 1.0, 1.0]))
+    assert ellipse.min() > 1.4
+    assert ellipse[50] == pytest.approx(2.0, rel=1e-3)

@@ -132,6 +132,14 @@ def test_keys_stay_apart_in_blenders_numbers(start, pace):
     assert frames[-1] <= LAST_FRAME
 
 
+def test_keys_that_all_fall_on_one_frame_begin_there():
+    times = np.array([0.0, 0.1, 0.2])
+    timing = Timing(pace=Pace.ITERATE, start_frame=1_000_000, frames_per_iterate=0.1)
+    frames = timing.frames(Course(times, times, times))
+    assert frames[0] == 1_000_000
+    assert (np.diff(frames.astype(np.float32)) > 0).all()
+
+
 @pytest.mark.parametrize(
     ("values", "said"),
     [

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine.tube import free_radius, radius_beside, thickest_radius
-from mobius_flow.core import Obstacle
+from mobius_flow.addon.engine.tube import animated_radii, free_radius, radius_beside, strand_gap, thickest_radius
+from mobius_flow.core import Curve, Obstacle
 from shapes import regular_polygon
 
 
@@ -32,3 +32,26 @@ def test_obstacles_far_away_and_none_leave_all_room():
 
 def test_a_tube_can_always_be_drawn():
     assert radius_beside(regular_polygon(100), 0.1, [floor(1e-9)]) == pytest.approx(1e-4, rel=0.03)
+
+
+@pytest.mark.parametrize("pieces", [2, 10, 100])
+def test_strands_side_by_side_have_a_gap_however_long_their_edges_are(pieces):
+    """Edges may be nearer to each other than their ends, but where these lie side by side they are not."""
+    x = np.linspace(-1.0, 1.0, pieces + 1)
+    strands = [np.stack([x, 0 * x, 0 * x + z], axis=1) for z in (0.0, 0.1)]
+    gap = strand_gap(Curve.from_components(strands, (False, False)), 2.0)
+    assert gap + 1e-12 >= 0.05
+    assert gap <= 0.1
+
+
+def test_tubes_become_thin_before_and_thick_after_a_narrow_place_at_the_same_pace():
+    ring = regular_polygon(60).vertices
+    curves = [
+        Curve.from_components([ring, ring + np.array([0.0, 0.0, d])]) for d in (1.0, 1.0, 1.0, 0.02, 1.0, 1.0, 1.0)
+    ]
+    points = [curve.vertices.astype(np.float32) for curve in curves]
+    radii = animated_radii(curves[0].mesh, points, np.arange(7.0) * 2.0)
+    assert 0.0 < radii.min() == radii[3] < 0.011
+    np.testing.assert_allclose(radii, radii[::-1], rtol=1e-6)
+    assert (np.abs(np.diff(radii)) > 0).all()
+    assert np.abs(np.diff(radii)).max() <= 2.0 * 0.04 * thickest_radius(curves[0]) + 1e-9

@@ -75,6 +75,8 @@ def test_a_file_comes_before_a_knot() -> None:
         ("..", "holds no curve files"),
         ("DT:", "codes name no folder"),
         ("DT: [4 6 2]", "codes name no folder; put it in a file that ends in .pd"),
+        ("[[1,5,2,4],[3,1,4,6],[5,3,6,2]]", "codes name no folder; put it in a file that ends in .pd"),
+        ("[4, 6, 2]", "codes name no folder"),
         ("Gauss: O1+U2+ / U1+O2+", "codes name no folder"),
         ("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", "codes name no folder"),
     ],

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mobius_flow.core.curve.io import read_curve
+from mobius_flow.core.curve.io import read_curve, write_curve
+from mobius_flow.core.knots import knot, knot_type
 
 TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 SQUARE = [[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5]]
@@ -22,6 +23,12 @@ UNDERSTOOD = {
     "comments.txt": ("# head\n\n\n0 0 0 # first\n# between\n1 0 0\n0 1 0\n\n # tail\n", [TRIANGLE]),
     "mark.txt": ("\ufeff0 0 0\n1 0 0\n0 1 0\n", [TRIANGLE]),
     "two.txt": ("0 0 0\n1 0 0\n0 1 0\n\n\n0 0 5\n1 0 5\n1 1 5\n0 1 5", [TRIANGLE, SQUARE]),
+    "head.csv": ("x,y,z\n0,0,0\n1,0,0\n0,1,0\n", [TRIANGLE]),
+    "bare.csv": ("0,0,0\n1,0,0\n0,1,0\n", [TRIANGLE]),
+    "plane.csv": ("x,y\n0,0\n1,0\n0,1\n", [[p[:2] for p in TRIANGLE]]),
+    "more.csv": ('# by pandas\n,"Y",part,"X","Z"\n0,0,a,0,0\n1,0,a,1,0\n2,1,a,0,0\n', [TRIANGLE]),
+    "semicolons.csv": ("x;y;z\n0;0;0\n1;0;0\n0;1;0\n\n0;0;5\n1;0;5\n1;1;5\n0;1;5\n", [TRIANGLE, SQUARE]),
+    "columns.tsv": ("0\t0\t0\n1\t0\t0\n0\t1\t0\n", [TRIANGLE]),
     "one_line.obj": (SQUARE_V + "l 1 2 3 4 1\n", [SQUARE]),
     "texture.obj": (SQUARE_V + "vt 0 0\nl 1/1 2/1 3/1 4/1 1/1\n", [SQUARE]),
     "negative.obj": (SQUARE_V + "l -4 -3 -2 -1 -4\n", [SQUARE]),
@@ -68,6 +75,7 @@ OPEN = {
     "second.txt": ("0 0 0\n1 0 0\n0 1 0\n\n#  open \n0 0 5\n1 0 5\n1 1 5\n0 1 5\n", (True, False)),
     "no_blank_line.txt": ("0 0 0\n1 0 0\n0 1 0\n# open\n0 0 5\n1 0 5\n1 1 5\n0 1 5\n", (True, False)),
     "first.txt": ("# open\n# of course\n0 0 0\n1 0 0\n0 1 0\n\n0 0 5\n1 0 5\n1 1 5\n0 1 5\n", (False, True)),
+    "marked.csv": ("x,y,z\n# open\n0,0,0\n1,0,0\n0,1,0\n", (False,)),
     "path.obj": (TRIANGLE_V + "l 2 3\nl 1 2\n", (False,)),
     "both.obj": (TRIANGLE_V + SQUARE_V + "l 1 2 3 1\nl 7 6 5 4\n", (True, False)),
     "path.vect": ("VECT 1 3 0 3 0 0 0 0 1 0 0 0 1 0", (False,)),
@@ -87,6 +95,65 @@ def test_open_components(tmp_path: Path, name: str, caplog: pytest.LogCaptureFix
     assert curve.mesh.closed == closed
     rows = sorted(map(tuple, curve.vertices.tolist()))
     assert rows == sorted(map(tuple, (TRIANGLE + SQUARE)[: len(curve)]))
+
+
+def _atom(serial: int, residue: int, point: list[int], chain: str = "A", name: str = " CA ", also: str = " ") -> str:
+    place = "".join(f"{coordinate:8.3f}" for coordinate in point)
+    return f"ATOM  {serial:5d} {name}{also}GLY {chain}{residue:4d}    {place}  1.00  0.00           C\n"
+
+
+CHAIN = [_atom(2 * k, k, [3 * c for c in point]) for k, point in enumerate(TRIANGLE, start=1)]
+SIDE = [_atom(2 * k + 1, k, [9, 9, 9], name=" CB ") for k in range(1, 4)]
+OTHER = [_atom(20 + k, k, [3 * c for c in point], "B") for k, point in enumerate(SQUARE, start=1)]
+PROTEINS = {
+    "one.pdb": ("HEADER    KNOT\n" + "".join(map("".join, zip(CHAIN, SIDE, strict=True))) + "END\n", 1),
+    "two.pdb": ("".join([*CHAIN, "TER\n", *OTHER]), 2),
+    "ligand.pdb": ("".join(CHAIN) + _atom(9, 9, [9, 9, 9], name="CA  ").replace("ATOM  ", "HETATM"), 1),
+    "places.pdb": (CHAIN[0] + _atom(3, 1, [9, 9, 9], also="B") + "".join(CHAIN[1:]), 1),
+    "models.pdb": ("MODEL        1\n" + "".join(CHAIN) + "ENDMDL\n" + "".join(OTHER) + "ENDMDL\n", 1),
+    "modified.pdb": (CHAIN[0] + CHAIN[1].replace("ATOM  ", "HETATM") + CHAIN[2], 1),
+}
+
+
+@pytest.mark.parametrize("name", PROTEINS)
+def test_chains_of_proteins_are_arcs_of_alpha_carbons(
+    tmp_path: Path, name: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    text, chains = PROTEINS[name]
+    with caplog.at_level(logging.WARNING):
+        curve = read_curve(_write(tmp_path, name, text))
+    assert not caplog.records
+    assert curve.mesh.closed == (False,) * chains
+    assert np.array_equal(curve.vertices, 3.0 * np.concatenate([TRIANGLE, SQUARE][:chains]))
+
+
+def test_missing_residues_are_noted(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    text = CHAIN[0] + _atom(7, 7, [9, 0, 0])
+    with caplog.at_level(logging.WARNING):
+        assert len(read_curve(_write(tmp_path, "gap.pdb", text))) == 2
+    assert "residues may be missing from GLY A   1  to GLY A   7" in caplog.text
+
+
+CODES = {
+    "trefoil.pd": "# of the table\nPD[X[1,5,2,4],\n X[3,1,4,6], X[5,3,6,2]] # right-handed\n",
+    "trefoil.dt": "DT[cacbca.001]",
+    "trefoil.gauss": "1 -2 3 -1 2 -3\n",
+    "trefoil.tsv": "0\t4\t1\t3\t1\n2\t0\t3\t5\t1\n4\t2\t5\t1\t1\n",
+    "unsigned.tsv": "1\t5\t2\t4\n3\t1\t4\t6\n5\t3\t6\t2\n",
+}
+
+
+@pytest.mark.parametrize("name", CODES)
+def test_codes_are_read_as_drawings(tmp_path: Path, name: str) -> None:
+    curve = read_curve(_write(tmp_path, name, CODES[name]))
+    assert str(knot_type(curve)) == "3_1"
+
+
+@pytest.mark.parametrize("suffix", [".pd", ".gauss"])
+@pytest.mark.parametrize("name", ["3_1", "L5a1"])
+def test_codes_that_are_written_are_of_the_same_knot(tmp_path: Path, suffix: str, name: str) -> None:
+    write_curve(tmp_path / f"k{suffix}", knot(name))
+    assert knot_type(read_curve(tmp_path / f"k{suffix}")).names == knot_type(knot(name)).names
 
 
 NOTED = {

@@ -12,6 +12,8 @@ from mobius_flow.core.errors import CurveError, CurveFileError, Place
 
 V = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
+ALPHA = "ATOM      2  CA  GLY A   1       1.000   2.000   3.000  1.00  0.00           C\n"
+
 REFUSED: dict[str, tuple[str, int | None, str]] = {
     "word.txt": ("0 0 0\n1 x 0\n0 1 0\n", 2, "'x' is not a number"),
     "underscore.txt": ("0 0 0\n1_0 0 0\n", 2, "not a number"),
@@ -30,6 +32,28 @@ REFUSED: dict[str, tuple[str, int | None, str]] = {
     "comments.txt": ("# nothing\n", None, "no vertex"),
     "comments.vect": ("# nothing\n", None, "comments only"),
     "chemistry.xyz": ("3\nwater\nO 0 0 0\n", 1, "1 column"),
+    "word.csv": ("x,y,z\n0,0,0\n1,x,0\n", 3, "'x' is not a number"),
+    "short.csv": ("x,y,z\n0,0,0\n1,0\n", 3, "2 columns where the lines before have 3"),
+    "names.csv": ("a,b,c\n0,0,0\n", 1, "'a' is not a number"),
+    "twice.csv": ("x,y,z\n0,0,0\nx,y,z\n", 3, "'x' is not a number"),
+    "head.csv": ("x,y,z\n", None, "no vertex"),
+    "decimal.csv": ("0,5;1,5;2,5\n", 1, "6 columns where x y z"),
+    "six.tsv": ("0\t0\t0\t0\t0\t0\n", 1, "6 columns"),
+    "real.tsv": ("1\t5\t2\t4\n3\t1.5\t4\t6\n", 2, "'1.5' is not a whole number"),
+    "ragged.tsv": ("0\t4\t1\t3\t1\n2\t0\t3\t5\n", 2, "4 columns where the lines before have 5"),
+    "sign.tsv": ("0\t4\t1\t3\t1\n2\t0\t3\t5\t-1\n4\t2\t5\t1\t1\n", 2, "sign of this crossing is -1"),
+    "edge.tsv": ("0\t4\t1\t3\n2\t0\t3\t5\n", None, "edge 4 is in the planar diagram code once"),
+    "empty.pdb": ("HEADER    NOTHING\nEND\n", None, "no alpha carbon found"),
+    "one.pdb": (ALPHA, 1, "an open polygon needs at least 2"),
+    "number.pdb": (
+        ALPHA + ALPHA.replace("   1    ", "   2    ").replace("2.000", "2.0x0"),
+        2,
+        "'2.0x0' is not a number",
+    ),
+    "cut.pdb": (ALPHA[:40] + "\n", 1, "is not a number"),
+    "word.pd": ("# a trefoil\nPD[X[1,5,2,4],\nX[3,1,4,six],X[5,3,6,2]]", 3, "'six' is neither a bracket nor"),
+    "open.dt": ("DT:\n[4 6\n2", 2, "this bracket has no closing one"),
+    "part.gauss": ("1 -2\n/\n/ 2 -1", 3, "a component is empty"),
     "branch.obj": (V + "v 1 1 1\nl 1 2 3 1\nl 1 4\n", 6, "third edge meets vertex 1"),
     "loop.obj": (V + "l 1 2 2 3 1\n", 4, "vertex 2 to itself"),
     "twice.obj": (V + "l 1 2\nl 2 1\n", 1, "component 1 has 2 vertices"),

@@ -6,11 +6,10 @@ from itertools import product
 import pytest
 from mobius_flow.core import CurveError
 from mobius_flow.core.diagrams import Diagram, diagram_of, jones, realized
-from mobius_flow.core.diagrams.codes import MAX_CROSSINGS, diagram_from_code, is_code
+from mobius_flow.core.diagrams.codes import MAX_CROSSINGS, diagram_from_code, gauss_text, is_code
 from mobius_flow.core.diagrams.faces import Faces
 from mobius_flow.core.knots import KNOTS
 from mobius_flow.core.knots.braid_diagrams import braid_diagram
-from mobius_flow.core.knots.coded import gauss_text
 from spherogram import Link
 
 TREFOIL = {2: 1, 6: 1, 8: -1}
@@ -25,6 +24,13 @@ TREFOILS = [
     "DT: [(4,6,2)]",
     "DT:cacbca",
     "DT code: {-4,-6,-2}",
+    "[[1,5,2,4],[3,1,4,6],[5,3,6,2]]",
+    "[(0, 4, 1, 3), (2, 0, 3, 5), (4, 2, 5, 1)]",
+    " [4, 6, 2]",
+    "[(4, 6, 2)]",
+    "DT[cacbca]",
+    "DT:[(4,6,2)]",
+    "[1, -2, 3, -1, 2, -3]",
     "Gauss: 1 -2 3 -1 2 -3",
     "GaussCode[-1, 2, -3, 1, -2, 3]",
     "Gauss: O1+U2+O3+U1+O2+U3+",
@@ -44,6 +50,9 @@ HOPFS = [
     "Gauss: {{O1+,U2+},{U1+,O2+}}",
     "Gauss: O1+U2+\nU1+O2+",
     "DT: [(4),(2)]",
+    "[(4),(2)]",
+    "[[1,-2],[2,-1]]",
+    "{{1,3,2,4},{3,1,4,2}}",
     "DT: bbaaba",
 ]
 HOPF = ((0, True), (1, False)), ((0, False), (1, True))
@@ -94,6 +103,18 @@ def test_dt_codes_are_read_as_spherogram_does(code: str) -> None:
     assert jones(diagram_from_code(f"DT: {code}")) == jones(theirs)
 
 
+@pytest.mark.parametrize("name", ["K3a1", "K11n34", "K12n242", "L8n1", "L10a100"])
+def test_codes_that_spherogram_and_snappy_write(name: str) -> None:
+    link = Link(name)
+    theirs = jones(diagram_of(link.PD_code()))
+    parts, flips = link.DT_code(flips=True)
+    for code in (link.PD_code(), link.DT_code(DT_alpha=True, flips=True), f"DT: {parts}, {flips}"):
+        assert jones(diagram_from_code(str(code))) == theirs
+    mirrored = {-power: c for power, c in theirs.items()}
+    for code in (parts, link.DT_code(DT_alpha=True), f"DT:{parts}"):
+        assert jones(diagram_from_code(str(code))) in (theirs, mirrored)
+
+
 @pytest.mark.parametrize("name", [name for name in KNOTS if name != "0_1"][::7])
 def test_codes_of_braids_come_back(name: str) -> None:
     diagram = braid_diagram(KNOTS[name])
@@ -129,23 +150,34 @@ def test_codes_without_signs_are_realized_where_any_signs_are_planar() -> None:
         ("PD[X[1,5,2,4],X[3,1,4,6],X[5,3,6,7]]", "every edge must be there twice"),
         ("PD[X[1,1,1,1]]", "4 times"),
         ("PD[X[1,4,2,5],X[3,6,4,1],X[2,5,6,3]]", "cannot be drawn in the plane"),
-        ("PD[X[1,5,2,4]", "no closing bracket"),
-        ("PD[X[1,5,2,4]]]", "a closing bracket too many"),
-        ("PD: foo", "'f' in the code"),
-        ("PD: 1.5 2 3 4", "in the code is neither"),
+        ("PD[X[1,5,2,4]", "character 3 of the code: this bracket has no closing one"),
+        ("PD[X[1,5,2,4]]]", "character 15 of the code: a closing bracket too many"),
+        ("PD: foo", "character 5 of the code: 'foo' is neither"),
+        ("PD: 1.5 2 3 4", "character 6 of the code: '.' is neither"),
         ("PD [[1,[2,3]],[3]]", "brackets of the code"),
-        ("PD: 1111111111 2 3 4", "in the code is neither"),
+        ("PD:\n1 2 3 4\n1111111111 2 3 4", "character 13 of the code: '1111111111' is neither"),
         ("DT: [4 6 3]", "each of 2, 4, … 6 once"),
         ("DT: [4 4 2]", "each of 2, 4, … 6 once"),
         ("DT: zz", "letters of a DT code"),
-        ("DT: cacbca.001", "'c' in the code"),
+        ("DT: cacbca.0012", "character 5 of the code: 'cacbca' is neither"),
+        ("DT: cacbca.01", "3 crossings and 2 flips"),
+        ("DT: [(4, 6, 8, 2), (1, 0, 0, 0)]", "with these flips is of no diagram in the plane"),
+        ("[4, 6, 3]", "its number 3 is 3"),
+        ("DT: [4, 6, 4]", "its number 3 is 4 again"),
+        ("[4, 6, 0]", "its number 3 is 0"),
+        ("[4, 8, 2]", "its number 2 is 8"),
+        ("[1, 1, 1]", "write braids as {1,1,1}"),
+        ("[1, -2, 1, -2]", "write braids as {1,1,1}"),
+        ("[[1,5,2,4],[3,1,4,6],[5,3,6,2]", "character 1 of the code: this bracket has no closing one"),
+        ("[[1,5,2,4],[3,1,4,6],[5,3,6,x]]", "character 29 of the code: 'x' is neither"),
         ("DT: [4 6 2 10 12 8]", "composite"),
         ("Gauss: 1 2 1 2", "once above"),
         ("Gauss: 1 -2 -1 2", "no diagram in the plane"),
         ("Gauss: [[1,-1],[2,-2]]", "falls apart"),
         ("Gauss: O1+U1-", "both signs"),
         ("Gauss: O1+O2+U1+U2+", "no diagram in the plane"),
-        ("Gauss: O1+Q2+", "'Q2+' is no part"),
+        ("Gauss: O1+Q2+", "character 11 of the code: 'Q' is neither"),
+        ("Gauss: O1+U2+ 3", "3 is no part of a Gauss code with signs"),
         ("Gauss: 1 -2 / 2 -1 /", "write [] for a circle"),
         ("Gauss: O1+U2+ // U1+O2+", "write [] for a circle"),
         ("PD:", "the code is empty; write such as PD[X["),

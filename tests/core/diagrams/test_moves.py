@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hard_curves import hard_unknot
 from mobius_flow.core.diagrams import Diagram, factors, is_least, jones, shuffled_down, simplified, views
+from mobius_flow.core.diagrams.codes import diagram_from_code
 from mobius_flow.core.diagrams.faces import Faces
 from mobius_flow.core.diagrams.nugatory import without_nugatory
 from mobius_flow.core.diagrams.reduction import reduced
@@ -42,6 +43,20 @@ def test_reidemeisters_moves_undo_loops_and_bigons_but_no_clasps() -> None:
     assert reduced(bigon) == Diagram(((), ()), ())
     hopf = braid_diagram((1, 1))
     assert reduced(hopf) == hopf
+
+
+def test_bigons_are_undone_whichever_way_their_strands_run() -> None:
+    parallel = diagram_from_code("Gauss: O1+O2- / U1+U2-")
+    assert reduced(parallel) == Diagram(((), ()), ())
+    opposite = diagram_from_code("Gauss: O1+O2-U5-O4-U3-O5-U2-U1+U4-O3-")  # a trefoil, a strand of it under another
+    assert reduced(opposite).crossings == 3
+    assert jones(reduced(opposite)) == jones(braid_diagram((-1, -1, -1)))
+
+
+def test_what_hangs_between_two_nugatory_crossings_stays() -> None:
+    """They look like a bigon that goes round the sphere: a strand over another one twice, with equal signs."""
+    diagram = diagram_from_code("Gauss: O1-O2-O4-U3-O5-U4-O3-U5-U2-U1-")
+    assert jones(reduced(diagram)) == jones(diagram) == jones(braid_diagram((-1, -1, -1)))
 
 
 @pytest.mark.parametrize("seed", [1, 3, 5])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve
+from mobius_flow.core import Curve, OptionError
 from mobius_flow.core.energies.near_pairs import near_pairs
 from mobius_flow.core.hierarchy import BlockList, ClusterTree
 from mobius_flow.core.knots import knot
@@ -57,6 +57,23 @@ def test_share_of_near_pairs(curve: Curve) -> None:
     blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
     neighbours_and_halves = len(curve.mesh.inner) + 0.5 * n
     assert blocks.near_share * n**2 / 2 == pytest.approx(len(blocks.i) + neighbours_and_halves, abs=1e-9)
+
+
+@CURVE
+def test_only_near_pairs_can_be_left_out(curve: Curve) -> None:
+    """Wherever among the pairs those would be that are not: the last two edges are neighbours, or of two components."""
+    blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
+    listed = set(zip(blocks.i.tolist(), blocks.j.tolist(), strict=True))
+    for i, j in ((0, 1), (n - 2, n - 1)):
+        if (i, j) not in listed:
+            with pytest.raises(OptionError, match="is not a near one"):
+                blocks.near_pairs((np.array([i]), np.array([j])))
+
+
+def test_a_list_is_of_one_mesh_only() -> None:
+    curve = torus_trefoil(400)
+    assert BlockList.of(curve, 0.25, 4).is_separated(curve, 0.25)
+    assert not BlockList.of(curve, 0.25, 4).is_separated(opened(curve, 0), 0.25)
 
 
 @pytest.mark.parametrize("curve", [torus_trefoil(20_000), scattered_rings(3_000, 5, spread=40.0)], ids=["long", "many"])

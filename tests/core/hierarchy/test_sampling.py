@@ -1,6 +1,7 @@
 """What a sample of edges tells of the compressed energy's errors, against the errors themselves."""
 
 from functools import cache
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from mobius_flow.core.driver import RelaxOptions
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.energies.near_pairs import replaced_pairs
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, SampledErrors, moebius_energy, reported
-from mobius_flow.core.hierarchy.sampling import energy_error, sampled_edges, slope_error
+from mobius_flow.core.hierarchy.sampling import Estimate, energy_error, sampled_edges, slope_error
 from mobius_flow.core.knots import knot
 from shapes import chain_of_rings, graded_trefoil, torus_trefoil
 
@@ -62,9 +63,8 @@ def test_rows_add_up(name: str) -> None:
 def test_rows_of_some_edges_are_those_of_all_but_for_what_is_left_out() -> None:
     curve = torus_trefoil(300)
     some, all_of_them = np.array([299, 0, 7, 150]), np.arange(300)
-    np.testing.assert_array_equal(
-        MoebiusEnergy().row_energies(curve, some), MoebiusEnergy().row_energies(curve, all_of_them)[some]
-    )
+    rows = MoebiusEnergy().row_energies(curve, all_of_them)
+    np.testing.assert_allclose(MoebiusEnergy().row_energies(curve, some), rows[some], rtol=0, atol=1e-13 * rows.sum())
     pairs = np.array([0, 7, 200]), np.array([150, 30, 220])
     missing = MoebiusEnergy().row_energies(curve, some) - MoebiusEnergy(pairs).row_energies(curve, some)
     assert np.flatnonzero(missing).tolist() == [1, 2, 3]
@@ -104,6 +104,16 @@ def test_by_default_a_sample_tells_the_errors_that_are_wanted_by_default(name: s
     assert errors.gradient_norm.standard_error < 1.5e-5
     assert errors.within(1e-4)
     assert not errors.within(1e-12)
+
+
+@pytest.mark.parametrize("count", [2, 4, 6])
+def test_standard_errors_are_those_of_samples_without_replacement(count: int) -> None:
+    """Squared and averaged over all samples of six numbers they are the variance of the sum that is told."""
+    numbers = np.array([1.0, -2.0, 4.0, 0.5, 3.0, 9.0])
+    told = [Estimate.of_sum(numbers[list(chosen)], 6, rest=5.0) for chosen in combinations(range(6), count)]
+    assert np.mean([each.mean for each in told]) == pytest.approx(5.0 + numbers.sum())
+    variance = np.var([each.mean for each in told])
+    assert np.mean([each.standard_error**2 for each in told]) == pytest.approx(variance, abs=1e-12)
 
 
 def test_the_standard_error_does_not_grow_with_the_mesh() -> None:

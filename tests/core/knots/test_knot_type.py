@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hard_curves import hard_unknot, lattice_closure
 from mobius_flow.core import Curve, Mesh
+from mobius_flow.core.diagrams.codes import diagram_from_code
 from mobius_flow.core.knots import (
     HARD_UNKNOTS,
     KNOTS,
@@ -16,7 +17,7 @@ from mobius_flow.core.knots import (
     smooth_knot,
 )
 from mobius_flow.core.knots.catalogue import crossing_number
-from mobius_flow.core.knots.knot_type import MAX_VERTICES
+from mobius_flow.core.knots.knot_type import ALEXANDER, DOUBLED, JONES, MAX_VERTICES, type_of_diagram
 from mobius_flow.core.knots.table import AMPHICHEIRAL, ROLFSEN
 
 # The one prime knot to ten crossings whose mirror image has the same invariants of all those that are computed.
@@ -77,6 +78,19 @@ def test_sums_and_parts_that_come_apart(name: str, told: str) -> None:
     found = knot_type(knot(name))
     assert str(found) == told
     assert found.proved
+
+
+def test_a_knot_beyond_the_table_is_not_called_by_the_name_of_one_with_its_polynomials() -> None:
+    """11n_37 has the Jones and Alexander polynomials of 10_155; those of their doubles are different."""
+    found = type_of_diagram(diagram_from_code("DT[kakCKeAhbjidfg.11100011100]"))
+    assert found.names == ()
+    assert DOUBLED in found.evidence
+
+
+def test_that_a_part_has_no_crossings_is_no_evidence_for_others() -> None:
+    found = type_of_diagram(diagram_from_code("Gauss: O1+U2+O3+U1+O2+U3+ / []"))
+    assert found.names == ("0_1 ⊔ 3_1",)
+    assert found.evidence == (JONES, ALEXANDER)
 
 
 def test_types_beyond_the_table_are_not_told() -> None:

@@ -1,11 +1,13 @@
 """The grammar of knot names."""
 
+import sys
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 from knot_type import knot_invariants
 from mobius_flow.core import Curve
+from mobius_flow.core.diagrams import diagram_of, jones
 from mobius_flow.core.errors import CurveError, MobiusFlowError
 from mobius_flow.core.knots import (
     ARCS,
@@ -18,16 +20,19 @@ from mobius_flow.core.knots import (
     lissajous_knot,
     smooth_knot,
 )
+from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from spherogram import Link
 
+BRAIDS = ["{1,1,1}", "{1, 1, 1}", "BR[2, {1, 1, 1}]", "BR[{1,1,1}]", "br(2,(1,1,1))", "m{-1,-1,-1}"]
 SAME = {
-    "3_1": ["trefoil", " Trefoil  Knot ", "TREFOIL", "3_1", "braid(1,1,1)", "braid( 1, 1,+1 )", "mm3_1"],
+    "3_1": ["trefoil", " Trefoil  Knot ", "TREFOIL", "3_1", "braid(1,1,1)", "braid( 1, 1,+1 )", "mm3_1", *BRAIDS],
     "4_1": ["figure-eight", "figure eight", "figure_eight", "Figure-Eight Knot", "braid(1,-2,1,-2)"],
     "L2a1": ["hopf", "Hopf link", "l2a1"],
     "L6a4": ["borromean", "Borromean rings"],
     "T(2,5)": ["torus(2,5)", "t( 2 , 5 )", "Torus(2,5)"],
-    "0_1": ["unknot", "circle", "braid()", "0_1#0_1"],
+    "0_1": ["unknot", "circle", "braid()", "0_1#0_1", "{}", "BR[1, {}]"],
     "m3_1": ["mtrefoil", "m trefoil", "braid(-1,-1,-1)"],
-    "3_1#m3_1": ["square", "square knot", "trefoil # m3_1"],
+    "3_1#m3_1": ["square", "square knot", "trefoil # m3_1", "{1,1,1}#BR[2,{-1,-1,-1}]"],
 }
 
 
@@ -62,6 +67,11 @@ def test_handedness(name: str, genus: int, tau: int) -> None:
         ("braid(1,,2)", "'' in 'braid(1,,2)' is not a whole number"),
         ("braid(1;2)", "'1;2' in 'braid(1;2)' is not a whole number"),
         ("braid(1,-2,x)", "'x' in 'braid(1,-2,x)' is not a whole number"),
+        ("{1,-2,x}", "'x' in '{1,-2,x}' is not a whole number"),
+        ("BR[2,{1,x}]", "'x' in 'BR[2,{1,x}]' is not a whole number"),
+        ("{1,1", "'{1,1' has no closing bracket"),
+        ("{-1, 3, -2, 1, -3, 2}", "may be a braid or a Gauss code"),
+        ("3_1#BR[3,{1,1}]", "strands without letters"),
         ("T(2,x)", "'x' in 'T(2,x)' is not a whole number"),
         (f"T(2,{'9' * 5000})", "up to 18 digits"),
         ("T[2,3]", "known are"),
@@ -82,6 +92,30 @@ def test_unknown_names_list_close_and_known_ones(name: str, hint: str) -> None:
 def test_numbers_that_are_not_allowed(name: str) -> None:
     with pytest.raises(CurveError, match=r"^(T\(\S+\) |letter|the braid has .* strands)"):
         knot(name)
+
+
+def test_braids_may_have_strands_of_their_own() -> None:
+    assert len(knot("BR[4,{1,1,1}]").mesh.component_sizes) == 3
+    with pytest.raises(CurveError, match="the braid has 2 strands, but its letters need 3"):
+        knot("BR[2,{1,2}]")
+
+
+@pytest.mark.parametrize("name", ["K11n34", "11n_34", "k11n34", "12a_0003", "L8n1", "L10a100"])
+def test_names_of_larger_tables_are_spherograms(name: str) -> None:
+    theirs = Link({"11n_34": "K11n34", "k11n34": "K11n34", "12a_0003": "K12a3"}.get(name, name))
+    assert jones(braid_diagram(braid_word(name))) == jones(diagram_of(theirs.PD_code()))
+
+
+@pytest.mark.parametrize("name", ["K11n999", "L99a1", "m11a_0"])
+def test_names_that_no_table_has(name: str) -> None:
+    with pytest.raises(MobiusFlowError, match=r"no knot (or link )?is called"):
+        knot(name)
+
+
+def test_larger_tables_are_an_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "spherogram", None)
+    with pytest.raises(MobiusFlowError, match=r'K11n34 is in larger .* pip install spherogram \(the extra "knots"\)'):
+        knot("11n_34")
 
 
 def test_listed_names_are_names() -> None:
