@@ -23,6 +23,7 @@ from .driver.solver import Solver, max_vertices
 from .energies.near_pairs import near_pairs
 from .errors import OptionError
 from .knots import torus_knot
+from .system.threads import BLAS
 
 SIZES = (200, 592, 1000, 2000, 5000, 10_000)
 MIN_SIZE = 60  # vertices with which the bent knot is still a trefoil
@@ -158,6 +159,7 @@ def exponents(rows: Sequence[Row]) -> dict[str, float]:
     return fits
 
 
+@BLAS.bounded()
 def _row(curve: Curve, options: RelaxOptions) -> Row:
     run = _started(curve, options)
     hierarchical = Solver.of_problem(options, run.problem).hierarchical

@@ -11,6 +11,7 @@ from ..curve import Curve
 from ..errors import CurveError, OptionError
 from ..hierarchy import moebius_energy
 from ..obstacle import Obstacle
+from ..system.threads import BLAS
 from ..units import centred
 from .hops import hopping
 from .iterate import Iterate
@@ -112,10 +113,11 @@ class Result:
         }
 
 
+@BLAS.bounded()
 def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
-    In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
+    Between iterates BLAS has the caller's threads again.  In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
     `minimize`.
 
     Parameters
@@ -140,7 +142,7 @@ def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
         run = Run(start_problem(start, options, pins_of(curve, start, options)), start, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start)}") from error
-    return hopping(run)
+    return BLAS.bounding(hopping(run))
 
 
 def _remedy(curve: Curve) -> str:
