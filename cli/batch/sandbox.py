@@ -5,7 +5,6 @@ A child lives on from run to run: it takes half a second to import NumPy and Sci
 
 import atexit
 import json
-import os
 import signal
 import subprocess
 import sys

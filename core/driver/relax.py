@@ -117,8 +117,8 @@ class Result:
 def relax(curve: Curve, options: RelaxOptions | None = None) -> Relaxation:
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
-    Between iterates BLAS has the caller's threads again.  In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
-    `minimize`.
+    In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
+    `minimize`.  BLAS has one thread at work, and between iterates as many as the caller gave it.
 
     Parameters
     ----------

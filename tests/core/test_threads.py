@@ -38,10 +38,12 @@ pytestmark = pytest.mark.skipif(not threads(), reason="this BLAS cannot be bound
 @pytest.fixture(autouse=True)
 def _pools() -> Iterator[None]:
     """Pools of a caller, of more threads than those of the tests; nothing of them may be left changed."""
-    with threadpoolctl.threadpool_limits(OWN, "blas"):
+    before = POOLS.limit(limits=OWN)
+    with POOLS.limit(limits=None):  # when this ends the thread that has set a number lets go of the pools
         assert threads() == {OWN}
-        yield
-        assert threads() == {OWN}
+    yield
+    assert threads() == {OWN}
+    before.restore_original_limits()
 
 
 class FaultError(Exception):
