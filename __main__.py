@@ -1,11 +1,6 @@
 """The command ``mobius-flow``, the same as ``python -m mobius_flow``."""
 
-import os
 import sys
-
-# NumPy and SciPy each bring an OpenBLAS whose idle threads spin; on a machine with other work to do the two pools
-# slow each other down tenfold and more.  One thread each is as fast alone and never bad.  Set before NumPy is imported.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def main() -> int:

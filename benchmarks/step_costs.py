@@ -20,6 +20,7 @@ from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.energies.near_pairs import near_pairs
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
+from mobius_flow.core.system.threads import BLAS
 
 MAX_COMPARED = 3000  # vertices up to which the hierarchical solver is compared with the dense one
 ASYMPTOTIC = 2000  # vertices from which times are expected to follow a power law
@@ -119,6 +120,7 @@ def exponents(rows: Sequence[Row]) -> dict[str, float]:
     return fits
 
 
+@BLAS.bounded()
 def _row(curve: Curve, options: RelaxOptions) -> Row:
     run = _started(curve, options)
     hierarchical = isinstance(run.problem.objective.energy, HierarchicalMoebiusEnergy)

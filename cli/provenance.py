@@ -1,6 +1,5 @@
 """Where a result comes from: enough to make it again, bit for bit with the same libraries and BLAS threads."""
 
-import os
 import platform
 
 import numpy
@@ -9,6 +8,7 @@ import scipy
 from .. import __version__
 from ..core import RelaxOptions, Task
 from ..core.curve.io import CurveFile
+from ..core.system.threads import THREADS
 
 
 def provenance(options: RelaxOptions, task: Task, file: CurveFile) -> dict[str, object]:
@@ -30,18 +30,8 @@ def environment() -> dict[str, object]:
     """The version, the BLAS threads and the libraries, as plain values."""
     return {
         "version": __version__,
-        "blas_threads": _blas_threads(),
+        "blas_threads": THREADS,
         "python": platform.python_version(),
         "numpy": numpy.__version__,
         "scipy": scipy.__version__,
     }
-
-
-def _blas_threads() -> int:
-    """The number of threads of OpenBLAS by its own rule: as many as it is told, but no more than processors."""
-    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    for name in ("OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"):
-        value = os.environ.get(name, "")
-        if value.isdecimal() and int(value) > 0:
-            return min(int(value), processors)
-    return processors

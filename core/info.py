@@ -15,6 +15,7 @@ from .driver.termination import gradient_bound
 from .knots import KnotType, knot_type
 from .measure import MAX_VERTICES as PAIRS_UP_TO
 from .measure import measure
+from .system.threads import BLAS
 from .units import check_units
 
 ENERGIES = ("moebius", "edge", "vertex")
@@ -93,6 +94,7 @@ class Info:
         return None if self.thickness is None else self.length / self.thickness
 
 
+@BLAS.bounded()
 def info(curve: Curve) -> Info:
     """Measure a curve and tell its type.
 

@@ -6,11 +6,13 @@ from .curve import Curve, check_is_curve
 from .energies import ENERGIES, MoebiusEnergy
 from .errors import CurveError
 from .hierarchy import moebius_energy
+from .system.threads import BLAS
 from .units import centred, check_units
 
 MAX_VERTICES = 50_000  # of energies that sum over all pairs of edges: a minute or so, growing with the square
 
 
+@BLAS.bounded()
 def measure(curve: Curve, energy: str = "moebius") -> float:
     """The energy of a curve, in the user's units.
 

@@ -1,13 +1,14 @@
 """What every test needs before it starts."""
 
-import os
 import signal
 from pathlib import Path
 
+import scipy.linalg  # noqa: F401 (a pool can be bounded once it is there)
+import threadpoolctl
 from hypothesis import HealthCheck, settings
 
-# as the command line does: two spinning BLAS thread pools would make the tests crawl on a busy machine
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# as `relax` does around its work: tests also call parts of it, and spinning threads would make them crawl
+threadpoolctl.threadpool_limits(1, "blas")
 
 # where Ctrl-C is ignored, as in a shell's background jobs, tests could not raise it; children would inherit that
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Build the Blender extension: one zip for each platform, with SciPy's wheels for every Python that Blender has there.
+"""Build the Blender extension: one zip for each platform, with wheels for every Python that Blender has there.
 
     tools/build_extension.py [--platform linux-x64] [--output dist] [--wheels DIR]
 
@@ -25,6 +25,7 @@ PLATFORMS = {
     "macos-arm64": "macosx_12_0_arm64",
     "macos-x64": "macosx_10_14_x86_64",
 }
+ANY = "-none-any"  # wheels without compiled code
 PINS = ROOT / "tools" / "wheels.sha256"
 WHEELS = {
     name: digest
@@ -60,8 +61,8 @@ def build(platform: str, output: Path, wheels: Path) -> Path:
 
 
 def fetch_wheels(platform: str, wheels: Path) -> list[Path]:
-    """Fetch SciPy's wheels for all Pythons of a platform, unless they are there already, bit by bit as pinned."""
-    paths = [wheels / name for name in WHEELS if PLATFORMS[platform] in name]
+    """Fetch the wheels for all Pythons of a platform, unless they are there already, bit by bit as pinned."""
+    paths = [wheels / name for name in WHEELS if PLATFORMS[platform] in name or ANY in name]
     for path in paths:
         if not _as_pinned(path):
             _download(path)
@@ -78,8 +79,10 @@ def _as_pinned(path: Path) -> bool:
 def _download(path: Path) -> None:
     """Let pip download a wheel by its name and its hash."""
     distribution, version, python, _, platforms = path.stem.split("-")
-    wanted = [argument for tag in platforms.split(".") for argument in ("--platform", tag)]
-    wanted += ["--python-version", f"{python[2]}.{python[3:]}", "--only-binary", ":all:", "--no-deps"]
+    wanted = ["--only-binary", ":all:", "--no-deps"]
+    if ANY not in path.name:
+        wanted += [argument for tag in platforms.split(".") for argument in ("--platform", tag)]
+        wanted += ["--python-version", f"{python[2]}.{python[3:]}"]
     with tempfile.TemporaryDirectory() as room:
         pinned = Path(room) / "requirements.txt"
         pinned.write_text(f"{distribution}=={version} --hash=sha256:{WHEELS[path.name]}\n", encoding="utf-8")

@@ -76,17 +76,30 @@ def facing(curve: Curve) -> Curve:
     turned = min((points @ view for view in _views()), key=_clutter)
     if _clutter(flat := points @ _principal(points)) < FAVOUR * _clutter(turned):
         turned = flat
-    _, axes = np.linalg.eigh(turned[:, :2].T @ turned[:, :2])
-    plane = axes[:, ::-1] * [1.0, np.sign(np.linalg.det(axes[:, ::-1]))]
-    turned[:, :2] = turned[:, :2] @ plane
+    turned[:, :2] = turned[:, :2] @ _wide(turned[:, :2])
     low, high = turned.min(axis=0), turned.max(axis=0)
     return curve.with_vertices((turned - 0.5 * (low + high)) / (0.5 * (high - low).max()))
 
 
 def _principal(points: FloatArray) -> FloatArray:
     """Rotation to look along the axis in which a curve is flattest, which shows symmetries; (3, 3)."""
-    axes = np.linalg.svd(points, full_matrices=False)[2].T
-    return np.asarray(axes * [1.0, 1.0, np.linalg.det(axes)])
+    x, y = (_signed(axis, points) for axis in np.linalg.svd(points, full_matrices=False)[2][:2])
+    return np.stack([x, y, np.cross(x, y)], axis=1)
+
+
+def _wide(points: FloatArray) -> FloatArray:
+    """Rotation of the plane that turns the axis in which a picture is widest to +x; (2, 2)."""
+    x, y = _signed(np.linalg.eigh(points.T @ points)[1][:, -1], points)
+    return np.array([[x, -y], [y, x]])
+
+
+def _signed(axis: FloatArray, points: FloatArray) -> FloatArray:
+    """An axis with the sign for which the first point that is more than half-way out along it is on its positive side.
+
+    Eigenvectors have the sign that rounding gives them, which differs from processor to processor.
+    """
+    along = points @ axis
+    return np.asarray(axis * np.sign(along[np.argmax(np.abs(along) > 0.5 * np.abs(along).max())]))
 
 
 def _views() -> list[FloatArray]:

@@ -13,6 +13,7 @@ from typing import IO
 
 import numpy as np
 import scipy
+import threadpoolctl
 
 from ...core import Iterate, MobiusFlowError, Outcome, RelaxOptions, Task
 from ...core.collision import is_free
@@ -154,6 +155,7 @@ def _start() -> "subprocess.Popen[bytes] | None":
 
 
 def _environment() -> dict[str, str]:
-    """The environment, with SciPy's place in it and one thread for linear algebra: a run is one of many tasks."""
-    places = dict.fromkeys(str(Path(inspect.getfile(module)).parents[1]) for module in (scipy, np))
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(places), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    """The environment, with the places of the libraries in it."""
+    files = [Path(inspect.getfile(module)) for module in (scipy, np, threadpoolctl)]
+    places = dict.fromkeys(str(file.parents[file.stem == "__init__"]) for file in files)
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(places)}

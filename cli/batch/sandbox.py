@@ -5,7 +5,6 @@ A child lives on from run to run: it takes half a second to import NumPy and Sci
 
 import atexit
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -19,8 +18,6 @@ from . import child
 from .job import Job
 from .table import Row
 
-# one thread each: set before the child imports NumPy
-_ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OPENBLAS", "OMP", "MKL")}
 _own = threading.local()
 _open: "WeakSet[Sandbox]" = WeakSet()
 
@@ -38,7 +35,6 @@ class Sandbox:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            env=os.environ | _ONE_THREAD,
             encoding="utf-8",
             start_new_session=True,  # Ctrl-C is for the parent
         )

@@ -58,16 +58,18 @@ class Constrained:
         """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point: (42).
 
         Once corrections are small the derivative is that at Q and the pseudo-inverse one that is cheap, by which the
-        residual vanishes quadratically.  None if the residual does not contract: the step was too long.
+        residual vanishes quadratically.  There is always a correction: many short steps, each within the tolerance,
+        would drift away together, and what lengths gain or lose by that is energy which searches take for the step's.
+        None if the residual does not contract: the step was too long.
         """
         last = np.inf
-        for _ in range(self.max_iterations):
+        for corrections in range(self.max_iterations):
             point = base.problem.at(vertices)
             if not point.nondegenerate:
                 return None
             residual = point.residual - level
             error = base.problem.constraints.error(point.curve.mesh, residual)
-            if error <= self.tolerance:
+            if error <= self.tolerance and corrections:
                 return point
             if not error <= self.contraction * last:
                 return None

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from ..curve import Curve
 from ..errors import OptionError
+from ..system.threads import BLAS
 from ..task import Task
 from .loop import WithOutcome
 from .options import RelaxOptions
@@ -38,6 +39,7 @@ class History:
     fallback: tuple[int, ...]
 
 
+@BLAS.bounded()
 def compare(given: Task | Curve, methods: Sequence[str], options: RelaxOptions, time_limit: float) -> Iterator[History]:
     """Give one run per method, all from the same refined curve, each ended at ``time_limit`` seconds.
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..curve import Curve
 from ..errors import CurveError, OptionError
 from ..hierarchy import moebius_energy
+from ..system.threads import BLAS
 from ..task import Task
 from ..units import centred
 from .hops import hopping
@@ -113,11 +114,12 @@ class Result:
         }
 
 
+@BLAS.bounded()
 def relax(task: Task | Curve, options: RelaxOptions | None = None) -> Relaxation:
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
     In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
-    `minimize`.
+    `minimize`.  BLAS has one thread at work, and between iterates as many as the caller gave it.
 
     Parameters
     ----------
@@ -143,7 +145,7 @@ def relax(task: Task | Curve, options: RelaxOptions | None = None) -> Relaxation
         run = Run(start_problem(start, options), start.curve, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start.curve)}") from error
-    return hopping(run)
+    return BLAS.bounding(hopping(run))
 
 
 def _remedy(curve: Curve) -> str:

@@ -2,12 +2,14 @@
 
 from ..curve import Curve
 from ..energies.moebius import MoebiusEnergy
+from ..system.threads import BLAS
 from .energy import HierarchicalMoebiusEnergy
 from .sampling import energy_error
 
 EXACT_UP_TO = 30_000  # vertices; all pairs of edges take some fifteen seconds there
 
 
+@BLAS.bounded()
 def moebius_energy(curve: Curve) -> tuple[float, float]:
     """The energy, and a bound of its relative error that holds with 95 % probability: 0 up to `EXACT_UP_TO` vertices.
 

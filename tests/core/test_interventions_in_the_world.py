@@ -21,8 +21,8 @@ def two_rings(distance: float) -> Curve:
 
 
 def test_balance_does_not_go_with_obstacles() -> None:
-    with pytest.raises(OptionError, match=r"^balance takes Möbius images, which keep the energy but not the repulsion"):
-        RelaxOptions(balance=True, avoid=(plate(9.0),))
+    with pytest.raises(OptionError, match=r"^balance takes Möbius images, which have another repulsion than the curve"):
+        minimize(*wanted(SQUARE, balance=True, avoid=(plate(9.0),)))
 
 
 def test_where_nothing_can_move_nothing_hops() -> None:

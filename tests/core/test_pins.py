@@ -229,7 +229,8 @@ def test_little_slack_is_no_obstacle() -> None:
     above = np.stack([2.0 + 2.0 * np.cos(t), 2.5 * np.sin(t), 0.4 * np.sin(2.0 * t)], axis=1)
     iterates, message = checked(Curve(np.concatenate([below, above])), pins=(0, 40), mesh="fixed", max_iterations=300)
     assert message.startswith("converged")
-    assert iterates[-1].edge_length_error < 1e-11
+    # rounding: coordinates of size 4 and edges 0.04 long, whose logarithms two roundings of eps · 4/0.04 change
+    assert iterates[-1].edge_length_error < 2 * 100 * np.finfo(float).eps
 
 
 @pytest.mark.parametrize(

@@ -55,6 +55,16 @@ def test_corrections_solve_the_linearised_constraints_by_the_shortest_way(name: 
         np.testing.assert_allclose(translation, translation[:1].repeat(len(translation), axis=0), atol=1e-9)
 
 
+def test_short_steps_do_not_drift_away_from_the_lengths() -> None:
+    """A step that misses them by less than the tolerance is led back like any other."""
+    base = point_on(rough(torus_trefoil(60)))
+    move = 5e-6 * base.gradient / base.gradient_norm
+    missed = base.problem.at(base.vertices - move).infeasibility
+    end = base.retract(base.vertices - move, base.residual)
+    assert end is not None
+    assert 100 * end.infeasibility < missed < Constrained().tolerance
+
+
 class Counting(TangentSpace):
     """A tangent space that counts its solves."""
 

@@ -166,19 +166,23 @@ class _Model:
 
 
 def _orthonormal(point: Point, vectors: list[FloatArray]) -> tuple[FloatArray, ...]:
-    """Gram–Schmidt in the metric, twice for stability; vectors that add nothing new are left out."""
-    basis: list[FloatArray] = []
+    """Gram–Schmidt in the metric, twice for stability; vectors that add nothing new are left out.
+
+    What is left of a nearly dependent vector is largely its rounding error, which need not be tangent: along its normal
+    part the energy changes as along no step.  So the rest is projected before it is made orthogonal once more, and left
+    out if little of it remains.
+    """
+    space, basis = point.tangent_space, list[FloatArray]()
     for vector in vectors:
-        size = point.tangent_space.norm(vector)
-        if size == 0.0:
-            continue
-        v = vector / size
-        for _ in range(2):
+        for least in (1e-8, 0.5):
+            size = space.norm(vector)
+            vector = point.transport(vector / size) if size > 0.0 else vector
             for b in basis:
-                v = v - np.sum(b * point.tangent_space.apply(v)) * b
-        rest = point.tangent_space.norm(v)
-        if rest > 1e-8:
-            basis.append(v / rest)
+                vector = vector - np.sum(b * space.apply(vector)) * b
+            if not space.norm(vector) > least:
+                break
+        else:
+            basis.append(vector / space.norm(vector))
     return tuple(basis)
 
 

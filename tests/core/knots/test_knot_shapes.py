@@ -13,9 +13,9 @@ tool = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(tool)
 
 
-@pytest.mark.parametrize("name", ["0_1", "3_1", "L2a1"])
+@pytest.mark.parametrize("name", ["3_1", "4_1", "L2a1"])
 def test_shapes_are_made_anew_as_they_are_stored(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """To a few quanta, as linear algebra may round otherwise than where they were made."""
+    """To a few quanta, as linear algebra may round otherwise than where they were made; no axis fits a circle best."""
     monkeypatch.setattr(tool, "KEPT", tmp_path)
     made, stored = tool.shape(name).coefficients, shapes()[name].coefficients
     assert len(made) == len(stored)
