@@ -126,7 +126,7 @@ def _next(ended: "queue.SimpleQueue[Any]") -> Any:
 def _row(job: Job, future: Any) -> Row:
     try:
         row: Row = future.result()
-    except CancelledError as lost:
+    except (CancelledError, OSError) as lost:  # an OSError where a row cannot be fetched
         raise MobiusFlowError("the Dask scheduler is lost; give the same command again to go on") from lost
     except (MobiusFlowError, sandbox.ChildDiedError):
         raise

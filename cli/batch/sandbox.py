@@ -35,15 +35,18 @@ class Sandbox:
     """A child process that does one run at a time."""
 
     def __init__(self) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", child.__name__],  # modules in the directory where it starts are not its own
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            env=os.environ | _ONE_THREAD,
-            encoding="utf-8",
-            start_new_session=True,  # Ctrl-C is for the parent
-        )
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", child.__name__],  # modules in the working directory are not its own
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                env=os.environ | _ONE_THREAD,
+                encoding="utf-8",
+                start_new_session=True,  # Ctrl-C is for the parent
+            )
+        except OSError as error:
+            raise ChildDiedError(f"its process cannot be started: {error}") from error
         _open.add(self)
         if _closed.is_set():
             self.close()
