@@ -5,7 +5,6 @@ import json
 import os
 import re
 import secrets
-import stat
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -14,7 +13,7 @@ from typing import Any
 
 from ...core import MobiusFlowError
 from ...core.errors import reason_of
-from .job import CURVE, REPORT, TRAJECTORY, Job
+from .job import CURVE, REPORT, TRAJECTORY, Job, sha256_of
 from .table import Row, foreign
 
 _ROOM = ".mobius-flow-{}.partial"  # short, so that whatever can be the name of results has one beside it
@@ -85,17 +84,17 @@ def check_replaceable(path: Path) -> None:
     if path.is_symlink() or not written:
         raise foreign(path)
     for each in sorted(path.iterdir()):
-        if written.get(each.name) != _sha256(each):
+        if each.is_symlink() or written.get(each.name, "") != sha256_of(each):
             raise foreign(each)
 
 
-def _written(folder: Path) -> dict[str, str]:
+def _written(folder: Path) -> dict[str, str | None]:
     """The SHA-256 of the files that a batch wrote into a folder, by its mark in the report; empty without one."""
     report = _report(folder)
     files = report.pop(_FILES, None)
     if not isinstance(files, dict) or files.pop(REPORT, None) != _sha256_of(report):
         return {}
-    return files | {REPORT: _sha256(folder / REPORT)}
+    return files | {REPORT: sha256_of(folder / REPORT)}
 
 
 def _report(folder: Path) -> dict[str, Any]:
@@ -109,14 +108,6 @@ def _report(folder: Path) -> dict[str, Any]:
     return report if isinstance(report, dict) else {}
 
 
-def _sha256(path: Path) -> str:
-    """Of a regular file; empty for all else."""
-    if not stat.S_ISREG(path.lstat().st_mode):
-        return ""
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
 def _sha256_of(report: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(report).encode()).hexdigest()
 
@@ -126,11 +117,8 @@ def sweep(directory: Path) -> None:
     for room in directory.glob(_ROOM.format("*")):
         with suppress(OSError):
             note = room / _NOTE
-            if (
-                time.time() - room.stat().st_mtime > _ABANDONED
-                and stat.S_ISREG(note.lstat().st_mode)
-                and note.read_bytes() == _note(room)
-            ):
+            old = time.time() - room.stat().st_mtime > _ABANDONED
+            if old and note.is_file() and note.read_bytes() == _note(room):
                 _remove(room)
 
 
@@ -146,7 +134,7 @@ def finished(job: Job) -> Row | None:
 def write_report(room: Path, job: Job, row: Row, report: dict[str, object]) -> None:
     """Write the report, last of all, with what `finished` looks for and the mark by which the files are ours."""
     report = report | {"row": vars(row), "recipe": job.recipe}
-    marks = {name: _sha256(room / name) for name in (CURVE, TRAJECTORY)}
+    marks = {name: sha256_of(room / name) for name in (CURVE, TRAJECTORY)}
     write_text(room / REPORT, json.dumps(report | {_FILES: marks | {REPORT: _sha256_of(report)}}, indent=1) + "\n")
 
 

@@ -16,7 +16,7 @@ from ...core.errors import OutputError, counted
 from ...core.system.files import atomic_write
 from ..streams import one_line
 from .inputs import as_text
-from .job import CSV, PARQUET, Job
+from .job import CSV, PARQUET, Job, sha256_of
 
 FAILED = "failed"
 _MARK = b"mobius-flow batch"  # in the Parquet file's metadata: SHA-256 of the CSV beside it, and of the one before
@@ -24,43 +24,7 @@ _MARK = b"mobius-flow batch"  # in the Parquet file's metadata: SHA-256 of the C
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """What became of one run; what is not known is None.
-
-    Attributes
-    ----------
-    name, start, seed
-        As in its `Job`.
-    input_sha256
-        Of the input's file; None for a knot that is made by its name.
-    type_before, type_after
-        Of the start and the end, as `mobius-flow info` tells them: ``m3_1``, ``3_1#4_1``, or ``not told``.
-    proved
-        Whether it is certain that the end is of one of the types named.
-    vertices
-        Of the end.
-    energy
-        Möbius energy of the end.
-    extrapolated_energy, extrapolated_energy_error
-        Of the smooth curve, and how far that may be off.
-    gradient_norm
-        Of the projected gradient at the end.
-    index
-        Number of the Hessian's negative eigenvalues, where that was asked for: 0 at a minimum, more at a saddle.
-    ropelength, writhe, average_crossing_number
-        Of the end, as `mobius-flow info` measures them.
-    iterations, fallback_steps
-        How many there were, and how many of them by another method than the one asked for.
-    seconds, processor_seconds
-        Of the whole run, by the clock and of the processor.
-    status, message
-        How it ended: as a report has it, or failed and why.
-    certified
-        Whether every motion was proved free of contact on the way.
-    verified
-        Whether the trajectory that was written is accepted by the independent check.
-    version, options
-        Of the program, and those options that are not the default, as JSON.
-    """
+    """What became of one run; what is not known is None. The columns are described in docs/batch.md."""
 
     name: str
     start: int
@@ -107,15 +71,10 @@ class Row:
 
 
 def given(job: Job) -> str:
-    """The options of a job that are not the default, as JSON."""
-    defaults, options = _plain(vars(RelaxOptions()) | {"avoid": {}}), _plain(job.options)
+    """The options of a job that are not the default, as JSON: it has no tuples, wherever they come from."""
+    values = {**vars(RelaxOptions()), "avoid": {}}, job.options
+    defaults, options = (json.loads(json.dumps(each)) for each in values)
     return json.dumps({name: value for name, value in options.items() if value != defaults[name]})
-
-
-def _plain(options: Mapping[str, object]) -> dict[str, object]:
-    """Options as JSON has them, wherever they come from: it has no tuples."""
-    plain: dict[str, object] = json.loads(json.dumps(dict(options)))
-    return plain
 
 
 class Table:
@@ -134,7 +93,7 @@ class Table:
         check_tables(directory)
         columns, cells = [field.name for field in fields(Row)], list(map(asdict, self.rows))
         text = _as_csv(columns, cells)
-        marks = [_sha256(text), *(_sha256(path.read_bytes()) for path in [directory / CSV] if path.exists())]
+        marks = _sha256(text), sha256_of(directory / CSV) or ""
         try:
             with atomic_write(directory / CSV) as table, atomic_write(directory / PARQUET) as parquet:
                 table.write_bytes(text)
@@ -148,10 +107,11 @@ def check_tables(directory: Path) -> None:
 
     A CSV file has no room for a mark: it is in the metadata of the Parquet file, and proves both.
     """
-    marks: list[str] = []
-    if (parquet := directory / PARQUET).exists() and not (marks := _marks(parquet)):
+    table, parquet = directory / CSV, directory / PARQUET
+    marks = _marks(parquet) if parquet.exists() else []
+    if parquet.exists() and not marks:
         raise foreign(parquet)
-    if (table := directory / CSV).exists() and not (table.is_file() and _sha256(table.read_bytes()) in marks):
+    if table.exists() and sha256_of(table) not in marks:
         raise foreign(table)
 
 
