@@ -17,6 +17,8 @@ from mobius_flow.cli.batch import campaign, cluster, sandbox, single
 from mobius_flow.cli.batch.job import Job
 from mobius_flow.cli.batch.table import Row
 from mobius_flow.core import MobiusFlowError, read_curve, write_curve
+from mobius_flow.core.collision.thickness import thickness
+from mobius_flow.core.curve.writhe import writhe_and_crossings
 from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
@@ -51,12 +53,17 @@ def test_rows_and_folders(batch: Batch, ring: Path, tmp_path: Path, capsys: pyte
     ]
     assert {(row["certified"], row["verified"]) for row in rows} == {("True", "True")}
     assert {row["options"] for row in rows} == {'{"max_iterations": 3, "seed": 5}'}
+    assert {(row["proved"], row["iterations"], row["fallback_steps"]) for row in rows} == {("True", "3", "0")}
+    assert all(float(row["processor_seconds"]) > 0.0 for row in rows)
     for row in rows:
         folder = tmp_path / "out" / (row["name"] + ("" if row["start"] == "1" else "-2"))
         report = json.loads((folder / "report.json").read_text())
         assert report["final_energy"] == float(row["energy"])
         assert report["blas_threads"] == 1
-        assert len(read_curve(folder / "curve.txt")) == int(row["vertices"])
+        curve = read_curve(folder / "curve.txt")
+        assert len(curve) == int(row["vertices"])
+        assert float(row["ropelength"]) == curve.length / thickness(curve)
+        assert (float(row["writhe"]), float(row["average_crossing_number"])) == writhe_and_crossings(curve)
         assert verify(folder / "trajectory.npz").accepted
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         *("L2a1", "L2a1-2", "knot", "knot-2", "ring", "ring-2", "results.csv", "results.parquet")
