@@ -4,7 +4,7 @@ import signal
 import subprocess
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 PATIENCE = 600.0  # seconds; not a bound for speed, but so that nothing hangs, however busy the machine
 
@@ -37,3 +37,15 @@ def finished(command: Sequence[str], **options: object) -> "subprocess.Completed
     with running(command, **options) as process:
         output, error = process.communicate()
     return subprocess.CompletedProcess(command, process.returncode, output, error)
+
+
+def listening(process: "subprocess.Popen[str]") -> set[str]:
+    """The addresses at which a process and its children take calls."""
+    import psutil  # which Dask needs
+
+    parent = psutil.Process(process.pid)
+    found: set[str] = set()
+    for each in [parent, *parent.children(recursive=True)]:
+        with suppress(psutil.NoSuchProcess):
+            found |= {on.laddr.ip for on in each.net_connections() if on.status == psutil.CONN_LISTEN}
+    return found

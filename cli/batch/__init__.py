@@ -20,13 +20,14 @@ to be an isotopy. A run that is refused, killed or too slow is a row that says w
 
 DIR/NAME, or DIR/NAME-k for start k above 1, holds curve.txt, report.json and trajectory.npz, and appears whole or not
 at all. The table, DIR/results.csv and DIR/results.parquet, has a row for each run of the command. The same command
-again skips what is finished (the same input, options and version) and tries again what failed. On a cluster DIR and
-the input files are on a file system that all machines share.
+again skips what is finished (the same input, options and version) and tries again what failed. Only what batch wrote
+is replaced. On a cluster DIR and the input files are on a file system that all machines share.
 
 exit status:
   0    every run has its row, also if some of them failed: the rows and the last line say so
   1    memory ran out
-  2    bad options, inputs that name nothing, or a cluster that does not answer or is lost
+  2    bad options, inputs that name nothing, files of others in the way, results that cannot be written, or a cluster
+       that does not answer or is lost; one line says which
   130  interrupted; the table has what is finished
 """
 

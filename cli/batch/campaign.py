@@ -10,24 +10,37 @@ from ...core.errors import OutputError
 from .. import signals
 from ..options import pinned
 from ..places import check_place
+from ..progress import WithBar
 from . import cluster
 from .folder import check_replaceable, finished, sweep
 from .inputs import inputs
 from .job import CSV, PARQUET, Job, jobs
-from .progress import Progress
-from .table import Row, Table
+from .table import Row, Table, check_tables
+
+
+class _Progress(WithBar):
+    """A bar of the runs that are done, with the number of those that failed, and the time left."""
+
+    _failed = 0
+
+    def show(self, row: Row) -> None:
+        """Count a run that has ended."""
+        self._failed += row.failed
+        if self._bar is not None:
+            self._bar.set_postfix_str(f"{self._failed} failed", refresh=False)
+            self._bar.update()
 
 
 def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
     """Do the runs that are not finished; the table is written in the end, also of an interrupted batch."""
-    cluster.require()
+    cluster.require(options.scheduler)
     directory = Path(options.output).resolve()
     pins = [pin for text in options.pins for pin in pinned(text)]
     still = {"avoid": options.avoid, "pins": pins, "pin_tangents": options.pin_tangents}
     planned = jobs(inputs(options.inputs), options.starts, directory, wanted, still, options.extrapolate)
-    _prepare(directory, planned)
     rows = _found(planned)
     left = [job for job in planned if job not in rows]
+    _prepare(directory, left)
     if left:
         _run(left, rows, directory, options)
     else:
@@ -40,7 +53,7 @@ def _found(planned: Iterable[Job]) -> dict[Job, Row]:
     return {job: row for job in planned if (row := finished(job)) is not None}
 
 
-def _prepare(directory: Path, planned: list[Job]) -> None:
+def _prepare(directory: Path, left: list[Job]) -> None:
     """Make the directory; what is in the way of results is told before any work."""
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -48,16 +61,20 @@ def _prepare(directory: Path, planned: list[Job]) -> None:
         raise OutputError(directory, error) from error
     for name in (CSV, PARQUET):
         check_place(str(directory / name))
-    for job in planned:
+    check_tables(directory)
+    for job in left:
         check_replaceable(Path(job.folder))
 
 
 def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argparse.Namespace) -> None:
     """Add the rows of runs as they come, and write the table of those that there are in the end."""
     shown = not options.quiet and sys.stderr.isatty()
-    with cluster.connected(options.scheduler) as client, Progress(client, len(left), shown) as progress:
+    with (
+        cluster.submitting(options.scheduler) as submit,
+        _Progress(shown, total=len(left), unit="run", smoothing=0.1) as progress,
+    ):
         try:
-            for job, row in cluster.rows(client, left, options.time_limit):
+            for job, row in cluster.rows(submit, left, options.time_limit):
                 rows[job] = row
                 progress.show(row)
         finally:

@@ -7,7 +7,7 @@ import sys
 import threading
 import warnings
 
-READY = "ready"
+READY, REFUSED = "ready", "refused"
 
 
 def main() -> None:
@@ -17,12 +17,17 @@ def main() -> None:
     os.dup2(2, 1)  # what libraries print is no answer
     warnings.simplefilter("ignore")
     threading.Thread(target=_listen, args=(lines,), daemon=True).start()
+    from ...core.errors import OutputError
     from .job import Job
     from .single import relaxed
 
     print(READY, file=answers)
     while True:
-        print(json.dumps(vars(relaxed(Job(**json.loads(lines.get()))))), file=answers)
+        try:
+            answer = vars(relaxed(Job(**json.loads(lines.get()))))
+        except OutputError as error:
+            answer = {REFUSED: f"{error}; when that is mended, give the same command again to go on"}
+        print(json.dumps(answer), file=answers)
 
 
 def _listen(lines: "queue.SimpleQueue[str]") -> None:

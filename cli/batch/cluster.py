@@ -1,73 +1,72 @@
-"""Runs on a Dask cluster: this machine's cores, or one that is running already."""
+"""Where the runs of a batch are done: on this machine's cores, or on a Dask cluster that is running already."""
 
 import asyncio
 import logging
 import os
-from collections.abc import Iterable, Iterator
-from concurrent.futures import CancelledError
+import queue
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
+from functools import partial
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import Any
 
 from ...core import MobiusFlowError
+from ..dask import import_distributed
 from . import sandbox
 from .job import Job
 from .table import Row
 
-if TYPE_CHECKING:
-    from distributed import Client, Future
+Submit = Callable[..., Any]  # of a function and its arguments; gives a future
 
-WINDOW = 1000  # runs that the scheduler knows of at a time: enough for hundreds of cores, and little memory
+WINDOW = 1000  # runs that are submitted at a time: enough for hundreds of cores, and little memory
 TRIES = 3  # of a run whose process dies
 _LOGS = "distributed", "distributed.client"
-_PATIENCE = 30.0  # seconds for the scheduler to answer, and for the first worker to join
+_PATIENCE = 4.0  # seconds for the scheduler to answer
+_JOINING = 30.0  # seconds for the first worker to join
+_TICK = 0.5  # seconds after which an interrupt is noticed where waiting is not interruptible, as on Windows
 
 
-def require() -> None:
+def require(address: str | None) -> None:
     """Raise a MobiusFlowError that says what to install if a library is missing."""
     try:
-        import distributed  # noqa: F401
         import pyarrow  # noqa: F401
+
+        if address is not None:
+            import_distributed()
     except ImportError as error:
         raise MobiusFlowError(
-            f"batch needs dask.distributed and pyarrow, which cannot be loaded: {error}; "
+            f"batch needs pyarrow, and for a scheduler dask.distributed: {error}; "
             'install them with pip install "dask[distributed]" "pyarrow<26", or in a clone pip install ".[cluster]"'
         ) from error
 
 
-def connected(address: str | None) -> "AbstractContextManager[Client]":
-    """A client of the scheduler at an address, or of one for all cores of this machine.
+def submitting(address: str | None) -> AbstractContextManager[Submit]:
+    """What submits to the scheduler at an address, or to all cores of this machine.
 
     A MobiusFlowError says if there is no scheduler, or no worker.
     """
-    for name in _LOGS:
-        logging.getLogger(name).setLevel(logging.CRITICAL)  # rows tell what goes wrong
-    return _own() if address is None else _joined(address)
+    return _own_cores() if address is None else _joined(address)
 
 
 @contextmanager
-def _own() -> "Iterator[Client]":
-    """Threads of this process, since each has a child process: one per core, and a kill ends one run."""
-    import dask
-    from distributed import Client, LocalCluster
-
+def _own_cores() -> Iterator[Submit]:
+    """A thread for each core, with a child process of its own; there is nothing to connect to."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    size = {"n_workers": 1, "threads_per_worker": cores, "memory_limit": 0}
-    with (
-        dask.config.set({"distributed.dashboard.link": "http://127.0.0.1:{port}/status"}),
-        LocalCluster(processes=False, dashboard_address="127.0.0.1:0", **size) as cluster,
-    ):
-        try:
-            with Client(cluster) as client:
-                yield client
-        finally:
-            sandbox.close_all()  # threads that wait for a child would keep the cluster
+    pool = ThreadPoolExecutor(cores)
+    try:
+        yield pool.submit
+    finally:
+        with sandbox.closed():  # threads wait for their children
+            pool.shutdown(cancel_futures=True)
 
 
 @contextmanager
-def _joined(address: str) -> "Iterator[Client]":
+def _joined(address: str) -> Iterator[Submit]:
     from distributed import Client
 
+    for name in _LOGS:
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # rows tell what goes wrong
     try:
         asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))  # a peer may take the call and say nothing
         client = Client(address, timeout=_PATIENCE)
@@ -75,10 +74,10 @@ def _joined(address: str) -> "Iterator[Client]":
         raise MobiusFlowError(f"{address}: no Dask scheduler answers there") from error
     with client:
         try:
-            client.wait_for_workers(1, timeout=_PATIENCE)
+            client.wait_for_workers(1, timeout=_JOINING)
         except TimeoutError as error:
-            raise MobiusFlowError(f"{address}: no worker has joined in {_PATIENCE:.0f} s") from error
-        yield client
+            raise MobiusFlowError(f"{address}: no worker has joined in {_JOINING:.0f} s") from error
+        yield partial(client.submit, pure=False)
 
 
 async def _greet(address: str) -> None:
@@ -90,32 +89,47 @@ async def _greet(address: str) -> None:
     await comm.close()
 
 
-def rows(client: "Client", jobs: Iterable[Job], limit: float | None) -> Iterator[tuple[Job, Row]]:
-    """Do all runs, and give each with its row as they come; a window of them at a time is on the cluster."""
-    from distributed import as_completed
+def rows(submit: Submit, jobs: Iterable[Job], limit: float | None) -> Iterator[tuple[Job, Row]]:
+    """Do all runs, and give each with its row as they come; a MobiusFlowError says why the others cannot be done."""
+    waiting, under_way, ended = iter(jobs), dict[Any, tuple[Job, int]](), queue.SimpleQueue[Any]()
 
-    waiting, under_way = iter(jobs), dict[object, Job]()
+    def begin(job: Job, tries: int = 1) -> None:
+        future = submit(sandbox.run, job, limit)
+        under_way[future] = job, tries
+        future.add_done_callback(ended.put)
 
-    def submitted(count: int) -> "Iterator[Future[Row]]":
-        for job in islice(waiting, count):
-            future = client.submit(sandbox.run, job, limit, pure=False, retries=TRIES - 1)
-            under_way[future.key] = job
-            yield future
+    for job in islice(waiting, WINDOW):
+        begin(job)
+    while under_way:
+        future = _next(ended)
+        job, tries = under_way.pop(future)
+        try:
+            row = _row(job, future)
+        except sandbox.ChildDiedError as error:
+            if tries < TRIES:
+                begin(job, tries + 1)
+                continue
+            row = Row.failure(job, f"{TRIES} tries failed: {error}")
+        yield job, row
+        for another in islice(waiting, 1):
+            begin(another)
 
-    completed = as_completed(submitted(WINDOW))
-    for future in completed:
-        job = under_way.pop(future.key)
-        yield job, _row(job, future)
-        completed.update(list(submitted(1)))
+
+def _next(ended: "queue.SimpleQueue[Any]") -> Any:
+    while True:
+        try:
+            return ended.get(timeout=_TICK)
+        except queue.Empty:
+            continue
 
 
-def _row(job: Job, future: "Future[Row]") -> Row:
+def _row(job: Job, future: Any) -> Row:
     try:
         row: Row = future.result()
-    except CancelledError as lost:
+    except (CancelledError, OSError) as lost:  # an OSError where a row cannot be fetched
         raise MobiusFlowError("the Dask scheduler is lost; give the same command again to go on") from lost
-    except sandbox.ChildDiedError as error:
-        return Row.failure(job, f"{TRIES} tries failed: {error}")
+    except (MobiusFlowError, sandbox.ChildDiedError):
+        raise
     except Exception as error:  # of the cluster: workers that die, or lack the program
         return Row.failure(job, str(error))
     return row

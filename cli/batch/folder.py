@@ -1,9 +1,10 @@
-"""Folders of results, each whole or not there."""
+"""Folders of results, each whole or not there; what somebody else wrote is never moved, changed or removed."""
 
+import hashlib
 import json
 import os
+import re
 import secrets
-import shutil
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -12,11 +13,14 @@ from typing import Any
 
 from ...core import MobiusFlowError
 from ...core.errors import reason_of
-from .job import REPORT, Job
-from .table import Row
+from .job import CURVE, REPORT, TRAJECTORY, Job, sha256_of
+from .table import Row, foreign
 
 _ROOM = ".mobius-flow-{}.partial"  # short, so that whatever can be the name of results has one beside it
-_ABANDONED = 3600.0  # seconds after which nobody fills a folder any more: it takes seconds
+_NOTE = "note"  # in a room while it is filled
+_OURS = re.compile("|".join([*map(re.escape, (CURVE, REPORT, TRAJECTORY, _NOTE)), r"\.[0-9a-f]{16}\.npz"]))
+_ABANDONED = 3600.0  # seconds after which nobody fills a room any more: it takes seconds
+_FILES = "files"  # of a report: the mark, SHA-256 of each file as it was written
 
 
 @contextmanager
@@ -25,10 +29,34 @@ def new_folder(path: Path) -> Iterator[Path]:
     room = _beside(path)
     room.mkdir()
     try:
+        (room / _NOTE).write_bytes(_note(room))
         yield room
+        (room / _NOTE).unlink()
         _take_place(room, path)
     finally:
-        shutil.rmtree(room, ignore_errors=True)
+        with suppress(OSError):
+            _remove(room)
+
+
+def _note(room: Path) -> bytes:
+    return f"mobius-flow batch is filling {room.name}\n".encode()
+
+
+def _take_place(room: Path, path: Path) -> None:
+    """Move a directory; results that are there give way, in one move, so that nobody finds half of them."""
+    while True:
+        check_replaceable(path)
+        with suppress(FileNotFoundError):
+            old = _beside(path)
+            path.rename(old)
+            _remove(old)
+        try:
+            room.rename(path)
+        except OSError:
+            if not path.exists():
+                raise
+        else:
+            return
 
 
 def _beside(path: Path) -> Path:
@@ -36,57 +64,83 @@ def _beside(path: Path) -> Path:
     return path.with_name(_ROOM.format(secrets.token_hex(8)))
 
 
-def _take_place(room: Path, path: Path) -> None:
-    """Move a directory; results that are there give way, and only empty directories do so in a single move."""
-    check_replaceable(path)
-    try:
-        room.rename(path)
-    except OSError:
-        old = _beside(path)
-        path.rename(old)
-        room.rename(path)
-        shutil.rmtree(old, ignore_errors=True)
+def _remove(folder: Path) -> None:
+    """Remove a folder but for files that are not ours by name, and then raise OSError."""
+    for path in folder.iterdir():
+        if _OURS.fullmatch(path.name):
+            path.unlink()
+    folder.rmdir()
 
 
 def check_replaceable(path: Path) -> None:
-    """Raise a MobiusFlowError if there is something else than results."""
-    if os.path.lexists(path) and not (path / REPORT).is_file():
-        raise MobiusFlowError(f"{path}: is there already, and holds no results; move it, or name another directory")
-
-
-def check_name(path: Path) -> None:
-    """Raise a MobiusFlowError if no folder can be called so, as names too long cannot: before work is put into it."""
+    """Raise a MobiusFlowError if there is something else than results, whole and as a batch wrote them."""
     try:
-        path.lstat()  # each file system has its own limit
+        path.lstat()
     except FileNotFoundError:
         return
-    except OSError as error:
-        raise MobiusFlowError(
-            f"{path.name} cannot be the name of a folder: {reason_of(error)}; give a file with another name"
-        ) from error
+    except OSError as error:  # such as a name too long: each file system has its own limit
+        raise MobiusFlowError(f"{path}: cannot be a folder of results: {reason_of(error)}; rename the input") from error
+    written = _written(path)
+    if path.is_symlink() or not written:
+        raise foreign(path)
+    for each in sorted(path.iterdir()):
+        if each.is_symlink() or written.get(each.name, "") != sha256_of(each):
+            raise foreign(each)
+
+
+def _written(folder: Path) -> dict[str, str | None]:
+    """The SHA-256 of the files that a batch wrote into a folder, by its mark in the report; empty without one."""
+    report = _report(folder)
+    files = report.pop(_FILES, None)
+    if not isinstance(files, dict) or files.pop(REPORT, None) != _sha256_of(report):
+        return {}
+    return files | {REPORT: sha256_of(folder / REPORT)}
+
+
+def _report(folder: Path) -> dict[str, Any]:
+    """What the report of results says; empty where there is none."""
+    try:
+        if not (folder / REPORT).is_file():  # a pipe might never end
+            return {}
+        report = json.loads((folder / REPORT).read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return report if isinstance(report, dict) else {}
+
+
+def _sha256_of(report: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(report).encode()).hexdigest()
 
 
 def sweep(directory: Path) -> None:
-    """Remove what killed runs have left behind, and nothing that runs of another batch may still be filling."""
+    """Remove the rooms that killed runs have left behind, and none that runs of another batch may still be filling."""
     for room in directory.glob(_ROOM.format("*")):
-        with suppress(FileNotFoundError):
-            if time.time() - room.stat().st_mtime > _ABANDONED:
-                shutil.rmtree(room, ignore_errors=True)
+        with suppress(OSError):
+            note = room / _NOTE
+            old = time.time() - room.stat().st_mtime > _ABANDONED
+            if old and note.is_file() and note.read_bytes() == _note(room):
+                _remove(room)
 
 
 def finished(job: Job) -> Row | None:
     """The row of a run whose results are there already; None if they are missing, or of another recipe."""
+    report = _report(Path(job.folder))
     try:
-        report: Any = json.loads(Path(job.folder, REPORT).read_text(encoding="utf-8"))
         return Row(**report["row"]) if report["recipe"] == job.recipe else None
-    except (OSError, ValueError, KeyError, TypeError):
+    except (KeyError, TypeError):
         return None
 
 
 def write_report(room: Path, job: Job, row: Row, report: dict[str, object]) -> None:
-    """Write the report, with what `finished` looks for."""
-    text = json.dumps(report | {"row": vars(row), "recipe": job.recipe}, indent=1) + "\n"
-    with (room / REPORT).open("w", encoding="utf-8") as stream:
+    """Write the report, last of all, with what `finished` looks for and the mark by which the files are ours."""
+    report = report | {"row": vars(row), "recipe": job.recipe}
+    marks = {name: sha256_of(room / name) for name in (CURVE, TRAJECTORY)}
+    write_text(room / REPORT, json.dumps(report | {_FILES: marks | {REPORT: _sha256_of(report)}}, indent=1) + "\n")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a new file, down to the disk."""
+    with path.open("w", encoding="utf-8") as stream:
         stream.write(text)
         stream.flush()
         os.fsync(stream.fileno())

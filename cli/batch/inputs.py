@@ -12,6 +12,8 @@ from ...core.diagrams.codes import is_code
 from ...core.knots import KNOTS, knot
 from ...core.knots.names import table_name
 
+_FORMULA = tuple("=+-@\t\r\n＝＋－＠")  # what begins one in a spreadsheet
+
 
 @dataclass(frozen=True)
 class Input:
@@ -61,7 +63,12 @@ def _meant(word: str) -> Iterator[Input]:
 def _of_file(path: Path) -> Input:
     """Results are called as the file; bytes that are no text are shown in hexadecimal, as tables have text only."""
     name = path.stem if path.stem.strip(".") else path.name  # nothing but dots is another directory
-    return Input(os.fsencode(name).decode(errors="backslashreplace"), Path(os.path.abspath(path)))
+    return Input(as_text(os.fsencode(name).decode(errors="backslashreplace")), Path(os.path.abspath(path)))
+
+
+def as_text(text: str) -> str:
+    """What no spreadsheet takes for a formula, and runs."""
+    return f"_{text}" if text.startswith(_FORMULA) else text
 
 
 def _in_directory(directory: Path) -> Iterator[Input]:

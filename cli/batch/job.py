@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import stat
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
@@ -21,39 +20,17 @@ CSV, PARQUET = "results.csv", "results.parquet"
 
 @dataclass(frozen=True)
 class Job:
-    """One run, in plain values, which travel to other machines.
+    """One run, in plain values, which travel to other machines; its folder tells it from others."""
 
-    Attributes
-    ----------
-    name
-        Of the input.
-    start
-        1 for the input itself; above that it is scrambled.
-    seed
-        That it is scrambled by; None for the input itself.
-    file
-        Absolute path of the input; None for a knot that is made by its name.
-    sha256
-        Of the file when the job was made; None where there is nothing to read.
-    folder
-        Absolute path of the results.
-    options
-        Of the relaxation, in plain values: obstacles as absolute paths with their hashes.
-    extrapolate
-        Whether the smooth curve's energy is wanted.
-    version
-        Of the program that made the job.
-    """
-
-    name: str
-    start: int
-    seed: int | None
-    file: str | None
-    sha256: str | None
-    folder: str
-    options: Mapping[str, object]
-    extrapolate: bool
-    version: str = __version__
+    name: str  # of the input
+    start: int  # 1 for the input itself; above that it is scrambled
+    seed: int | None  # that it is scrambled by
+    file: str | None  # absolute path of the input; None for a knot that is made by its name
+    sha256: str | None  # of the file when the job was made; None where there is nothing to read
+    folder: str  # absolute path of the results
+    options: Mapping[str, object]  # of the relaxation: obstacles as absolute paths with their hashes
+    extrapolate: bool  # whether the smooth curve's energy is wanted
+    version: str = __version__  # of the program that made the job
 
     def __hash__(self) -> int:  # options are in a dictionary, which has none
         return hash(self.folder)
@@ -114,9 +91,14 @@ def _check_folders(made: Iterable[Job]) -> None:
 def _hash(path: Path) -> str | None:
     """Of a file's bytes; None for what no run can read: its own sentence comes from there."""
     try:
-        found = path.stat()
-        if not stat.S_ISREG(found.st_mode) or found.st_size > MAX_BYTES:
-            return None
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        return sha256_of(path) if path.stat().st_size <= MAX_BYTES else None
     except OSError:
         return None
+
+
+def sha256_of(path: Path) -> str | None:
+    """Of a regular file; None for all else, such as a pipe, which might never end."""
+    if not path.is_file():
+        return None
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

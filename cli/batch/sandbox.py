@@ -1,59 +1,77 @@
-"""Runs in child processes, one for each thread of a Dask worker, so that what hangs, crashes or is killed is only one.
+"""Runs in child processes, one for each thread that asks, so that what hangs, crashes or is killed is only one.
 
 A child lives on from run to run: it takes half a second to import NumPy and SciPy.
 """
 
-import atexit
 import json
 import signal
 import subprocess
 import sys
 import threading
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from weakref import WeakSet
 
+from ...core import MobiusFlowError
 from . import child
 from .job import Job
 from .table import Row
 
 _own = threading.local()
 _open: "WeakSet[Sandbox]" = WeakSet()
+_closed = threading.Event()
 
 
 class ChildDiedError(Exception):
-    """A child ended without an answer; Dask tries its run again."""
+    """A child ended without an answer."""
 
 
 class Sandbox:
     """A child process that does one run at a time."""
 
     def __init__(self) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", child.__name__],  # modules in the directory where it starts are not its own
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            encoding="utf-8",
-            start_new_session=True,  # Ctrl-C is for the parent
-        )
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", child.__name__],  # modules in the working directory are not its own
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                encoding="utf-8",
+                start_new_session=True,  # Ctrl-C is for the parent
+            )
+        except OSError as error:
+            raise ChildDiedError(f"its process cannot be started: {error}") from error
         _open.add(self)
+        if _closed.is_set():
+            self.close()
         self._answer()  # it is ready, or there would be an error
 
     def run(self, job: Job, limit: float | None) -> Row:
-        """The row of a run of so many seconds at most; raises ChildDiedError, and then another sandbox is needed."""
-        seconds = threading.TIMEOUT_MAX if limit is None else limit
+        """The row of a run of so many seconds at most.
+
+        Raises
+        ------
+        ChildDiedError
+            If there is none; another sandbox is needed.
+        MobiusFlowError
+            If results cannot be written.
+        """
+        seconds = min(limit or threading.TIMEOUT_MAX, threading.TIMEOUT_MAX)
         watchdog, began = threading.Timer(seconds, self._process.kill), time.monotonic()
         watchdog.start()
         try:
-            return Row(**json.loads(self._answer(json.dumps(asdict(job)))))
+            answer = json.loads(self._answer(json.dumps(asdict(job))))
         except ChildDiedError:
             if time.monotonic() - began < seconds:
                 raise
             return Row.failure(job, f"stopped at the time limit, {seconds:g} s")
         finally:
             watchdog.cancel()
+        if child.REFUSED in answer:
+            raise MobiusFlowError(answer[child.REFUSED])
+        return Row(**answer)
 
     def close(self) -> None:
         """End the child, and the run under way."""
@@ -84,18 +102,23 @@ class Sandbox:
 
 
 def run(job: Job, limit: float | None) -> Row:
-    """Do a run in the child of this thread, as a task of Dask; raises ChildDiedError."""
+    """Do a run in the child of this thread; raises as `Sandbox.run` does."""
     box: Sandbox | None = getattr(_own, "box", None)
     if box is None or not box.alive:
         box = _own.box = Sandbox()
     return box.run(job, limit)
 
 
-@atexit.register
-def close_all() -> None:
-    """End all children of this process."""
-    for box in list(_open):
-        box.close()
+@contextmanager
+def closed() -> Iterator[None]:
+    """End all children of this process, and those that threads start in the block."""
+    _closed.set()
+    try:
+        for box in list(_open):
+            box.close()
+        yield
+    finally:
+        _closed.clear()
 
 
 def _ended(code: int) -> str:

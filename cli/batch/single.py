@@ -1,6 +1,7 @@
 """One run of a batch, from its start to its folder of results."""
 
 import time
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any
 from ... import __version__
 from ...core import (
     Curve,
+    CurveError,
     MobiusFlowError,
     RelaxOptions,
     Result,
@@ -16,37 +18,43 @@ from ...core import (
     Trajectory,
     minimize,
     read_obstacle,
-    write_curve,
 )
 from ...core.collision import check_embedded
-from ...core.curve.io import CurveFile, load_curve
+from ...core.collision.thickness import thickness
+from ...core.curve.io import FORMATS, CurveFile, load_curve
+from ...core.curve.writhe import writhe_and_crossings
+from ...core.errors import OutputError
 from ...core.extrapolation import extrapolated
 from ...core.knots import knot, knot_type, scramble
+from ...core.measure import MAX_VERTICES as PAIRS_UP_TO
 from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves
 from ..main import explained
 from ..provenance import environment
-from .folder import check_name, new_folder, write_report
+from ..streams import one_line
+from .folder import new_folder, write_report, write_text
 from .job import CURVE, STILL, TRAJECTORY, Job
-from .table import Row
+from .table import Row, given
 
 GAP = 0.5  # of the mean edge length that scrambled strands keep: nearer ones would need thousands of vertices
 
 
 def relaxed(job: Job) -> Row:
-    """Do a run; whatever goes wrong is told by its row."""
+    """Do a run; its row tells what goes wrong, but for an OutputError, which is about the place of all results."""
     try:
         if job.version != __version__:
             raise MobiusFlowError(f"a worker has version {__version__} of mobius-flow, and {job.version} is wanted")
         return _relaxed(job)
+    except OutputError:
+        raise
     except Exception as error:
         return Row.failure(job, explained(error)[0])
 
 
 def _relaxed(job: Job) -> Row:
-    began = time.perf_counter()
-    check_name(Path(job.folder))
+    clocks = time.perf_counter, time.process_time
+    began = [clock() for clock in clocks]
     values: dict[str, Any] = {name: value for name, value in job.options.items() if name not in STILL}
     options = RelaxOptions(**values)
     file = None if job.file is None else _load(job.file)
@@ -58,13 +66,31 @@ def _relaxed(job: Job) -> Row:
         trajectory = Trajectory(origin, task.obstacles)
         result = minimize(task, options, trajectory.add)
     found = _findings(job, options, task.curve, result)
-    with new_folder(Path(job.folder)) as room:
-        write_curve(room / CURVE, result.curve)
-        trajectory.save(room / TRAJECTORY)
-        verified = verify(room / TRAJECTORY).accepted
-        row = Row.of(job, **found, verified=verified, seconds=time.perf_counter() - began)
-        write_report(room, job, row, result.report() | origin)
+    try:
+        with new_folder(Path(job.folder)) as room:
+            write_text(room / CURVE, _head(job, found) + FORMATS[".txt"].text(result.curve))
+            trajectory.save(room / TRAJECTORY)
+            verified = verify(room / TRAJECTORY).accepted
+            seconds, processor = (clock() - start for clock, start in zip(clocks, began, strict=True))
+            row = Row.of(job, **found, verified=verified, seconds=seconds, processor_seconds=processor)
+            write_report(room, job, row, result.report() | origin)
+    except (OSError, OutputError) as error:
+        raise OutputError(job.folder, _cause(error)) from error
     return row
+
+
+def _cause(error: Exception) -> Exception:
+    """What the system says: other errors name files that have vanished."""
+    return error.__cause__ if isinstance(error.__cause__, OSError) else error
+
+
+def _head(job: Job, found: Mapping[str, object]) -> str:
+    """The comment above a curve."""
+    name = one_line(job.name) + ("" if job.seed is None else f", scrambled with seed {job.seed}")
+    return (
+        f"# {name}: {found['type_after']}, Möbius energy {found['energy']:.9g}, {found['status']}\n"
+        f"# mobius-flow {job.version} batch, options {given(job)}\n"
+    )
 
 
 def _task(job: Job, file: CurveFile | None) -> Task:
@@ -83,7 +109,12 @@ def _load(path: str) -> CurveFile:
 
 
 def _start(curve: Curve, seed: int | None) -> Curve:
-    """The curve itself, or scrambled by a seed."""
+    """The curve itself, or scrambled by a seed; a CurveError says if results could not be written."""
+    if curve.dimension > 3:
+        raise CurveError(
+            f"the curve is in dimension {curve.dimension}, and {CURVE} holds curves of dimension 2 or 3: "
+            "use mobius-flow relax, with an output in .json"
+        )
     if seed is None:
         return curve
     check_units(curve)
@@ -97,15 +128,24 @@ def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> 
     if job.extrapolate and result.outcome.converged:
         end = replace(result.task, curve=result.curve, pins=result.last.pins, pin_tangents=False)
         smooth = extrapolated(end, options)
+    curve, kind = result.curve, knot_type(result.curve)
+    few = len(curve) <= PAIRS_UP_TO
+    writhe, crossings = writhe_and_crossings(curve) if few and curve.dimension == 3 else (None, None)
     return {
         "type_before": str(knot_type(start)),
-        "type_after": str(knot_type(result.curve)),
-        "vertices": len(result.curve),
+        "type_after": str(kind),
+        "proved": kind.proved,
+        "vertices": len(curve),
         "energy": result.final_energy,
         "extrapolated_energy": smooth and smooth.value,
         "extrapolated_energy_error": smooth and smooth.error,
         "gradient_norm": result.last.gradient_norm,
         "index": result.outcome.negative_eigenvalues,
+        "ropelength": curve.length / thickness(curve) if few else None,
+        "writhe": writhe,
+        "average_crossing_number": crossings,
+        "iterations": len(result.energies) - 1,
+        "fallback_steps": len(result.fallback_steps),
         "status": result.status.value,
         "message": result.message,
         "certified": result.certified,

@@ -1,67 +1,51 @@
 """The table of a batch: a row for each run, as CSV and as Parquet."""
 
 import csv
+import hashlib
+import io
 import json
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import get_args, get_type_hints
 
 from ... import __version__
-from ...core import RelaxOptions
+from ...core import MobiusFlowError, RelaxOptions
 from ...core.errors import OutputError, counted
 from ...core.system.files import atomic_write
 from ..streams import one_line
-from .job import CSV, PARQUET, Job
+from .inputs import as_text
+from .job import CSV, PARQUET, Job, sha256_of
 
 FAILED = "failed"
+_MARK = b"mobius-flow batch"  # in the Parquet file's metadata: SHA-256 of the CSV beside it, and of the one before
 
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """What became of one run; what is not known is None.
-
-    Attributes
-    ----------
-    name, start, seed
-        As in its `Job`.
-    type_before, type_after
-        Of the start and the end, as `mobius-flow info` tells them: ``m3_1``, ``3_1#4_1``, or ``not told``.
-    vertices
-        Of the end.
-    energy
-        Möbius energy of the end.
-    extrapolated_energy, extrapolated_energy_error
-        Of the smooth curve, and how far that may be off.
-    gradient_norm
-        Of the projected gradient at the end.
-    index
-        Number of the Hessian's negative eigenvalues, where that was asked for: 0 at a minimum, more at a saddle.
-    seconds
-        Of the whole run, by the clock.
-    status, message
-        How it ended: as a report has it, or failed and why.
-    certified
-        Whether every motion was proved free of contact on the way.
-    verified
-        Whether the trajectory that was written is accepted by the independent check.
-    version, options
-        Of the program, and those options that are not the default, as JSON.
-    """
+    """What became of one run; what is not known is None. The columns are described in docs/batch.md."""
 
     name: str
     start: int
     seed: int | None
+    input_sha256: str | None = None
     type_before: str | None = None
     type_after: str | None = None
+    proved: bool | None = None
     vertices: int | None = None
     energy: float | None = None
     extrapolated_energy: float | None = None
     extrapolated_energy_error: float | None = None
     gradient_norm: float | None = None
     index: int | None = None
+    ropelength: float | None = None
+    writhe: float | None = None
+    average_crossing_number: float | None = None
+    iterations: int | None = None
+    fallback_steps: int | None = None
     seconds: float | None = None
+    processor_seconds: float | None = None
     status: str
     message: str
     certified: bool | None = None
@@ -72,15 +56,13 @@ class Row:
     @classmethod
     def of(cls, job: Job, **values: object) -> "Row":
         """A row of a job."""
-        nothing = {"avoid": {}, "pins": [], "pin_tangents": False}
-        defaults, options = _plain(vars(RelaxOptions()) | nothing), _plain(job.options)
-        given = {name: value for name, value in options.items() if value != defaults[name]}
-        return cls(name=job.name, start=job.start, seed=job.seed, options=json.dumps(given), **values)  # type: ignore[arg-type]
+        known = {"name": job.name, "start": job.start, "seed": job.seed, "input_sha256": job.sha256}
+        return cls(**known, options=given(job), **values)  # type: ignore[arg-type]
 
     @classmethod
     def failure(cls, job: Job, reason: str) -> "Row":
         """The row of a job without results."""
-        return cls.of(job, status=FAILED, message=one_line(reason))
+        return cls.of(job, status=FAILED, message=as_text(one_line(reason)))
 
     @property
     def failed(self) -> bool:
@@ -88,10 +70,11 @@ class Row:
         return self.status == FAILED
 
 
-def _plain(options: Mapping[str, object]) -> dict[str, object]:
-    """Options as JSON has them, wherever they come from: it has no tuples."""
-    plain: dict[str, object] = json.loads(json.dumps(dict(options)))
-    return plain
+def given(job: Job) -> str:
+    """The options of a job that are not the default, as JSON: it has no tuples, wherever they come from."""
+    values = {**vars(RelaxOptions()), "avoid": {}, "pins": [], "pin_tangents": False}, job.options
+    defaults, options = (json.loads(json.dumps(each)) for each in values)
+    return json.dumps({name: value for name, value in options.items() if value != defaults[name]})
 
 
 class Table:
@@ -106,25 +89,73 @@ class Table:
         return f"{counted(len(self.rows), 'run')}: " + ", ".join(f"{count} {end}" for end, count in ends.most_common())
 
     def save(self, directory: Path) -> None:
-        """Write both files, each whole or not at all; an OutputError says why one cannot be."""
-        for name, write in ((CSV, self._write_csv), (PARQUET, self._write_parquet)):
-            path = directory / name
-            try:
-                with atomic_write(path) as temporary:
-                    write(temporary)
-            except OSError as error:
-                raise OutputError(path, error) from error
+        """Write both files, each whole or not at all; an OutputError says why they cannot be."""
+        check_tables(directory)
+        columns, cells = [field.name for field in fields(Row)], list(map(asdict, self.rows))
+        text = _as_csv(columns, cells)
+        marks = _sha256(text), sha256_of(directory / CSV) or ""
+        try:
+            with atomic_write(directory / CSV) as table, atomic_write(directory / PARQUET) as parquet:
+                table.write_bytes(text)
+                parquet.write_bytes(_as_parquet(cells, " ".join(marks)))
+        except OSError as error:
+            raise OutputError(directory / CSV, error) from error
 
-    def _write_csv(self, path: Path) -> None:
-        with path.open("w", encoding="utf-8", newline="") as stream:
-            writer = csv.DictWriter(stream, [field.name for field in fields(Row)])
-            writer.writeheader()
-            writer.writerows(map(asdict, self.rows))
 
-    def _write_parquet(self, path: Path) -> None:
-        import pyarrow as pa
-        import pyarrow.parquet as pq
+def check_tables(directory: Path) -> None:
+    """Raise a MobiusFlowError if there are tables that no batch wrote, or that have been changed since.
 
-        kinds = {str: pa.string(), int: pa.int64(), float: pa.float64(), bool: pa.bool_()}
-        columns = [(name, kinds[(get_args(hint) or (hint,))[0]]) for name, hint in get_type_hints(Row).items()]
-        pq.write_table(pa.Table.from_pylist(list(map(asdict, self.rows)), pa.schema(columns)), path)
+    A CSV file has no room for a mark: it is in the metadata of the Parquet file, and proves both.
+    """
+    table, parquet = directory / CSV, directory / PARQUET
+    marks = _marks(parquet) if parquet.exists() else []
+    if parquet.exists() and not marks:
+        raise foreign(parquet)
+    if table.exists() and sha256_of(table) not in marks:
+        raise foreign(table)
+
+
+def foreign(path: Path) -> MobiusFlowError:
+    """What to say of files that are not ours."""
+    return MobiusFlowError(
+        f"{path}: was not written by mobius-flow batch, or has been changed since; move it, or name another directory"
+    )
+
+
+def _marks(parquet: Path) -> list[str]:
+    """The mark of a Parquet file; none if there is none, or not of its contents."""
+    import pyarrow
+    import pyarrow.parquet
+
+    if not parquet.is_file():  # a pipe might never end
+        return []
+    try:
+        table = pyarrow.parquet.read_table(io.BytesIO(parquet.read_bytes()))
+    except pyarrow.ArrowException:
+        return []
+    marks = (table.schema.metadata or {}).get(_MARK, b"").decode("ascii", "replace").split()
+    return marks if marks and marks[0] == _sha256(_as_csv(table.column_names, table.to_pylist())) else []
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def _as_csv(columns: Sequence[str], cells: Iterable[Mapping[str, object]]) -> bytes:
+    stream = io.StringIO(newline="")
+    writer = csv.DictWriter(stream, columns)
+    writer.writeheader()
+    writer.writerows(cells)
+    return stream.getvalue().encode()
+
+
+def _as_parquet(cells: list[dict[str, object]], mark: str) -> bytes:
+    import pyarrow as pa
+    import pyarrow.parquet
+
+    kinds = {str: pa.string(), int: pa.int64(), float: pa.float64(), bool: pa.bool_()}
+    columns = [(name, kinds[(get_args(hint) or (hint,))[0]]) for name, hint in get_type_hints(Row).items()]
+    table = pa.Table.from_pylist(cells, pa.schema(columns, metadata={_MARK: mark}))
+    stream = io.BytesIO()
+    pa.parquet.write_table(table, stream)
+    return stream.getvalue()

@@ -76,6 +76,21 @@ def test_every_result_has_its_picture_name_and_energy(
     assert [np.isclose(page[..., :3], 0.1 * k, atol=0.01).all(axis=2).sum() > 20_000 for k in (1, 2, 3)] == [True] * 3
 
 
+def test_tables_of_earlier_versions_are_read(results: Path) -> None:
+    table = results / "results.csv"
+    new = {"input_sha256", "proved", "ropelength", "writhe", "average_crossing_number"}
+    new |= {"iterations", "fallback_steps", "processor_seconds"}
+    now = [(each.title, each.free) for each in gallery._results(results)]
+    with table.open(encoding="utf-8", newline="") as stream:
+        rows = [{name: row[name] for name in row if name not in new} for row in csv.DictReader(stream)]
+    with table.open("w", encoding="utf-8", newline="") as stream:
+        old = csv.DictWriter(stream, list(rows[0]))
+        old.writeheader()
+        old.writerows(rows)
+    assert len(rows[0]) == 18
+    assert [(each.title, each.free) for each in gallery._results(results)] == now
+
+
 @pytest.mark.parametrize("options", ["{}", '{"avoid": [{"name": "ball.obj"}]}', '{"pins": [0]}'])
 @pytest.mark.parametrize("curve", [half_circle(30), torus_trefoil(60)])
 def test_curves_whose_moebius_images_are_something_else_are_shown_as_they_are(

@@ -12,14 +12,15 @@ Rows = list[dict[str, str]]
 
 
 @pytest.fixture(scope="session")
-def scheduler() -> Iterator[str]:
+def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of a scheduler in this process, with one worker."""
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, memory_limit=0, dashboard_address="127.0.0.1:0"
-    ) as cluster:
+    one = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "memory_limit": 0}
+    place = {"dashboard_address": "127.0.0.1:0", "local_directory": str(tmp_path_factory.mktemp("dask"))}
+    with distributed.LocalCluster(**one, **place, worker_dashboard_address="127.0.0.1:0") as cluster:
         yield cluster.scheduler_address
-        sandbox.close_all()
+        with sandbox.closed():
+            pass
 
 
 @pytest.fixture

@@ -1,6 +1,8 @@
 """Batches on clusters: the default one, and one whose processes are started by hand."""
 
 import csv
+import os
+import re
 import signal
 import socket
 import subprocess
@@ -13,7 +15,7 @@ from pathlib import Path
 import pytest
 from mobius_flow.cli import main
 from mobius_flow.core import write_curve
-from processes import finished, running
+from processes import finished, listening, running
 from shapes import regular_polygon
 
 distributed = pytest.importorskip("distributed")
@@ -45,9 +47,9 @@ def test_this_machine_s_cores_with_one_blas_thread_each(
     assert '"blas_threads": 1,' in (tmp_path / "out/ring3/report.json").read_text()
 
 
-def command(program: str, *words: str) -> list[str]:
-    """A program of Dask, without its dashboard."""
-    return [sys.executable, "-m", "distributed.cli." + program, *words, "--no-dashboard"]
+def command(*words: str) -> list[str]:
+    """Dask's command as the documents give it, on this machine alone."""
+    return [sys.executable, "-m", "mobius_flow.cli.dask", *words, "--host", "127.0.0.1"]
 
 
 @pytest.fixture
@@ -60,9 +62,9 @@ def port() -> int:
 @contextmanager
 def cluster(port: int, workers: int, room: Path) -> Iterator[list["subprocess.Popen[str]"]]:
     """The processes of a scheduler and of its workers, which have one thread each."""
-    one = ("--nthreads", "1", "--no-nanny", "--local-directory", str(room))
-    worker = command("dask_worker", f"tcp://127.0.0.1:{port}", *one)
-    scheduler = command("dask_scheduler", "--host", "127.0.0.1", "--port", str(port))
+    one = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", str(room))
+    worker = command("worker", f"tcp://127.0.0.1:{port}", *one)
+    scheduler = command("scheduler", "--port", str(port), "--no-dashboard")
     with ExitStack() as stack:
         yield [stack.enter_context(running(each)) for each in [scheduler] + [worker] * workers]
 
@@ -113,18 +115,51 @@ def test_an_interrupt_leaves_nothing_on_the_cluster(port: int, rings: Path, tmp_
     assert psutil.wait_procs(children, timeout=PATIENCE)[1] == []
 
 
-def test_a_lost_scheduler_leaves_the_table(port: int, rings: Path, tmp_path: Path) -> None:
+def test_a_scheduler_that_is_killed_costs_no_result(port: int, rings: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    words = ["batch", str(rings), "7_1..8_21", "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
-    program = [sys.executable, "-m", "mobius_flow", *words, "--max-iterations", "3"]
+    words = ["batch", str(rings), "-o", str(out), "--vertices", "60", "--tolerance", "1e-9"]
+    program = [sys.executable, "-m", "mobius_flow", *words, "--scheduler", f"tcp://127.0.0.1:{port}"]
     with cluster(port, 1, tmp_path) as processes, running(program) as process:
         wait_for_one(out)
         processes[0].kill()
         said = process.communicate()
-    assert said[0] == ""
-    assert said[1].startswith("mobius-flow: the Dask scheduler is lost")
+    assert said == ("", "mobius-flow: the Dask scheduler is lost; give the same command again to go on\n")
     assert process.returncode == 2
-    assert table(out)
+    done = {row["name"]: row for row in table(out)}
+    assert 0 < len(done) < 8
+    assert "failed" not in {row["status"] for row in done.values()}
+    assert main(words) == 0
+    rows = {row["name"]: row for row in table(out)}
+    assert len(rows) == 8
+    assert [rows[name] for name in done] == list(done.values()), "what was done is not done again"
+    assert not list(out.glob(".*"))
+
+
+def test_it_works_beside_snappy_and_listens_on_loopback_alone(port: int, rings: Path, tmp_path: Path) -> None:
+    """The commands of the documents, with nannies, where SnapPy is installed in place of python-snappy."""
+    manual = (Path(__file__).parents[3] / "docs/batch.md").read_text(encoding="utf-8")
+    commands = re.findall(r"^    python -m mobius_flow.cli.dask (.*?) *#", manual, re.MULTILINE)
+    assert len(commands) == 2
+    (tmp_path / "planted").mkdir()
+    (tmp_path / "planted/snappy.py").write_text("Manifold = None\n")
+    (tmp_path / "tmp").mkdir()
+    environment = os.environ | {"PYTHONPATH": str(tmp_path / "planted")}
+    broken = finished([sys.executable, "-c", "import distributed"], env=environment)
+    assert "has no attribute 'compress'" in broken.stderr, "it is mended there: ours may go"
+    batch = ["batch", str(rings), "-o", str(tmp_path / "out"), "--scheduler", f"tcp://127.0.0.1:{port}"]
+    places = ["--port", str(port)], ["--local-directory", str(tmp_path / "dask")]
+    words = [each.replace("HEAD:8786", f"127.0.0.1:{port}").split() for each in commands]
+    lines = [command(*each, *place) for each, place in zip(words, places, strict=True)]
+    program = [sys.executable, "-m", "mobius_flow", *batch, "--vertices", "60"]
+    with ExitStack() as stack:
+        processes = [stack.enter_context(running(line, env=environment)) for line in lines]
+        processes.append(stack.enter_context(running(program, env=environment | {"TMPDIR": str(tmp_path / "tmp")})))
+        heard: list[set[str]] = [set(), set(), set()]
+        while processes[-1].poll() is None:
+            heard = [was | listening(process) for was, process in zip(heard, processes, strict=True)]
+        assert processes[-1].communicate() == ("8 runs: 8 converged\n", "")
+    assert heard == [{"127.0.0.1"}, {"127.0.0.1"}, set()]
+    assert os.listdir(tmp_path / "tmp") == []
 
 
 ORPHAN = """
