@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...descent import Point, Step
+from ...descent.soft_modes import soft_modes
 from ...energies.components import energy_scale
 from ...types import FloatArray
 from .pace import Field, Pace, between
-from .soft_modes import soft_modes
 
 SLOW = Pace(stride=0.05, shortest=1e-3)  # where strands touch, only short steps are free
 
@@ -30,6 +30,8 @@ class Push:
         Of its steps.
     modes
         Number of modes in a combination.
+    products
+        With the Hessian, by which they are looked for: near enough then to be soft, they need be no nearer.
     ceilings
         Least and greatest multiple of the energy up to which the curve may be led.
     """
@@ -38,6 +40,7 @@ class Push:
     each: float = 1.0
     pace: Pace = SLOW
     modes: int = 6
+    products: int = 32
     ceilings: tuple[float, float] = (2.0, 16.0)
 
     def fits(self, point: Point) -> bool:
@@ -49,7 +52,7 @@ class Push:
         """Yield steps, each of which ends on the constraints."""
         ceiling = energy_scale(point.problem.mesh, point.energy) * between(self.ceilings, rng)
         for _ in range(self.pushes):
-            modes = soft_modes(point, rng).vectors[: self.modes]
+            modes = soft_modes(point, rng, most=self.products).vectors[: self.modes]
             field = _constant(np.tensordot(rng.normal(size=len(modes)), modes, 1))
             for step in self.pace.along(point, field, self.each, ceiling):
                 yield step
