@@ -6,7 +6,7 @@ import numpy as np
 
 from ..curve import Curve
 from ..descent import Point
-from ..descent.soft_modes import SoftModes, soft_modes
+from ..descent.soft_modes import SoftModes, smooth_starts, soft_modes
 
 ZERO = 1e-5  # eigenvalues against J_C below this count as 0: rotations and sliding are flat directions
 MOEBIUS = 20.0  # and so do Möbius maps on a mesh: in units of (h/L)², h the longest edge, they have 11 at most at knots
@@ -40,7 +40,7 @@ def stability(point: Point) -> Stability:
 
     Some hundred products and projections, whatever the number of vertices.
     """
-    modes = soft_modes(point, np.random.default_rng(1), RESOLVED)
+    modes = soft_modes(point, smooth_starts(point, np.random.default_rng(1)), RESOLVED)
     return Stability(modes, _unresolved(point.curve))
 
 

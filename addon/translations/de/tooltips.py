@@ -12,8 +12,9 @@ _OPERATORS = {
         "Knoten oder Verschlingung aus wenigen Zahlen hinzufügen: Torusknoten, Zopf, Lissajous-Kurve oder "
         "zwei Stränge entlang eines Knotens"
     ),
-    "Add a knot or link of the table in its relaxed shape, smooth and lying flat": (
-        "Knoten oder Verschlingung der Tabelle in entspannter Form hinzufügen, glatt und flach liegend"
+    "Add a knot or link of the table, smooth, lying flat, with evenly spread strands; Relax lowers its energy": (
+        "Knoten oder Verschlingung der Tabelle hinzufügen, glatt, flach liegend, mit gleichmäßig verteilten Strängen; "
+        "Entspannen senkt ihre Energie"
     ),
     "Ask whether smooth splines may become polygons, then relax": (
         "Fragen, ob glatte Splines Polygone werden dürfen, dann entspannen"
