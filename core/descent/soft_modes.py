@@ -115,10 +115,10 @@ class _Basis:
         self._images = np.vstack([self._images, self.each(self._hessian, new)])
 
     def ritz(self) -> tuple[FloatArray, FloatArray]:
-        """Ritz values, ascending, and the coefficients of the vectors as rows."""
+        """Ritz values, ascending, and the vectors' coefficients as rows; none points away from the first start."""
         projected = self._vectors @ self._images.T
         values, turns = np.linalg.eigh(0.5 * (projected + projected.T))
-        return values, turns.T
+        return values, (turns * np.copysign(1.0, turns[:1])).T
 
     def forces(self, values: FloatArray, turns: FloatArray, count: int) -> FloatArray:
         """What the lowest Ritz pairs leave of (D²L − θ J) w."""
