@@ -1,11 +1,12 @@
 """Soft modes by products against the dense eigenvalue problem."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from dense_stability import dense_modes
-from mobius_flow.core import Curve, RelaxOptions
+from mobius_flow.core import Curve, RelaxOptions, minimize
 from mobius_flow.core.descent import Point
 from mobius_flow.core.descent.soft_modes import BULK, smooth_starts, soft_modes
 from mobius_flow.core.driver.prepare import start_problem
@@ -116,3 +117,14 @@ def test_what_is_not_near_enough_is_no_index() -> None:
     assert found.index is not None
     rough = type(found)(soft_modes(saddle(), starts(saddle()), most=16), found.zero)
     assert rough.index is None
+
+
+@pytest.mark.parametrize("options", [{"metric": "l2"}, {"metric": "h2"}, {"solver": "hierarchical"}])
+def test_the_index_does_not_depend_on_how_a_saddle_was_reached(options: dict[str, str]) -> None:
+    """Eigenvalues are against J_C; those in L² would need as many products as there are vertices, and more."""
+    fixed = RelaxOptions(vertices=60, mesh="fixed", stability=True)
+    first = minimize(torus_knot(3, 4, 60), replace(fixed, method="trust-region", tolerance=1e-6))
+    again = minimize(first.curve, replace(fixed, edge_lengths="keep", tolerance=0.1, **options))
+    assert again.outcome.converged
+    assert first.outcome.negative_eigenvalues == again.outcome.negative_eigenvalues
+    assert first.outcome.negative_eigenvalues > 0
