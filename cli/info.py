@@ -22,7 +22,8 @@ examples:
 The type is told by moves that simplify a diagram and by polynomials that tell knots apart: 3_1 is the right-handed
 trefoil, m3_1 its mirror image, # a sum, and parts that come apart stand on both sides of a ⊔.  Thickness is the smaller
 of the least bending radius and half the least distance between strands; ropelength is length over thickness.  At rest
-is where the projected gradient is as small as relax has it by default, where nothing is pinned or avoided.
+is where the projected gradient is as small as relax has it by default, where nothing is pinned or avoided; the index,
+0 at a minimum, is the number of independent ways down.  Numbers of knots are KnotInfo's (see mobius-flow knot --help).
 
 exit status: 0, or 2 on bad input or bad options
 """

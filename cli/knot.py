@@ -21,6 +21,9 @@ examples:
   mobius-flow knot K11n34 larger.txt
   mobius-flow knot --list
 
+Numbers of knots are KnotInfo's: 10_162 to 10_165 are 10_163 to 10_166 in Rolfsen's book, where 10_161 stands twice
+(Perko's pair), and SnapPy has 10_83 and 10_86 the other way round.
+
 exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
 """
 
@@ -39,7 +42,10 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         "--vertices", type=int, metavar="N", help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough)"
     )
     parser.add_argument(
-        "--smooth", action="store_true", help="the relaxed shape of a knot of the table (default: woven, to be relaxed)"
+        "--smooth",
+        action="store_true",
+        help="a knot of the table as a smooth curve with evenly spread strands, by the tangent-point energy: a start "
+        "near a minimum of the Möbius energy, but no minimum (default: woven)",
     )
     parser.add_argument("--list", action=_List, nargs=0, help="print the names, one per line, and exit")
 

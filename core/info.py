@@ -19,8 +19,7 @@ from .system.threads import BLAS
 from .units import check_units
 
 ENERGIES = ("moebius", "edge", "vertex")
-GRADIENT_UP_TO = 12_000  # vertices: a minute, with dense matrices
-INDEX_UP_TO = 400  # vertices, of dense eigenvalue problems of three times that size
+REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,7 @@ class Rest:
     bound
         At most this at rest, as `relax` has it by default (`gradient_bound`).
     index
-        Number of negative eigenvalues of the Hessian, 0 at a minimum; None away from rest, and for many vertices.
+        Number of negative eigenvalues of the Hessian, 0 at a minimum; None away from rest, or if it is not resolved.
     """
 
     objective: float
@@ -55,7 +54,7 @@ class Rest:
         if not self.at_rest:
             return "not at rest"
         if self.index is None:
-            return "at rest; too many vertices to tell a minimum from a saddle"
+            return "at rest; the Hessian is too ill-conditioned to tell a minimum from a saddle"
         return f"at rest at {f'a saddle with index {self.index}' if self.index else 'a minimum'}"
 
 
@@ -114,7 +113,7 @@ def info(curve: Curve) -> Info:
         dimension=curve.dimension,
         type=knot_type(curve),
         energies={name: measure(curve, name) if few or name == "moebius" else None for name in ENERGIES},
-        rest=_rest(curve) if len(curve) <= GRADIENT_UP_TO else None,
+        rest=_rest(curve) if len(curve) <= REST_UP_TO else None,
         length=curve.length,
         thickness=thickness(curve) if few else None,
         writhe=writhe,
@@ -128,9 +127,7 @@ def info(curve: Curve) -> Info:
 def _rest(curve: Curve) -> Rest:
     point = _point(curve, RelaxOptions(edge_lengths="keep"))
     bound = gradient_bound(RelaxOptions(), curve.mesh, point.energy)
-    index = None
-    if point.gradient_norm <= bound and len(curve) <= INDEX_UP_TO:
-        index = stability(point).index
+    index = stability(point).index if point.gradient_norm <= bound else None
     return Rest(point.energy, point.gradient_norm, bound, index)
 
 

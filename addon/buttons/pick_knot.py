@@ -1,4 +1,4 @@
-"""The operator that adds knots of the table in their relaxed shapes, picked from a list."""
+"""The operator that adds knots of the table in their smooth shapes, picked from a list."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
@@ -14,7 +14,7 @@ def found(_operator: bpy.types.Operator, _context: bpy.types.Context, _text: str
 
 
 class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):  # noqa: N801
-    """Add a knot or link of the table in its relaxed shape, smooth and lying flat"""
+    """Add a knot or link of the table, smooth, lying flat, with evenly spread strands; Relax lowers its energy"""
 
     bl_idname = "curve.mobius_flow_pick_knot"
     bl_label = "Search Knot"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from ...core import CurveError, RelaxOptions, Status, Task, minimize
 from .phrase import Phrase
 
-MAX_POINTS = 1500  # a dense eigenvalue problem: some fifteen seconds
+MAX_POINTS = 1500  # some ten seconds
 _ITERATIONS = 100  # that lead from points rounded to Blender's numbers back to a critical point
 
 

@@ -91,6 +91,7 @@ HELD = (
 FROZEN = "nothing can move: all vertices are pinned, or on straight arcs between pins"
 SADDLE, MINIMUM = "a saddle with index {index}", "a minimum"
 NO_WAY_DOWN = "no way down was found"
+ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
 COMPOSITE = (
     "strands pull tight, and would do so without limit: the curve is composite, knotted both inside and outside the "
     "ball of radius {radius:.3g} around ({center}), and has no shape of least energy"

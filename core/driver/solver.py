@@ -126,8 +126,8 @@ def _pays(curve: Curve) -> bool:
 def _obstacle(options: RelaxOptions, method: Method) -> str | None:
     """What needs dense matrices."""
     rule = method.rule
-    if rule.second_order or options.stability or options.escape_saddles:
-        return f"{method.name} with these options needs a second derivative"
+    if rule.second_order:
+        return f"{method.name} needs exact second derivatives"
     if rule.other_metrics:
         return f"{method.name} needs a sum of metrics"
     if not isinstance(_energy(options), MoebiusEnergy):

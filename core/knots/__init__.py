@@ -1,4 +1,4 @@
-"""Knots and links to start from: the named table and its relaxed shapes, torus knots, braids, drawings, satellites,
+"""Knots and links to start from: the named table and its smooth shapes, torus knots, braids, drawings, satellites,
 arcs.
 """
 

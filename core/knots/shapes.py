@@ -1,8 +1,7 @@
-"""Relaxed shapes of the table's knots and links: smooth closed curves, stored as a few Fourier coefficients.
+"""Smooth shapes of the table's knots and links, with evenly spread strands, stored as a few Fourier coefficients.
 
 The file ``shapes.npz`` is a build product, never edited by hand: ``tools/knot_shapes.py`` makes it from relaxations of
-the tangent-point energy, which spreads strands evenly, and proves that each polygon made here has the type its name
-says.
+the tangent-point energy, and proves that each polygon made here has the type its name says.
 """
 
 from collections.abc import Mapping, Sequence
@@ -49,7 +48,10 @@ class Shape:
 
 
 def smooth_knot(name: str, vertices: int | None = None) -> Curve:
-    """Make a knot or link of the table in its relaxed shape.
+    """Make a knot or link of the table as a smooth curve with evenly spread strands.
+
+    It is at rest under the tangent-point energy, not the Möbius energy, of which it has up to 16 % (median 10 %) more
+    than the least known.
 
     Handedness is the table's: 3_1 is the right-handed trefoil.  An m before the name gives the mirror image in the
     plane of the picture.

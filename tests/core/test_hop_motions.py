@@ -10,10 +10,8 @@ from mobius_flow.core.descent import Point
 from mobius_flow.core.driver.hops.motions import MOTIONS, Motion
 from mobius_flow.core.driver.hops.pace import Pace, radius, root_mean_square
 from mobius_flow.core.driver.hops.push import Push
-from mobius_flow.core.driver.hops.soft_modes import soft_modes
 from mobius_flow.core.driver.hops.stir import Stir
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.driver.stability import stability
 from mobius_flow.core.knots import torus_knot
 
 
@@ -80,33 +78,3 @@ def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room() ->
 def test_a_field_that_constraints_hold_back_moves_nothing() -> None:
     """What is left of a translation, with the barycenter held, is rounding errors."""
     assert not list(Stir().pace.along(saddle(), np.ones_like, 1.0, np.inf))
-
-
-# -- soft modes ------------------------------------------------------------------------------------------------------
-
-
-def test_a_few_steps_find_the_ways_down_from_a_saddle() -> None:
-    """Ritz values are above the eigenvalues in their places, the lowest one by little."""
-    dense = stability(saddle())
-    modes = soft_modes(saddle(), np.random.default_rng(5))
-    assert (modes.values[:20] > dense.eigenvalues - 1e-10).all()
-    np.testing.assert_allclose(modes.values[0], dense.eigenvalues[0], rtol=0.01)
-    assert (modes.values[:2] < 0.0).all()
-
-
-def test_many_steps_exhaust_the_tangent_space_and_find_every_eigenvalue() -> None:
-    """On a curve without symmetries, where no two are equal."""
-    regular = torus_knot(3, 4, 24)
-    point = at(regular.with_vertices(regular.vertices + np.random.default_rng(7).normal(0.0, 0.03, (24, 3))))
-    dense = stability(point, count=point.vertices.size)
-    modes = soft_modes(point, np.random.default_rng(5), steps=point.vertices.size)
-    assert len(modes.values) == len(dense.eigenvalues) < point.vertices.size
-    np.testing.assert_allclose(modes.values, dense.eigenvalues, atol=1e-8)
-
-
-def test_soft_modes_are_tangent_and_orthonormal_in_the_metric() -> None:
-    point = saddle()
-    vectors = soft_modes(point, np.random.default_rng(5)).vectors
-    assert max(np.abs(point.tangent_space.constraints.apply(u)).max() for u in vectors) < 1e-9
-    duals = np.stack([point.tangent_space.apply(u) for u in vectors])
-    np.testing.assert_allclose(np.tensordot(vectors, duals, ((1, 2), (1, 2))), np.eye(len(vectors)), atol=1e-9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
-from mobius_flow.core.info import GRADIENT_UP_TO, INDEX_UP_TO, info
+from mobius_flow.core.info import info
 from mobius_flow.core.knots import knot, torus_knot
 from mobius_flow.core.measure import measure
 from shapes import half_circle
@@ -70,13 +70,16 @@ def test_an_arc_that_relax_takes_for_converged_is_at_rest() -> None:
     assert found.type.sentence == "none: only closed curves have a knot type, and this one is open"
 
 
-def test_what_takes_too_long_is_left_out() -> None:
-    found = info(circle(INDEX_UP_TO + 1)).rest
+def test_a_minimum_is_told_on_fine_meshes_too() -> None:
+    found = info(circle(1200)).rest
     assert found is not None
-    assert found.at_rest
-    assert found.index is None
-    assert "too many vertices" in found.sentence
-    assert info(circle(GRADIENT_UP_TO + 1)).rest is None
+    assert found.sentence == "at rest at a minimum"
+
+
+def test_what_takes_too_long_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mobius_flow.core.info.REST_UP_TO", 50)
+    assert info(circle(50)).rest is not None
+    assert info(circle(51)).rest is None
 
 
 def test_other_dimensions() -> None:

@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
 from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
 from mobius_flow.core.curve import refine
-from mobius_flow.core.descent.directions.newton import lagrangian_hessian
+from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.driver.interventions.split_links import _near, separate_parts
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot

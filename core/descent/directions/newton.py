@@ -1,67 +1,11 @@
-"""Second-order information on the constraint manifold: the Lagrangian's Hessian and the Newton direction."""
-
-from collections.abc import Callable
+"""Newton's direction on the constraint manifold, by conjugate gradients that the metric preconditions."""
 
 import numpy as np
 
 from ...saddle import TangentSpace
 from ...types import FloatArray
+from ..hessian import LinearMap
 from ..problem import Point
-
-LinearMap = Callable[[FloatArray], FloatArray]
-ASSEMBLED_SIZE = 3000  # up to so many unknowns one assembled matrix beats products that go through all pairs
-
-
-def energy_hessian(point: Point) -> LinearMap:
-    """v ↦ D²E v, (n, m) to (n, m)."""
-    objective, curve = point.problem.objective, point.curve
-    if curve.vertices.size > ASSEMBLED_SIZE:
-        return lambda v: objective.hessian_product(curve, v)
-    matrix = objective.hessian(curve)
-    return lambda v: np.asarray((matrix @ v.ravel()).reshape(v.shape))
-
-
-def lagrangian_hessian(point: Point) -> LinearMap:
-    """v ↦ (D²E − Σ λ_I D²Φ_I) v on tangent vectors v, with λ from (41)."""
-    of_energy = energy_hessian(point)
-    ell, mesh = point.curve.edge_lengths, point.problem.mesh
-    tau = point.curve.edge_vectors / ell[:, None]
-    weight = _curvature_weights(point)[:, None]
-
-    def apply(v: FloatArray) -> FloatArray:
-        # D² log ℓ (v, ·) = (Δv − 2 ⟨τ, Δv⟩ τ)/ℓ²
-        dv = v[mesh.heads] - v[mesh.tails]
-        bend = weight * (dv - 2.0 * np.einsum("ij,ij->i", tau, dv)[:, None] * tau)
-        return of_energy(v) - mesh.scatter(-bend, bend)
-
-    return apply
-
-
-def lagrangian_hessian_matrix(point: Point) -> FloatArray:
-    """The same as a dense symmetric matrix, shape (n·m, n·m)."""
-    ell, mesh = point.curve.edge_lengths, point.problem.mesh
-    n, m = point.vertices.shape
-    tau = point.curve.edge_vectors / ell[:, None]
-    weight = _curvature_weights(point)
-    matrix = point.problem.objective.hessian(point.curve).reshape(n, m, n, m)
-    blocks = weight[:, None, None] * (np.eye(m) - 2.0 * tau[:, :, None] * tau[:, None, :])
-    by_vertices = matrix.transpose(0, 2, 1, 3)
-    tail, head = mesh.tails, mesh.heads
-    for a, b, sign in ((tail, tail, -1.0), (head, head, -1.0), (tail, head, 1.0), (head, tail, 1.0)):
-        np.add.at(by_vertices, (a, b), sign * blocks)
-    return matrix.reshape(n * m, n * m)
-
-
-def _curvature_weights(point: Point) -> FloatArray:
-    """The factor of |Δv_I|² in Σ λ D²Φ (v, v) for tangent v, of which ⟨τ_I, Δv_I⟩ = 0; shape (edges,).
-
-    D² log ℓ_I has the factor 1/ℓ_I², D²(Σ ℓ_I m_I) = Σ m_I D²ℓ_I the factor m_I/ℓ_I.  The barycenter's multipliers
-    vanish if it is that of the whole curve, because the energy does not change under translations.
-    """
-    ell, constraints = point.curve.edge_lengths, point.tangent_space.constraints
-    forces = constraints.forces(point.multipliers)[point.curve.mesh.tails]
-    along = np.einsum("ij,ij->i", forces, point.curve.midpoints)
-    return np.asarray(constraints.tensions(point.multipliers) / ell**2 + along / ell)
 
 
 def projected_conjugate_gradient(

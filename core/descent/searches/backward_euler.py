@@ -18,7 +18,8 @@ import numpy as np
 from ...checks import check_fields
 from ...metrics import Metric, MoebiusMetric
 from ...saddle import TangentSpace
-from ..directions.newton import energy_hessian, projected_conjugate_gradient
+from ..directions.newton import projected_conjugate_gradient
+from ..hessian import energy_hessian
 from ..problem import Point
 from ..state import State
 from ..step import Leg, NoStep, Step, judged

@@ -17,7 +17,8 @@ from ...energies.components import energy_scale
 from ...errors import OptionError
 from ...metrics import Metric
 from ...types import FloatArray
-from ..directions.newton import LinearMap, lagrangian_hessian, newton_direction
+from ..directions.newton import newton_direction
+from ..hessian import LinearMap, lagrangian_hessian
 from ..problem import Point
 from ..state import State
 from ..step import Leg, NoStep, Rejected, Step, attempt

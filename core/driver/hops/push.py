@@ -1,15 +1,16 @@
 """Pushing: the curve goes where it resists least, along soft modes."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...descent import Point, Step
+from ...descent.soft_modes import soft_modes
 from ...energies.components import energy_scale
 from ...types import FloatArray
 from .pace import Field, Pace, between
-from .soft_modes import soft_modes
 
 SLOW = Pace(stride=0.05, shortest=1e-3)  # where strands touch, only short steps are free
 
@@ -30,6 +31,9 @@ class Push:
         Of its steps.
     modes
         Number of modes in a combination.
+    products
+        With the Hessian, by which they are looked for: near enough then to be soft, they need be no nearer.  From a
+        single start, of all rotations and other flat directions only one can be among them.
     ceilings
         Least and greatest multiple of the energy up to which the curve may be led.
     """
@@ -38,6 +42,7 @@ class Push:
     each: float = 1.0
     pace: Pace = SLOW
     modes: int = 6
+    products: int = 30
     ceilings: tuple[float, float] = (2.0, 16.0)
 
     def fits(self, point: Point) -> bool:
@@ -49,7 +54,8 @@ class Push:
         """Yield steps, each of which ends on the constraints."""
         ceiling = energy_scale(point.problem.mesh, point.energy) * between(self.ceilings, rng)
         for _ in range(self.pushes):
-            modes = soft_modes(point, rng).vectors[: self.modes]
+            start = point.tangent_space.project(rng.normal(size=point.vertices.shape))
+            modes = soft_modes(point, start[None], 0.0, -math.inf, self.products).vectors[: self.modes]
             field = _constant(np.tensordot(rng.normal(size=len(modes)), modes, 1))
             for step in self.pace.along(point, field, self.each, ceiling):
                 yield step

@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 
-from ...descent import Step
+from ...descent import Point, Step
 from ...descent.searches import Escape
+from ...metrics import MoebiusMetric
 from ..events import Change, Event
-from ..outcome import MINIMUM, NO_WAY_DOWN, SADDLE, Outcome
+from ..outcome import ILL_CONDITIONED, MINIMUM, NO_WAY_DOWN, SADDLE, Outcome
 from ..run import Run
+from ..solver import Solver
 from ..stability import stability
 
 
@@ -21,12 +23,20 @@ class EscapeSaddle:
         options = self._run.options
         if not (isinstance(event, Outcome) and event.converged and (options.stability or options.escape_saddles)):
             return event
-        found = stability(self._run.point)
+        found = stability(self._point())
         event = replace(event, negative_eigenvalues=found.index)
         if not found.index:
-            return event.adding(MINIMUM)
+            return event.adding(ILL_CONDITIONED if found.index is None else MINIMUM)
         event = event.adding(SADDLE.format(index=found.index))
         if not options.escape_saddles:
             return event
-        step = Escape().step(self._run.point, found.directions[0], float(found.eigenvalues[0]))
+        step = Escape().step(self._run.point, found.modes.vectors[0], float(found.modes.values[0]))
         return Change((step,)) if isinstance(step, Step) else event.adding(NO_WAY_DOWN)
+
+    def _point(self) -> Point:
+        """The present one in J_C, against which eigenvalues are counted whatever metric steps are taken in."""
+        point = self._run.point
+        if point.problem.metric.name == MoebiusMetric.name:
+            return point
+        metric = Solver.of_problem(self._run.options, point.problem).of_metric(MoebiusMetric())
+        return point.within(replace(point.problem, metric=metric))

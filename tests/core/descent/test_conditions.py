@@ -9,7 +9,7 @@ from descent_contracts import assert_armijo, assert_certified, assert_weak_wolfe
 from mobius_flow.core import Curve, Objective
 from mobius_flow.core.descent import Point, State, Step
 from mobius_flow.core.descent.directions import SteepestDescent
-from mobius_flow.core.descent.directions.newton import lagrangian_hessian
+from mobius_flow.core.descent.hessian import lagrangian_hessian
 from mobius_flow.core.descent.searches import (
     Accelerated,
     Armijo,

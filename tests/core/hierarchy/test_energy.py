@@ -9,6 +9,7 @@ from mobius_flow.core.energies.near_pairs import near_pairs, replaced_pairs
 from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy, moebius_energy
 from mobius_flow.core.hierarchy.energy import THETA
 from mobius_flow.core.knots import knot
+from mobius_flow.core.metrics import FractionalMetric
 from mobius_flow.core.metrics.moebius import MoebiusMetric
 from mobius_flow.core.taylor import derivative_slope
 from shapes import hopf_link, regular_polygon, scattered_rings, torus_trefoil
@@ -74,6 +75,23 @@ def test_energy_to_six_digits_and_derivative_to_four(curve: Curve) -> None:
 def test_taylor_slope_of_the_derivative(curve: Curve) -> None:
     direction = direction_for(curve)
     assert derivative_slope(with_small_leaves(curve), curve, direction, largest=1e-4) == pytest.approx(2, abs=0.02)
+
+
+@CURVE
+@pytest.mark.parametrize("smooth", [True, False])
+def test_products_with_the_second_derivative_to_four_digits(curve: Curve, smooth: bool) -> None:
+    inner, noise = FractionalMetric().at(curve), direction_for(curve)
+    v = inner.solve(noise) if smooth else noise
+    exact = MoebiusEnergy().hessian_product(curve, v)
+    error = with_small_leaves(curve).hessian_product(curve, v) - exact
+    assert np.sum(error * inner.solve(error)) < 1e-8 * np.sum(exact * inner.solve(exact))
+
+
+def test_products_with_nothing_and_with_a_shift_are_nothing() -> None:
+    curve = CURVES["uneven"]
+    for v in (np.zeros_like(curve.vertices), np.ones_like(curve.vertices)):
+        scale = np.abs(MoebiusEnergy().hessian_product(curve, direction_for(curve))).max()
+        np.testing.assert_allclose(with_small_leaves(curve).hessian_product(curve, v), 0.0, atol=1e-7 * scale)
 
 
 def test_taylor_slope_where_expansions_are_poor(monkeypatch: pytest.MonkeyPatch) -> None:

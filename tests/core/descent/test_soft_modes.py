@@ -1,0 +1,130 @@
+"""Soft modes by products against the dense eigenvalue problem."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from dense_stability import dense_modes
+from mobius_flow.core import Curve, RelaxOptions, minimize
+from mobius_flow.core.descent import Point
+from mobius_flow.core.descent.soft_modes import BULK, smooth_starts, soft_modes
+from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.stability import stability
+from mobius_flow.core.knots import torus_knot
+from mobius_flow.core.types import FloatArray
+from shapes import half_circle, hopf_link, regular_polygon, torus_trefoil
+
+
+def at(curve: Curve, **options: object) -> Point:
+    return start_problem(curve, RelaxOptions(mesh="fixed", vertices=len(curve), **options)).at_curve(curve)
+
+
+@cache
+def saddle(**options: object) -> Point:
+    """The torus knot T(3, 4) in its most symmetric position."""
+    return at(torus_knot(3, 4, 90), **options)
+
+
+def starts(point: Point) -> FloatArray:
+    return smooth_starts(point, np.random.default_rng(5))
+
+
+POINTS = {
+    "trefoil": lambda: at(torus_trefoil(60)),
+    "saddle": saddle,
+    "double eigenvalues": lambda: at(torus_knot(3, 5, 100)),
+    "link": lambda: at(hopf_link(40)),
+    "arc": lambda: at(half_circle(30)),
+    "pins": lambda: at(torus_trefoil(60), pins=(0, 1, 17)),
+    "plane": lambda: at(Curve(regular_polygon(30).vertices[:, :2] * [1.0, 0.6])),
+    "pentagon": lambda: at(regular_polygon(5)),
+    "barrier": lambda: at(torus_knot(3, 5, 60)),
+    "hierarchical": lambda: at(torus_knot(3, 4, 120), solver="hierarchical"),
+    "two Gauss points": lambda: at(torus_trefoil(60), quadrature_points=2),
+}
+
+
+@pytest.mark.parametrize("name", POINTS)
+def test_all_soft_modes_are_those_of_the_matrix(name: str) -> None:
+    """Differences make the hierarchical products, to five digits; its metric is solved with to two."""
+    point = POINTS[name]()
+    expected, _ = dense_modes(point)
+    found = soft_modes(point, starts(point))
+    soft = max(1, np.count_nonzero(expected < BULK))
+    assert np.count_nonzero(found.values[: len(found.residuals)] < BULK) == np.count_nonzero(expected < BULK)
+    np.testing.assert_allclose(found.values[:soft], expected[:soft], atol=2e-5 if name == "hierarchical" else 1e-9)
+    assert (found.residuals[:soft] <= 1e-6).all()
+
+
+@pytest.mark.parametrize("name", POINTS)
+def test_the_index_is_that_of_the_matrix(name: str) -> None:
+    point = POINTS[name]()
+    found = stability(point)
+    assert found.index == np.count_nonzero(dense_modes(point)[0] < -found.zero)
+
+
+def test_soft_modes_are_tangent_orthonormal_and_end_at_pins() -> None:
+    for point in (saddle(), POINTS["pins"]()):
+        vectors = soft_modes(point, starts(point), most=32).vectors
+        assert max(np.abs(point.tangent_space.constraints.apply(u)).max() for u in vectors) < 1e-9
+        duals = np.stack([point.tangent_space.apply(u) for u in vectors])
+        np.testing.assert_allclose(np.tensordot(vectors, duals, ((1, 2), (1, 2))), np.eye(len(vectors)), atol=1e-9)
+        assert not vectors[:, point.problem.constraints.pins.vertices].any()
+
+
+def test_a_few_products_find_the_ways_down_from_a_saddle() -> None:
+    """Ritz values are above the eigenvalues in their places, and residuals bound how far one is."""
+    expected, _ = dense_modes(saddle())
+    found = soft_modes(saddle(), starts(saddle()), most=32)
+    assert (found.values > expected[: len(found.values)] - 1e-10).all()
+    assert (found.values[:2] < 0.0).all()
+    looked_at = found.values[: len(found.residuals), None]
+    assert (np.abs(looked_at - expected).min(axis=1) <= found.residuals + 1e-10).all()
+    assert found.residuals.max() > 1e-3
+
+
+def test_every_eigenvalue_is_found_if_that_is_asked_for() -> None:
+    """Beyond the last one there are no more dimensions."""
+    regular = torus_knot(3, 4, 24)
+    point = at(regular.with_vertices(regular.vertices + np.random.default_rng(7).normal(0.0, 0.03, (24, 3))))
+    expected, _ = dense_modes(point)
+    found = soft_modes(point, starts(point), below=np.inf)
+    np.testing.assert_allclose(found.values, expected, atol=1e-8)
+
+
+def test_products_do_not_grow_with_the_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The metric makes the Hessian an operator of order 0."""
+    counts = []
+    for n in (60, 120, 240):
+        point = at(torus_trefoil(n))
+        projections = []
+        gradient = point.tangent_space.gradient
+        monkeypatch.setattr(point.tangent_space, "gradient", lambda f, g=gradient, p=projections: p.append(f) or g(f))
+        soft_modes(point, starts(point))
+        counts.append(len(projections))
+    assert max(counts) < 1.3 * min(counts) < 200
+
+
+def test_nothing_is_soft_where_nothing_can_move() -> None:
+    held = at(torus_trefoil(12), pins=tuple(range(12)))
+    assert len(soft_modes(held, starts(held)).values) == 0
+    assert stability(held).index == 0
+
+
+def test_what_is_not_near_enough_is_no_index() -> None:
+    found = stability(saddle())
+    assert found.index is not None
+    rough = type(found)(soft_modes(saddle(), starts(saddle()), most=16), found.zero)
+    assert rough.index is None
+
+
+@pytest.mark.parametrize("options", [{"metric": "l2"}, {"metric": "h2"}, {"solver": "hierarchical"}])
+def test_the_index_does_not_depend_on_how_a_saddle_was_reached(options: dict[str, str]) -> None:
+    """Eigenvalues are against J_C; those in L² would need as many products as there are vertices, and more."""
+    fixed = RelaxOptions(vertices=60, mesh="fixed", stability=True)
+    first = minimize(torus_knot(3, 4, 60), replace(fixed, method="trust-region", tolerance=1e-6))
+    again = minimize(first.curve, replace(fixed, edge_lengths="keep", tolerance=0.1, **options))
+    assert again.outcome.converged
+    assert first.outcome.negative_eigenvalues == again.outcome.negative_eigenvalues
+    assert first.outcome.negative_eigenvalues > 0
