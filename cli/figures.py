@@ -1,12 +1,20 @@
-"""Figures by matplotlib, where it is installed."""
+"""Figures by matplotlib, where it is installed: curves of numbers with names at their ends, and curves in space."""
 
 import os
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..core import MobiusFlowError
+import numpy as np
+
+from ..core import Curve, MobiusFlowError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+LINE_HEIGHT = 0.065  # of an axes' height, between names at the ends of lines
+FAINTEST = 0.55  # share of white in the colour of what is farthest away
 
 
 def figure_class(instead: str = "") -> "type[Figure]":
@@ -21,3 +29,58 @@ def figure_class(instead: str = "") -> "type[Figure]":
         if backend is not None:
             os.environ["MPLBACKEND"] = backend
     return Figure
+
+
+def name_lines(axes: "Axes", lines: Sequence["Line2D"], names: Sequence[str]) -> None:
+    """Write names into the right margin, each as high as its line ends, or where the next room is."""
+    ends = [_end(axes, line) for line in lines]
+    heights, low = np.empty(len(ends)), -np.inf
+    for k in np.argsort(ends, kind="stable"):
+        heights[k] = low = max(ends[k], low + LINE_HEIGHT)
+    heights -= max(0.0, heights.max() - 1.0) / 2.0  # what is pushed out at the top is shared with the bottom
+    for line, name, end, height in zip(lines, names, ends, heights, strict=True):
+        leader = {"arrowstyle": "-", "color": line.get_color(), "linewidth": 0.6, "shrinkB": 0, "relpos": (0, 0.5)}
+        places = {"xy": (1.0, end), "xytext": (1.06, height), "xycoords": "axes fraction", "va": "center"}
+        axes.annotate(name, **places, color=line.get_color(), fontsize=9, arrowprops=leader)
+
+
+def _end(axes: "Axes", line: "Line2D") -> float:
+    """How high a line ends, as a fraction of the axes' height."""
+    heights = np.asarray(line.get_ydata(), dtype=np.float64)
+    seen = heights[np.isfinite(heights)]
+    if not len(seen):
+        return 0.0
+    low, high, end = axes.yaxis.get_transform().transform(np.array([*axes.get_ylim(), seen[-1]]))
+    return float(np.clip((end - low) / (high - low), 0.0, 1.0))
+
+
+def draw_curve(axes: "Axes", curve: Curve, color: str, width: float) -> None:
+    """Draw a curve as a strand that passes over and under itself, seen from where it is broadest.
+
+    Parameters
+    ----------
+    width
+        Of the strand, in points.
+    """
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import to_rgb
+
+    points = curve.vertices - curve.vertices.mean(axis=0)
+    points = np.pad(points, ((0, 0), (0, max(0, 3 - points.shape[1]))))
+    turn = np.linalg.svd(points, full_matrices=False)[2]
+    turn[2] *= np.sign(np.linalg.det(turn[:, :3])) if turn.shape == (3, 3) else 1.0  # no mirror image
+    x, y, depth = (points @ turn.T).T[:3]
+    ends = np.stack([np.column_stack([x, y])[each] for each in (curve.mesh.tails, curve.mesh.heads)], axis=1)
+    depth = 0.5 * (depth[curve.mesh.tails] + depth[curve.mesh.heads])
+    order = np.argsort(depth, kind="stable")  # from far to near
+    white = np.linspace(FAINTEST, 0.0, len(order))[:, None]
+    shades = (1.0 - white) * np.array(to_rgb(color)) + white
+    # each edge covers what is behind it by a broader one in white
+    both = np.repeat(ends[order], 2, axis=0)
+    colors = np.stack([np.ones_like(shades), shades], axis=1).reshape(-1, 3)
+    widths = np.tile([2.4 * width, width], len(order))
+    axes.add_collection(LineCollection(list(both), colors=colors, linewidths=widths, capstyle="butt"))
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.margins(0.06)
+    axes.set_axis_off()

@@ -1,8 +1,9 @@
 """The energy of a curve as it stands: what ``mobius-flow energy`` prints and a report's ``final_energy`` is."""
 
+from .arguments import checked
 from .checks import named
 from .collision import check_embedded, check_gap
-from .curve import Curve, check_is_curve
+from .curve import Curve
 from .energies import ENERGIES, MoebiusEnergy
 from .errors import CurveError
 from .hierarchy import moebius_energy
@@ -11,6 +12,7 @@ from .units import centred, check_units
 MAX_VERTICES = 50_000  # of energies that sum over all pairs of edges: a minute or so, growing with the square
 
 
+@checked
 def measure(curve: Curve, energy: str = "moebius") -> float:
     """The energy of a curve, in the user's units.
 
@@ -22,7 +24,6 @@ def measure(curve: Curve, energy: str = "moebius") -> float:
     OptionError
         If the energy is unknown.
     """
-    check_is_curve(curve)
     wanted = named(ENERGIES, "energy", energy)
     check_units(curve)
     check_embedded(curve)

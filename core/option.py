@@ -4,7 +4,6 @@ From that follow its checks, the arguments of the command line, and Blender's se
 """
 
 import math
-import sys
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from inspect import cleandoc
@@ -53,7 +52,8 @@ class Option:
     metavar
         What stands for its value in the command line's help.
     group
-        Whom it is for: everybody, those who know the mathematics, or those who pin vertices.
+        Whom it is for: everybody, those who know the mathematics, those who pin vertices, or scripts, in which case
+        no panel shows it.
     keyframes
         Whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
         leave out vertices on the way is among Blender's settings.
@@ -81,7 +81,7 @@ class Option:
     objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
     metavar: str = "NAME"
-    group: Literal["basic", "advanced", "pins"] = "basic"
+    group: Literal["basic", "advanced", "pins", "scripts"] = "basic"
     keyframes: bool = True
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
     repeated: bool = False
@@ -98,33 +98,34 @@ class Option:
         """The help by itself, without a full stop; ``none`` is how None, if it is allowed, is written."""
         return self.help[0].upper() + self.help[1:] + (f"; {none}: {self.automatic}" if none and self.automatic else "")
 
-    def check(self, value: object) -> None:
-        """Raise an OptionError, which says what is allowed, unless the option can have this value."""
+    def checked(self, value: object) -> Any:
+        """The value, NumPy's numbers as Python's; an OptionError says what is allowed if the option cannot have it."""
         if self.repeated and not isinstance(value, str) and isinstance(value, Sequence | np.ndarray):
-            for each in value:
-                self._check_one(each)
-        elif self.repeated:
+            return tuple(map(self._checked, value))
+        if self.repeated:
             raise OptionError(f"{self.name} is {value!r:.40}; it must be a tuple, such as {self.example}")
-        elif value is not None or self.default is not None:
-            self._check_one(value)
+        return None if value is None and self.default is None else self._checked(value)
 
-    def _check_one(self, value: object) -> None:
+    def _checked(self, value: Any) -> Any:
         types, noun = _KINDS.get(self.kind, ((), ""))
         if self.objects is not None:
             if self.objects[1](value):
-                return
+                return value
             noun = f"{noun} or {self.objects[0]}" if noun else self.objects[0]
         # bool is a kind of int, but no number
         if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
             raise OptionError(f"{self.name} is {value!r:.40}; it must be {noun}")
-        if isinstance(value, str) and self.choices is not None:
-            check_known(self.name, value, self.choices)
-        elif isinstance(value, Real) and self.kind is not bool:
+        if self.kind in (int, float):
             self._check_number(value)
+        elif self.choices is not None:
+            check_known(self.name, value, self.choices)
+        return self.kind(value)
 
     def _check_number(self, value: Any) -> None:
-        if abs(value) > sys.float_info.max:
-            raise OptionError(f"{self.name} is too large for a number of this program")
+        try:
+            float(value)
+        except OverflowError:
+            raise OptionError(f"{self.name} is too large for a number of this program") from None
         if self.kind is float:
             check_number(self.name, value, self.low, self.high)
         elif not self.low <= value <= self.high:

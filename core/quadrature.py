@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from .arguments import checked, checked_fields
 from .errors import OptionError
 from .types import FloatArray, frozen
 
@@ -16,6 +17,7 @@ def gauss_legendre(points: int) -> tuple[FloatArray, FloatArray]:
     return frozen(0.5 * (x + 1.0)), frozen(0.5 * w)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Rule:
     """A quadrature rule on [0, 1].
@@ -45,6 +47,7 @@ class Rule:
             raise OptionError(f"weights are {self.weights}; they must add up to 1")
 
     @classmethod
+    @checked
     def gauss(cls, points: int) -> "Rule":
         """Gauss–Legendre rule with ``points`` points, 1 or more; it is of order 2·points."""
         if points < 1:

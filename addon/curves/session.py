@@ -191,7 +191,7 @@ class Session:
             raise OptionError(Phrase("Balance does not go with what is avoided; leave it out, or avoid nothing"))
         if group.continues:  # the keys that are there have as many points as the curves have now
             options = replace(options, vertices=len(group.curve), mesh="fixed")
-        return replace(options, pins=pins, avoid=obstacles)
+        return replace(options, pins=pins, avoid=obstacles, pin_tangents=options.pin_tangents and bool(pins))
 
     def run(self) -> Report:
         """Do the whole job. Objects are touched at its end only, and put back if that fails.

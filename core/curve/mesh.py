@@ -4,6 +4,7 @@ import operator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from reprlib import repr as short
 
 import numpy as np
 import scipy.sparse as sp
@@ -62,6 +63,9 @@ class Mesh:
     def __reduce__(self) -> tuple[type["Mesh"], tuple[tuple[int, ...], tuple[bool, ...]]]:
         # made anew, because arrays come out of pickles and deep copies writable
         return Mesh, (self.component_sizes, self.closed)
+
+    def __repr__(self) -> str:
+        return f"Mesh({short(self.component_sizes)}, closed={short(self.closed)})"
 
     @cached_property
     def size(self) -> int:

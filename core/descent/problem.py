@@ -11,7 +11,9 @@ import scipy.sparse as sp
 from ..collision import FreeMotion, Limit, free_motion
 from ..constraints import Constraints
 from ..curve import Curve, Mesh
+from ..deadline import check_time
 from ..energies import Objective
+from ..errors import OptionError
 from ..metrics import InnerProduct, Metric, SparseInnerProduct
 from ..obstacle import Obstacle
 from ..saddle import TangentSpace
@@ -75,7 +77,11 @@ class Problem:
 
         It does not see these by itself: steps near an obstacle would be as short as its repulsion changes fast.
         """
+        check_time()
         inner = self.metric.at(curve)
+        if not isinstance(inner, InnerProduct):
+            what = f"metric {self.metric.name!r} gives an object of type {type(inner).__name__}"
+            raise OptionError(f"{what} at a curve; give an inner product, such as DenseInnerProduct(matrix)")
         for potential in self.objective.potentials:
             inner = inner.plus(SparseInnerProduct(sp.diags_array(potential.stiffness(curve))))
         return inner
@@ -109,6 +115,7 @@ class Problem:
 
     def free_motion(self, start: FloatArray, end: FloatArray) -> FreeMotion:
         """How far a straight motion in the user's units, both (n, m), is proved free of contact."""
+        check_time()
         if not self.certifiable:
             return FreeMotion(1.0, None, Limit.UNTESTED)
         return free_motion(self.mesh, start, end, self.obstacles)
@@ -187,6 +194,7 @@ class Point:
 
     @cached_property
     def _energy_and_derivative(self) -> tuple[float, FloatArray]:
+        check_time()
         return self.problem.geometry.value_and_derivative(self.problem, self.curve)
 
     @property

@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import itemgetter
+from reprlib import repr as short
 
 import numpy as np
 
 from ..descent import METHODS
 from ..energies import ENERGIES, Energy
 from ..errors import OptionError
-from ..metrics import METRICS
+from ..metrics import METRICS, Metric
 from ..obstacle import Obstacle
 from ..obstacle_files import read_obstacle
 from ..option import declared, documented, option
@@ -35,8 +36,8 @@ def _are_lengths(value: object) -> bool:
     return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
 
 
-def _is_obstacle(value: object) -> bool:
-    return isinstance(value, Obstacle)
+def _is_a(protocol: type, value: object) -> bool:
+    return isinstance(value, protocol) and not isinstance(value, type)
 
 
 def _read_obstacles(path: str) -> tuple[Obstacle]:
@@ -70,6 +71,15 @@ class RelaxOptions:
     tolerance: float = option(
         1e-4, "Tolerance", "stop when the projected gradient's metric norm is at most this times √E", low=0, metavar="T"
     )
+    time_limit: float | None = option(
+        None,
+        "Time Limit",
+        "stop after this many seconds of computing, also in the middle of a step; the curve reached so far is kept",
+        automatic="none",
+        low=0,
+        metavar="SECONDS",
+        group="scripts",
+    )
     vertices: int | None = option(
         None,
         "Vertices",
@@ -83,10 +93,15 @@ class RelaxOptions:
         "Energy",
         "what is minimised, with a barrier between strands",
         choices=ENERGIES,
-        objects=("an energy", lambda value: isinstance(value, Energy) and not isinstance(value, type)),
+        objects=("an energy", partial(_is_a, Energy)),
     )
-    metric: str | None = _advanced(
-        None, "Metric", "inner product that gradients are taken in", automatic="the method's own", choices=METRICS
+    metric: str | Metric | None = _advanced(  # noqa: RUF009 (a field, made for this class)
+        None,
+        "Metric",
+        "inner product that gradients are taken in",
+        automatic="the method's own",
+        choices=METRICS,
+        objects=("a metric", partial(_is_a, Metric)),
     )
     quadrature_points: int | None = _advanced(
         None,
@@ -101,7 +116,7 @@ class RelaxOptions:
         (),
         "Avoid",
         "surfaces and polylines, in the curve's units, that it never touches: triangles or segments that stand still",
-        objects=("an obstacle, such as Obstacle(vertices, faces)", _is_obstacle),
+        objects=("an obstacle, such as Obstacle(vertices, faces)", partial(_is_a, Obstacle)),
         example="(Obstacle(vertices, faces),)",
         metavar="MESH.obj",
         read=_read_obstacles,
@@ -213,9 +228,8 @@ class RelaxOptions:
 
     def __post_init__(self) -> None:
         for each in declared(type(self)):
-            each.check(getattr(self, each.name))
-        object.__setattr__(self, "pins", tuple(map(int, self.pins)))
-        object.__setattr__(self, "avoid", tuple(self.avoid))
+            object.__setattr__(self, each.name, each.checked(getattr(self, each.name)))
+        object.__setattr__(self, "avoid", tuple({each.key: each for each in self.avoid}.values()))
         self._check_pins()
         if self.balance and self.avoid:
             raise OptionError(
@@ -226,6 +240,11 @@ class RelaxOptions:
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
+
+    def __repr__(self) -> str:
+        values = [(each, getattr(self, each.name)) for each in declared(type(self))]
+        changed = [f"{each.name}={short(value)}" for each, value in values if value != each.default]
+        return f"RelaxOptions({', '.join(changed)})"
 
     def _check_pins(self) -> None:
         pin, times = max(Counter(self.pins).items(), key=itemgetter(1), default=(0, 0))

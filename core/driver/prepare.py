@@ -9,7 +9,7 @@ import numpy as np
 from ..checks import named
 from ..collision import check_clear, check_embedded, check_gap, minimal_gap, survives_rounding
 from ..constraints import Constraints, weighted_barycenter
-from ..curve import Curve, Mesh, check_closed, check_is_curve, refine
+from ..curve import Curve, Mesh, check_closed, refine
 from ..curve.pins import NO_PINS, TAUT, Pins, arcs, free_edges, spans
 from ..curve.refine import Resolution
 from ..curve.remesh import graded_spacing, normalised
@@ -55,7 +55,6 @@ def prepared_start(curve: Curve, vertices: int | None, each: Sequence[RelaxOptio
     OptionError
         If an option does not fit it.
     """
-    check_is_curve(curve)
     for options in each:
         check_size(curve, options)
     check_units(curve)
@@ -74,7 +73,11 @@ def pins_of(curve: Curve, refined: Curve, options: RelaxOptions) -> Pins:
     ------
     CurveOptionError
         If the curve has no such vertex.
+    OptionError
+        If tangents are to be pinned where no vertex is.
     """
+    if options.pin_tangents and not options.pins:
+        raise OptionError("pin_tangents holds the neighbours of pinned vertices, but there are no pins; give some")
     if not options.pins:
         return NO_PINS
     last = max(options.pins)

@@ -83,10 +83,12 @@ class Solver:
 
 def max_vertices(options: RelaxOptions, wanted: int) -> int:
     """Number of vertices for which there is room and time, if so many are wanted; raises as `Solver.for_curve` does."""
-    if _may_be_hierarchical(options) and (options.solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
-        return MAX_VERTICES
     method = named(METHODS, "method", options.method)
-    metrics = (_metric(method, options), *method.rule.other_metrics)
+    metric = _metric(method, options)
+    if _may_be_hierarchical(options) and (options.solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
+        own = compressed(metric, Tolerances()).most_vertices if isinstance(options.metric, Metric) else MAX_VERTICES
+        return min(MAX_VERTICES, own)
+    metrics = (metric, *method.rule.other_metrics)
     return min(metric.most_vertices for metric in metrics)
 
 
@@ -125,4 +127,5 @@ def _energy(options: RelaxOptions) -> Energy:
 
 
 def _metric(method: Method, options: RelaxOptions) -> Metric:
-    return method.metric if options.metric is None else named(METRICS, "metric", options.metric)
+    wanted = method.metric if options.metric is None else options.metric
+    return named(METRICS, "metric", wanted) if isinstance(wanted, str) else wanted

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import checked_fields
 from ..curve import Curve
 from ..curve.distances import points_at
 from ..curve.tiles import Tile, pair_tiles
@@ -19,6 +20,7 @@ from .density import Density, PointPairs, PointSet
 from .kpoint_sums import KPointSums
 
 
+@checked_fields
 @dataclass(frozen=True)
 class KPointEnergy:
     """The energy of a density by a quadrature rule.

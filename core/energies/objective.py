@@ -6,6 +6,7 @@ from typing import TypeVar, cast
 
 import numpy as np
 
+from ..arguments import checked_fields
 from ..curve import Curve
 from ..errors import OptionError
 from ..obstacle import Obstacle
@@ -19,6 +20,7 @@ from .repulsion import Repulsion
 _Term = TypeVar("_Term", bound=Term)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Objective:
     """A sum of terms: a C² function of the vertices, infinite where edges touch each other or an obstacle.

@@ -8,6 +8,7 @@ from typing import TextIO
 
 import numpy as np
 
+from ..arguments import checked
 from ..collision import check_embedded
 from ..curve import Curve, check_closed, refine
 from ..curve.io import FORMATS as CURVES
@@ -27,6 +28,7 @@ _GAP = 0.5  # between parts that no crossing joins, all of radius 1
 _VIEWS = 4
 
 
+@checked
 def coded_knot(text: str, vertices: int | None = None, kind: str | None = None) -> Curve:
     """Make the knot or link of a PD, DT or Gauss code as a polygon in space.
 

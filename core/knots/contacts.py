@@ -4,12 +4,14 @@ import math
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..errors import CurveError
 from ..types import FloatArray
 from .rings import MAX_VERTICES, check_whole
 
 
+@checked
 def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> Curve:
     """Make an unknot rolled up into a double spiral: two strands side by side, joined in the middle and outside.
 
@@ -66,6 +68,7 @@ def _double_spiral(turns: float) -> FloatArray:
     return np.stack([points.real, points.imag], axis=1)
 
 
+@checked
 def rope(twists: float, gap: float, vertices: int = 200) -> Curve:
     """Make an unknot twisted into a rope of length 2: two strands at a distance that may be far below an edge.
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..types import IntArray
 from .braids import checked_word, columns, cycles, permutation
@@ -12,6 +13,7 @@ _COLUMN = 3  # length of a crossing along the strands
 _Corner = tuple[int, int, int]
 
 
+@checked
 def lattice_closure(word: Sequence[int], *, strands: int | None = None) -> Curve:
     """Make the closure of a braid as a polygon with corners on the integer lattice and edges along its axes.
 

@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
+from ..arguments import checked
 from ..curve import Curve, refine
 from ..diagrams import PlanarCrossing as Crossing
 from ..errors import CurveError
@@ -23,6 +24,7 @@ _ROUNDS = 4  # in which weights grow with the square roots of lengths; with many
 _LIFT = 0.5  # of the shortest line from a crossing: the height of its strands above and below the plane
 
 
+@checked
 def diagram_knot(code: Sequence[Crossing], vertices: int | None = None) -> Curve:
     """Make the knot or link of a planar diagram code as a polygon with four vertices for every crossing, or more.
 

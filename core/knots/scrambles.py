@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve, check_closed
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
@@ -15,6 +16,7 @@ _MIN_ANGLE = 0.2  # radians between neighbouring edges, so that edges never fold
 _MIN_GAP = 1e-6  # of the radius; rounding in the distances, at most 1e-8 of it, must stay far below the gap
 
 
+@checked
 def scramble(
     curve: Curve,
     seed: int,

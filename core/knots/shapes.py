@@ -13,6 +13,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..errors import CurveError
 from ..types import ComplexArray, FloatArray
@@ -48,6 +49,7 @@ class Shape:
         return Curve.from_components(parts)
 
 
+@checked
 def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link of the table in its relaxed shape.
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..errors import CurveError
 from .braids import MAX_LETTERS, Word, is_reduced
@@ -12,6 +13,7 @@ _MAX_TRIALS = 500  # insertions tried per letter
 _NEARBY = 6  # letters around a new pair that it is braided with
 
 
+@checked
 def hard_unknot(crossings: int, seed: int, vertices: int | None = None, *, strands: int | None = None) -> Curve:
     """Make an unknot as the closure of a braid with a given number of crossings, no two of which cancel as they stand.
 
@@ -39,6 +41,7 @@ def hard_unknot(crossings: int, seed: int, vertices: int | None = None, *, stran
     return braid_closure(unknot_word(crossings, seed, strands=strands), vertices)
 
 
+@checked
 def unknot_word(crossings: int, seed: int, *, strands: int | None = None) -> Word:
     """Give a braid word of ``crossings`` letters whose closure is the unknot, though no two letters cancel.
 

@@ -39,7 +39,7 @@ def test_every_option_stands_in_the_help(capsys):
 
 
 def test_defaults_are_the_librarys():
-    assert parsed() == RelaxOptions() == parsed(method=False)
+    assert parsed() == RelaxOptions() == parsed(without=("method",))
 
 
 @pytest.mark.parametrize(
