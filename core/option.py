@@ -4,7 +4,7 @@ From that follow its checks, the arguments of the command line, and Blender's se
 """
 
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from inspect import cleandoc
 from numbers import Integral, Real
@@ -13,8 +13,9 @@ from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from .arguments import is_list
 from .checks import check_known, check_number
-from .errors import OptionError
+from .errors import OptionError, shown
 
 _Class = TypeVar("_Class", bound=type)
 _KINDS: Mapping[type, tuple[tuple[type, ...], str]] = MappingProxyType(  # what a value may be; NumPy's are welcome
@@ -98,12 +99,12 @@ class Option:
         """The help by itself, without a full stop; ``none`` is how None, if it is allowed, is written."""
         return self.help[0].upper() + self.help[1:] + (f"; {none}: {self.automatic}" if none and self.automatic else "")
 
-    def checked(self, value: object) -> Any:
+    def checked(self, value: Any) -> Any:
         """The value, NumPy's numbers as Python's; an OptionError says what is allowed if the option cannot have it."""
-        if self.repeated and not isinstance(value, str) and isinstance(value, Sequence | np.ndarray):
+        if self.repeated and is_list(value):
             return tuple(map(self._checked, value))
         if self.repeated:
-            raise OptionError(f"{self.name} is {value!r:.40}; it must be a tuple, such as {self.example}")
+            raise OptionError(f"{self.name} is {shown(value)}; it must be a tuple, such as {self.example}")
         return None if value is None and self.default is None else self._checked(value)
 
     def _checked(self, value: Any) -> Any:
@@ -114,7 +115,7 @@ class Option:
             noun = f"{noun} or {self.objects[0]}" if noun else self.objects[0]
         # bool is a kind of int, but no number
         if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
-            raise OptionError(f"{self.name} is {value!r:.40}; it must be {noun}")
+            raise OptionError(f"{self.name} is {shown(value)}; it must be {noun}")
         if self.kind in (int, float):
             self._check_number(value)
         elif self.choices is not None:
@@ -130,7 +131,7 @@ class Option:
             check_number(self.name, value, self.low, self.high)
         elif not self.low <= value <= self.high:
             allowed = f"{self.low} or more" if math.isinf(self.high) else f"from {self.low} to {self.high}"
-            raise OptionError(f"{self.name} is {value!s:.40}; it must be {allowed}")
+            raise OptionError(f"{self.name} is {shown(value)}; it must be {allowed}")
 
 
 def option(default: Any, label: str, help: str, **more: Any) -> Any:

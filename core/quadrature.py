@@ -9,6 +9,8 @@ from .arguments import checked, checked_fields
 from .errors import OptionError
 from .types import FloatArray, frozen
 
+MAX_POINTS = 1000  # beyond, finding them takes minutes
+
 
 @lru_cache(maxsize=64)
 def gauss_legendre(points: int) -> tuple[FloatArray, FloatArray]:
@@ -50,8 +52,8 @@ class Rule:
     @checked
     def gauss(cls, points: int) -> "Rule":
         """Gauss–Legendre rule with ``points`` points, 1 or more; it is of order 2·points."""
-        if points < 1:
-            raise OptionError(f"points is {points}; the quadrature needs 1 point per edge or more")
+        if not 1 <= points <= MAX_POINTS:
+            raise OptionError(f"points is {points}; the quadrature takes 1 to {MAX_POINTS} points per edge")
         t, omega = gauss_legendre(points)
         return cls(tuple(t.tolist()), tuple(omega.tolist()))
 

@@ -1,6 +1,6 @@
 """Polygons in R^m, closed or open: the one value that everything else takes and gives."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import cast
@@ -8,6 +8,7 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import is_list
 from ..errors import CurveError, counted
 from ..types import FloatArray, frozen, real
 from .mesh import Mesh
@@ -51,7 +52,7 @@ class Curve:
     @classmethod
     def from_components(cls, components: Sequence[npt.ArrayLike], closed: Sequence[bool] = ()) -> "Curve":
         """Join polygons, arrays (n_k, m) of one common m, into one curve (a link); ``closed`` is as for `Mesh`."""
-        if not isinstance(components, Iterable):
+        if not is_list(components):
             raise CurveError(f"components are of type {type(components).__name__}; give a list of arrays")
         arrays = [_numbers(component, f"component {k + 1}") for k, component in enumerate(components)]
         for k, array in enumerate(arrays):

@@ -14,6 +14,7 @@ from itertools import count
 from types import MappingProxyType
 from typing import cast
 
+from ..checks import check_known
 from ..errors import CurveError
 from .diagram import Diagram, Pass
 from .faces import Faces
@@ -62,6 +63,7 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
     if kind is None:
         raise CurveError("the code does not say what it is; begin it with PD:, DT: or Gauss:")
     kind = kind.lower().removesuffix("code")
+    check_known("kind", kind, _READERS)
     if not text.strip(" \t\n,;"):
         raise CurveError(f"the code is empty; write such as {_EXAMPLES[kind]}")
     diagram = _READERS[kind](text.strip())

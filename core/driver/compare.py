@@ -9,7 +9,7 @@ from ..checks import check_number
 from ..curve import Curve
 from ..deadline import TimeLimit
 from ..descent import METHODS, Problem
-from ..errors import OptionError
+from ..errors import OptionError, choice
 from .iterate import Iterate
 from .loop import WithOutcome, within
 from .options import RelaxOptions
@@ -64,6 +64,8 @@ def compare(
     those that were not reached. Raises as `relax` does.
     """
     check_number("time_limit", time_limit, 0.0, float("inf"))
+    if not len(methods):
+        raise OptionError(f"there are no methods to compare; {choice('', METHODS)}")
     if options.mesh == "auto":
         options = replace(options, mesh="fixed")
     if len(set(methods)) < len(methods):

@@ -67,6 +67,8 @@ def certified_moves(
     moves = 20 * len(curve) if moves is None else moves
     reach = radius / 2 if reach is None else reach
     gap = float(curve.edge_lengths.mean()) / 20 if gap is None else gap
+    if seed < 0:
+        raise CurveError(f"seed is {seed}; it must be 0 or more")
     if moves < 0 or not 0 < reach < math.inf:
         raise CurveError(f"moves is {moves} and reach {reach}; moves must be 0 or more and reach above 0")
     if not _MIN_GAP * radius <= gap < math.inf:
