@@ -36,6 +36,8 @@ def write_figure(path: Path, runs: Sequence[History]) -> None:
         "gradient norm": [run.gradient_norm for run in runs],
     }
     grid = figure.subplots(len(rows), 2, sharex="col", sharey="row")
+    if len({run.metric == "moebius" for run in runs}) > 1:
+        figure.suptitle("solid: gradients in the metric $J_C$; dashed: in other metrics; dots: converged", fontsize=10)
     grid[-1, 0].set_xscale("symlog", linthresh=1.0)
     grid[-1, 1].set_xscale("symlog", linthresh=0.1)
     grid[-1, 0].set_xlabel("iterations")
@@ -53,7 +55,7 @@ def write_figure(path: Path, runs: Sequence[History]) -> None:
 def _draw(axes: "Axes", number: int, run: History, x: Sequence[float], y: Sequence[float]) -> "Line2D":
     """A method's line, with dots where it was helped and a larger one where it has converged."""
     heights = np.where(np.asarray(y) > 0.0, y, np.nan)
-    style = {"color": f"C{number % 10}", "linestyle": ("-", "--", ":")[number // 10 % 3], "linewidth": 1.6}
+    style = {"color": f"C{number % 10}", "linestyle": "-" if run.metric == "moebius" else "--", "linewidth": 1.6}
     helped = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)} if run.fallback else {}
     (line,) = axes.plot(x, heights, **style, **helped)
     last = np.flatnonzero(np.isfinite(heights))[-1:]

@@ -32,6 +32,8 @@ class History:
         objective, without the penalty that some methods add to it; and the norm of the gradient of what is minimised.
     fallback
         Iterates to which another method led, because this one was stuck.
+    metric
+        Name of the metric that gradients were taken in.
     stages
         The curves of some iterates, by their index.
     """
@@ -42,6 +44,7 @@ class History:
     energy: tuple[float, ...]
     gradient_norm: tuple[float, ...]
     fallback: tuple[int, ...]
+    metric: str
     stages: Mapping[int, Curve] = field(default_factory=dict, compare=False)
 
     def __repr__(self) -> str:
@@ -92,7 +95,9 @@ def _run(start: Curve, options: RelaxOptions, problem: Problem, time_limit: floa
         curves[iterate.index] = iterate.curve
     assert run.outcome is not None, "the loop is through"
     seconds, energy, norm = zip(*rows, strict=True)
-    return History(options.method, run.outcome.status.value, seconds, energy, norm, tuple(fallback), curves)
+    return History(
+        options.method, run.outcome.status.value, seconds, energy, norm, tuple(fallback), problem.metric.name, curves
+    )
 
 
 def _without_penalty(iterate: Iterate, problem: Problem) -> float:

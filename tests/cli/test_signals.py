@@ -270,8 +270,8 @@ def test_compare_keeps_the_methods_that_are_done(
     status: int,
     said: str,
 ) -> None:
-    def interrupted(curve: Curve, methods: list[str], options: RelaxOptions, limit: float) -> Iterator[History]:
-        yield from compare(curve, methods[:1], options, limit)
+    def interrupted(curve: Curve, methods: list[str], *more: Any) -> Iterator[History]:
+        yield from compare(curve, methods[:1], *more)
         if memory:
             raise MemoryError
         send(signal.SIGTERM)

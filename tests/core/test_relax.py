@@ -344,6 +344,24 @@ def test_compare_ends_at_the_time_limit():
     assert len(history.energy) == len(history.seconds) == 1
 
 
+def test_what_is_compared_has_no_penalty():
+    """Edges of unequal lengths cost a penalised method much to begin with, the curve is the same."""
+    vertices = torus_trefoil(80).vertices
+    uneven = Curve(np.delete(vertices, slice(1, 40, 2), axis=0))
+    kept, penalised = compare(uneven, ["cg", "penalty-cg"], RelaxOptions(vertices=60, max_iterations=2), 60.0)
+    start = next(relax(uneven, RelaxOptions(vertices=60, method="penalty-cg")))
+    assert penalised.energy[0] == pytest.approx(kept.energy[0], rel=1e-12)
+    assert start.energy > penalised.energy[0] + 1.0
+
+
+def test_curves_of_some_iterates_are_kept():
+    (history,) = compare(torus_trefoil(40), ["cg"], RelaxOptions(vertices=40, max_iterations=3), 60.0, (0, 2, 99))
+    assert list(history.stages) == [0, 2, 3]
+    iterates = list(relax(torus_trefoil(40), RelaxOptions(method="cg", vertices=40, max_iterations=3, mesh="fixed")))
+    for k, curve in history.stages.items():
+        np.testing.assert_array_equal(curve.vertices, iterates[k].curve.vertices)
+
+
 def test_a_for_loop_that_keeps_the_outcome():
     run = WithOutcome(relax(torus_trefoil(60), SHORT))
     assert run.outcome is None
