@@ -151,6 +151,7 @@ _OPTIONS = {
     "Stability": "Stabilität",
     "Start Frame": "Startbild",
     "Timing": "Zeitverlauf",
+    "Time Limit": "Zeitgrenze",
     "Tolerance": "Toleranz",
     "Type": "Typ",
     "Update View Every": "Ansicht aktualisieren alle",

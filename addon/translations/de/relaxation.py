@@ -115,6 +115,11 @@ _OPTIONS = {
         "Anzahl der Punkte, auf die verfeinert wird, die aller Komponenten zusammen; "
         "0: so viele, dass Nachbarn näher sind als Stränge"
     ),
+    "Stop after this many seconds of computing, also in the middle of a step; the curve reached so far is kept; "
+    "0: none": (
+        "Nach so vielen Sekunden Rechnens beenden, auch mitten in einem Schritt; die erreichte Kurve bleibt erhalten; "
+        "0: keine Grenze"
+    ),
     "Stop after this many accepted steps and changes of mesh": (
         "Nach so vielen angenommenen Schritten und Netzänderungen beenden"
     ),

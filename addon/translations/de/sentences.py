@@ -212,6 +212,7 @@ _RUN = {
     "and the others are as they were": "und die anderen sind, wie sie waren",
     "converged: projected gradient {norm} ≤ {bound}": "konvergiert: projizierter Gradient {norm} ≤ {bound}",
     "stopped after 1 iteration, as asked for": "wie verlangt nach 1 Iteration beendet",
+    "stopped at the time limit, {seconds} s, as asked for": "wie verlangt an der Zeitgrenze beendet, {seconds} s",
     "stopped after {count} iterations, as asked for": "wie verlangt nach {count} Iterationen beendet",
     "circle = {energy:g}": "Kreis = {energy:g}",
     "floor = {energy:g}": "Schranke = {energy:g}",
