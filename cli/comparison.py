@@ -59,14 +59,14 @@ def _draw(axes: "Axes", number: int, run: History, x: Sequence[float], y: Sequen
     helped = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)} if run.fallback else {}
     (line,) = axes.plot(x, heights, **style, **helped)
     last = np.flatnonzero(np.isfinite(heights))[-1:]
-    if run.status == "converged":
+    if run.status == "converged" and not y[-1] < 0.0:  # below the least energy of the others there is no end to be seen
         axes.plot(np.asarray(x)[last], heights[last], "o", color=style["color"], markersize=6)
     return line
 
 
 def write_strip(stages: Sequence[int], path: Path, runs: Sequence[History]) -> None:
     """Draw the curves after some iterations, a row for each method, like Figure 1 of [RS21]."""
-    size = (_CELL * len(stages) + 1.2, (_CELL + 0.25) * len(runs) + 0.3)
+    size = (_CELL * len(stages) + 1.2, (0.7 * _CELL + 0.25) * len(runs) + 0.3)
     figure = figure_class()(figsize=size, layout="constrained")
     grid = figure.subplots(len(runs), len(stages), squeeze=False)
     for number, (row, run) in enumerate(zip(grid, runs, strict=True)):

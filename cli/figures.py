@@ -1,12 +1,13 @@
 """Figures by matplotlib, where it is installed: curves of numbers with names at their ends, and curves in space."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..core import Curve, MobiusFlowError
+from ..core.types import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
 LINE_HEIGHT = 0.065  # of an axes' height, between names at the ends of lines
 FAINTEST = 0.55  # share of white in the colour of what is farthest away
+PIECES = 120  # of a polygon, which are in front of each other or behind
+FLAT = 0.2  # depth, in widths of the curve, below which its parts differ less in colour
+OVERLAP = 0.006  # of neighbouring pieces, in widths of the curve: less than a pixel
 
 
 def figure_class(instead: str = "") -> "type[Figure]":
@@ -65,22 +69,42 @@ def draw_curve(axes: "Axes", curve: Curve, color: str, width: float) -> None:
     from matplotlib.collections import LineCollection
     from matplotlib.colors import to_rgb
 
-    points = curve.vertices - curve.vertices.mean(axis=0)
-    points = np.pad(points, ((0, 0), (0, max(0, 3 - points.shape[1]))))
-    turn = np.linalg.svd(points, full_matrices=False)[2]
-    turn[2] *= np.sign(np.linalg.det(turn[:, :3])) if turn.shape == (3, 3) else 1.0  # no mirror image
-    x, y, depth = (points @ turn.T).T[:3]
-    ends = np.stack([np.column_stack([x, y])[each] for each in (curve.mesh.tails, curve.mesh.heads)], axis=1)
-    depth = 0.5 * (depth[curve.mesh.tails] + depth[curve.mesh.heads])
-    order = np.argsort(depth, kind="stable")  # from far to near
-    white = np.linspace(FAINTEST, 0.0, len(order))[:, None]
+    points = _facing(curve.vertices)
+    pieces = sorted(_pieces(curve, points), key=lambda piece: float(piece[:, 2].mean()))  # from far to near
+    depth = np.array([piece[:, 2].mean() for piece in pieces])
+    extent = float(np.ptp(points, axis=0).max())
+    white = FAINTEST * (depth[-1] - depth)[:, None] / max(np.ptp(depth), FLAT * extent)
     shades = (1.0 - white) * np.array(to_rgb(color)) + white
-    # each edge covers what is behind it by a broader one in white
-    both = np.repeat(ends[order], 2, axis=0)
+    # each piece covers what is behind it by a broader one in white
+    lines = [line for piece in pieces for line in (piece[:, :2], _longer(piece[:, :2], OVERLAP * extent))]
     colors = np.stack([np.ones_like(shades), shades], axis=1).reshape(-1, 3)
-    widths = np.tile([2.4 * width, width], len(order))
-    axes.add_collection(LineCollection(list(both), colors=colors, linewidths=widths, capstyle="butt"))
-    axes.set_aspect("equal")
+    widths = np.tile([2.4 * width, width], len(pieces))
+    axes.add_collection(LineCollection(lines, colors=colors, linewidths=widths, capstyle="butt"))
+    axes.set_aspect("equal", adjustable="datalim")
     axes.autoscale_view()
-    axes.margins(0.06)
     axes.set_axis_off()
+
+
+def _facing(vertices: FloatArray) -> FloatArray:
+    """Points turned so that they are broadest along x, then y; the third coordinate comes nearer.  Shape (n, 3)."""
+    points = np.pad(vertices - vertices.mean(axis=0), ((0, 0), (0, max(0, 3 - vertices.shape[1]))))
+    turn = np.linalg.svd(points, full_matrices=False)[2][:3]
+    if turn.shape == (3, 3):
+        turn[2] *= np.sign(np.linalg.det(turn))  # no mirror image
+    return np.asarray(points @ turn.T)
+
+
+def _pieces(curve: Curve, points: FloatArray) -> Iterator[FloatArray]:
+    """The curve cut into short polylines, each of shape (k, 3)."""
+    for edges in curve.mesh.edge_slices:
+        numbers = np.arange(edges.start, edges.stop)
+        for part in np.array_split(numbers, min(PIECES, len(numbers))):
+            yield points[[*curve.mesh.tails[part], curve.mesh.heads[part[-1]]]]
+
+
+def _longer(line: FloatArray, length: float) -> FloatArray:
+    """A polyline that goes a little on at its ends, so that no gap is seen to the next."""
+    first, last = line[0] - line[1], line[-1] - line[-2]
+    begin = line[0] + length * first / max(float(np.linalg.norm(first)), length)
+    end = line[-1] + length * last / max(float(np.linalg.norm(last)), length)
+    return np.array([begin, *line[1:-1], end])

@@ -66,9 +66,15 @@ class Solver:
         Raises
         ------
         OptionError
-            If a quadrature rule is asked for, and it has none.
+            If a quadrature rule is asked for, and it has none, or a metric, and the method has another in its name.
         """
         metric, points = _metric(self._method, self._options), self._options.quadrature_points
+        kind, dash, own = self._method.name.rpartition(f"-{self._method.metric.name}")
+        if isinstance(self._options.metric, str) and dash and not own and metric is not self._method.metric:
+            raise OptionError(
+                f"method {self._method.name} and metric {metric.name} contradict each other; "
+                f"leave the metric out, or choose method {kind}-{metric.name}"
+            )
         if points is not None and metric.rule is None:
             raise OptionError(f"quadrature_points is {points}; metric {metric.name!r} has no such rule")
         return self.of_metric(metric)

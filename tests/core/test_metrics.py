@@ -185,7 +185,7 @@ def test_a_metric_of_ones_own_is_an_object_as_an_energy_is():
     options = {"method": "flow-moebius", "vertices": 40, "max_iterations": 0}
     own, usual = (
         minimize(torus_trefoil(40), RelaxOptions(metric=metric, **options)).last.gradient_norm
-        for metric in (Own(), "l2")
+        for metric in (Own(), METRICS["l2"])
     )
     assert own == pytest.approx(usual / np.sqrt(10.0), rel=1e-9)
 
@@ -197,6 +197,12 @@ def test_a_name_does_not_make_it_one_of_the_table():
     assert isinstance(start_problem(torus_trefoil(40), options).metric, Own)
     with pytest.raises(CurveError, match="has 101 vertices; flow-moebius has room and time for 100"):
         start_problem(torus_trefoil(101), options)
+
+
+def test_a_metric_beside_a_method_that_names_another_is_refused():
+    with pytest.raises(OptionError, match=r"flow-l2 and metric h2 contradict each other; .* choose method flow-h2"):
+        start_problem(torus_trefoil(20), RelaxOptions(method="flow-l2", metric="h2"))
+    assert start_problem(torus_trefoil(20), RelaxOptions(method="flow-l2", metric="l2")).metric.name == "l2"
 
 
 @pytest.mark.parametrize(
