@@ -1,7 +1,6 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import itemgetter
@@ -9,6 +8,7 @@ from reprlib import repr as short
 
 import numpy as np
 
+from ..arguments import is_list
 from ..descent import METHODS
 from ..energies import ENERGIES, Energy
 from ..errors import OptionError
@@ -27,7 +27,7 @@ _scripted = partial(_advanced, scripted=True)
 
 
 def _are_lengths(value: object) -> bool:
-    if isinstance(value, str) or not isinstance(value, Sequence | np.ndarray):
+    if not is_list(value):
         return False
     try:
         lengths = np.asarray(value, dtype=np.float64)

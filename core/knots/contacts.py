@@ -8,7 +8,7 @@ from ..arguments import checked
 from ..curve import Curve
 from ..errors import CurveError
 from ..types import FloatArray
-from .rings import MAX_VERTICES, check_whole
+from .rings import MAX_VERTICES
 
 
 @checked
@@ -39,7 +39,6 @@ def spiral(turns: float, vertices: int | None = None, *, rise: float = 0.0) -> C
     # An edge of length h leaves a curve of curvature κ by at most κh²/8; here κ is at most 2π/gap, in the
     # middle, and strands can't meet while that is below gap/2.
     fewest = math.ceil(along[-1] / (0.75 * gap))
-    check_whole(vertices)
     vertices = max(60, math.ceil(along[-1] / (0.6 * gap))) if vertices is None else vertices
     if not fewest <= vertices <= MAX_VERTICES:
         raise CurveError(f"vertices is {vertices}; a spiral of {turns} turns takes {fewest} to {MAX_VERTICES}")
@@ -88,7 +87,6 @@ def rope(twists: float, gap: float, vertices: int = 200) -> Curve:
     """
     if not 0 < gap <= 1:
         raise CurveError(f"gap is {gap}; it must be above 0 and at most 1")
-    check_whole(vertices)
     if vertices < 8 or vertices % 2 or vertices > MAX_VERTICES:
         raise CurveError(f"vertices is {vertices}; it must be even, from 8 to {MAX_VERTICES}")
     steps = (vertices - 4) // 2

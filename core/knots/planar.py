@@ -16,7 +16,7 @@ from ..curve import Curve, refine
 from ..diagrams import PlanarCrossing as Crossing
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .rings import MAX_VERTICES, check_whole
+from .rings import MAX_VERTICES
 
 _Dart = tuple[int, int]  # a crossing, and the place from 0 to 3 of an edge that leaves it
 
@@ -60,7 +60,6 @@ def diagram_knot(code: Sequence[Crossing], vertices: int | None = None) -> Curve
     curve = Curve.from_components(parts)
     if vertices is None:
         return curve
-    check_whole(vertices)
     if not len(curve) <= vertices <= MAX_VERTICES:
         few = "few" if vertices < len(curve) else "many"
         raise CurveError(f"{vertices} vertices are too {few} for this diagram; give {len(curve)} to {MAX_VERTICES}")

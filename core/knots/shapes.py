@@ -19,7 +19,7 @@ from ..errors import CurveError
 from ..types import ComplexArray, FloatArray
 from .inscribed import equal_steps, is_isotopic
 from .names import table_name
-from .rings import MAX_VERTICES, check_whole, shares
+from .rings import MAX_VERTICES, shares
 
 FILE = Path(__file__).with_name("shapes.npz")
 QUANTUM = 2.0**-13  # coefficients are stored as multiples of it, in 16 bits
@@ -115,7 +115,6 @@ def store(given: Mapping[str, Shape], path: Path = FILE) -> None:
 
 
 def _with_vertices(shape: Shape, proved: Curve, vertices: int) -> Curve:
-    check_whole(vertices)
     if vertices > MAX_VERTICES:
         raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
     lengths = np.array([proved.edge_lengths[s].sum() for s in proved.mesh.slices])
