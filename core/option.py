@@ -119,7 +119,7 @@ class Option:
         if self.kind in (int, float):
             self._check_number(value)
         elif self.choices is not None:
-            check_known(self.name, value, self.choices)
+            check_known(self.name, str(value), self.choices)
         return self.kind(value)
 
     def _check_number(self, value: Any) -> None:

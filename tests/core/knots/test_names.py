@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from knot_type import knot_invariants
-from mobius_flow.core import Curve, MobiusFlowError
+from mobius_flow.core import Curve
 from mobius_flow.core.errors import CurveError, MobiusFlowError
 from mobius_flow.core.knots import (
     ARCS,
