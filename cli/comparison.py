@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,10 +29,11 @@ def write_figure(path: Path, runs: Sequence[History]) -> None:
     from matplotlib.ticker import LogFormatter
 
     least, names = least_energy(runs), [run.method + _ENDS[run.status] for run in runs]
-    steps, seconds = [range(run.iterations + 1) for run in runs], [run.seconds for run in runs]
-    rows = {
+    steps: list[Sequence[float]] = [range(run.iterations + 1) for run in runs]
+    seconds: list[Sequence[float]] = [run.seconds for run in runs]
+    rows: dict[str, list[Sequence[float]]] = {
         "energy $E$": [run.energy for run in runs],
-        "$E - E_{min}$": [np.subtract(run.energy, least) for run in runs],
+        "$E - E_{min}$": [[energy - least for energy in run.energy] for run in runs],
         "gradient norm": [run.gradient_norm for run in runs],
     }
     grid = figure.subplots(len(rows), 2, sharex="col", sharey="row")
@@ -55,8 +56,12 @@ def write_figure(path: Path, runs: Sequence[History]) -> None:
 def _draw(axes: "Axes", number: int, run: History, x: Sequence[float], y: Sequence[float]) -> "Line2D":
     """A method's line, with dots where it was helped and a larger one where it has converged."""
     heights = np.where(np.asarray(y) > 0.0, y, np.nan)
-    style = {"color": f"C{number % 10}", "linestyle": "-" if run.metric == "moebius" else "--", "linewidth": 1.6}
-    helped = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)} if run.fallback else {}
+    style: dict[str, Any] = {
+        "color": f"C{number % 10}",
+        "linestyle": "-" if run.metric == "moebius" else "--",
+        "linewidth": 1.6,
+    }
+    helped: dict[str, Any] = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)} if run.fallback else {}
     (line,) = axes.plot(x, heights, **style, **helped)
     last = np.flatnonzero(np.isfinite(heights))[-1:]
     if run.status == "converged" and not y[-1] < 0.0:  # below the least energy of the others there is no end to be seen

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -44,7 +44,12 @@ def name_lines(axes: "Axes", lines: Sequence["Line2D"], names: Sequence[str]) ->
     heights -= max(0.0, heights.max() - 1.0) / 2.0  # what is pushed out at the top is shared with the bottom
     for line, name, end, height in zip(lines, names, ends, heights, strict=True):
         leader = {"arrowstyle": "-", "color": line.get_color(), "linewidth": 0.6, "shrinkB": 0, "relpos": (0, 0.5)}
-        places = {"xy": (1.0, end), "xytext": (1.06, height), "xycoords": "axes fraction", "va": "center"}
+        places: dict[str, Any] = {
+            "xy": (1.0, end),
+            "xytext": (1.06, height),
+            "xycoords": "axes fraction",
+            "va": "center",
+        }
         axes.annotate(name, **places, color=line.get_color(), fontsize=9, arrowprops=leader)
 
 

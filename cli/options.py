@@ -68,7 +68,7 @@ def flag(option: Option) -> str:
 
 def _values(option: Option) -> dict[str, Any]:
     default = None if option.shorthands else option.default
-    common = {"dest": option.name, "default": [] if option.repeated else default}
+    common: dict[str, Any] = {"dest": option.name, "default": [] if option.repeated else default}
     if option.kind is bool:
         return common | {"action": "store_true"}
     return common | {"metavar": option.metavar} | ({"action": "append"} if option.repeated else {"type": option.kind})
