@@ -1,12 +1,12 @@
-"""``mobius-flow compare``: energy against iterations and seconds for several methods, like Figure 3 of [RS21]."""
+"""``mobius-flow compare``: what several methods make of a curve, like Figures 1 and 3 of [RS21]."""
 
 import argparse
 import csv
 import json
-import math
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import fields
+from functools import partial
 from pathlib import Path
 
 from ..core import METHODS, MobiusFlowError
@@ -16,17 +16,21 @@ from ..core.errors import OptionError, OutputError, counted, wrong_suffix
 from ..core.system.files import atomic_write
 from . import curves, signals
 from . import options as relax_options
+from .comparison import write_figure, write_strip
 from .figures import figure_class
 from .places import check_places
 from .recovery import kept
 
-_INSTEAD = "or write .csv or .json"
 _EPILOG = """\
-example:
+examples:
   mobius-flow compare knot.txt --methods lbfgs,flow-moebius,flow-l2 --time-limit 20 -o figure.png
+  mobius-flow compare knot.txt --methods flow-moebius,flow-l2 --strip 0,5,20,80 -o strip.png
 
-The column, or key, "energy" of a table is the objective: the energy with the barrier between near strands. Where a
-method is stuck another one helps out: "fallback" tells the steps it took, which are dots in a figure.
+A figure shows the energy, its distance to the least one, and the gradient norm, each over iterations and over seconds
+of processor time, which a busy machine does not change. The column, or key, "energy" of a table is the objective: the
+energy with the barrier between near strands, without the penalty of the methods that have one. The least one is that
+of the methods that keep lengths. Where a method is stuck another one helps out: "fallback" tells the steps it took,
+which are dots in a figure. A method that is slow per step is stopped in the middle of one when its time is up.
 
 exit status: 0; 2 on bad input or bad options, or where OUT cannot be written; 130 interrupted, where the methods that
 are done are written all the same
@@ -35,7 +39,7 @@ are done are written all the same
 
 def add_to(parser: argparse.ArgumentParser) -> None:
     """Describe the subcommand."""
-    parser.description = "Compare methods on a curve: energy against iterations and seconds, like Figure 3 of [RS21]."
+    parser.description = "Compare methods on a curve: energy and gradient against iterations and seconds."
     parser.epilog = _EPILOG
     parser.add_argument(
         "input", metavar="IN", help=f"polygons, closed or open: {', '.join(FORMATS)}, or - for standard input"
@@ -44,9 +48,18 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--methods", metavar="A,B,…", help=f"names, comma separated (default: all: {','.join(METHODS)})"
     )
-    parser.add_argument("--time-limit", type=float, default=30.0, metavar="S", help="seconds per method (default: 30)")
+    parser.add_argument(
+        "--time-limit",
+        type=float,
+        default=30.0,
+        metavar="SECONDS",
+        help="of processor time per method, all threads together (default: 30)",
+    )
+    parser.add_argument(
+        "--strip", metavar="K,K,…", help="draw the curves after so many iterations, a row for each method, instead"
+    )
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"one of {', '.join(WRITERS)}")
-    relax_options.add_to(parser, method=False)
+    relax_options.add_to(parser, without=("method", "time_limit"))
     relax_options.add_task(parser)
 
 
@@ -55,25 +68,36 @@ def run(options: argparse.Namespace) -> int:
     suffix = Path(options.output).suffix.lower()
     if suffix not in WRITERS:
         raise OptionError(f"{options.output}: {wrong_suffix(options.output, WRITERS, 'outputs')}")
-    if WRITERS[suffix] is _write_figure:
-        figure_class(_INSTEAD)
-    if not (math.isfinite(options.time_limit) and options.time_limit > 0):
-        raise OptionError(f"time-limit is {options.time_limit}; it must be a finite number of seconds above 0")
+    stages = [] if options.strip is None else _numbers(options.strip)
+    writer = partial(write_strip, stages) if stages else WRITERS[suffix]
+    if stages and WRITERS[suffix] is not write_figure:
+        raise OptionError(f"{options.output}: a strip is a picture; let OUT end in .png or .svg, or leave --strip out")
+    if WRITERS[suffix] is write_figure:
+        figure_class("or write .csv or .json")
     names = list(METHODS) if options.methods is None else [name.strip() for name in options.methods.split(",")]
     check_places(relax_options.inputs(options), {"OUT": options.output})
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         task, wanted = relax_options.task(options, file), relax_options.from_arguments(options)
-        planned = compare(task, names, wanted, options.time_limit)
+        planned = compare(task, names, wanted, options.time_limit, stages)
         options.notes.show()
         runs, ended_by = _collected(planned)
     if runs:
-        failures = kept(options.output, lambda path: _write(path, WRITERS[suffix], runs))
+        failures = kept(options.output, lambda path: _write(path, writer, runs))
         if failures:
             raise MobiusFlowError(failures[0])
     if ended_by is not None:
         raise ended_by
     return 0
+
+
+def _numbers(text: str) -> list[int]:
+    """The iterations of a strip, in ascending order."""
+    words = [word.strip() for word in text.split(",")]
+    wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and len(word) < 10)), None)
+    if wrong is not None:
+        raise OptionError(f"strip has {wrong!r:.40}; give numbers of iterations, such as 0,10,50")
+    return sorted(set(map(int, words)))
 
 
 def _collected(planned: Iterator[History]) -> tuple[list[History], BaseException | None]:
@@ -102,12 +126,14 @@ def _write(path: str, writer: Callable[[Path, Sequence[History]], None], runs: S
 def _line(run: History) -> str:
     return (
         f"{run.method:18} {run.status:16} objective {run.energy[-1]:.9g} after "
-        f"{counted(len(run.energy) - 1, 'iteration')}, {run.seconds[-1]:.1f} s, gradient {run.gradient_norm[-1]:.2g}"
+        f"{counted(run.iterations, 'iteration')}, {run.seconds[-1]:.1f} s, gradient {run.gradient_norm[-1]:.2g}"
     )
 
 
 def _write_json(path: Path, runs: Sequence[History]) -> None:
-    path.write_text(json.dumps([asdict(run) for run in runs], indent=1) + "\n", encoding="utf-8")
+    names = [each.name for each in fields(History) if each.name != "stages"]
+    plain = [{name: getattr(run, name) for name in names} for run in runs]
+    path.write_text(json.dumps(plain, indent=1) + "\n", encoding="utf-8")
 
 
 def _write_csv(path: Path, runs: Sequence[History]) -> None:
@@ -119,29 +145,9 @@ def _write_csv(path: Path, runs: Sequence[History]) -> None:
             table.writerows([run.method, run.status, k, *values, int(k in run.fallback)] for k, values in rows)
 
 
-def _write_figure(path: Path, runs: Sequence[History]) -> None:
-    figure = figure_class(_INSTEAD)(figsize=(13, 6), layout="constrained")
-    from matplotlib.ticker import LogFormatter
-
-    left, right = figure.subplots(1, 2, sharey=True)
-    for index, run in enumerate(runs):
-        style = {"color": f"C{index % 10}", "linestyle": ("-", "--", ":")[index // 10 % 3], "linewidth": 1.4}
-        label = run.method if run.status == "converged" else f"{run.method} ({run.status.replace('_', ' ')})"
-        helped = {"marker": "o", "markersize": 3, "markevery": list(run.fallback)} if run.fallback else {}
-        left.plot(range(len(run.energy)), run.energy, label=label, **style, **helped)
-        right.plot(run.seconds, run.energy, **style, **helped)
-    left.set(xlabel="iterations", ylabel="objective", xscale="symlog", yscale="log")
-    right.set(xlabel="seconds", xscale="log")
-    left.yaxis.set(major_formatter=LogFormatter(), minor_formatter=LogFormatter())  # 200, 300, not 2 × 10², 3 × 10²
-    for axes in (left, right):
-        axes.grid(alpha=0.3)
-    figure.legend(*left.get_legend_handles_labels(), loc="outside right center", fontsize="small")
-    figure.savefig(path, dpi=130)
-
-
 WRITERS: Mapping[str, Callable[[Path, Sequence[History]], None]] = {
-    ".png": _write_figure,
-    ".svg": _write_figure,
+    ".png": write_figure,
+    ".svg": write_figure,
     ".csv": _write_csv,
     ".json": _write_json,
 }

@@ -1,7 +1,7 @@
 """The options of a relaxation, shared by the subcommands that run one."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from ..core import RelaxOptions, Task, read_obstacle
@@ -9,22 +9,25 @@ from ..core.curve.io import CurveFile
 from ..core.errors import OptionError
 from ..core.option import Option, declared
 
+_OFFERED, _SHORT = "offered", "shorthands"  # names of the options, and the shorthands that are given, in a namespace
 
-def add_to(parser: argparse.ArgumentParser, *, method: bool = True) -> None:
-    """Add the options to a parser; ``method`` is left out where several are run."""
+
+def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) -> None:
+    """Add the options to a parser, but for those that a subcommand has in a way of its own."""
     group = parser.add_argument_group("relaxation")
-    for option in declared(RelaxOptions):
-        if method or option.name != "method":
-            group.add_argument(flag(option), help=_help(option), **_values(option))
-            for word, value in option.shorthands.items():
-                text = f"the same as {flag(option)} {value}"
-                group.add_argument(f"--{word}", dest=option.name, action=_Farther, const=(option, value), help=text)
+    offered = [option for option in declared(RelaxOptions) if option.name not in without]
+    for option in offered:
+        group.add_argument(flag(option), help=_help(option), **_values(option))
+        for word, value in option.shorthands.items():
+            text = f"the same as {flag(option)} {value}"
+            group.add_argument(f"--{word}", dest=_SHORT, action="append_const", const=word, help=text)
+    parser.set_defaults(**{_SHORT: [], _OFFERED: [option.name for option in offered]})
 
 
 def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     """The options; raises OptionError if one is out of range."""
     given = vars(arguments)
-    wanted = {each.name: _value(each, given[each.name]) for each in declared(RelaxOptions) if each.name in given}
+    wanted = {each.name: _value(each, given) for each in declared(RelaxOptions) if each.name in given[_OFFERED]}
     return RelaxOptions(**wanted)
 
 
@@ -44,9 +47,6 @@ def add_task(parser: argparse.ArgumentParser) -> None:
 
 def task(arguments: argparse.Namespace, file: CurveFile) -> Task:
     """The curve of a file with its obstacles and pins, which a file's own numbers stand for."""
-    again = next((path for path in arguments.avoid if arguments.avoid.count(path) > 1), None)
-    if again is not None:
-        raise OptionError(f"--avoid names {again:.60} more than once")
     return Task(
         curve=file.curve,
         obstacles=tuple(map(read_obstacle, arguments.avoid)),
@@ -69,14 +69,23 @@ def inputs(arguments: argparse.Namespace) -> dict[str, str]:
     return {"IN": arguments.input, **{f"--avoid {path}": path for path in arguments.avoid}}
 
 
-def _value(option: Option, given: Any) -> Any:
-    """What is given, with words turned into the items of a tuple."""
-    if not option.repeated:
-        return given
-    again = next((word for word in given if given.count(word) > 1), None)
-    if again is not None:
-        raise OptionError(f"{flag(option)} names {again:.60} more than once")
-    return tuple(item for word in given for item in option.read(word))
+def _value(option: Option, given: Mapping[str, Any]) -> Any:
+    """What is given, with words turned into the items of a tuple, and shorthands into what they stand for."""
+    value = given[option.name]
+    if option.repeated:
+        return tuple(item for word in value for item in option.read(word))
+    return _spelt_out(option, value, given[_SHORT]) if option.shorthands else value
+
+
+def _spelt_out(option: Option, value: str | None, words: Sequence[str]) -> str:
+    """A choice by its name, or by shorthands: of several the one that comes last in the list of choices holds."""
+    meant = {word: option.shorthands[word] for word in words if word in option.shorthands}
+    if value is None:
+        return max(meant.values(), key=list(option.choices or ()).index, default=option.default)
+    other = next((word for word in meant if meant[word] != value), None)
+    if other is not None:
+        raise OptionError(f"{flag(option)} {value:.60} and --{other} contradict each other; leave one of them out")
+    return value
 
 
 def flag(option: Option) -> str:
@@ -85,7 +94,8 @@ def flag(option: Option) -> str:
 
 
 def _values(option: Option) -> dict[str, Any]:
-    common = {"dest": option.name, "default": [] if option.repeated else option.default}
+    default = None if option.shorthands else option.default
+    common: dict[str, Any] = {"dest": option.name, "default": [] if option.repeated else default}
     if option.kind is bool:
         return common | {"action": "store_true"}
     return common | {"metavar": option.metavar} | ({"action": "append"} if option.repeated else {"type": option.kind})
@@ -98,16 +108,3 @@ def _help(option: Option) -> str:
         return f"{option.help}; may be given several times"
     choices = f": one of {', '.join(option.choices)}" if option.choices else ""
     return f"{option.help}{choices} (default: {option.automatic or option.default})"
-
-
-class _Farther(argparse.Action):
-    """A flag that stands for a choice; of several the one that comes last in the list of choices holds."""
-
-    def __init__(self, option_strings: Sequence[str], dest: str, const: tuple[Option, str], help: str) -> None:
-        super().__init__(option_strings, dest, nargs=0, const=const, default=const[0].default, help=help)
-
-    def __call__(self, _parser: Any, namespace: argparse.Namespace, _values: Any, _flag: str | None = None) -> None:
-        option, value = self.const
-        choices = list(option.choices)
-        given = getattr(namespace, self.dest)
-        setattr(namespace, self.dest, max(value, given, key=choices.index) if given in choices else given)

@@ -33,7 +33,7 @@ from .progress import Progress
 from .provenance import provenance
 from .recovery import Write, kept
 
-EXIT_STATUS = {Status.CONVERGED: 0, Status.ITERATION_LIMIT: 0, Status.STALLED: 1, Status.INTERRUPTED: 130}
+EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 KEYED = ("auto", "fixed", "finer")  # meshes that keyframes can follow
 _DESCRIPTION = "Relax a curve: a tangled one in, one of less energy of the same knot type out."
 _EPILOG = """\
@@ -45,7 +45,7 @@ examples:
   mobius-flow knot 8_19 - | mobius-flow relax - - --format txt | mobius-flow energy -
 
 exit status:
-  0    it converged, or stopped at the given limit
+  0    it converged, or stopped at the given limit of iterations or seconds
   1    it is stuck, or pulls tight without limit, as composite knots do;
        the best curve, the report and the trajectory are written all the same
   2    bad input or bad options, or an output that cannot be written; one line says what and where

@@ -68,6 +68,12 @@ def reason_of(error: Exception) -> str:
     return getattr(error, "strerror", None) or str(error).strip()
 
 
+def shown(value: object) -> str:
+    """What a value looks like in a message: on one line, and cut where it is long."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else f"{text[:57]}…"
+
+
 def counted(number: int, noun: str) -> str:
     """Say how many things there are, one or several.
 

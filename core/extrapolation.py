@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .arguments import checked, checked_fields
 from .curve import Curve
 from .curve.refine import subdivide
 from .driver import RelaxOptions, minimize
@@ -15,6 +16,7 @@ SHARE = 0.02  # of the last correction that is never trusted: ratios may be righ
 TOLERANCE = 1e-4  # of the runs at most: what they leave open must be small against the differences of their energies
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Extrapolation:
     """The Möbius energy's limit for shorter and shorter edges, from polygons of edge lengths h, h/2 and h/4.
@@ -65,6 +67,7 @@ class Extrapolation:
         return low <= self.order <= high
 
 
+@checked
 def extrapolated(given: Task | Curve, options: RelaxOptions) -> Extrapolation | None:
     """Relax a relaxed curve on with every edge halved, and halved again; None if one of the runs does not converge.
 

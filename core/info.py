@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from .arguments import checked
 from .collision import check_embedded, check_gap, minimal_gap
 from .collision.thickness import thickness
-from .curve import Curve, check_is_curve
+from .curve import Curve
 from .curve.writhe import writhe_and_crossings
 from .descent import Point
 from .driver import RelaxOptions
@@ -87,6 +88,9 @@ class Info:
     longest_edge: float
     gap: float
 
+    def __repr__(self) -> str:
+        return f"<Info: {self.type}, {sum(self.components)} vertices, length {self.length:.6g}>"
+
     @property
     def ropelength(self) -> float | None:
         """Length over thickness."""
@@ -94,6 +98,7 @@ class Info:
 
 
 @BLAS.bounded()
+@checked
 def info(curve: Curve) -> Info:
     """Measure a curve and tell its type.
 
@@ -102,7 +107,6 @@ def info(curve: Curve) -> Info:
     CurveError
         If the curve touches itself, or has strands too near, or units too large or small, to compute with.
     """
-    check_is_curve(curve)
     check_units(curve)
     check_embedded(curve)
     check_gap(curve)

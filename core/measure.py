@@ -1,8 +1,9 @@
 """The energy of a curve as it stands: what ``mobius-flow energy`` prints and a report's ``final_energy`` is."""
 
+from .arguments import checked
 from .checks import named
 from .collision import check_embedded, check_gap
-from .curve import Curve, check_is_curve
+from .curve import Curve
 from .energies import ENERGIES, MoebiusEnergy
 from .errors import CurveError
 from .hierarchy import moebius_energy
@@ -13,6 +14,7 @@ MAX_VERTICES = 50_000  # of energies that sum over all pairs of edges: a minute 
 
 
 @BLAS.bounded()
+@checked
 def measure(curve: Curve, energy: str = "moebius") -> float:
     """The energy of a curve, in the user's units.
 
@@ -24,7 +26,6 @@ def measure(curve: Curve, energy: str = "moebius") -> float:
     OptionError
         If the energy is unknown.
     """
-    check_is_curve(curve)
     wanted = named(ENERGIES, "energy", energy)
     check_units(curve)
     check_embedded(curve)

@@ -1,13 +1,15 @@
 """What a curve must not touch: still surfaces of triangles, and polylines."""
 
+import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import checked
 from .errors import CurveError
-from .types import BoolArray, FloatArray, IntArray, frozen
+from .types import BoolArray, FloatArray, IntArray, frozen, real
 
 NAMELESS = "obstacle"
 MAX_COORDINATE = 1e40  # as for curves: powers of it are still numbers
@@ -41,10 +43,11 @@ class Obstacle:
     faces: IntArray
     name: str
 
+    @checked
     def __init__(self, vertices: npt.ArrayLike, faces: npt.ArrayLike, name: str = NAMELESS) -> None:
         try:
-            points, simplices = np.array(vertices, dtype=np.float64), np.array(faces)
-        except (TypeError, ValueError) as error:
+            points, simplices = real(vertices), np.array(faces)
+        except (TypeError, ValueError, OverflowError) as error:
             raise CurveError(f"{name}: vertices and faces must be arrays of numbers: {error}") from error
         if points.ndim != 2 or points.shape[1] != 3:
             raise CurveError(f"{name}: vertices have shape {points.shape}; they must be an array (k, 3)")
@@ -57,6 +60,15 @@ class Obstacle:
         object.__setattr__(self, "vertices", frozen(points))
         object.__setattr__(self, "faces", frozen(simplices.astype(np.intp)))
         object.__setattr__(self, "name", name)
+
+    def __repr__(self) -> str:
+        return f"<Obstacle {self.name!r:.40}: {len(self.faces)} faces, {len(self.vertices)} vertices>"
+
+    @cached_property
+    def key(self) -> bytes:
+        """The same for obstacles that are in the same place, whatever they are called."""
+        parts = (str(self.faces.shape).encode(), self.vertices.tobytes(), self.faces.tobytes())
+        return hashlib.blake2b(b"".join(parts)).digest()
 
     @property
     def title(self) -> str:

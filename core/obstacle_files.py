@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .arguments import checked
 from .curve.io import load_curve
 from .curve.io.obj import Content, Face, check_known, index_of, parsed
 from .curve.io.source import Source
@@ -17,6 +18,7 @@ from .triangulation import Triangle, triangulated
 _MAX_CUTTING = 1 << 24  # squares of the faces' numbers of corners, together: seconds; one face of 4,096 corners
 
 
+@checked
 def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
     """Read an obstacle, which gets the file's name.
 
@@ -34,9 +36,9 @@ def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
         If the file cannot be read, or no obstacle can be made of it; the message names the file, the line where there
         is one, and the reason.
     """
-    if not isinstance(path, str | os.PathLike):
-        raise CurveError(f"path is of type {type(path).__name__}; give the name of a file")
     path = Path(path)
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise CurveFileError(path, "is no regular file; obstacles are not read from pipes and devices")
     if path.suffix.lower() == ".obj":
         return _from_obj(Source.load(path))
     curve = load_curve(path).curve

@@ -4,8 +4,7 @@ From that follow its checks, the arguments of the command line, and Blender's se
 """
 
 import math
-import sys
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from inspect import cleandoc
 from numbers import Integral, Real
@@ -14,8 +13,9 @@ from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from .arguments import is_list
 from .checks import check_known, check_number
-from .errors import OptionError
+from .errors import OptionError, shown
 
 _Class = TypeVar("_Class", bound=type)
 _KINDS: Mapping[type, tuple[tuple[type, ...], str]] = MappingProxyType(  # what a value may be; NumPy's are welcome
@@ -53,7 +53,7 @@ class Option:
     metavar
         What stands for its value in the command line's help.
     group
-        Whom it is for: everybody, or those who know the mathematics.
+        Whom it is for: everybody, those who know the mathematics, or scripts, in which case no panel shows it.
     keyframes
         Whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
         leave out vertices on the way is among Blender's settings.
@@ -65,8 +65,6 @@ class Option:
         What it is called on the command line, if not by its name.
     example
         A tuple that is allowed, for messages.
-    scripted
-        Whether it is for scripts and the command line alone.
     """
 
     name: str
@@ -81,55 +79,55 @@ class Option:
     objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
     metavar: str = "NAME"
-    group: Literal["basic", "advanced"] = "basic"
+    group: Literal["basic", "advanced", "scripts"] = "basic"
     keyframes: bool = True
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
     repeated: bool = False
     flag: str = ""
     example: str = ""
-    scripted: bool = False
 
     @property
     def is_setting(self) -> bool:
         """Whether it is among Blender's settings."""
-        return self.keyframes and not self.scripted
+        return self.keyframes and not self.repeated
 
     def sentence(self, none: str = "") -> str:
         """The help by itself, without a full stop; ``none`` is how None, if it is allowed, is written."""
         return self.help[0].upper() + self.help[1:] + (f"; {none}: {self.automatic}" if none and self.automatic else "")
 
-    def check(self, value: object) -> None:
-        """Raise an OptionError, which says what is allowed, unless the option can have this value."""
-        if self.repeated and not isinstance(value, str) and isinstance(value, Sequence | np.ndarray):
-            for each in value:
-                self._check_one(each)
-        elif self.repeated:
-            raise OptionError(f"{self.name} is {value!r:.40}; it must be a tuple, such as {self.example}")
-        elif value is not None or self.default is not None:
-            self._check_one(value)
+    def checked(self, value: Any) -> Any:
+        """The value, NumPy's numbers as Python's; an OptionError says what is allowed if the option cannot have it."""
+        if self.repeated and is_list(value):
+            return tuple(map(self._checked, value))
+        if self.repeated:
+            raise OptionError(f"{self.name} is {shown(value)}; it must be a tuple, such as {self.example}")
+        return None if value is None and self.default is None else self._checked(value)
 
-    def _check_one(self, value: object) -> None:
+    def _checked(self, value: Any) -> Any:
         types, noun = _KINDS.get(self.kind, ((), ""))
         if self.objects is not None:
             if self.objects[1](value):
-                return
+                return value
             noun = f"{noun} or {self.objects[0]}" if noun else self.objects[0]
         # bool is a kind of int, but no number
         if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
-            raise OptionError(f"{self.name} is {value!r:.40}; it must be {noun}")
-        if isinstance(value, str) and self.choices is not None:
-            check_known(self.name, value, self.choices)
-        elif isinstance(value, Real) and self.kind is not bool:
+            raise OptionError(f"{self.name} is {shown(value)}; it must be {noun}")
+        if self.kind in (int, float):
             self._check_number(value)
+        elif self.choices is not None:
+            check_known(self.name, str(value), self.choices)
+        return self.kind(value)
 
     def _check_number(self, value: Any) -> None:
-        if abs(value) > sys.float_info.max:
-            raise OptionError(f"{self.name} is too large for a number of this program")
+        try:
+            float(value)
+        except OverflowError:
+            raise OptionError(f"{self.name} is too large for a number of this program") from None
         if self.kind is float:
             check_number(self.name, value, self.low, self.high)
         elif not self.low <= value <= self.high:
             allowed = f"{self.low} or more" if math.isinf(self.high) else f"from {self.low} to {self.high}"
-            raise OptionError(f"{self.name} is {value!s:.40}; it must be {allowed}")
+            raise OptionError(f"{self.name} is {shown(value)}; it must be {allowed}")
 
 
 def option(default: Any, label: str, help: str, **more: Any) -> Any:

@@ -5,8 +5,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from .arguments import checked, checked_fields
 from .errors import OptionError
 from .types import FloatArray, frozen
+
+MAX_POINTS = 1000  # beyond, finding them takes minutes
 
 
 @lru_cache(maxsize=64)
@@ -16,6 +19,7 @@ def gauss_legendre(points: int) -> tuple[FloatArray, FloatArray]:
     return frozen(0.5 * (x + 1.0)), frozen(0.5 * w)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Rule:
     """A quadrature rule on [0, 1].
@@ -45,10 +49,11 @@ class Rule:
             raise OptionError(f"weights are {self.weights}; they must add up to 1")
 
     @classmethod
+    @checked
     def gauss(cls, points: int) -> "Rule":
         """Gauss–Legendre rule with ``points`` points, 1 or more; it is of order 2·points."""
-        if points < 1:
-            raise OptionError(f"points is {points}; the quadrature needs 1 point per edge or more")
+        if not 1 <= points <= MAX_POINTS:
+            raise OptionError(f"points is {points}; the quadrature takes 1 to {MAX_POINTS} points per edge")
         t, omega = gauss_legendre(points)
         return cls(tuple(t.tolist()), tuple(omega.tolist()))
 

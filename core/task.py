@@ -4,13 +4,13 @@ import logging
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Integral
 from operator import itemgetter
 
 import numpy as np
 
+from .arguments import checked_fields
 from .collision import check_clear, check_embedded, check_gap, survives_rounding
-from .curve import Curve, check_is_curve, refine
+from .curve import Curve, refine
 from .curve.pins import NO_PINS, Pins
 from .errors import CurveError, CurveOptionError, OptionError
 from .obstacle import Obstacle
@@ -19,6 +19,7 @@ from .units import check_units
 _log = logging.getLogger(__name__)
 
 
+@checked_fields
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Task:
     """A curve among obstacles, some of whose vertices are pinned.
@@ -37,10 +38,10 @@ class Task:
 
     Raises
     ------
-    CurveError
-        If the curve is not a `Curve`.
+    MobiusFlowError
+        If something is of a wrong type.
     OptionError
-        If an obstacle is not an `Obstacle`, or a pin is not a vertex of the curve or is named twice.
+        If a pin is not a vertex of the curve or is named twice.
     """
 
     curve: Curve
@@ -49,12 +50,9 @@ class Task:
     pin_tangents: bool = False
 
     def __post_init__(self) -> None:
-        check_is_curve(self.curve)
-        for name, kind, noun, example in (
-            ("obstacles", Obstacle, "an obstacle", "(Obstacle(vertices, faces),)"),
-            ("pins", Integral, "a whole number", "(0, 5)"),
-        ):
-            object.__setattr__(self, name, _tuple_of(name, getattr(self, name), kind, noun, example))
+        walls = {wall.key: wall for wall in self.obstacles}  # one that is given twice would repel twice
+        object.__setattr__(self, "obstacles", tuple(walls.values()))
+        object.__setattr__(self, "pins", tuple(map(int, self.pins)))
         self._check_pins()
 
     def _check_pins(self) -> None:
@@ -114,13 +112,3 @@ def check_refined(curve: Curve, refined: Curve, obstacles: Sequence[Obstacle]) -
             "for vertices to be inserted; move it nearer to the origin, or its strands apart"
         )
     check_gap(refined)
-
-
-def _tuple_of(name: str, values: object, kind: type, noun: str, example: str) -> tuple[object, ...]:
-    """The values as a tuple; an OptionError if they are no sequence, or one of them is of another kind."""
-    if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray):
-        raise OptionError(f"{name} is {values!r:.40}; it must be a tuple, such as {example}")
-    for each in values:
-        if not isinstance(each, kind) or isinstance(each, bool):
-            raise OptionError(f"{name} has {each!r:.40}; each of them must be {noun}")
-    return tuple(int(each) if isinstance(each, Integral) else each for each in values)

@@ -16,3 +16,11 @@ def frozen(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:
     """Make an array read-only and return it, so that values can be shared without copies."""
     array.setflags(write=False)
     return array
+
+
+def real(values: npt.ArrayLike) -> FloatArray:
+    """Copy numbers into an array of doubles; a TypeError, ValueError or OverflowError says why they are none."""
+    array = np.array(values)
+    if np.iscomplexobj(array):
+        raise TypeError("they are complex")
+    return array.astype(np.float64, copy=False)

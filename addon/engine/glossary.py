@@ -21,6 +21,7 @@ _ENDS = (  # how most relaxations end, see `core.driver.outcome`
     Phrase("converged: projected gradient {norm} ≤ {bound}"),
     Phrase("stopped after {count} iterations, as asked for"),
     Phrase("stopped after 1 iteration, as asked for"),
+    Phrase("stopped at the time limit, {seconds} s, as asked for"),
 )
 
 

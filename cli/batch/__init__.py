@@ -53,7 +53,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         "--scheduler", metavar="ADDRESS", help="of a running Dask scheduler (default: all cores of this machine)"
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    relax_options.add_to(parser)
+    relax_options.add_to(parser, without=("time_limit",))
     relax_options.add_task(parser)
 
 

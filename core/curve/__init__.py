@@ -1,7 +1,7 @@
 """Polygons: vertices, connectivity, refinement, files."""
 
-from .curve import Curve, check_closed, check_is_curve
+from .curve import Curve, check_closed
 from .mesh import Mesh
 from .refine import refine
 
-__all__ = ["Curve", "Mesh", "check_closed", "check_is_curve", "refine"]
+__all__ = ["Curve", "Mesh", "check_closed", "refine"]

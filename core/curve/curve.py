@@ -1,6 +1,6 @@
 """Polygons in R^m, closed or open: the one value that everything else takes and gives."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import cast
@@ -8,8 +8,9 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import CurveError
-from ..types import FloatArray, frozen
+from ..arguments import is_list
+from ..errors import CurveError, counted
+from ..types import FloatArray, frozen, real
 from .mesh import Mesh
 
 
@@ -51,7 +52,7 @@ class Curve:
     @classmethod
     def from_components(cls, components: Sequence[npt.ArrayLike], closed: Sequence[bool] = ()) -> "Curve":
         """Join polygons, arrays (n_k, m) of one common m, into one curve (a link); ``closed`` is as for `Mesh`."""
-        if not isinstance(components, Iterable):
+        if not is_list(components):
             raise CurveError(f"components are of type {type(components).__name__}; give a list of arrays")
         arrays = [_numbers(component, f"component {k + 1}") for k, component in enumerate(components)]
         for k, array in enumerate(arrays):
@@ -65,6 +66,11 @@ class Curve:
     def __reduce__(self) -> tuple[type["Curve"], tuple[FloatArray, Mesh]]:
         # made anew, because arrays come out of pickles and deep copies writable
         return Curve, (self.vertices, self.mesh)
+
+    def __repr__(self) -> str:
+        closed = "closed" if self.mesh.all_closed else "open" if not any(self.mesh.closed) else "closed and open"
+        parts = counted(len(self.mesh.component_sizes), f"{closed} polygon")
+        return f"<Curve: {parts}, {len(self)} vertices in R^{self.dimension}>"
 
     @property
     def components(self) -> tuple[FloatArray, ...]:
@@ -115,14 +121,6 @@ class Curve:
         return frozen(np.array([self.edge_lengths[s].sum() for s in self.mesh.edge_slices]))
 
 
-def check_is_curve(value: object) -> None:
-    """Raise a CurveError that says what to do if something else stands where a curve belongs."""
-    if not isinstance(value, Curve):
-        raise CurveError(
-            f"a Curve is wanted, not an object of type {type(value).__name__}; make one by Curve(vertices)"
-        )
-
-
 def check_closed(curve: Curve, what: str) -> None:
     """Raise a CurveError, which says what is for closed components alone, if one is open."""
     if not curve.mesh.all_closed:
@@ -132,10 +130,7 @@ def check_closed(curve: Curve, what: str) -> None:
 
 def _numbers(values: npt.ArrayLike, name: str) -> FloatArray:
     try:
-        array = np.array(values)
-        if np.iscomplexobj(array):
-            raise TypeError("they are complex")
-        return array.astype(np.float64, copy=False)
+        return real(values)
     except (TypeError, ValueError, OverflowError) as error:
         reason = str(error).splitlines()[0]
         raise CurveError(f"{name} cannot be made an array (n, m) of real numbers: {reason}") from error

@@ -4,11 +4,14 @@ import operator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from reprlib import repr as short
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..errors import CurveError
+from ..arguments import is_list
+from ..errors import CurveError, shown
 from ..types import BoolArray, FloatArray, IntArray, frozen
 
 _KINDS = {True: (3, "a closed polygon"), False: (2, "an open polygon")}  # by whether closed: least number of vertices
@@ -43,7 +46,7 @@ class Mesh:
             object.__setattr__(self, "component_sizes", tuple(map(operator.index, self.component_sizes)))
         except TypeError as error:
             raise CurveError(
-                f"component_sizes is {self.component_sizes!r}; it must be a tuple of whole numbers, such as (10, 12)"
+                f"component_sizes is {shown(self.component_sizes)}; it must be a tuple of whole numbers, such as (9, 9)"
             ) from error
         if not self.component_sizes:
             raise CurveError("the curve is empty: it has no component; give at least one polygon")
@@ -62,6 +65,9 @@ class Mesh:
     def __reduce__(self) -> tuple[type["Mesh"], tuple[tuple[int, ...], tuple[bool, ...]]]:
         # made anew, because arrays come out of pickles and deep copies writable
         return Mesh, (self.component_sizes, self.closed)
+
+    def __repr__(self) -> str:
+        return f"Mesh({short(self.component_sizes)}, closed={short(self.closed)})"
 
     @cached_property
     def size(self) -> int:
@@ -228,13 +234,13 @@ class Mesh:
         return placed
 
 
-def _flags(closed: object, components: int) -> tuple[bool, ...]:
+def _flags(closed: Any, components: int) -> tuple[bool, ...]:
     """Whether each component is closed, all of them where nothing is said."""
-    flags = tuple(closed) if isinstance(closed, tuple | list | np.ndarray) else None
+    flags = tuple(closed) if is_list(closed) else None
     if flags == ():
         return (True,) * components
     if flags is None or len(flags) != components or not all(isinstance(flag, bool | np.bool_) for flag in flags):
-        raise CurveError(f"closed is {closed!r:.60}; it must have True or False for each of {components} components")
+        raise CurveError(f"closed is {shown(closed)}; it must have True or False for each of {components} components")
     return tuple(map(bool, flags))
 
 

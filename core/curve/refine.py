@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..arguments import checked
 from ..errors import CurveOptionError
 from ..types import BoolArray, FloatArray, IntArray
-from .curve import Curve, check_is_curve
+from .curve import Curve
 from .distances import arc_distance_of_vertices, points_along, vertex_positions
 from .mesh import Mesh
 
@@ -50,6 +51,7 @@ class Resolution:
     clearance: Callable[[Curve], FloatArray | float] = lambda _: np.inf
 
 
+@checked
 def refine(curve: Curve, vertices: int | None = None) -> Curve:
     """Subdivide edges until neighbours are nearer than strands, or to a given number of vertices.
 
@@ -65,7 +67,6 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     CurveOptionError
         If fewer vertices are requested than the curve has: corners are never cut.
     """
-    check_is_curve(curve)
     if vertices is not None and vertices < len(curve):
         raise CurveOptionError(
             f"vertices is {vertices}, but the curve has {len(curve)} already; ask for that many or more"

@@ -1,7 +1,7 @@
 """Descent methods: geometry × metric × the rule for steps, one registry line each."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Protocol
 
@@ -56,9 +56,9 @@ class Method:
 
     name: str
     description: str
-    rule: StepRule
-    metric: Metric = METRICS["moebius"]
-    geometry: Geometry = _CONSTRAINED
+    rule: StepRule = field(repr=False)
+    metric: Metric = field(default=METRICS["moebius"], repr=False)
+    geometry: Geometry = field(default=_CONSTRAINED, repr=False)
     label: str = ""
     comparison: bool = False
 

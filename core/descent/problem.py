@@ -12,7 +12,9 @@ from ..collision import FreeMotion, Limit, free_motion
 from ..constraints import Constraints, Parts, weighted_barycenter
 from ..curve import Curve, Mesh
 from ..curve.pins import Pins
+from ..deadline import check_time
 from ..energies import Objective
+from ..errors import OptionError
 from ..metrics import InnerProduct, Metric, SparseInnerProduct
 from ..obstacle import Obstacle
 from ..saddle import TangentSpace
@@ -144,7 +146,11 @@ class Problem:
 
         Otherwise steps near an obstacle would be as short as its repulsion changes fast.
         """
+        check_time()
         inner, stiffness = self.metric.at(curve), self.objective.stiffness(curve)
+        if not isinstance(inner, InnerProduct):
+            what = f"metric {self.metric.name!r} gives an object of type {type(inner).__name__}"
+            raise OptionError(f"{what} at a curve; give an inner product, such as DenseInnerProduct(matrix)")
         return inner if stiffness is None else inner.plus(SparseInnerProduct(stiffness))
 
     def at(self, vertices: FloatArray) -> "Point":
@@ -176,6 +182,7 @@ class Problem:
 
     def free_motion(self, start: FloatArray, end: FloatArray) -> FreeMotion:
         """How far a straight motion in the user's units, both (n, m), is proved free of contact."""
+        check_time()
         if not self.certifiable:
             return FreeMotion(1.0, None, Limit.UNTESTED)
         return free_motion(self.mesh, start, end, self.obstacles)
@@ -254,6 +261,7 @@ class Point:
 
     @cached_property
     def _energy_and_derivative(self) -> tuple[float, FloatArray]:
+        check_time()
         return self.problem.geometry.value_and_derivative(self.problem, self.curve)
 
     @property

@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 
+from ..arguments import checked_fields
 from ..curve import Curve
 from ..types import FloatArray
 
 
+@checked_fields
 @dataclass(frozen=True, eq=False)
 class Iterate:
     """One accepted curve of a relaxation, immutable, in the user's units.
@@ -50,3 +52,7 @@ class Iterate:
     method: str
     grown: float = 1.0
     pins: tuple[int, ...] = ()
+
+    def __repr__(self) -> str:
+        proved = "certified" if self.certified else "not certified"
+        return f"<Iterate {self.index}: objective {self.energy:.9g}, gradient {self.gradient_norm:.2g}, {proved}>"

@@ -4,14 +4,16 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve.places import at_edges
+from ..deadline import TimeIsUp, TimeLimit
 from ..descent import NoStep, Step
 from .events import Change, Event, Start
 from .interventions import INTERVENTIONS, Intervention
 from .interventions.check_accuracy import with_errors
 from .interventions.grow import with_growth
 from .iterate import Iterate
-from .outcome import DEGENERATE, Outcome, stalled
+from .outcome import DEGENERATE, Outcome, out_of_time, stalled
 from .rises import Rises
 from .run import Run
 from .termination import at_limit, termination
@@ -28,6 +30,7 @@ class WithOutcome:
         How it ended; None before the loop is through.
     """
 
+    @checked
     def __init__(self, relaxation: Relaxation) -> None:
         self._relaxation = relaxation
         self.outcome: Outcome | None = None
@@ -35,6 +38,22 @@ class WithOutcome:
     def __iter__(self) -> Iterator[Iterate]:
         """Yield the iterates that are left."""
         self.outcome = yield from self._relaxation
+
+
+def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
+    """The same until the time is up, also in the middle of a step; what others do between iterates does not count."""
+    while True:
+        try:
+            with limit:
+                iterate = next(relaxation)
+        except StopIteration as end:
+            outcome: Outcome = end.value
+            return outcome
+        except TimeIsUp as up:
+            if up.limit is not limit:
+                raise
+            return out_of_time(limit.seconds)
+        yield iterate
 
 
 def iterates(run: Run, interventions: Sequence[Callable[[Run], Intervention]] = INTERVENTIONS) -> Relaxation:

@@ -1,18 +1,19 @@
 """Options of a relaxation: frozen and checked when they are made."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from numbers import Real
+from reprlib import repr as short
 
 import numpy as np
 
+from ..arguments import is_list
 from ..checks import check_known
 from ..curve import Curve
 from ..descent import METHODS
 from ..energies import ENERGIES, TERMS, Energy, Term
 from ..errors import OptionError
-from ..metrics import METRICS
+from ..metrics import METRICS, Metric
 from ..option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
@@ -24,13 +25,17 @@ _advanced = partial(option, group="advanced")
 
 
 def _are_lengths(value: object) -> bool:
-    if isinstance(value, str) or not isinstance(value, Sequence | np.ndarray):
+    if not is_list(value):
         return False
     try:
         lengths = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         return False
     return lengths.ndim == 1 and bool(np.isfinite(lengths).all() and (lengths > 0.0).all())
+
+
+def _is_a(protocol: type, value: object) -> bool:
+    return isinstance(value, protocol) and not isinstance(value, type)
 
 
 def _is_weighted(value: object) -> bool:
@@ -40,7 +45,7 @@ def _is_weighted(value: object) -> bool:
     term, weight = value
     if isinstance(term, str):
         check_known("term", term, TERMS)
-    known = isinstance(term, str) or (isinstance(term, Term) and not isinstance(term, type))
+    known = isinstance(term, str) or _is_a(Term, term)
     return known and isinstance(weight, Real) and not isinstance(weight, bool) and bool(np.isfinite(float(weight)))
 
 
@@ -71,6 +76,15 @@ class RelaxOptions:
     tolerance: float = option(
         1e-4, "Tolerance", "stop when the projected gradient's metric norm is at most this times √E", low=0, metavar="T"
     )
+    time_limit: float | None = option(
+        None,
+        "Time Limit",
+        "stop after this many seconds of computing, also in the middle of a step; the curve reached so far is kept",
+        automatic="none",
+        low=0,
+        metavar="SECONDS",
+        group="scripts",
+    )
     vertices: int | None = option(
         None,
         "Vertices",
@@ -84,10 +98,15 @@ class RelaxOptions:
         "Energy",
         "what is minimised, with a barrier between strands",
         choices=ENERGIES,
-        objects=("an energy", lambda value: isinstance(value, Energy) and not isinstance(value, type)),
+        objects=("an energy", partial(_is_a, Energy)),
     )
-    metric: str | None = _advanced(
-        None, "Metric", "inner product that gradients are taken in", automatic="the method's own", choices=METRICS
+    metric: str | Metric | None = _advanced(  # noqa: RUF009 (a field, made for this class)
+        None,
+        "Metric",
+        "inner product that gradients are taken in",
+        automatic="the method's own",
+        choices=METRICS,
+        objects=("a metric", partial(_is_a, Metric)),
     )
     quadrature_points: int | None = _advanced(
         None,
@@ -107,7 +126,7 @@ class RelaxOptions:
         flag="term",
         metavar="NAME=WEIGHT",
         read=_weighted,
-        scripted=True,
+        group="scripts",
     )
     penalty: float | None = _advanced(
         None,
@@ -199,12 +218,17 @@ class RelaxOptions:
 
     def __post_init__(self) -> None:
         for each in declared(type(self)):
-            each.check(getattr(self, each.name))
+            object.__setattr__(self, each.name, each.checked(getattr(self, each.name)))
         object.__setattr__(self, "terms", tuple((term, float(weight)) for term, weight in self.terms))
         if not isinstance(self.edge_lengths, str):
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
+
+    def __repr__(self) -> str:
+        values = [(each, getattr(self, each.name)) for each in declared(type(self))]
+        changed = [f"{each.name}={short(value)}" for each, value in values if value != each.default]
+        return f"RelaxOptions({', '.join(changed)})"
 
     @property
     def ends_finer(self) -> bool:

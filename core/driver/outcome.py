@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from ..arguments import checked_fields
 from ..errors import Place, counted
 from ..hierarchy import SampledErrors
 
@@ -14,10 +15,12 @@ class Status(Enum):
 
     CONVERGED = "converged"
     ITERATION_LIMIT = "iteration_limit"
+    TIME_LIMIT = "time_limit"
     STALLED = "stalled"
     INTERRUPTED = "interrupted"
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Outcome:
     """How a relaxation ended.
@@ -44,6 +47,9 @@ class Outcome:
     sampled_errors: SampledErrors | None = None
     place: Place | None = None
     unbounded: bool = False
+
+    def __repr__(self) -> str:
+        return f"<Outcome: {self.message:.100}>"
 
     @property
     def may_be_left(self) -> bool:
@@ -73,6 +79,11 @@ def converged(norm: float, bound: float) -> Outcome:
 def out_of_iterations(count: int) -> Outcome:
     """The limit is reached."""
     return Outcome(Status.ITERATION_LIMIT, f"stopped after {counted(count, 'iteration')}, as asked for")
+
+
+def out_of_time(seconds: float) -> Outcome:
+    """The time is up."""
+    return Outcome(Status.TIME_LIMIT, f"stopped at the time limit, {seconds:g} s, as asked for")
 
 
 def stalled(reason: str, place: Place | None = None) -> Outcome:

@@ -7,15 +7,17 @@ from functools import cached_property
 
 import numpy as np
 
+from ..arguments import checked, checked_fields
 from ..curve import Curve
-from ..errors import CurveError, OptionError
+from ..deadline import TimeLimit
+from ..errors import CurveError, counted
 from ..hierarchy import moebius_energy
 from ..system.threads import BLAS
 from ..task import Task
 from ..units import centred
 from .hops import hopping
 from .iterate import Iterate
-from .loop import Relaxation, WithOutcome
+from .loop import Relaxation, WithOutcome, within
 from .options import RelaxOptions
 from .outcome import FEWER, INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import start_problem
@@ -25,6 +27,7 @@ from .solver import check_size
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
 
 
+@checked_fields
 @dataclass(frozen=True, eq=False)
 class Result:
     """How a relaxation ended, and where.
@@ -54,6 +57,11 @@ class Result:
     seconds: float
     method: str
     task: Task
+
+    def __repr__(self) -> str:
+        after = counted(len(self.energies) - 1, "iteration")
+        proved = "certified" if self.certified else "not certified"
+        return f"<Result: {self.status.value} after {after}, objective {self.energies[-1]:.9g}, {proved}, {self.curve}>"
 
     @property
     def curve(self) -> Curve:
@@ -114,6 +122,7 @@ class Result:
         }
 
 
+@checked
 @BLAS.bounded()
 def relax(task: Task | Curve, options: RelaxOptions | None = None) -> Relaxation:
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
@@ -135,17 +144,19 @@ def relax(task: Task | Curve, options: RelaxOptions | None = None) -> Relaxation
     OptionError
         If an option does not fit.
     """
+    began = time.perf_counter()
     options = RelaxOptions() if options is None else options
-    if not isinstance(options, RelaxOptions):
-        raise OptionError(f"options is of type {type(options).__name__}; give RelaxOptions(method=…, …)")
-    task = Task.of(task)
-    check_size(task.curve, options)
-    start = task.refined(options.vertices)
+    given = Task.of(task)
+    check_size(given.curve, options)
+    start = given.refined(options.vertices)
     try:
         run = Run(start_problem(start, options), start.curve, options)
     except np.linalg.LinAlgError as error:
         raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start.curve)}") from error
-    return BLAS.bounding(hopping(run))
+    work = BLAS.bounding(hopping(run))
+    if options.time_limit is None:
+        return work
+    return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
 def _remedy(curve: Curve) -> str:
@@ -160,6 +171,7 @@ def _remedy(curve: Curve) -> str:
     )
 
 
+@checked
 def minimize(
     task: Task | Curve, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
 ) -> Result:
@@ -168,8 +180,6 @@ def minimize(
     A keyboard interrupt, or a lack of memory, keeps the curve reached so far.  ``callback`` gets every iterate, unless
     an interrupt cuts it short.  Raises as `relax` does.
     """
-    if callback is not None and not callable(callback):
-        raise OptionError(f"callback is of type {type(callback).__name__}; give a function of one Iterate")
     return finish(relax(task, options), Task.of(task), options or RelaxOptions(), callback)
 
 
@@ -195,9 +205,10 @@ def finish(
         if last is None:
             raise
         run.outcome = OUT_OF_MEMORY if isinstance(error, MemoryError) else INTERRUPTED
-        if len(last.curve) < given:
-            run.outcome = run.outcome.adding(FEWER.format(vertices=len(last.curve), given=given))
     assert last is not None, "relax yields at least its start"
     assert run.outcome is not None, "the loop is through"
+    cut_short = run.outcome in (OUT_OF_MEMORY, INTERRUPTED) or run.outcome.status is Status.TIME_LIMIT
+    if cut_short and len(last.curve) < given:
+        run.outcome = run.outcome.adding(FEWER.format(vertices=len(last.curve), given=given))
     seconds = time.perf_counter() - started
     return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task)

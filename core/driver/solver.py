@@ -65,9 +65,16 @@ class Solver:
         Raises
         ------
         OptionError
-            If a quadrature rule is asked for, and it has none.
+            If a quadrature rule is asked for, and it has none, or a metric, and the method has another in its name.
         """
-        metric, points = _metric(_method(self.options), self.options), self.options.quadrature_points
+        method, points = _method(self.options), self.options.quadrature_points
+        metric = _metric(method, self.options)
+        kind, dash, own = method.name.rpartition(f"-{method.metric.name}")
+        if isinstance(self.options.metric, str) and dash and not own and metric is not method.metric:
+            raise OptionError(
+                f"method {method.name} and metric {metric.name} contradict each other; "
+                f"leave the metric out, or choose method {kind}-{metric.name}"
+            )
         if points is not None and metric.rule is None:
             raise OptionError(f"quadrature_points is {points}; metric {metric.name!r} has no such rule")
         return self.of_metric(metric)
@@ -100,10 +107,12 @@ def check_size(curve: Curve, options: RelaxOptions) -> None:
 
 def max_vertices(options: RelaxOptions, wanted: int) -> int:
     """Number of vertices for which there is room and time, if so many are wanted; raises as `Solver` does."""
-    if _may_be_hierarchical(options) and (options.solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
-        return MAX_VERTICES
     method = _method(options)
-    metrics = (_metric(method, options), *method.rule.other_metrics)
+    metric = _metric(method, options)
+    if _may_be_hierarchical(options) and (options.solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
+        own = compressed(metric, Tolerances()).most_vertices if isinstance(options.metric, Metric) else MAX_VERTICES
+        return min(MAX_VERTICES, own)
+    metrics = (metric, *method.rule.other_metrics)
     return min(metric.most_vertices for metric in metrics)
 
 
@@ -150,4 +159,5 @@ def _energy(options: RelaxOptions) -> Energy:
 
 
 def _metric(method: Method, options: RelaxOptions) -> Metric:
-    return method.metric if options.metric is None else named(METRICS, "metric", options.metric)
+    wanted = method.metric if options.metric is None else options.metric
+    return named(METRICS, "metric", wanted) if isinstance(wanted, str) else wanted

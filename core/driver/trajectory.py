@@ -8,8 +8,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import checked
 from ..curve import Curve, Mesh
-from ..errors import MobiusFlowError, OutputError
+from ..errors import MobiusFlowError, OutputError, counted
 from ..obstacle import Obstacle
 from ..system.files import atomic_write
 from ..types import BoolArray, FloatArray, IntArray
@@ -34,6 +35,7 @@ class Trajectory:
         What the run avoids.
     """
 
+    @checked
     def __init__(self, provenance: Mapping[str, object] | None = None, obstacles: Sequence[Obstacle] = ()) -> None:
         self._provenance, self._obstacles = provenance, obstacles
         self._stages: list[tuple[Mesh, list[FloatArray]]] = []
@@ -41,6 +43,11 @@ class Trajectory:
         self._last: Curve | None = None
         self._last_index = -1
 
+    def __repr__(self) -> str:
+        frames = sum(len(frames) for _, frames in self._stages)
+        return f"<Trajectory: {counted(len(self._stages), 'stage')}, {counted(frames, 'frame')}>"
+
+    @checked
     def add(self, iterate: Iterate) -> None:
         """Append the motion that led to an iterate (for the first one: the start).
 
@@ -50,8 +57,6 @@ class Trajectory:
             If the iterate cannot follow the last one, by its number or its mesh: nobody has proved the motion between
             them.  That the iterates are those of one run is up to the caller, and found out by `verify`.
         """
-        if not isinstance(iterate, Iterate):
-            raise MobiusFlowError(f"an Iterate is wanted, not an object of type {type(iterate).__name__}")
         if not self._follows(iterate):
             raise MobiusFlowError(
                 f"iterate {iterate.index} does not follow the {self._last_index + 1} iterates of this trajectory; "
@@ -87,6 +92,7 @@ class Trajectory:
                 named[f"component_closed_{k:03d}"] = np.array(mesh.closed)
         return named
 
+    @checked
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the trajectory as .npz, whole or not at all; an OutputError says why it cannot be."""
         try:

@@ -13,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 import scipy.sparse as sp
 
+from ..arguments import checked_fields
 from ..curve import Curve
 from ..types import BoolArray, FloatArray, IntArray
 from .contributions import Contributions
@@ -21,6 +22,7 @@ from .jets import Jet
 from .near_pairs import FAR, NEAR, is_replaced, near_pairs
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Barrier:
     """B, the difference between exact and midpoint energy over near pairs of edges.

@@ -7,7 +7,7 @@ chain rule (`kpoint`) are the same for all.
 """
 
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from scipy.spatial.distance import cdist
@@ -79,6 +79,7 @@ class Partials(NamedTuple):
     rho: FloatArray | None = None
 
 
+@runtime_checkable
 class Density(Protocol):
     """F(x, y), unchanged if x and y change places: (a, b) becomes (−b, −a).
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import checked_fields
 from ..curve import Curve
 from ..curve.distances import points_at
 from ..curve.tiles import Tile, pair_tiles
@@ -20,6 +21,7 @@ from .energy import is_moebius_invariant
 from .kpoint_sums import KPointSums
 
 
+@checked_fields
 @dataclass(frozen=True)
 class KPointEnergy:
     """The energy of a density by a quadrature rule.

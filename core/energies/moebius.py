@@ -7,10 +7,11 @@ E = 4·components + Σ W_IJ over ordered pairs of edges with disjoint closures (
 Ishizeki and Nagasawa's density (1 − cos α)/r² at the midpoints.  A round circle has energy 4.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..arguments import checked_fields
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices, pair_tiles, row_tiles
 from ..quadrature import MIDPOINT
@@ -23,6 +24,7 @@ from .moebius_pairs import DerivativeSums, Edges, Pairs
 CONSTANT = 4.0  # of a closed component
 
 
+@checked_fields
 @dataclass(frozen=True, eq=False)
 class MoebiusEnergy:
     """The plain midpoint sum, the energy that is reported as ``moebius``.
@@ -33,7 +35,7 @@ class MoebiusEnergy:
         Pairs of edges that are left out of the sum, because something else stands for them.
     """
 
-    without: EdgePairIndices | None = None
+    without: EdgePairIndices | None = field(default=None, repr=False)
     name = "moebius"
     rule = MIDPOINT
     scale_exponent = 0.0

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ..arguments import checked
 from ..quadrature import Rule
 from ..types import FloatArray
 from .density import Partials, PointPairs
@@ -33,6 +34,7 @@ class IshizekiNagasawaDensity:
         )
 
 
+@checked
 def moebius_kpoint(points: int) -> KPointEnergy:
     """The Möbius energy by the Gauss rule with ``points`` points per edge; OptionError below 1."""
     return KPointEnergy(

@@ -7,6 +7,7 @@ from typing import NamedTuple, TypeVar, cast
 import numpy as np
 import scipy.sparse as sp
 
+from ..arguments import checked_fields
 from ..curve import Curve
 from ..errors import OptionError
 from ..obstacle import Obstacle
@@ -37,6 +38,7 @@ class Weighted(NamedTuple):
     weight: float = 1.0
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Objective:
     """A sum of terms: a C² function of the vertices, infinite where edges touch each other or an obstacle.

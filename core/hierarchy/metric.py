@@ -13,8 +13,8 @@ from .inner_product import CompressedInnerProduct, fractional_inner_product, moe
 
 MAX_VERTICES = 200_000  # some 3 GB, and half a minute a step
 
-_COMPRESSED: Mapping[str, Callable[[Curve, Tolerances | None], CompressedInnerProduct]] = MappingProxyType(
-    {MoebiusMetric.name: moebius_inner_product, FractionalMetric.name: fractional_inner_product}
+_COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None], CompressedInnerProduct]] = MappingProxyType(
+    {MoebiusMetric: moebius_inner_product, FractionalMetric: fractional_inner_product}
 )
 
 
@@ -68,9 +68,9 @@ class CompressedMetric:
 
     def at(self, curve: Curve) -> InnerProduct:
         """The inner product on functions along a curve."""
-        return _COMPRESSED[self.metric.name](curve, self.tolerances)
+        return _COMPRESSED[type(self.metric)](curve, self.tolerances)
 
 
 def compressed(metric: Metric, tolerances: Tolerances) -> Metric:
     """A metric in the form for many vertices: local ones are sparse as they are."""
-    return CompressedMetric(metric, tolerances) if metric.name in _COMPRESSED else metric
+    return CompressedMetric(metric, tolerances) if type(metric) in _COMPRESSED else metric

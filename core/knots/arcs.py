@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve, Mesh
 from ..curve.smooth import arc_lengths
 from ..errors import CurveError
@@ -17,6 +18,7 @@ _SAMPLES = 2000
 DEFAULT, LEAST = 120, 40  # vertices
 
 
+@checked
 def overhand(vertices: int | None = None) -> Curve:
     """The overhand knot, a trefoil that is cut open, with straight ends.
 

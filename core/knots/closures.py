@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..types import FloatArray, IntArray
 from .braids import Word, checked_word, columns, cycles, permutation
@@ -14,6 +15,7 @@ from .rings import ClosedBraid, Ring
 _COLUMN = 2.2  # length of a crossing along the innermost strand, in units of the strands' distance
 
 
+@checked
 def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: int | None = None) -> Curve:
     """Make the closure of a braid, one component per cycle of its permutation.
 

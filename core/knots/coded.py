@@ -4,6 +4,7 @@ from math import pi
 
 import numpy as np
 
+from ..arguments import checked
 from ..collision import check_embedded
 from ..curve import Curve, refine
 from ..diagrams import Diagram
@@ -18,6 +19,7 @@ _CIRCLE = 12  # vertices of a component without crossings
 _GAP = 0.5  # between parts that no crossing joins, all of radius 1
 
 
+@checked
 def coded_knot(text: str, vertices: int | None = None, kind: str | None = None) -> Curve:
     """Make the knot or link of a PD, DT or Gauss code as a polygon in space.
 

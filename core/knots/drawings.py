@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..arguments import checked
 from ..collision import check_embedded
 from ..curve import Curve, check_closed
 from ..curve.distances import arc_distance_of_pairs
@@ -51,6 +52,7 @@ class Drawing:
     first_over: BoolArray
 
     @classmethod
+    @checked
     def of(cls, curve: Curve) -> "Drawing":
         """Find the crossings of closed polygons in the plane.
 

@@ -10,7 +10,7 @@ from ..curve import Curve, Mesh
 from ..curve.strands import nearest_strands
 from ..errors import CurveError
 from ..types import FloatArray
-from .rings import MAX_VERTICES, check_whole, shares
+from .rings import MAX_VERTICES, shares
 
 _EDGE = 0.5  # default edge length in units of the gap between strands
 _DISTINCT = 2.0  # points are on different strands if they are this many times further apart along the curve
@@ -32,7 +32,6 @@ def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     CurveError
         If the curve meets itself, or as good as does, or the vertices are too few or too many.
     """
-    check_whole(vertices)
     gap = strand_gap(curve)
     if vertices is None:
         vertices = max(least, math.ceil(curve.length / (_EDGE * gap)) if gap > 0 else MAX_VERTICES + 1)

@@ -6,6 +6,7 @@ from functools import cached_property
 from itertools import product
 from math import prod
 
+from ..arguments import checked
 from ..curve import Curve
 from ..diagrams import (
     Diagram,
@@ -68,6 +69,9 @@ class KnotType:
     evidence: tuple[str, ...]
     untold: str = ""
 
+    def __repr__(self) -> str:
+        return f"<KnotType: {self.sentence:.100}>"
+
     def __str__(self) -> str:
         return _UNKNOT.sub("unknot", " or ".join(self.names)) if self.names else "not told"
 
@@ -102,6 +106,7 @@ class KnotType:
         return f"{self} ({'proved by' if self.proved else 'not proved; it fits'} {how})"
 
 
+@checked
 def knot_type(curve: Curve) -> KnotType:
     """Tell the type of closed polygons in space that do not touch themselves; open ones have none.
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..errors import CurveError
 from .inscribed import inscribed, strand_gap
@@ -13,6 +14,7 @@ _SAMPLES = 160  # for each period of the fastest cosine
 _NEAREST = 0.01  # gap between strands, of the half-width
 
 
+@checked
 def lissajous_knot(
     frequencies: tuple[int, int, int], phases: tuple[float, float] = (0.7, 0.2), vertices: int | None = None
 ) -> Curve:

@@ -3,6 +3,7 @@
 import difflib
 import re
 
+from ..arguments import checked
 from ..curve import Curve
 from ..diagrams.codes import is_code
 from ..errors import CurveError, MobiusFlowError
@@ -37,6 +38,7 @@ def knot_names() -> list[str]:
     return [*KNOTS, *(name.replace(" ", "-") for name in ALIASES), *HARD_UNKNOTS, *ARCS]
 
 
+@checked
 def knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link from its name.
 
@@ -105,6 +107,7 @@ def table_name(name: str) -> tuple[str, bool]:
     return found, mirrors is not None and bool(mirrors[0].count("m") % 2)
 
 
+@checked
 def braid_word(name: str) -> Word:
     """Braid word of a name in the grammar of :func:`knot`; raises UnknownKnotError, or CurveError as `knot` does."""
     word: Word = ()

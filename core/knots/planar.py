@@ -11,11 +11,12 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
+from ..arguments import checked
 from ..curve import Curve, refine
 from ..diagrams import PlanarCrossing as Crossing
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .rings import MAX_VERTICES, check_whole
+from .rings import MAX_VERTICES
 
 _Dart = tuple[int, int]  # a crossing, and the place from 0 to 3 of an edge that leaves it
 
@@ -23,6 +24,7 @@ _ROUNDS = 4  # in which weights grow with the square roots of lengths; with many
 _LIFT = 0.5  # of the shortest line from a crossing: the height of its strands above and below the plane
 
 
+@checked
 def diagram_knot(code: Sequence[Crossing], vertices: int | None = None) -> Curve:
     """Make the knot or link of a planar diagram code as a polygon with four vertices for every crossing, or more.
 
@@ -58,7 +60,6 @@ def diagram_knot(code: Sequence[Crossing], vertices: int | None = None) -> Curve
     curve = Curve.from_components(parts)
     if vertices is None:
         return curve
-    check_whole(vertices)
     if not len(curve) <= vertices <= MAX_VERTICES:
         few = "few" if vertices < len(curve) else "many"
         raise CurveError(f"{vertices} vertices are too {few} for this diagram; give {len(curve)} to {MAX_VERTICES}")

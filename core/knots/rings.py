@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from numbers import Integral
 
 import numpy as np
 
@@ -73,7 +72,6 @@ class ClosedBraid:
         CurveError
             If they are no whole number, too few for the polygon to be the same braid, or too many for any use.
         """
-        check_whole(vertices)
         least = max(self.detail, vertices or 0)
         if least > MAX_VERTICES:
             raise CurveError(f"{least} vertices are too many; at most {MAX_VERTICES} are allowed")
@@ -85,12 +83,6 @@ class ClosedBraid:
         if any(_deviation(ring, theta) >= self.gap / 2 for ring, theta in zip(self.rings, angles, strict=True)):
             raise CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
         return Curve.from_components([ring.points(theta) for ring, theta in zip(self.rings, angles, strict=True)])
-
-
-def check_whole(vertices: int | None) -> None:
-    """Raise a CurveError unless a number of vertices is a whole one, or left open."""
-    if not isinstance(vertices, Integral | None):
-        raise CurveError(f"vertices is {vertices!r:.40}; it must be a whole number")
 
 
 def _length(ring: Ring, detail: int) -> float:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..errors import CurveError
 from ..types import FloatArray
@@ -16,6 +17,7 @@ _CLASP, _HOOK = 2.2, 0.8  # half the length of the clasp, and how far its hooks 
 _TURN = 200  # points of each hook
 
 
+@checked
 def cable(companion: Curve, p: int, q: int, vertices: int | None = None) -> Curve:
     """Make the cable C(p, q) of a knot: p strands along it that turn q/p times around, in gcd(p, q) components.
 
@@ -52,6 +54,7 @@ def cable(companion: Curve, p: int, q: int, vertices: int | None = None) -> Curv
     )
 
 
+@checked
 def double(companion: Curve, twists: int = 0, *, clasp: int = 1, vertices: int | None = None) -> Curve:
     """Make a twisted Whitehead double of a knot: two strands along it that hook into each other at a clasp.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve, check_closed
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
@@ -15,6 +16,7 @@ _MIN_ANGLE = 0.2  # radians between neighbouring edges, so that edges never fold
 _MIN_GAP = 1e-6  # of the radius; rounding in the distances, at most 1e-8 of it, must stay far below the gap
 
 
+@checked
 def scramble(
     curve: Curve,
     seed: int,
@@ -65,6 +67,8 @@ def certified_moves(
     moves = 20 * len(curve) if moves is None else moves
     reach = radius / 2 if reach is None else reach
     gap = float(curve.edge_lengths.mean()) / 20 if gap is None else gap
+    if seed < 0:
+        raise CurveError(f"seed is {seed}; it must be 0 or more")
     if moves < 0 or not 0 < reach < math.inf:
         raise CurveError(f"moves is {moves} and reach {reach}; moves must be 0 or more and reach above 0")
     if not _MIN_GAP * radius <= gap < math.inf:

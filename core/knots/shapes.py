@@ -12,12 +12,13 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..errors import CurveError
 from ..types import ComplexArray, FloatArray
 from .inscribed import equal_steps, is_isotopic
 from .names import table_name
-from .rings import MAX_VERTICES, check_whole, shares
+from .rings import MAX_VERTICES, shares
 
 FILE = Path(__file__).with_name("shapes.npz")
 QUANTUM = 2.0**-13  # coefficients are stored as multiples of it, in 16 bits
@@ -47,6 +48,7 @@ class Shape:
         return Curve.from_components(parts)
 
 
+@checked
 def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link of the table as a smooth curve with evenly spread strands.
 
@@ -115,7 +117,6 @@ def store(given: Mapping[str, Shape], path: Path = FILE) -> None:
 
 
 def _with_vertices(shape: Shape, proved: Curve, vertices: int) -> Curve:
-    check_whole(vertices)
     if vertices > MAX_VERTICES:
         raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
     lengths = np.array([proved.edge_lengths[s].sum() for s in proved.mesh.slices])

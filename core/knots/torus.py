@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 
+from ..arguments import checked
 from ..curve import Curve
 from ..errors import CurveError
 from ..types import FloatArray
@@ -14,6 +15,7 @@ _MAX_TURNS = 2000
 _MAX_RADIUS = 1e100  # whose square is still a double
 
 
+@checked
 def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.0, minor: float | None = None) -> Curve:
     """Make the torus knot T(p, q), or the torus link of gcd(p, q) components.
 

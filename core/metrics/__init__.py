@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 from .fractional import FractionalMetric
 from .inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
-from .local import H1Metric, H2Metric, L2Metric
+from .local import H1Metric, H2Metric, L2Metric, WithoutRule
 from .metric import Metric
 from .moebius import MoebiusMetric
 
@@ -34,4 +34,5 @@ __all__ = [
     "Metric",
     "MoebiusMetric",
     "SparseInnerProduct",
+    "WithoutRule",
 ]

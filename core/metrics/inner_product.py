@@ -4,13 +4,14 @@ On R^m-valued functions they act coordinate by coordinate, J = A ⊗ Id_m.
 """
 
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import blas, lapack
 from scipy.sparse.linalg import SuperLU
 
+from ..arguments import checked
 from ..constraints import ConstraintDerivative
 from ..curve.pins import NOWHERE
 from ..saddle import TangentSpace
@@ -22,6 +23,7 @@ MAX_DENSE_ROWS = 12_000  # some six matrices of so many rows make 7 GB
 MAX_SPARSE_ROWS = 50_000  # energies, sums over all pairs of edges, take half a minute there
 
 
+@runtime_checkable
 class InnerProduct(Protocol):
     """⟨u, v⟩ = Σ u A v, A symmetric and positive definite, for functions on n vertices."""
 
@@ -55,6 +57,7 @@ class DenseInnerProduct:
         Vertices at which functions vanish that are solved for; shape (k,).
     """
 
+    @checked
     def __init__(self, matrix: FloatArray, pins: IntArray = NOWHERE) -> None:
         self._matrix, self._pins = np.asfortranarray(matrix), pins
         self._pinned: DenseInnerProduct | None = None
@@ -114,6 +117,7 @@ class SparseInnerProduct:
         A, in compressed rows.
     """
 
+    @checked
     def __init__(self, matrix: sp.sparray) -> None:
         self.matrix = sp.csr_array(matrix)
 

@@ -1,12 +1,13 @@
 """What a metric is."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from ..curve import Curve
 from ..quadrature import Rule
 from .inner_product import InnerProduct
 
 
+@runtime_checkable
 class Metric(Protocol):
     """An inner product on functions along the curve; on R^m-valued ones it acts coordinate by coordinate."""
 

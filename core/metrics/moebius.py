@@ -20,6 +20,7 @@ import numpy as np
 from scipy.linalg import blas
 from scipy.spatial.distance import cdist
 
+from ..arguments import checked_fields
 from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs, arc_distances, points_at
 from ..quadrature import MIDPOINT, Rule
@@ -33,6 +34,7 @@ from .pairs import DifferenceForm, Stencil, Stripe, stripes
 MIN_DISTANCE = 0.25
 
 
+@checked_fields
 @dataclass(frozen=True)
 class MoebiusMetric:
     """Σ ℓ_I ℓ_J (|ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/r² + |u_I − u_J|²/r² (1/r² − 1/ϱ²)) + |∫ u|², by a quadrature rule.

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..deadline import check_time
 from ..types import FloatArray
 
 LinearMap = Callable[[FloatArray], FloatArray]
@@ -36,6 +37,7 @@ def conjugate_gradients(
     x = np.zeros_like(right)
     r, direction, last, square = right.copy(), np.zeros_like(right), 1.0, 0.0
     for _ in range(max_iterations):
+        check_time()
         z = precondition(r)
         rho = float(np.sum(r * z))
         if enough(rho, square):
@@ -78,6 +80,7 @@ def flexible_conjugate_gradients(
     while not enough(decreases):
         if len(decreases) == max_iterations:
             raise np.linalg.LinAlgError(f"conjugate gradients need more than {max_iterations} iterations")
+        check_time()
         z, r = precondition(r)
         direction = z + float(np.sum(z * (r - last))) / rho * direction
         rho, last = float(np.sum(r * z)), r

@@ -12,6 +12,7 @@ polygons, all frames included.
 This package shares no code with ``core.collision``, which the program uses to find its steps.
 """
 
+import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -21,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import MobiusFlowError
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .obstacles import Obstacles
@@ -67,7 +69,12 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
     """Check a trajectory file; damaged files and failed checks give a verdict that is not accepted.
 
     ``callback`` is called after every leg with the number of legs checked and, by its headers, of those in the file.
+    Raises MobiusFlowError if ``path`` is no path or ``callback`` no function.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise MobiusFlowError(f"path is of type {type(path).__name__}; give the name of a trajectory file")
+    if callback is not None and not callable(callback):
+        raise MobiusFlowError(f"callback is of type {type(callback).__name__}; give a function of two numbers")
     progress = _Progress()
     if callback is not None:
         legs = count_legs(path)

@@ -1,6 +1,8 @@
 """Obstacles on the command line: ``--avoid``."""
 
 import json
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -112,8 +114,27 @@ def test_the_help_says_that_it_may_be_given_several_times(capsys):
     assert "may be given several times" in said
 
 
-def test_an_obstacle_that_is_named_twice_would_repel_twice(tmp_path, capsys):
-    (tmp_path / "wall.obj").write_text("v 9 0 0\nv 9 1 0\nv 9 0 1\nf 1 2 3\n")
-    wall = str(tmp_path / "wall.obj")
-    assert main(["relax", wall, str(tmp_path / "out.txt"), "--avoid", wall, "--avoid", wall]) == 2
-    assert capsys.readouterr().err == f"mobius-flow: --avoid names {wall:.60} more than once\n"
+@pytest.mark.skipif(os.name != "posix", reason="links and pipes")
+def test_an_obstacle_that_is_named_twice_counts_once(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_curve("in.txt", torus_trefoil(40))
+    Path("wall.obj").write_text("v 9 0 0\nv 9 1 0\nv 9 0 1\nf 1 2 3\n")
+    os.link("wall.obj", "hard.obj")
+    os.symlink("wall.obj", "soft.obj")
+    again = [word for name in ("wall", "./wall", "hard", "soft") for word in ("--avoid", f"{name}.obj")]
+    reports = []
+    for words in (again[:2], again):
+        assert main(["relax", "in.txt", "out.txt", "--report", "r.json", "--max-iterations=1", *words]) == 0
+        reports.append(json.loads(Path("r.json").read_text()))
+    once, often = reports
+    assert once["obstacles"] == often["obstacles"] == 1
+    assert once["energy"] == often["energy"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links and pipes")
+def test_an_obstacle_in_a_pipe_is_not_waited_for(tmp_path, capsys):
+    write_curve(tmp_path / "in.txt", torus_trefoil(40))
+    os.mkfifo(tmp_path / "wall.obj")
+    words = ["relax", tmp_path / "in.txt", tmp_path / "out.txt", "--avoid", tmp_path / "wall.obj"]
+    assert main(list(map(str, words))) == 2
+    assert "wall.obj: is no regular file; obstacles are not read from pipes" in capsys.readouterr().err

@@ -1,12 +1,14 @@
 """The command line's options are the library's: nothing of them is declared a second time."""
 
 import argparse
+import json
 from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli import options as relax_options
-from mobius_flow.core import OptionError, RelaxOptions, write_curve
+from mobius_flow.core import OptionError, RelaxOptions, read_curve, write_curve
 from mobius_flow.core.option import declared, option
 from option_values import unlike_default
 from shapes import torus_trefoil
@@ -39,7 +41,7 @@ def test_every_option_stands_in_the_help(capsys):
 
 
 def test_defaults_are_the_librarys():
-    assert parsed() == RelaxOptions() == parsed(method=False)
+    assert parsed() == RelaxOptions() == parsed(without=("method",))
 
 
 @pytest.mark.parametrize(
@@ -101,3 +103,38 @@ def test_keyframes_follow_meshes_whose_vertices_stay(word, tmp_path):
     write_curve(tmp_path / "a.txt", torus_trefoil(60))
     words = ["--quiet", word, "--max-iterations=1"]
     assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), *words]) == 0
+
+
+@pytest.mark.parametrize("words", [["--mesh", "fixed", "--adaptive"], ["--resolve", "--mesh", "adaptive"]])
+def test_what_contradicts_itself_is_refused(words):
+    with pytest.raises(OptionError, match=r"--mesh \w+ and --\w+ contradict each other; leave one of them out"):
+        parsed(*words)
+
+
+def test_saying_it_twice_is_no_contradiction():
+    assert parsed("--mesh", "adaptive", "--adaptive").mesh == "adaptive"
+
+
+def test_options_of_the_subcommand_itself_are_not_the_relaxations():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--time-limit", type=float)
+    relax_options.add_to(parser, without=("time_limit",))
+    assert relax_options.from_arguments(parser.parse_args(["--time-limit", "5"])).time_limit is None
+
+
+def test_tangents_without_pins_are_refused(tmp_path, capsys):
+    write_curve(tmp_path / "a.txt", torus_trefoil(30))
+    assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.txt"), "--pin-tangents"]) == 2
+    assert "pin_tangents holds the neighbours of pinned vertices, but there are no pins" in capsys.readouterr().err
+
+
+def test_a_time_limit_ends_like_an_interrupt(tmp_path):
+    write_curve(tmp_path / "a.txt", torus_trefoil(60))
+    out, report, trajectory = (str(tmp_path / name) for name in ("o.txt", "r.json", "t.npz"))
+    words = ["relax", str(tmp_path / "a.txt"), out, "--report", report, "--trajectory", trajectory]
+    assert main([*words, "--time-limit", "1e-6", "--vertices", "60"]) == 0
+    found = json.loads(Path(report).read_text())
+    assert found["status"] == "time_limit"
+    assert found["options"]["time_limit"] == 1e-6
+    assert len(read_curve(out)) == 60
+    assert main(["verify", trajectory]) == 0

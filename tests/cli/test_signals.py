@@ -14,7 +14,7 @@ from mobius_flow.cli import compare as compare_command
 from mobius_flow.cli import main, outputs, signals
 from mobius_flow.cli.progress import Progress
 from mobius_flow.cli.relax import _interruptible
-from mobius_flow.core import Curve, Iterate, RelaxOptions, Result, Trajectory, read_curve, relax, write_curve
+from mobius_flow.core import Curve, Iterate, Result, Trajectory, read_curve, relax, write_curve
 from mobius_flow.core.driver import finish
 from mobius_flow.core.driver.compare import History, compare
 from mobius_flow.core.system.signals import termination_raises
@@ -258,8 +258,8 @@ def test_compare_keeps_the_methods_that_are_done(
     status: int,
     said: str,
 ) -> None:
-    def interrupted(curve: Curve, methods: list[str], options: RelaxOptions, limit: float) -> Iterator[History]:
-        yield from compare(curve, methods[:1], options, limit)
+    def interrupted(curve: Curve, methods: list[str], *more: Any) -> Iterator[History]:
+        yield from compare(curve, methods[:1], *more)
         if memory:
             raise MemoryError
         send(signal.SIGTERM)

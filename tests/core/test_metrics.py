@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import RelaxOptions
+from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.metrics import METRICS, DenseInnerProduct, MoebiusMetric
+from mobius_flow.core.metrics import METRICS, DenseInnerProduct, MoebiusMetric, SparseInnerProduct, WithoutRule
 from mobius_flow.core.metrics.moebius import MIN_DISTANCE
 from mobius_flow.core.metrics.pairs import DifferenceForm, Stencil, stripes
 from mobius_flow.core.quadrature import ENDS, TAIL, Rule
@@ -166,3 +166,58 @@ def test_the_metric_has_the_energys_rule_unless_told_otherwise(energy, rule):
     assert start_problem(torus_trefoil(30), other).metric.rule == Rule.gauss(2)
     local = RelaxOptions(energy=energy, metric="h2")
     assert start_problem(torus_trefoil(30), local).metric is METRICS["h2"]
+
+
+class Own(WithoutRule):
+    """L² with another weight, under a name that a metric of the table has, too."""
+
+    name = "moebius"
+    description = "ten times L²"
+    extends_penalty = False
+    most_vertices = 100
+
+    def at(self, curve):
+        return SparseInnerProduct(10.0 * METRICS["l2"].at(curve).matrix)
+
+
+def test_a_metric_of_ones_own_is_an_object_as_an_energy_is():
+    """Ten times the metric is a gradient of a tenth, and so a norm that is √10 times as small."""
+    options = {"method": "flow-moebius", "vertices": 40, "max_iterations": 0}
+    own, usual = (
+        minimize(torus_trefoil(40), RelaxOptions(metric=metric, **options)).last.gradient_norm
+        for metric in (Own(), METRICS["l2"])
+    )
+    assert own == pytest.approx(usual / np.sqrt(10.0), rel=1e-9)
+
+
+def test_a_name_does_not_make_it_one_of_the_table():
+    """Those for many vertices are compressed; this one is not, and has the bound that it says."""
+    options = RelaxOptions(metric=Own(), solver="hierarchical", method="flow-moebius")
+    assert start_problem(torus_trefoil(40), options).metric.name == "moebius"
+    assert isinstance(start_problem(torus_trefoil(40), options).metric, Own)
+    with pytest.raises(CurveError, match="has 101 vertices; flow-moebius has room and time for 100"):
+        start_problem(torus_trefoil(101), options)
+
+
+def test_a_metric_beside_a_method_that_names_another_is_refused():
+    with pytest.raises(OptionError, match=r"flow-l2 and metric h2 contradict each other; .* choose method flow-h2"):
+        start_problem(torus_trefoil(20), RelaxOptions(method="flow-l2", metric="h2"))
+    assert start_problem(torus_trefoil(20), RelaxOptions(method="flow-l2", metric="l2")).metric.name == "l2"
+
+
+@pytest.mark.parametrize(
+    ("metric", "said"),
+    [
+        (Own, "metric is <class '.*Own'>; it must be a name or a metric"),
+        (5, "metric is 5; it must be a name or a metric"),
+    ],
+)
+def test_what_is_no_metric_is_refused(metric, said):
+    with pytest.raises(OptionError, match=said):
+        RelaxOptions(metric=metric)
+
+
+def test_a_metric_that_gives_no_inner_product_is_named(monkeypatch):
+    monkeypatch.setattr(Own, "at", lambda _, curve: np.eye(len(curve)))
+    with pytest.raises(OptionError, match="metric 'moebius' gives an object of type ndarray at a curve; give an inner"):
+        minimize(torus_trefoil(40), RelaxOptions(metric=Own(), vertices=40))

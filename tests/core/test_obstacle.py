@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import CurveError, CurveFileError, Obstacle, read_obstacle, write_curve
+from mobius_flow.core import CurveError, CurveFileError, MobiusFlowError, Obstacle, read_obstacle, write_curve
 from mobius_flow.core.triangulation import triangulated
 from shapes import hopf_link, regular_polygon
 
@@ -122,7 +122,7 @@ def test_curves_in_the_plane_are_no_obstacles(tmp_path):
     write_curve(tmp_path / "c.json", regular_polygon(5, dimension=2))
     with pytest.raises(CurveFileError, match="points have 2 coordinates; obstacles are in space"):
         read_obstacle(tmp_path / "c.json")
-    with pytest.raises(CurveError, match="give the name of a file"):
+    with pytest.raises(MobiusFlowError, match="path is 3; give a string or a path"):
         read_obstacle(3)
 
 

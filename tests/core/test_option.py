@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, fields
 
+import numpy as np
 import pytest
 from mobius_flow.core import METHODS, OptionError, RelaxOptions
 from mobius_flow.core.checks import check_known
@@ -20,7 +21,7 @@ def test_every_field_is_declared_in_order():
 @pytest.mark.parametrize("each", DECLARED.values(), ids=DECLARED)
 def test_every_option_says_what_it_does(each):
     assert each.label == each.label.strip().title()
-    assert each.group in ("basic", "advanced", "pins")
+    assert each.group in ("basic", "advanced", "pins", "scripts")
     assert len(each.help) > 15
     assert not each.help.endswith(".")
     assert each.sentence()[0].isupper()
@@ -57,7 +58,7 @@ class Oven:
 
     def __post_init__(self) -> None:
         for each in declared(type(self)):
-            each.check(getattr(self, each.name))
+            object.__setattr__(self, each.name, each.checked(getattr(self, each.name)))
 
 
 @pytest.mark.parametrize(
@@ -86,7 +87,16 @@ def test_checks_follow_from_the_declaration(options, said):
 @pytest.mark.parametrize("options", [{"heat": 250}, {"minutes": None}, {"minutes": 1}, {"minutes": 90}, {"fan": True}])
 def test_what_is_allowed_is_taken(options):
     (name,) = options
-    assert getattr(Oven(**options), name) is options[name]
+    assert getattr(Oven(**options), name) == options[name]
+
+
+@pytest.mark.parametrize("options", [{"grow": np.float32(1.5)}, {"hops": np.int8(3)}, {"stability": np.True_}])
+def test_numpys_numbers_become_pythons(options):
+    """Without a warning: tests turn these into errors."""
+    ((name, value),) = options.items()
+    taken = getattr(RelaxOptions(**options), name)
+    assert type(taken) is type(DECLARED[name].default)
+    assert taken == value
 
 
 def test_docstrings_list_the_options():

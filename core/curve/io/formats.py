@@ -3,15 +3,16 @@
 import io
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import BinaryIO, TextIO
 
+from ...arguments import checked
 from ...errors import CurveError, CurveFileError, reason_of, wrong_suffix
 from ...system.files import atomic_write
-from ..curve import Curve, check_is_curve
+from ..curve import Curve
 from . import codes, json_lists, obj, pdb, vect, xyz
 from .polygons import Polygon, assemble
 from .source import Source
@@ -89,7 +90,7 @@ class CurveFile:
 
     curve: Curve
     source: Source
-    _polygons: Sequence[Polygon]
+    _polygons: Sequence[Polygon] = field(repr=False)
 
     def line_of(self, vertex: int) -> int | None:
         """The line in which a vertex of the curve (index from 0) was read."""
@@ -134,8 +135,6 @@ def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream:
     CurveFileError
         As `read_curve` does.
     """
-    if not isinstance(path, str | os.PathLike):
-        raise CurveError(f"path is of type {type(path).__name__}; give the name of a file")
     path = Path(path)
     form = format_of(path) if form is None else form
     source = Source.load(path) if stream is None else Source.read(path, stream)
@@ -143,6 +142,7 @@ def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream:
     return CurveFile(assemble(source, polygons), source, polygons)
 
 
+@checked
 def read_curve(path: str | os.PathLike[str]) -> Curve:
     """Read polygons, closed or open, from a file; the suffix tells the format (see :data:`FORMATS`).
 
@@ -162,6 +162,7 @@ def read_curve(path: str | os.PathLike[str]) -> Curve:
     return load_curve(path).curve
 
 
+@checked
 def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None = None) -> None:
     """Write polygons to a file; the suffix tells the format (see :data:`FORMATS`) unless one is given.
 
@@ -182,9 +183,6 @@ def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None 
     CurveFileError
         If the suffix is unknown, the format cannot hold the curve, or the file cannot be written.
     """
-    check_is_curve(curve)
-    if not isinstance(path, str | os.PathLike):
-        raise CurveError(f"path is of type {type(path).__name__}; give the name of a file")
     path = Path(path)
     form = format_of(path) if form is None else form
     try:

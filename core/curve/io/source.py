@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO
@@ -30,7 +30,7 @@ class Source:
     """
 
     path: Path
-    text: str
+    text: str = field(repr=False)
     sha256: str
 
     @classmethod

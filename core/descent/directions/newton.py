@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...deadline import check_time
 from ...saddle import TangentSpace
 from ...types import FloatArray
 from ..hessian import LinearMap
@@ -36,6 +37,7 @@ def projected_conjugate_gradient(
     for _ in range(max_iterations):
         if not square > bound:
             break
+        check_time()
         image = operator(direction)
         curvature = float(np.sum(direction * image))
         if curvature <= 0.0:

@@ -1,0 +1,115 @@
+"""Arguments held against their annotations, so that a wrong one is one clear sentence wherever it is given."""
+
+import os
+import types
+from collections.abc import Callable, Generator, Mapping, Sequence
+from functools import cache, wraps
+from inspect import signature
+from numbers import Integral, Real
+from typing import Any, ParamSpec, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from .errors import MobiusFlowError, shown
+
+_Arguments = ParamSpec("_Arguments")
+_Result = TypeVar("_Result")
+_Class = TypeVar("_Class", bound=type)
+_NUMBERS: dict[Any, tuple[type, ...]] = {float: (Real,), int: (Integral,), bool: (bool, np.bool_)}  # NumPy's count too
+_BELOW = {float: 2**1023, int: 2**63, bool: 2}  # whole numbers that fit
+_WORDS: dict[Any, str] = {
+    float: "a number",
+    int: "a whole number",
+    bool: "True or False",
+    str: "a string",
+    type(None): "None",
+    Callable: "a function",
+    Sequence: "a list",
+    tuple: "a tuple",
+    Mapping: "a dictionary",
+    Generator: "a generator, such as relax gives",
+    os.PathLike: "a path",
+    np.ndarray: "an array",
+}
+
+
+def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
+    """Let a function raise a MobiusFlowError that names the argument where one is not of its annotated type.
+
+    What arrays hold, and protocols that are not for run time, are not looked at.
+    """
+    parameters = signature(function)
+
+    @wraps(function)
+    def called(*args: _Arguments.args, **keywords: _Arguments.kwargs) -> _Result:
+        hints = _hints(function)
+        for name, value in parameters.bind(*args, **keywords).arguments.items():
+            if name in hints and not _fits(value, hints[name]):
+                raise MobiusFlowError(f"{name} is {_described(value)}; give {_wanted(hints[name])}")
+        return function(*args, **keywords)
+
+    return called
+
+
+def checked_fields(owner: _Class) -> _Class:
+    """Let a class do so when it is made."""
+    owner.__init__ = checked(owner.__init__)  # type: ignore[misc]
+    return owner
+
+
+def is_list(value: object) -> bool:
+    """Whether a value has items in a row: a sequence, but no string, or an array."""
+    if isinstance(value, np.ndarray):
+        return value.ndim > 0
+    return isinstance(value, Sequence) and not isinstance(value, str | bytes)
+
+
+@cache
+def _hints(function: Callable[..., object]) -> dict[str, Any]:
+    return get_type_hints(function)
+
+
+def _fits(value: Any, hint: Any) -> bool:
+    origin, inner = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return any(_fits(value, each) for each in inner)
+    if origin is Callable:
+        return callable(value)
+    if origin in (tuple, list, Sequence):
+        wanted = inner if _is_of_fixed_length(hint) or not is_list(value) else inner[:1] * len(value)
+        return is_list(value) and len(value) == len(wanted) and all(map(_fits, value, wanted))
+    kind = origin or hint
+    if kind in _NUMBERS:
+        is_one = isinstance(value, _NUMBERS[kind]) and isinstance(value, bool | np.bool_) == (kind is bool)
+        return is_one and not (isinstance(value, Integral) and abs(int(value)) >= _BELOW[kind])
+    if not isinstance(kind, type) or kind.__module__ == "typing" or getattr(kind, "_is_protocol", False):
+        return not _at_run_time(kind) or (isinstance(value, kind) and not isinstance(value, type))
+    return isinstance(value, kind)
+
+
+def _is_of_fixed_length(hint: Any) -> bool:
+    return get_origin(hint) is tuple and ... not in get_args(hint)
+
+
+def _at_run_time(kind: Any) -> bool:
+    """Whether it is a protocol whose members can be looked for."""
+    return bool(getattr(kind, "_is_runtime_protocol", False))
+
+
+def _described(value: Any) -> str:
+    """What is given: the value itself where that is short, or its type."""
+    if isinstance(value, str | int | float | complex | None):
+        return shown(value)
+    return f"of type {type(value).__name__}"
+
+
+def _wanted(hint: Any) -> str:
+    origin, inner = get_origin(hint), get_args(hint)
+    if origin in (Union, types.UnionType):
+        return " or ".join(dict.fromkeys(map(_wanted, inner)))
+    kind = origin or hint
+    if origin in (tuple, list, Sequence) and inner[0] in _WORDS:
+        count = f" of {len(inner)}" if _is_of_fixed_length(hint) else ""
+        return f"{_WORDS[kind]}{count}, each {_WORDS[inner[0]]}"
+    name = getattr(kind, "__name__", str(kind))
+    return _WORDS.get(kind) or f"{'an' if name[0] in 'AEIO' else 'a'} {name}"

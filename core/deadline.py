@@ -1,0 +1,58 @@
+"""Time limits, which are looked at wherever a step may take long, so that a long step cannot outlast them by much."""
+
+import time
+from collections.abc import Callable
+from contextvars import ContextVar, Token
+
+
+class TimeIsUp(Exception):  # noqa: N818 (no error: what was reached is kept)
+    """Leaves a step whose time is up; ``limit`` is the one that was reached."""
+
+    def __init__(self, limit: "TimeLimit") -> None:
+        super().__init__("the time is up")
+        self.limit = limit
+
+
+class TimeLimit:
+    """A stopwatch that runs in ``with`` blocks, and whose limit `check_time` observes there.
+
+    Like NumPy's error state it belongs to the context: those who look at it need not be handed it.
+
+    Parameters
+    ----------
+    seconds
+        What may be used up.
+    clock
+        What measures them: `time.perf_counter`, or `time.process_time` where a busy machine is not to decide.
+    used
+        Seconds that are used up to begin with; as an attribute, those of all blocks that were left too.
+    """
+
+    def __init__(self, seconds: float, clock: Callable[[], float] = time.perf_counter, used: float = 0.0) -> None:
+        self.seconds, self.used = seconds, used
+        self._clock, self._entered = clock, 0.0
+        self._outer: Token[tuple[TimeLimit, ...]] | None = None
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether, within a block, the time is up."""
+        return self.used + self._clock() - self._entered > self.seconds
+
+    def __enter__(self) -> "TimeLimit":
+        self._outer, self._entered = _LIMITS.set((*_LIMITS.get(), self)), self._clock()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.used += self._clock() - self._entered
+        if self._outer is not None:
+            _LIMITS.reset(self._outer)
+
+
+_LIMITS: ContextVar[tuple[TimeLimit, ...]] = ContextVar("limits", default=())
+
+
+def check_time() -> None:
+    """Raise `TimeIsUp` if a limit is reached in whose block this is called; those that run for long call it often."""
+    for limit in _LIMITS.get():
+        if limit.is_reached:
+            raise TimeIsUp(limit)
