@@ -414,4 +414,12 @@ MUTANTS = (
         "certified = relaxing.iterate.certified",
         "tests/core/test_hops.py::test_a_way_is_certified_only_if_all_its_steps_are",
     ),
+    Mutant(
+        "embedded whatever it takes",
+        "core/collision/embedded.py",
+        "if count == _DECISIONS:",
+        "if False:",
+        "tests/core/collision/test_embedded.py"
+        "::test_thousands_of_edges_within_rounding_of_each_other_are_refused_in_time",
+    ),
 )
