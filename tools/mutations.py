@@ -270,14 +270,14 @@ MUTANTS = (
     Mutant(
         "a verifier that forgets obstacles",
         "core/verify/check.py",
-        "_check_obstacles(heads, obstacles, obstacles.doubtful(start, end, heads), first, last)",
+        "_check_obstacles(heads, progress, progress.obstacles.doubtful(start, end, heads), first, last)",
         "pass",
         f"{VERIFY}/test_obstacles.py::test_refuses_a_leg_through_an_obstacle",
     ),
     Mutant(
         "a verifier that forgets obstacles where the mesh changes",
         "core/verify/check.py",
-        "_check_obstacles(heads, obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)",
+        "_check_obstacles(heads, progress, triangles, here, there)",
         "pass",
         f"{VERIFY}/test_obstacles.py::test_rounding_of_inserted_vertices_is_checked_for_obstacles",
     ),
