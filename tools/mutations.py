@@ -273,14 +273,14 @@ MUTANTS = (
     Mutant(
         "a verifier that forgets obstacles",
         "core/verify/check.py",
-        "_check_obstacles(heads, obstacles, obstacles.doubtful(start, end, heads), first, last)",
+        "_check_obstacles(heads, progress, progress.obstacles.doubtful(start, end, heads), first, last)",
         "pass",
         f"{VERIFY}/test_obstacles.py::test_refuses_a_leg_through_an_obstacle",
     ),
     Mutant(
         "a verifier that forgets obstacles where the mesh changes",
         "core/verify/check.py",
-        "_check_obstacles(heads, obstacles, obstacles.doubtful(points, points, heads, clearance=change), here, there)",
+        "_check_obstacles(heads, progress, triangles, here, there)",
         "pass",
         f"{VERIFY}/test_obstacles.py::test_rounding_of_inserted_vertices_is_checked_for_obstacles",
     ),
@@ -619,5 +619,13 @@ MUTANTS = (
         "        evidence.pop(NO_CROSSINGS, None)\n",
         "        pass\n",
         f"{KNOT_TYPE}::test_that_a_part_has_no_crossings_is_no_evidence_for_others",
+    ),
+    Mutant(
+        "embedded whatever it takes",
+        "core/collision/embedded.py",
+        "if count == _DECISIONS:",
+        "if False:",
+        "tests/core/collision/test_embedded.py"
+        "::test_thousands_of_edges_within_rounding_of_each_other_are_refused_in_time",
     ),
 )

@@ -16,6 +16,8 @@ from .planes import ROUNDING, Separation, relative_motion
 
 MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
 
+_DECISIONS = 2000  # exact ones, about a second: strands that need more are refused by `check_gap`, if not here
+
 
 def check_embedded(curve: Curve) -> None:
     """Raise unless the curve is embedded: no repeated points, no doubled-back edges, no edges that touch or cross.
@@ -81,11 +83,18 @@ def _check_crossings(curve: Curve, points: FloatArray) -> None:
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
-    """Pairs of edges that touch, decided exactly."""
-    for i, j in _doubtful_pairs(curve.mesh, points):
+    """Pairs of edges that touch, decided exactly; raises a CurveError where more pairs are doubtful than can be."""
+    for count, (i, j) in enumerate(_doubtful_pairs(curve.mesh, points)):
         ends = curve.vertices[corners(curve.mesh, i, j)]  # as given: scaling may cost the smallest digits
         if first_contact(ends, ends) is not None:
             yield i, j
+        if count == _DECISIONS:
+            where = meeting_point(ends)
+            reason = (
+                f"{_names(curve.mesh, i, j)}, near {written(where)}, and thousands of others are so near to each other "
+                "that rounding hides whether they touch; move the strands apart"
+            )
+            raise CurveError(reason, at_edges(curve, (i, j), where))
 
 
 def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:

@@ -61,8 +61,7 @@ class _Progress:
 
     def verdict(self, **values: Any) -> Verdict:
         """The verdict, with what has been counted."""
-        counts = {"stages": self.stages, "legs": self.legs, "obstacles": len(self.obstacles), "pins": self.pins}
-        return Verdict(**counts, **values)
+        return Verdict(stages=self.stages, legs=self.legs, obstacles=len(self.obstacles), pins=self.pins, **values)
 
 
 def verify(path: Path | str, callback: Callable[[int, int], None] | None = None) -> Verdict:

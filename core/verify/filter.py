@@ -78,7 +78,11 @@ def _ends(heads: IntArray) -> IntArray:
 
 
 def _overlapping(start: FloatArray, end: FloatArray, heads: IntArray, clearance: float) -> Iterator[IntArray]:
-    """Edges that are no neighbours and whose ranges of coordinates during the leg overlap; shapes (4, pairs)."""
+    """Edges that are no neighbours and whose ranges of coordinates during the leg overlap; shapes (4, pairs).
+
+    Ranges are compared and never divided, and rounding keeps the order of what is scaled or lowered: none that overlap
+    are taken for apart.
+    """
     tails = np.flatnonzero(heads != np.arange(len(heads)))
     ends = np.stack([start[tails], end[tails], start[heads[tails]], end[heads[tails]]])
     low, high = ends.min(axis=0) - 4 * clearance, ends.max(axis=0)

@@ -86,7 +86,10 @@ class Obstacles:
 
 
 def _boxes_that_overlap(first: Boxes, second: Boxes) -> Iterator[tuple[IntArray, IntArray]]:
-    """As `overlapping`, by runs of boxes of the first kind, of which those next to each other are near each other."""
+    """As `overlapping`, by runs of boxes of the first kind, of which those next to each other are near each other.
+
+    The box of a run is made of bounds of its boxes, without rounding, so it overlaps all that they do.
+    """
     starts = np.arange(0, len(first[0]), _RUN)
     runs = np.minimum.reduceat(first[0], starts), np.maximum.reduceat(first[1], starts)
     for run, j in overlapping(runs, second):

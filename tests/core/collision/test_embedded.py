@@ -114,6 +114,14 @@ def test_crossings_in_more_dimensions(m: int, scale: float) -> None:
     check_embedded(Curve(scale * eight @ turn + scale))
 
 
+def test_thousands_of_edges_within_rounding_of_each_other_are_refused_in_time() -> None:
+    row, column = np.divmod(np.arange(72), 9)
+    tails = 1.0 + 2.0**-52 * np.stack([row, column, 0 * row], axis=1)
+    arcs = np.stack([tails, tails + np.array([[0.5, 0.25, 0.375]])], axis=1)
+    check_embedded(Curve.from_components(arcs[:12], [False] * 12))
+    assert "thousands of others are so near" in refusal(Curve.from_components(arcs, [False] * 72))
+
+
 def test_thousands_of_edges_on_each_other_need_little_memory() -> None:
     """The first contact is enough: 9,000 vertices on three places are 13 million pairs of edges that coincide."""
     tracemalloc.start()

@@ -65,8 +65,8 @@ def test_digits_that_scaling_costs_hide_no_crossing() -> None:
     """An arc passes another one in so short a time that their distances are numbers without all their digits."""
     unit = 2.0**-1074
     still = np.array([[0.0, 0.0, -1024.0], [0.0, 0.0, 1024.0]])
-    after = np.array([[-1024.0, -1000.0, 0.0], [-1024.0, -512.0, 0.0]])
-    for across, along in ((1100, 600), (1500, 900), (2000, 1020), (900, 3000)):
-        passing = np.array([[across * unit, -600.0, 0.0], [across * unit, along * unit, 0.0]])
-        # its x vanishes after across / 1024 units of time, when its end, which falls by 512 a unit, is still above 0
-        assert not is_free(TWO_ARCS, np.concatenate([still, passing]), np.concatenate([still, after]))
+    # x from and to, and y of the upper end from and to, which is still positive when x vanishes
+    for motion in ((1100, -2600, 900, -1500), (1100, -2700, 1000, -1900), (1100, -1024 / unit, 600, -512 / unit)):
+        before, after, high, low = unit * np.array(motion)
+        start, end = [[before, -600.0, 0.0], [before, high, 0.0]], [[after, -1000.0, 0.0], [after, low, 0.0]]
+        assert not is_free(TWO_ARCS, np.concatenate([still, start]), np.concatenate([still, end]))
