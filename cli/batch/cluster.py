@@ -12,8 +12,8 @@ from itertools import islice
 from typing import Any
 
 from ...core import MobiusFlowError
-from ..dask import import_distributed
 from . import sandbox
+from .dask import import_distributed
 from .job import Job
 from .table import Row
 

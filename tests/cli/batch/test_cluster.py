@@ -49,7 +49,7 @@ def test_this_machine_s_cores_with_one_blas_thread_each(
 
 def command(*words: str) -> list[str]:
     """Dask's command as the documents give it, on this machine alone."""
-    return [sys.executable, "-m", "mobius_flow.cli.dask", *words, "--host", "127.0.0.1"]
+    return [sys.executable, "-m", "mobius_flow.cli.batch.dask", *words, "--host", "127.0.0.1"]
 
 
 @pytest.fixture
@@ -138,7 +138,7 @@ def test_a_scheduler_that_is_killed_costs_no_result(port: int, rings: Path, tmp_
 def test_it_works_beside_snappy_and_listens_on_loopback_alone(port: int, rings: Path, tmp_path: Path) -> None:
     """The commands of the documents, with nannies, where SnapPy is installed in place of python-snappy."""
     manual = (Path(__file__).parents[3] / "docs/batch.md").read_text(encoding="utf-8")
-    commands = re.findall(r"^    python -m mobius_flow.cli.dask (.*?) *#", manual, re.MULTILINE)
+    commands = re.findall(r"^    python -m mobius_flow.cli.batch.dask (.*?) *#", manual, re.MULTILINE)
     assert len(commands) == 2
     (tmp_path / "planted").mkdir()
     (tmp_path / "planted/snappy.py").write_text("Manifold = None\n")

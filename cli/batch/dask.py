@@ -1,4 +1,4 @@
-"""Dask's own command, also where SnapPy is installed: ``python -m mobius_flow.cli.dask worker tcp://HEAD:8786``.
+"""Dask's own command, also where SnapPy is installed: ``python -m mobius_flow.cli.batch.dask worker tcp://HEAD:8786``.
 
 dask.distributed takes any module called snappy for python-snappy, a library of compression, and fails to load where it
 is SnapPy. Worker processes that are started by others load this module first, too.
