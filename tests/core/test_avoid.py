@@ -68,6 +68,7 @@ def test_changes_of_mesh_and_shape_stay_clear(more, tmp_path):
     verified(curve, tmp_path, max_iterations=40, avoid=[container], **more)
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("half", [1.05, 1.3])
 def test_little_is_left_to_gain_where_a_run_has_converged(half):
     """Though the energy of the walls, most of the objective, makes the bound on the gradient wider.

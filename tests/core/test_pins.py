@@ -222,6 +222,7 @@ def test_straight_arcs_of_a_start_do_not_move_and_others_do(caplog: pytest.LogCa
     assert np.abs(iterates[-1].curve.vertices - iterates[0].curve.vertices).max() > 0.1
 
 
+@pytest.mark.kernels
 def test_little_slack_is_no_obstacle() -> None:
     """The arc hardly bends out: 1 + 10⁻⁴ times as long as the distance of its ends."""
     x, t = np.linspace(0.0, 4.0, 40, endpoint=False), np.linspace(0.0, np.pi, 120)[:-1]

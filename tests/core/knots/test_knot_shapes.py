@@ -13,6 +13,7 @@ tool = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(tool)
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("name", ["3_1", "4_1", "L2a1"])
 def test_shapes_are_made_anew_as_they_are_stored(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """To a few quanta, as linear algebra may round otherwise than where they were made; no axis fits a circle best."""
