@@ -481,6 +481,20 @@ MUTANTS = (
         f"{ENGINE}/test_strands.py::test_the_two_sides_of_a_bend_are_one_strand",
     ),
     Mutant(
+        "curves that are mirrored",
+        "addon/engine/turning.py",
+        " if np.linalg.det(each) > 0.0",
+        "",
+        f"{ENGINE}/test_turning.py::test_a_curve_is_turned_and_never_mirrored",
+    ),
+    Mutant(
+        "an edge beyond the end of an arc",
+        "addon/engine/refinement.py",
+        "np.minimum(place.astype(np.intp), len(original) - 1)",
+        "place.astype(np.intp)",
+        f"{ENGINE}/test_refinement.py::test_an_arc_keeps_the_values_of_its_ends",
+    ),
+    Mutant(
         "rims that cut nothing",
         "addon/engine/thumbnail.py",
         "height[chosen] > depth[rows[chosen], columns[chosen]]",

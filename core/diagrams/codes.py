@@ -72,7 +72,7 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
     if not text.strip(" \t\n,;"):
         raise CurveError(f"the code is empty; write such as {NOTATIONS[kind].example}")
     diagram = NOTATIONS[kind].read(text)
-    _check_count(diagram.crossings)
+    check_count(diagram.crossings)
     return diagram
 
 
@@ -107,7 +107,8 @@ def _parts(rows: Nested) -> list[list[int]]:
     return [[int(each) for each in part] for part in components(rows)]
 
 
-def _check_count(crossings: int) -> None:
+def check_count(crossings: int) -> None:
+    """Raise a CurveError if there are more crossings than are drawn."""
     if crossings > MAX_CROSSINGS:
         raise CurveError(f"the code has {crossings} crossings; at most {MAX_CROSSINGS} are allowed")
 
@@ -116,7 +117,7 @@ def _planar(text: str) -> Diagram:
     rows = unwrapped(nested(_CROSSING.sub(" ", text)))
     if is_flat(rows):
         rows = [rows[k : k + 4] for k in range(0, len(rows), 4)]
-    _check_count(len(rows))
+    check_count(len(rows))
     if not rows:
         return Diagram(((),), ())
     return diagram_of([flat([row] if isinstance(row, int | str) else row) for row in rows])
@@ -129,7 +130,7 @@ def _dowker_thistlethwaite(text: str) -> Diagram:
         rows, flips = _without_flips(unwrapped(nested(text)))
         parts = _parts(rows)
     numbers = [number for part in parts for number in part]
-    _check_count(len(numbers))
+    check_count(len(numbers))
     seen: set[int] = set()
     for place, number in enumerate(numbers, start=1):
         if number % 2 or not 0 < abs(number) <= 2 * len(numbers) or abs(number) in seen:
@@ -192,7 +193,7 @@ def _spelled(word: str) -> list[list[int]]:
 def _gauss(text: str) -> Diagram:
     between = r"\s*[/|;]\s*" if any(bracket in text for bracket in _BRACKETS) else r"\s*[/|;]\s*|\s*\n\s*"
     parts = components(nested(text, between))  # within brackets lines may end anywhere
-    _check_count(sum(map(len, parts)) // 2)
+    check_count(sum(map(len, parts)) // 2)
     if not any(isinstance(each, str) for part in parts for each in part):
         return realized(_numbered([[(abs(int(number)), int(number) > 0) for number in part] for part in parts])[0])
     passes: list[list[Pass]] = []

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TextIO
 
 from ...diagrams import Diagram, diagram_of, views
-from ...diagrams.codes import diagram_from_code, gauss_text, planar_text
+from ...diagrams.codes import check_count, diagram_from_code, gauss_text, planar_text
 from ...diagrams.nested import CodeError
 from ...errors import CurveError, CurveFileError
 from ...knots.coded import drawn
@@ -50,6 +50,7 @@ def read_tsv(source: Source) -> list[Polygon]:
             raise source.error(f"{len(words)} columns where the lines before have {len(rows[0][1])}", number)
         code.append([source.integer(word, number) for word in words])
     try:
+        check_count(len(code))
         diagram = diagram_of([edges[:_EDGES] for edges in code])
         for (number, _), edges, sign, (a, b) in zip(rows, code, diagram.signs, diagram.joins(), strict=True):
             if a == b and edges[_EDGES:] not in ([], [sign]):

@@ -1,7 +1,8 @@
 """Protein Data Bank files (.pdb): the alpha carbons of each chain, one after the other, as an open arc.
 
-Of several models the first is read, of several places of an atom the first one.  Columns are those of the format's
-version 3.3, sections "ATOM" and "TER"; modified residues (HETATM) have alpha carbons too.
+Of several models the first is read, of several atoms at one place in the chain the first one.  Columns are those of the
+format's version 3.3, sections "ATOM" and "TER"; modified residues (HETATM) have alpha carbons too, and what comes after
+the end of a chain is no part of it.
 """
 
 import logging
@@ -15,27 +16,27 @@ _ALPHA_CARBON = " CA "  # in columns 13 to 16; calcium begins one column before
 _APART = 4.5  # Å; neighbours are 3.8 apart, so that residues are missing in between
 _log = logging.getLogger(__name__)
 
-Residue = str  # its name, chain and number, columns 18 to 27
-
 
 def read(source: Source) -> list[Polygon]:
     """Read the chains; raises CurveFileError naming the line."""
-    chains: list[list[tuple[Residue, int, tuple[float, ...]]]] = []
-    chain, seen = None, set[Residue]()
+    chains: list[list[tuple[str, int, tuple[float, ...]]]] = []
+    chain, seen, ended = "", set[str](), set[str]()
     for number, line in enumerate(source.lines, start=1):
         record = line[:6].rstrip()
         if record == "ENDMDL":
             break
         if record == "TER":
-            chain = None
-        if record not in ("ATOM", "HETATM") or line[12:16] != _ALPHA_CARBON or line[17:27] in seen:
+            ended.add(chain)
+            chain = ""
+        is_part = record == "ATOM" or (record == "HETATM" and line[21:22] not in ended)
+        if not is_part or line[12:16] != _ALPHA_CARBON or line[21:27] in seen:
             continue
         point = tuple(source.number(line[k : k + 8].strip(), number) for k in (30, 38, 46))
         if line[21] != chain:
             chain = line[21]
             chains.append([])
         chains[-1].append((line[17:27], number, point))
-        seen.add(line[17:27])
+        seen.add(line[21:27])
     if not chains:
         raise source.error("no alpha carbon found: there must be ATOM records of atoms named CA")
     for (one, _, a), (other, _, b) in (pair for each in chains for pair in pairwise(each)):

@@ -38,6 +38,7 @@ def test_an_arc_keeps_the_values_of_its_ends():
     refined = refine(original, 133)
     (place,) = places(original, refined)
     assert len(place.edge) == 133
+    assert (place.edge[-1], place.fraction[-1]) == (38, 1.0)
     for axis in range(3):
         np.testing.assert_allclose(place.values(original.vertices[:, axis]), refined.vertices[:, axis], atol=1e-12)
 

@@ -27,6 +27,13 @@ def test_a_turned_curve_has_the_wanted_axes(seed):
     np.testing.assert_allclose((homogeneous @ turn.matrix.T)[:, :3], turned.vertices, atol=1e-12)
 
 
+def test_a_curve_is_turned_and_never_mirrored():
+    """Also where its mirror image has axes much nearer to those that are wanted."""
+    for seed in range(40):
+        turn = Turn.onto(Curve(ELLIPSE @ rotation(seed)), rotation(seed + 100))
+        assert np.linalg.det(turn.rotation) == pytest.approx(1.0)
+
+
 def test_extents_are_in_order():
     flat = Turn.onto(Curve(ELLIPSE @ rotation(3)), np.eye(3)).of(Curve(ELLIPSE @ rotation(3)))
     x, y, z = np.ptp(flat.vertices, axis=0)

@@ -109,6 +109,8 @@ PROTEINS = {
     "one.pdb": ("HEADER    KNOT\n" + "".join(map("".join, zip(CHAIN, SIDE, strict=True))) + "END\n", 1),
     "two.pdb": ("".join([*CHAIN, "TER\n", *OTHER]), 2),
     "ligand.pdb": ("".join(CHAIN) + _atom(9, 9, [9, 9, 9], name="CA  ").replace("ATOM  ", "HETATM"), 1),
+    "after.pdb": ("".join([*CHAIN, "TER\n", _atom(9, 9, [9, 9, 9]).replace("ATOM  ", "HETATM")]), 1),
+    "either.pdb": (CHAIN[0] + CHAIN[0].replace("GLY", "ALA") + "".join(CHAIN[1:]), 1),
     "places.pdb": (CHAIN[0] + _atom(3, 1, [9, 9, 9], also="B") + "".join(CHAIN[1:]), 1),
     "models.pdb": ("MODEL        1\n" + "".join(CHAIN) + "ENDMDL\n" + "".join(OTHER) + "ENDMDL\n", 1),
     "modified.pdb": (CHAIN[0] + CHAIN[1].replace("ATOM  ", "HETATM") + CHAIN[2], 1),

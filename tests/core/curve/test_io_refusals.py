@@ -42,6 +42,7 @@ REFUSED: dict[str, tuple[str, int | None, str]] = {
     "real.tsv": ("1\t5\t2\t4\n3\t1.5\t4\t6\n", 2, "'1.5' is not a whole number"),
     "ragged.tsv": ("0\t4\t1\t3\t1\n2\t0\t3\t5\n", 2, "4 columns where the lines before have 5"),
     "sign.tsv": ("0\t4\t1\t3\t1\n2\t0\t3\t5\t-1\n4\t2\t5\t1\t1\n", 2, "sign of this crossing is -1"),
+    "many.tsv": ("0\t0\t1\t1\n" * 1001, None, "1001 crossings; at most 1000"),
     "edge.tsv": ("0\t4\t1\t3\n2\t0\t3\t5\n", None, "edge 4 is in the planar diagram code once"),
     "empty.pdb": ("HEADER    NOTHING\nEND\n", None, "no alpha carbon found"),
     "one.pdb": (ALPHA, 1, "an open polygon needs at least 2"),
