@@ -269,7 +269,7 @@ def test_what_cannot_be_kept_leaves_nothing(trefoil: str) -> None:
 def written_formats(command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
     """The suffixes that the help of a command has at OUT."""
     assert main([command, "--help"]) == 0
-    (told,) = re.findall(r"\n  OUT +(.*?) or -", capsys.readouterr().out, re.DOTALL)
+    (told,) = re.findall(r"\n  OUT +(.*?)\s+or\s+-", capsys.readouterr().out, re.DOTALL)
     return re.findall(r"\.\w+", told)
 
 
