@@ -34,6 +34,12 @@ def test_the_stiffness_of_bending_is_its_second_derivative_across_a_nearly_strai
     assert form == pytest.approx(along[0] - 2.0 * along[1] + along[2], rel=0.05)
 
 
+def test_the_stiffness_of_several_terms_adds_up() -> None:
+    curve, term = regular_polygon(20), Bending()
+    both = Objective(further=(Weighted(term, 2.0), Weighted(term, 0.5)))
+    np.testing.assert_allclose(both.stiffness(curve).toarray(), 2.5 * term.stiffness(curve).toarray())
+
+
 def test_bending_makes_relaxed_curves_rounder_and_steps_no_shorter() -> None:
     curve = torus_trefoil(60)
     plain, bent = (
