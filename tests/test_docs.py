@@ -1,5 +1,7 @@
 """The documents keep up with the program."""
 
+import doctest
+import importlib
 import re
 import sys
 import tomllib
@@ -92,6 +94,21 @@ def test_the_readme_has_both_commands():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     for marker in ("main command", "test command"):
         assert re.search(rf"<!-- {marker} -->\n\n    \S", readme)
+
+
+def test_examples_in_docstrings():
+    rooms = [*(ROOT / "core").rglob("*.py"), *(ROOT / "addon/engine").glob("*.py")]
+    names = [
+        ".".join(["mobius_flow", *path.relative_to(ROOT).with_suffix("").parts]).removesuffix(".__init__")
+        for path in rooms
+        if ">>> " in path.read_text(encoding="utf-8")
+    ]
+    tried = [
+        doctest.testmod(importlib.import_module(name))
+        for name in [*names, "hard_curves.lattice", "hard_curves.unknots"]
+    ]
+    assert sum(each.attempted for each in tried) > len(names)
+    assert not sum(each.failed for each in tried)
 
 
 def test_data_is_installed():
