@@ -342,9 +342,9 @@ MUTANTS = (
     ),
     Mutant(
         "parts let go by another mesh",
-        "core/driver/prepare.py",
-        "if parts is not None:\n        own_units",
-        "if False:\n        own_units",
+        "core/descent/problem.py",
+        "self.geometry, held.parts)",
+        "self.geometry, None)",
         "tests/core/test_split_links.py::test_held_parts_stay_held_on_another_mesh",
     ),
     Mutant(
