@@ -1,5 +1,7 @@
 """The documents keep up with the program."""
 
+import doctest
+import importlib
 import re
 import sys
 import tomllib
@@ -94,6 +96,21 @@ def test_the_readme_has_both_commands():
         assert re.search(rf"<!-- {marker} -->\n\n    \S", readme)
 
 
+def test_examples_in_docstrings():
+    rooms = [*(ROOT / "core").rglob("*.py"), *(ROOT / "addon/engine").glob("*.py")]
+    names = [
+        ".".join(["mobius_flow", *path.relative_to(ROOT).with_suffix("").parts]).removesuffix(".__init__")
+        for path in rooms
+        if ">>> " in path.read_text(encoding="utf-8")
+    ]
+    tried = [
+        doctest.testmod(importlib.import_module(name))
+        for name in [*names, "hard_curves.lattice", "hard_curves.unknots"]
+    ]
+    assert sum(each.attempted for each in tried) > len(names)
+    assert not sum(each.failed for each in tried)
+
+
 def test_data_is_installed():
     data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["package-data"]
     rooms = {package: ROOT.joinpath(*package.split(".")[1:]) for package in data}
@@ -101,7 +118,7 @@ def test_data_is_installed():
     found = {path for room in ("core", "cli", "addon") for path in (ROOT / room).rglob("*.*") if path.is_file()}
     found = {path for path in found if "__pycache__" not in path.parts}
     assert {path for path in found if path.suffix != ".py"} <= listed
-    assert listed <= found
+    assert all(list(rooms[package].glob(each)) for package, patterns in data.items() for each in patterns)
 
 
 def test_every_package_is_installed():
