@@ -17,6 +17,7 @@ ARGUMENTS = {
     "repulsion": ["60", "--latitudes", "12"],
     "resolution": ["3_1"],
     "soak": ["--flows", "2"],
+    "threads": ["3_1", "--max-iterations", "2"],
     "tries": ["T35", "--seeds", "1"],
 }
 
