@@ -21,6 +21,7 @@ ARGUMENTS = {
     "resolution": ["3_1"],
     "soak": ["--flows", "2"],
     "speed": ["--sizes", "60,80", "--solver", "hierarchical"],
+    "threads": ["3_1", "--max-iterations", "2"],
     "tries": ["T35", "--seeds", "1"],
 }
 

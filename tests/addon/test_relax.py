@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+import threadpoolctl
 
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, in_world, relax, stored, values  # noqa: E402
 from mathutils import Euler, Matrix, Vector  # noqa: E402
-from mobius_flow.core import Curve, RelaxOptions, minimize  # noqa: E402
+from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize  # noqa: E402
 from shapes import regular_polygon  # noqa: E402
 
 BOTTOM = {"max_iterations": 25}
@@ -23,6 +24,27 @@ def test_the_result_is_the_librarys():
     start = stored(obj.data).astype(np.float64)
     relax(**BOTTOM)
     np.testing.assert_array_equal(stored(obj.data), expected([start], **BOTTOM).astype(np.float32))
+
+
+def test_a_script_in_blender_finds_its_blas_threads_as_they_were(monkeypatch):
+    pools = threadpoolctl.ThreadpoolController().select(user_api="blas")
+    seen = []
+    monkeypatch.setattr(MoebiusEnergy, "value_and_derivative", spied(MoebiusEnergy.value_and_derivative, pools, seen))
+    with pools.limit(limits=2):
+        add_trefoil()
+        relax(max_iterations=2)
+        assert {each["num_threads"] for each in pools.info()} == {2}
+    assert set(seen) == {1}
+
+
+def spied(method, pools, seen):
+    """A method that notes how many threads there are."""
+
+    def spy(*arguments):
+        seen.extend(each["num_threads"] for each in pools.info())
+        return method(*arguments)
+
+    return spy
 
 
 def test_settings_come_from_the_scene_and_the_operators_own_win():

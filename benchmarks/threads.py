@@ -1,0 +1,50 @@
+"""What it gains that the library works with one BLAS thread: seconds of a relaxation, also while every core is busy.
+
+python benchmarks/threads.py 4_1 --max-iterations 80
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from contextlib import ExitStack
+
+from mobius_flow.core import RelaxOptions, relax
+from mobius_flow.core.driver.hops import hopping
+from mobius_flow.core.driver.loop import Relaxation
+from mobius_flow.core.driver.prepare import pins_of, prepared_start, start_problem
+from mobius_flow.core.driver.run import Run
+from mobius_flow.core.knots import knot
+
+SPIN = "import os; parent = os.getppid()\nwhile os.getppid() == parent: pass"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("name", nargs="?", default="4_1")
+    parser.add_argument("--max-iterations", type=int, default=80)
+    given = parser.parse_args()
+    curve, options = knot(given.name), RelaxOptions(max_iterations=given.max_iterations)
+    start = prepared_start(curve, None, [options])
+
+    def unbounded() -> Relaxation:
+        return hopping(Run(start_problem(start, options, pins_of(curve, start, options)), start, options))
+
+    print("other work   pools                seconds   of the processors")
+    for busy in (0, os.cpu_count() or 1):
+        with ExitStack() as stack:
+            for _ in range(busy):
+                process = stack.enter_context(subprocess.Popen([sys.executable, "-c", SPIN]))
+                stack.callback(process.kill)
+            for words, work in (("one thread (relax)", relax(curve, options)), ("as NumPy has them", unbounded())):
+                began, processor = time.perf_counter(), time.process_time()
+                for _ in work:
+                    pass
+                seconds, processor = time.perf_counter() - began, time.process_time() - processor
+                print(f"{busy} processes  {words:19} {seconds:8.2f}   {processor:8.2f}", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
