@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core.driver.compare import History, least_energy
-from .figures import draw_curve, figure_class, name_lines
+from .figures import draw_curve, figure_class, name_lines, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,7 +19,6 @@ _ENDS = {
     "iteration_limit": " (not done)",
     "stalled": " (stuck)",
 }
-DPI = 80  # so that a picture is a hundred kilobytes
 _CELL = 1.9  # inches of a curve's picture
 
 
@@ -50,7 +49,7 @@ def write_figure(path: Path, runs: Sequence[History]) -> None:
             lines = [_draw(axes, k, *each) for k, each in enumerate(zip(runs, places, heights, strict=True))]
         name_lines(right, lines, names)
     grid[0, 0].yaxis.set(major_formatter=LogFormatter(), minor_formatter=LogFormatter())  # 200, not 2 × 10²
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)
 
 
 def _draw(axes: "Axes", number: int, run: History, x: Sequence[float], y: Sequence[float]) -> "Line2D":
@@ -83,4 +82,4 @@ def write_strip(stages: Sequence[int], path: Path, runs: Sequence[History]) -> N
         row[0].text(-0.08, 0.5, run.method, transform=row[0].transAxes, ha="right", va="center", fontweight="bold")
     for axes, stage in zip(grid[0], stages, strict=True):
         axes.set_title("start" if stage == 0 else f"after {stage}", fontsize=11)
-    figure.savefig(path, dpi=DPI)
+    save(figure, path)

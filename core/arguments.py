@@ -69,7 +69,13 @@ def _hints(function: Callable[..., object]) -> dict[str, Any]:
     return get_type_hints(function)
 
 
+def _spelt_out(hint: Any) -> Any:
+    """What an alias stands for, such as NDArray from NumPy 2.5 on."""
+    return getattr(get_origin(hint) or hint, "__value__", hint)
+
+
 def _fits(value: Any, hint: Any) -> bool:
+    hint = _spelt_out(hint)
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         return any(_fits(value, each) for each in inner)
@@ -104,6 +110,7 @@ def _described(value: Any) -> str:
 
 
 def _wanted(hint: Any) -> str:
+    hint = _spelt_out(hint)
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         return " or ".join(dict.fromkeys(map(_wanted, inner)))

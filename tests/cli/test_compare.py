@@ -76,7 +76,7 @@ def test_nearer_strands_cover_farther_ones(mirror: list[int]) -> None:
     curve = curve.with_vertices(mirror * curve.vertices)
     draw_curve(axes, curve, "C0", 2.0)
     (lines,) = axes.collections
-    assert _writhe_sign(np.array(lines.get_segments())[1::2]) == np.sign(writhe_and_crossings(curve)[0])
+    assert _writhe_sign(np.array(lines.get_segments())[::2]) == np.sign(writhe_and_crossings(curve)[0])
 
 
 def _writhe_sign(segments: np.ndarray) -> int:
