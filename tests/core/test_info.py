@@ -71,7 +71,7 @@ def test_an_arc_that_relax_takes_for_converged_is_at_rest() -> None:
 
 
 def test_a_minimum_is_told_on_fine_meshes_too() -> None:
-    found = info(circle(1200)).rest
+    found = info(circle(500)).rest
     assert found is not None
     assert found.sentence == "at rest at a minimum"
 

@@ -8,7 +8,6 @@ from ...metrics import MoebiusMetric
 from ..events import Change, Event
 from ..outcome import ILL_CONDITIONED, MINIMUM, NO_WAY_DOWN, SADDLE, Outcome
 from ..run import Run
-from ..solver import Solver
 from ..stability import stability
 
 
@@ -38,5 +37,4 @@ class EscapeSaddle:
         point = self._run.point
         if point.problem.metric.name == MoebiusMetric.name:
             return point
-        metric = Solver.of_problem(self._run.options, point.problem).of_metric(MoebiusMetric())
-        return point.within(replace(point.problem, metric=metric))
+        return point.within(replace(point.problem, metric=point.problem.solver.of_metric(MoebiusMetric())))

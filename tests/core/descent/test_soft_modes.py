@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 from dense_stability import dense_modes
+from descent_contracts import point_on
 from mobius_flow.core import Curve, RelaxOptions, minimize
 from mobius_flow.core.descent import Point
 from mobius_flow.core.descent.soft_modes import BULK, smooth_starts, soft_modes
-from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.stability import stability
 from mobius_flow.core.knots import torus_knot
 from mobius_flow.core.types import FloatArray
@@ -17,7 +17,7 @@ from shapes import half_circle, hopf_link, regular_polygon, torus_trefoil
 
 
 def at(curve: Curve, **options: object) -> Point:
-    return start_problem(curve, RelaxOptions(mesh="fixed", vertices=len(curve), **options)).at_curve(curve)
+    return point_on(curve, edge_lengths="auto", mesh="fixed", **options)
 
 
 @cache
