@@ -35,7 +35,7 @@ KINDS = {
 def relaxed(kind: str, seed: int | None, method: str, tolerance: float) -> Result:
     """A curve's relaxation, or that of the same curve elsewhere, as floating-point numbers have it."""
     task, options = KINDS[kind]
-    options = replace(options, method=method, tolerance=tolerance, vertices=len(task.curve))
+    options = replace(options, method=method, tolerance=tolerance, vertices=len(task.curve), max_iterations=120)
     if seed is None:
         return minimize(task, options)
     turn = Rotation.random(random_state=seed).as_matrix()

@@ -31,7 +31,6 @@ from mobius_flow.core.descent.searches import (
     TrustRegion,
     WeakWolfe,
 )
-from mobius_flow.core.descent.searches.trust_region import Region
 from mobius_flow.core.descent.step import Leg, Rejected, attempt
 from shapes import hopf_link
 
@@ -119,17 +118,3 @@ def test_a_chord_through_a_strand_is_rejected() -> None:
 def test_constants_are_checked(make: Callable[[], object]) -> None:
     with pytest.raises(OptionError, match="must"):
         make()
-
-
-@pytest.mark.parametrize("apart", [1e-5, 1e-7, 3e-8])
-def test_the_trust_region_bears_vectors_that_are_nearly_dependent(apart: float) -> None:
-    """The last gradient is almost the present one; what it adds is a tangent vector all the same, not rounding."""
-    point = start()
-    other = np.random.default_rng(59).normal(size=point.vertices.shape)
-    noise = point.tangent_space.project(other)
-    last = point.gradient + apart * point.gradient_norm / point.tangent_space.norm(noise) * noise
-    radius = 1e-3 * point.gradient_norm
-    step, state = taken(TrustRegion().step(point, State(Region(radius, last))))
-    predicted = radius * point.gradient_norm
-    assert point.energy - step.point.energy == pytest.approx(predicted, rel=0.1)
-    assert state.memory.radius == 2.0 * radius
