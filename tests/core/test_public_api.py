@@ -136,6 +136,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
 }
 OF_THE_PROGRAM = {
     "CurveFile",
+    "Weighted",
     "Format",
     "KnotType",
     "Drawing",
