@@ -19,6 +19,7 @@ from itertools import islice
 from types import MappingProxyType
 from typing import NamedTuple
 
+from ..checks import check_known
 from ..errors import CurveError
 from .diagram import Diagram, Pass
 from .faces import Faces
@@ -69,6 +70,7 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
         start = len(text) - len(text.lstrip(" \t\n,;"))
     text = " " * start + text[start:].rstrip()  # so that errors count characters from where the text begins
     kind = kind or _kind_of_list(text)
+    check_known("kind", kind, NOTATIONS)
     if not text.strip(" \t\n,;"):
         raise CurveError(f"the code is empty; write such as {NOTATIONS[kind].example}")
     diagram = NOTATIONS[kind].read(text)

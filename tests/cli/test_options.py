@@ -125,7 +125,7 @@ def test_options_of_the_subcommand_itself_are_not_the_relaxations():
 def test_tangents_without_pins_are_refused(tmp_path, capsys):
     write_curve(tmp_path / "a.txt", torus_trefoil(30))
     assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.txt"), "--pin-tangents"]) == 2
-    assert "pin_tangents holds the neighbours of pinned vertices, but there are no pins" in capsys.readouterr().err
+    assert "pin_tangents pins the neighbours of pins, but there are none; give pins too" in capsys.readouterr().err
 
 
 def test_a_time_limit_ends_like_an_interrupt(tmp_path):

@@ -102,7 +102,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
             "fallback_steps": (),
             "seconds": 1.0,
             "method": "cg",
-            "obstacles": (),
+            "task": core.Task(curve=TREFOIL),
         },
     ),
     "WithOutcome": (WithOutcome, {"relaxation": relax(TREFOIL, SHORT)}),
@@ -117,7 +117,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "info": (info, {"curve": TREFOIL}),
     "measure": (measure, {"curve": TREFOIL, "energy": "edge"}),
     "Extrapolation": (Extrapolation, {"energies": (3.0, 2.0, 1.5)}),
-    "extrapolated": (extrapolated, {"curve": TREFOIL, "options": SHORT}),
+    "extrapolated": (extrapolated, {"given": TREFOIL, "options": SHORT}),
     "verify": (verify, {"path": "missing.npz", "callback": lambda *_: None}),
     "knot": (knots.knot, {"name": "3_1", "vertices": 20}),
     "knot_type": (knots.knot_type, {"curve": TREFOIL}),
@@ -136,6 +136,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
 }
 OF_THE_PROGRAM = {
     "CurveFile",
+    "Weighted",
     "Format",
     "KnotType",
     "Drawing",
