@@ -104,7 +104,7 @@ def _at_run_time(kind: Any) -> bool:
 
 def _described(value: Any) -> str:
     """What is given: the value itself where that is short, or its type."""
-    if isinstance(value, str | int | float | complex | None):
+    if isinstance(value, str | int | float | complex | tuple | None):
         return shown(value)
     return f"of type {type(value).__name__}"
 

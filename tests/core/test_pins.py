@@ -241,7 +241,7 @@ def test_little_slack_is_no_obstacle() -> None:
         ({"pins": (2, 90)}, "pins asks for vertex 91, but the curve has 90 vertices"),
         ({"pins": (2, 5, 2)}, "pins names vertex 3 more than once"),
         ({"pins": (-1,)}, "pins asks for vertex 0, but the curve has 90 vertices"),
-        ({"pins": (0.5,)}, "pins is of type tuple; give a tuple, each a whole number"),
+        ({"pins": (0.5,)}, "pins is (0.5,); give a tuple, each a whole number"),
         ({"pins": "12"}, "pins is '12'; give a tuple, each a whole number"),
         ({"pins": 12}, "pins is 12; give a tuple, each a whole number"),
         (
