@@ -88,4 +88,4 @@ def test_the_package_has_every_module_and_all_data(tmp_path):
     wanted = {path.relative_to(ROOT) for path in rooms if path.is_file() and "__pycache__" not in path.parts}
     package = tmp_path / "built/mobius_flow"
     found = {path.relative_to(package) for path in package.rglob("*") if path.is_file()}
-    assert found == wanted | {Path("__init__.py"), Path("__main__.py")}
+    assert found == wanted | {Path(name) for name in ("__init__.py", "__main__.py", "py.typed")}
