@@ -6,7 +6,7 @@ asks for it, so the library works where there is no Blender. Scripts in Blender 
 
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 
 def register() -> None:

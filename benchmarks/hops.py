@@ -1,4 +1,4 @@
-"""What hops lead to from local minima, and from where curves are stuck: the table in docs/energies.md.
+"""What hops lead to from local minima, and from where curves are stuck: the table in docs/local-minima.md.
 
     python benchmarks/hops.py                    every case, 6 hops each
     python benchmarks/hops.py T35 --hops 2       one of them

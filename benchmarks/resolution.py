@@ -1,4 +1,4 @@
-"""How far above the smooth curve's least energy `relax` ends by default: the table in docs/energies.md.
+"""How far above the smooth curve's least energy `relax` ends by default: the table in docs/accuracy.md.
 
     python benchmarks/resolution.py              every prime knot to seven crossings
     python benchmarks/resolution.py 3_1 7_7

@@ -1,4 +1,4 @@
-"""What single tries lead to from local minima: the first table about hops in docs/energies.md.
+"""What single tries lead to from local minima: the first table about hops in docs/local-minima.md.
 
     python benchmarks/tries.py                   every minimum, 6 seeds
     python benchmarks/tries.py T38 --seeds 2     one of them

@@ -3,6 +3,7 @@
 import signal
 from pathlib import Path
 
+import pytest
 import scipy.linalg  # noqa: F401 (a pool can be bounded once it is there)
 import threadpoolctl
 from hypothesis import HealthCheck, settings
@@ -22,3 +23,16 @@ settings.load_profile("same")
 # curves of other people's, which are tested too where somebody has put them beside the project
 collect_ignore = [] if Path(__file__).parents[2].joinpath("shared").is_dir() else ["core/knots/test_shared_inputs.py"]
 collect_ignore.append("plugins")  # modules for a copy of the package, see test_plugins.py
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Long tests run when asked for."""
+    parser.addoption("--slow", action="store_true", help="run the tests marked slow, too")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Skip them otherwise."""
+    if not config.getoption("--slow"):
+        for item in items:
+            if item.get_closest_marker("slow"):
+                item.add_marker(pytest.mark.skip(reason="slow; run by pytest --slow"))

@@ -33,26 +33,27 @@ def energies() -> str:
         (f"`{name}`", each.description, f"{each.scale_exponent:g}", "yes" if hasattr(each, "hessian") else "no")
         for name, each in ENERGIES.items()
     ]
-    return _table(("name", "what it is", "scales like length to the", "second derivative"), rows)
+    return _table(("name", "what it is", "scaling exponent", "second derivative"), rows)
 
 
 def metrics() -> str:
     """The metrics, each with its inner product, which is its class's first sentence."""
     rows = [
-        (f"`{name}`", each.description, _first_line(type(each)).removesuffix("."), f"{each.most_vertices:,}")
+        (f"`{name}`", _typeset(each.description), _first_line(type(each)).removesuffix("."), f"{each.most_vertices:,}")
         for name, each in METRICS.items()
     ]
     return _table(("name", "space", "⟨u, u⟩", "vertices up to"), rows)
 
 
 def methods() -> str:
-    """The methods, and the pages whose titles name them."""
-    pages = list(_pages())
+    """The methods, each linked to the section whose heading names it."""
+    sections = list(_sections())
     rows = []
     for name, each in METHODS.items():
-        page = next((f"[{title}]({file})" for file, title, names in pages if _is_one_of(name, names)), "")
-        rows.append((f"`{name}`", each.label, each.description, page))
-    return _table(("name", "in Blender", "what it is", "page"), rows)
+        anchor = next((anchor for anchor, names in sections if _is_one_of(name, names)), "")
+        link = f"[`{name}`](#{anchor})" if anchor else f"`{name}`"
+        rows.append((link, _typeset(each.label), _typeset(each.description)))
+    return _table(("name", "in Blender", "what it is"), rows)
 
 
 def options() -> str:
@@ -74,7 +75,7 @@ def formats() -> str:
 
 def rooms() -> str:
     """The import map of the house."""
-    return f"```mermaid\n{drawn(import_map(ROOT))}\n```\n"
+    return f"```{{graphviz}}\n{drawn(import_map(ROOT))}\n```\n"
 
 
 RENDERERS: Mapping[str, Callable[[], str]] = MappingProxyType(
@@ -102,15 +103,20 @@ def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
     return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
 
 
+def _typeset(text: str) -> str:
+    """Let spaces and metrics be formulas."""
+    return re.sub(r"W\^\{.*?\}|J_C", r"$\g<0>$", text)
+
+
 def _first_line(owner: type) -> str:
     return cleandoc(str(owner.__doc__)).splitlines()[0]
 
 
-def _pages() -> Iterator[tuple[str, str, list[str]]]:
-    """File, title, and the names or patterns of the methods that a page is about."""
-    for path in sorted((ROOT / "docs/methods").glob("[!R]*.md")):
-        title, _, names = path.read_text(encoding="utf-8").splitlines()[0].removeprefix("# ").partition(": ")
-        yield path.name, title, re.findall(r"`(\S+)`", names)
+def _sections() -> Iterator[tuple[str, list[str]]]:
+    """The anchor of each section about methods, as GitHub and MyST make it, and their names or patterns."""
+    for heading in re.findall(r"^## (.+: `.+)$", (ROOT / "docs/methods.md").read_text(encoding="utf-8"), re.MULTILINE):
+        anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+        yield anchor, re.findall(r"`(\S+)`", heading)
 
 
 def _is_one_of(name: str, patterns: Iterable[str]) -> bool:

@@ -1,4 +1,4 @@
-"""Write results of batches into the table of least energies in docs/energies.md.
+"""Write results of batches into the table of least energies in docs/least-energies.md.
 
     mobius-flow batch 0_1..10_165 L2a1..L7n2 -o results --extrapolate --escape-saddles
     python tools/energy_table.py results/results.csv [MORE.csv ...]
@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "energies.md"
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "least-energies.md"
 _REGION = re.compile(r"(?<=<!-- table: least energies -->\n).*?(?=<!-- end -->)", re.DOTALL)
 _CELL = re.compile(r"(\w+) \| ([\d.]+) ± ([\d.]+) \| (\d+)")
 _COLUMNS = 3  # of types, beside each other

@@ -4,7 +4,7 @@ A room is a package directly below `core`, `addon` or `cli`, with all that is in
 alone. The files of curves are a room of their own: they hold codes of knots, which are made of curves. Imports inside
 functions and those for type checkers count like the others: whoever reads a file has to know what it names.
 
-    python tools/import_map.py         the map as Mermaid draws it
+    python tools/import_map.py         the map as Graphviz draws it
 """
 
 import ast
@@ -78,14 +78,14 @@ def reachable(rooms: Map, start: str) -> set[str]:
 
 
 def drawn(rooms: Map) -> str:
-    """A Mermaid flowchart, importers above; arrows that follow from others are left out. Raises CycleError."""
+    """A Graphviz graph, importers above; arrows that follow from others are left out. Raises CycleError."""
     order = list(TopologicalSorter({name: sorted(rooms[name]) for name in rooms}).static_order())[::-1]
     beyond = {name: reachable(rooms, name) for name in rooms}
-    lines = ["flowchart TD"]
+    lines = ["digraph rooms {", '    node [shape=plain, fontname="sans-serif", fontsize=11];']
     for name in order:
         direct = {there for there in rooms[name] if not any(there in beyond[other] for other in rooms[name])}
-        lines += [f"    {name} --> {there}" for there in sorted(direct)]
-    return "\n".join(lines)
+        lines += [f'    "{name}" -> "{there}";' for there in sorted(direct)]
+    return "\n".join([*lines, "}"])
 
 
 if __name__ == "__main__":

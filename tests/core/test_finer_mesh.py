@@ -10,7 +10,7 @@ from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 from torus_energies import torus_knot_minimum
 
 SMOOTH = {"5_1": torus_knot_minimum(2, 5), "6_2": 172.0607, "7_6": 207.2577}
-"""Minima of smooth curves, those beside the torus knot by extrapolation; see docs/energies.md."""
+"""Minima of smooth curves, those beside the torus knot by extrapolation; see docs/accuracy.md."""
 
 
 def recorded(curve: Curve, **options: object) -> tuple[Result, list[Curve]]:

@@ -1,0 +1,82 @@
+"""How the site is built: python -m sphinx -W docs build/docs
+
+Add -D plot_gallery=0 to leave the gallery's examples unexecuted.  Nothing is fetched, neither here nor by the pages.
+"""
+
+import re
+import sys
+import tomllib
+from importlib.util import find_spec
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "docs" / "_extensions"))
+
+project = "Möbius Flow"
+author = "The Möbius Flow authors"
+copyright = f"2026 {author}"
+release = version = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))["version"]
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.graphviz",
+    "sphinx.ext.napoleon",
+    "sphinx_argparse_cli",
+    "sphinx_gallery.gen_gallery",
+    "docstrings",
+    "mathml",
+]
+exclude_patterns = ["_extensions"]
+suppress_warnings = ["config.cache"]  # the gallery's settings hold objects
+
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+smartquotes = False
+
+default_role = "py:obj"
+add_module_names = False
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+python_maximum_signature_line_length = 100
+python_use_unqualified_type_names = True
+# Blender's modules are there where the extra "blender" is installed
+_BLENDER = ["bl_operators", "bl_ui", "blf", "bpy", "bpy_extras", "gpu", "gpu_extras", "mathutils"]
+autodoc_mock_imports = [] if find_spec("bpy") else _BLENDER
+napoleon_google_docstring = False
+napoleon_attr_annotations = False
+napoleon_use_rtype = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": ["../examples"],
+    "gallery_dirs": ["gallery"],
+    "filename_pattern": r"\.py$",
+    "ignore_pattern": r"drawing\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "remove_config_comments": True,
+    "download_all_examples": False,
+    "show_memory": False,
+    "write_computation_times": False,
+    "min_reported_time": 1e9,
+    "abort_on_example_error": True,
+}
+
+html_theme = "furo"
+html_title = "Möbius Flow"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_copy_source = html_show_sourcelink = False
+html_math_renderer = "mathml"
+graphviz_output_format = "svg"
+
+
+def link_to_gallery(_app: Sphinx, _page: str, source: list[str]) -> None:
+    """Lead links to examples, which are for readers of the repository, to their pages."""
+    source[0] = re.sub(r"\]\(\.\./examples/(\w+)\.py\)", r"](gallery/\1)", source[0])
+
+
+def setup(app: Sphinx) -> None:
+    """Called by Sphinx."""
+    app.connect("source-read", link_to_gallery)
