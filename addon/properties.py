@@ -96,12 +96,7 @@ def _bounds(option: Option) -> dict[str, Any]:
 def settings(options: set[str]) -> dict[str, Any]:
     """Declare the settings as properties with the given options."""
     return {option.name: _property(option, options) for option in shown()} | {
-        "pin_tangents": BoolProperty(
-            name="Pin Tangents",
-            description=("Pin the neighbours of pinned points in the refined start, and so the direction there"),
-            default=False,
-            options=options,
-        ),
+        "pin_tangents": _pin_tangents(options),
         "keyframes": EnumProperty(
             name="Keyframes",
             description="What the animation is written as",
@@ -147,6 +142,15 @@ def settings(options: set[str]) -> dict[str, Any]:
             options=options,
         ),
     }
+
+
+def _pin_tangents(options: set[str]) -> Any:
+    return BoolProperty(
+        name="Pin Tangents",
+        description="Pin the neighbours of pinned points in the refined start, and so the direction there",
+        default=False,
+        options=options,
+    )
 
 
 def _timing(options: set[str]) -> dict[str, Any]:
