@@ -10,10 +10,10 @@ import sys
 import time
 from contextlib import ExitStack
 
-from mobius_flow.core import RelaxOptions, relax
+from mobius_flow.core import RelaxOptions, Task, relax
 from mobius_flow.core.driver.hops import hopping
 from mobius_flow.core.driver.loop import Relaxation
-from mobius_flow.core.driver.prepare import pins_of, prepared_start, start_problem
+from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot
 
@@ -26,10 +26,10 @@ def main() -> int:
     parser.add_argument("--max-iterations", type=int, default=80)
     given = parser.parse_args()
     curve, options = knot(given.name), RelaxOptions(max_iterations=given.max_iterations)
-    start = prepared_start(curve, None, [options])
+    start = Task(curve=curve).refined()
 
     def unbounded() -> Relaxation:
-        return hopping(Run(start_problem(start, options, pins_of(curve, start, options)), start, options))
+        return hopping(Run(start_problem(start, options), start.curve, options))
 
     print("other work   pools                seconds   of the processors")
     for busy in (0, os.cpu_count() or 1):

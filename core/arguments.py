@@ -115,8 +115,8 @@ def _wanted(hint: Any) -> str:
     if origin in (Union, types.UnionType):
         return " or ".join(dict.fromkeys(map(_wanted, inner)))
     kind = origin or hint
-    if origin in (tuple, list, Sequence) and inner[0] in _WORDS:
+    if origin in (tuple, list, Sequence):
         count = f" of {len(inner)}" if _is_of_fixed_length(hint) else ""
-        return f"{_WORDS[kind]}{count}, each {_WORDS[inner[0]]}"
+        return f"{_WORDS.get(kind, 'a list')}{count}, each {_wanted(inner[0])}"
     name = getattr(kind, "__name__", str(kind))
     return _WORDS.get(kind) or f"{'an' if name[0] in 'AEIO' else 'a'} {name}"

@@ -68,19 +68,19 @@ class Extrapolation:
 
 
 @checked
-def extrapolated(given: Task | Curve, options: RelaxOptions) -> Extrapolation | None:
+def extrapolated(curve: Curve | Task, options: RelaxOptions) -> Extrapolation | None:
     """Relax a relaxed curve on with every edge halved, and halved again; None if one of the runs does not converge.
 
     There are twice and four times as many vertices, and few iterations.
 
     Parameters
     ----------
-    given
+    curve
         A converged curve, in the user's units, or a task with its pins and obstacles.
     options
         How it was relaxed; tolerances above `TOLERANCE` are taken for that.
     """
-    task, energies = Task.of(given), []
+    task, energies = Task.of(curve), []
     for pieces in (1, 2, 2):
         finer = subdivide(task.curve, np.full(task.curve.mesh.edges, pieces))
         task = replace(task, curve=finer, pins=tuple(task.held.on(finer).vertices.tolist()))

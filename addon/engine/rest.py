@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from ...core import CurveError, RelaxOptions, Status, Task, minimize
+from ...core import Curve, CurveError, RelaxOptions, Status, Task, minimize
 from .phrase import Phrase
 
 MAX_POINTS = 1500  # some ten seconds
@@ -25,7 +25,7 @@ class Rest:
     words: str
 
     @classmethod
-    def of(cls, task: Task, options: RelaxOptions) -> "Rest":
+    def of(cls, curve: Curve | Task, options: RelaxOptions) -> "Rest":
         """Look at the end of a relaxation that was done with these options.
 
         Raises
@@ -33,6 +33,7 @@ class Rest:
         MobiusFlowError
             If the curve has too many points, or the options leave no way to tell.
         """
+        task = Task.of(curve)
         if len(task.curve) > MAX_POINTS:
             raise CurveError(
                 Phrase(

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...core import RelaxOptions, Task
+from ...core import Curve, RelaxOptions, Task
 from ...core.knots.alexander import TRIVIAL, signature
 from .phrase import Phrase
 
@@ -19,13 +19,14 @@ class Target:
     label: Phrase
 
 
-def target_of(task: Task, options: RelaxOptions) -> Target | None:
+def target_of(curve: Curve | Task, options: RelaxOptions) -> Target | None:
     """What the energy of a curve goes down to at the least; None if nothing useful is known.
 
     A closed component has at least the energy of a circle, which a knotted one is far from: a curve whose Alexander
     polynomial shows that it is knotted has no target. An arc has at least that of a segment, which it comes near to
     where its ends are free. Pins and obstacles keep curves far above that.
     """
+    task = Task.of(curve)
     if options.energy != "moebius" or options.terms or task.pins or task.obstacles:
         return None
     curve = task.curve

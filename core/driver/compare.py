@@ -62,7 +62,7 @@ class History:
 @checked
 @BLAS.bounded()
 def compare(
-    given: Task | Curve,
+    curve: Curve | Task,
     methods: Sequence[str],
     options: RelaxOptions,
     time_limit: float,
@@ -83,8 +83,8 @@ def compare(
         raise OptionError(f"methods are {','.join(methods):.60}; give each of them once")
     each = [replace(options, method=method) for method in methods]
     for wanted in each:
-        check_size(Task.of(given).curve, wanted)
-    task = Task.of(given).refined(options.vertices)
+        check_size(Task.of(curve).curve, wanted)
+    task = Task.of(curve).refined(options.vertices)
     each = [replace(wanted, vertices=len(task.curve)) for wanted in each]
     problems = [start_problem(task, wanted) for wanted in each]
     return (_run(task, *pair, time_limit, stages) for pair in zip(each, problems, strict=True))

@@ -124,7 +124,7 @@ class Result:
 
 @checked
 @BLAS.bounded()
-def relax(task: Task | Curve, options: RelaxOptions | None = None) -> Relaxation:
+def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxation:
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
     In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
@@ -132,7 +132,7 @@ def relax(task: Task | Curve, options: RelaxOptions | None = None) -> Relaxation
 
     Parameters
     ----------
-    task
+    curve
         An embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.
     options
         What is asked for.
@@ -146,9 +146,9 @@ def relax(task: Task | Curve, options: RelaxOptions | None = None) -> Relaxation
     """
     began = time.perf_counter()
     options = RelaxOptions() if options is None else options
-    given = Task.of(task)
-    check_size(given.curve, options)
-    start = given.refined(options.vertices)
+    task = Task.of(curve)
+    check_size(task.curve, options)
+    start = task.refined(options.vertices)
     try:
         run = Run(start_problem(start, options), start.curve, options)
     except np.linalg.LinAlgError as error:
@@ -173,14 +173,14 @@ def _remedy(curve: Curve) -> str:
 
 @checked
 def minimize(
-    task: Task | Curve, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
+    curve: Curve | Task, options: RelaxOptions | None = None, callback: Callable[[Iterate], None] | None = None
 ) -> Result:
     """Relax a curve to the end and return the result.
 
     A keyboard interrupt, or a lack of memory, keeps the curve reached so far.  ``callback`` gets every iterate, unless
     an interrupt cuts it short.  Raises as `relax` does.
     """
-    return finish(relax(task, options), Task.of(task), options or RelaxOptions(), callback)
+    return finish(relax(curve, options), Task.of(curve), options or RelaxOptions(), callback)
 
 
 def finish(

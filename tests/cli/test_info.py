@@ -93,8 +93,8 @@ def test_names_may_be_codes(name, told, tmp_path, run):
     assert sum(found["vertices"]) == 90
 
 
-@pytest.mark.parametrize("name", ["K11n34", "11a_1", "L8n3", "12n242"])
-def test_names_of_larger_tables_are_asked_for_as_codes(name, run):
+@pytest.mark.parametrize("name", ["K99n34", "11a_99999", "L8n99999", "12n999999"])
+def test_names_that_no_table_has_are_asked_for_as_codes(name, run):
     status, _, said = run("knot", name, "-")
     assert status == 2
     assert "give its code, such as" in said

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.cli import main
-from mobius_flow.core import Iterate, RelaxOptions, Result, read_curve, write_curve
+from mobius_flow.core import Iterate, RelaxOptions, Result, Task, read_curve, write_curve
 from mobius_flow.core.driver import Relaxation, finish
 from mobius_flow.core.verify import verify
 from processes import running
@@ -64,13 +64,15 @@ def test_an_interrupt_while_an_iterate_is_recorded(
     """Curve and trajectory end with the same frame."""
     out, trajectory = tmp_path / "o.txt", tmp_path / "t.npz"
 
-    def interrupting(relaxation: Relaxation, options: RelaxOptions, callback: Callable[[Iterate], None]) -> Result:
+    def interrupting(
+        relaxation: Relaxation, task: Task, options: RelaxOptions, callback: Callable[[Iterate], None]
+    ) -> Result:
         def wrapped(iterate: Iterate) -> None:
             callback(iterate)
             if iterate.index == 3:
                 raise KeyboardInterrupt
 
-        return finish(relaxation, options, wrapped)
+        return finish(relaxation, task, options, wrapped)
 
     monkeypatch.setattr("mobius_flow.cli.relax.finish", interrupting)
     assert main(["relax", str(trefoil), str(out), "--trajectory", str(trajectory), "--quiet", *ENDLESS]) == 130

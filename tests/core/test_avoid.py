@@ -6,8 +6,8 @@ from mobius_flow.core import (
     METHODS,
     Curve,
     CurveError,
+    MobiusFlowError,
     Obstacle,
-    OptionError,
     RelaxOptions,
     Status,
     Task,
@@ -143,7 +143,7 @@ def test_the_repulsion_of_large_obstacles_is_right():
 
 @pytest.mark.parametrize("value", [plate(1.0), "wall.obj", [[0.0, 0.0]], 3, None])
 def test_what_is_no_tuple_of_obstacles_is_refused(value):
-    with pytest.raises(OptionError, match=r"obstacles (is|has) .*(a tuple, such as \(Obstacle\(|must be an obstacle)"):
+    with pytest.raises(MobiusFlowError, match=r"obstacles is .*; give a tuple, each an Obstacle$"):
         Task(curve=torus_trefoil(30), obstacles=value)
 
 

@@ -7,7 +7,7 @@ from mobius_flow.core.collision import Contact
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.errors import Place
-from shapes import torus_trefoil
+from shapes import regular_polygon, torus_trefoil
 
 SQUARE = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]
 AWAY = [[9.0, 0.0, 0.0], [9.0, 2.0, 0.0], [9.0, 0.0, 2.0]]
@@ -48,7 +48,7 @@ def test_strands_that_are_too_near_are_found_on_the_refined_curve():
 
 def test_what_is_the_matter_with_the_whole_curve_is_nowhere():
     with pytest.raises(CurveError) as error:
-        relax("no curve")
+        relax(regular_polygon(30).with_vertices(1e-60 * regular_polygon(30).vertices))
     assert error.value.place is None
 
 

@@ -227,7 +227,14 @@ def test_a_curve_in_four_dimensions_is_refused_at_once(tmp_path: Path, monkeypat
 
     write_curve(tmp_path / "a.json", Curve(np.pad(regular_polygon(12).vertices, ((0, 0), (0, 1)))))
     monkeypatch.setattr(single, "minimize", lambda *_: pytest.fail("work for nothing"))
-    (job,) = jobs(inputs([str(tmp_path / "a.json")]), 1, tmp_path / "out", RelaxOptions(), [], False)
+    (job,) = jobs(
+        inputs([str(tmp_path / "a.json")]),
+        1,
+        tmp_path / "out",
+        RelaxOptions(),
+        {"avoid": [], "pins": [], "pin_tangents": False},
+        False,
+    )
     row = single.relaxed(job)
     assert row.failed
     assert row.message.startswith(f"{tmp_path / 'a.json'}: the curve is in dimension 4, and curve.txt holds")

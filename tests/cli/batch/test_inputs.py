@@ -8,6 +8,8 @@ from mobius_flow.cli.batch.inputs import Input, inputs
 from mobius_flow.cli.batch.job import jobs
 from mobius_flow.core import MobiusFlowError, RelaxOptions
 
+STILL = {"avoid": [], "pins": [], "pin_tangents": False}
+
 
 @pytest.fixture(autouse=True)
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,7 +92,7 @@ def test_words_that_name_nothing(word: str, told: str, tmp_path: Path, monkeypat
 
 
 def test_starts_have_folders_and_seeds(tmp_path: Path) -> None:
-    made = jobs(inputs(["3_1", "b.txt"]), 3, tmp_path, RelaxOptions(seed=10), [], False)
+    made = jobs(inputs(["3_1", "b.txt"]), 3, tmp_path, RelaxOptions(seed=10), STILL, False)
     assert [(job.name, job.start, job.seed) for job in made[:3]] == [("3_1", 1, None), ("3_1", 2, 12), ("3_1", 3, 13)]
     assert [os.path.basename(job.folder) for job in made] == ["3_1", "3_1-2", "3_1-3", "b", "b-2", "b-3"]
     assert all(job.sha256 is None for job in made[:3])
@@ -101,4 +103,4 @@ def test_starts_have_folders_and_seeds(tmp_path: Path) -> None:
 def test_results_do_not_share_a_folder(other: str, tmp_path: Path) -> None:
     Path(other).write_text("0 0 0\n")
     with pytest.raises(MobiusFlowError, match="rename it"):
-        jobs(inputs(["b.txt", other]), 2, tmp_path, RelaxOptions(), [], False)
+        jobs(inputs(["b.txt", other]), 2, tmp_path, RelaxOptions(), STILL, False)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from knot_diagrams import pairwise_linking
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core.curve import Curve
-from mobius_flow.core.errors import CurveError
+from mobius_flow.core.errors import CurveError, MobiusFlowError
 from mobius_flow.core.knots import braid_closure, torus_knot
 
 
@@ -118,12 +118,12 @@ def test_components_and_linking_numbers_are_those_of_the_word(word: list[int], s
     ("word", "strands", "reason"),
     [
         ([1, 0], None, "letter 2"),
-        ([1.5], None, "letter 1"),
+        ([1.5], None, "each a whole number"),
         ([1, 2], 2, "need 3"),
         ([600], None, "at most 500"),
         ([1] * 20_001, None, "20001 letters"),
     ],
 )
 def test_words_that_are_none(word: list[int], strands: int | None, reason: str) -> None:
-    with pytest.raises(CurveError, match=reason):
+    with pytest.raises(MobiusFlowError, match=reason):
         braid_closure(word, strands=strands)
