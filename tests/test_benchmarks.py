@@ -36,7 +36,11 @@ def run(name, *arguments):
     return finished([sys.executable, str(BENCHMARKS / f"{name}.py"), *arguments])
 
 
-@pytest.mark.parametrize("name", ARGUMENTS)
+QUICK = {"collision", "hierarchy", "metric", "obstacles", "repulsion"}
+NAMES = [pytest.param(each, marks=() if each in QUICK else pytest.mark.slow) for each in ARGUMENTS]
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(name, *ARGUMENTS[name])
@@ -46,6 +50,7 @@ def test_it_runs(name, tmp_path, monkeypatch):
     assert len(done.stdout.splitlines()) >= least
 
 
+@pytest.mark.slow
 def test_a_knot_that_is_not_what_it_should_be_fails():
     done = run("knots", "knots", "--only", "3_1,unknot-lattice-20", "--max-iterations", "1")
     header, trefoil, unknot = done.stdout.splitlines()
@@ -57,6 +62,7 @@ def test_a_knot_that_is_not_what_it_should_be_fails():
     assert (done.returncode, "is unknown" in done.stderr) == (2, True)
 
 
+@pytest.mark.slow
 def test_figures_of_speed():
     done = run("speed", "--sizes", "60,200", "--solver", "hierarchical", "--accuracy", "1e-3", "--json")
     report = json.loads(done.stdout)

@@ -49,7 +49,7 @@ def killed(copy: Path, mutant: Mutant) -> bool:
 def passes(copy: Path, tests: Sequence[str]) -> bool:
     """Whether tests pass in the copy, which goes before an installed package."""
     environment = {**os.environ, "PYTHONPATH": str(copy.parent), "PYTHONDONTWRITEBYTECODE": "1"}
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests]
+    command = [sys.executable, "-m", "pytest", "--slow", "-q", "-x", "-p", "no:cacheprovider", *tests]
     return subprocess.run(command, cwd=copy, env=environment, capture_output=True, check=False).returncode == 0
 
 

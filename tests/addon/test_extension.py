@@ -16,10 +16,6 @@ bpy = pytest.importorskip("bpy")
 
 ROOT = Path(__file__).resolve().parents[2]
 PLATFORM = "linux-x64"
-slow = pytest.mark.skipif(
-    os.environ.get("MOBIUS_FLOW_SLOW") != "1" or not sys.platform.startswith("linux"),
-    reason="fetches the wheels for Linux; enabled by MOBIUS_FLOW_SLOW=1",
-)
 
 
 @pytest.fixture(scope="module")
@@ -173,7 +169,8 @@ def blender_alone(room):
     return room
 
 
-@slow
+@pytest.mark.slow
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="installs the wheels for Linux")
 def test_it_works_in_a_clean_profile(builder, tmp_path):
     archive = builder.build(PLATFORM, tmp_path, ROOT / "build" / "wheels")
     profile = tmp_path / "profile"

@@ -103,6 +103,7 @@ def test_keys_are_not_about_a_spline_that_is_closed_later():
     assert "has other keys or points than it was baked with" in refusal(bpy.context).sentence
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "ends"), [("BEZIER", True), ("NURBS", False), ("NURBS", True)])
 def test_smooth_splines_are_drawn_open(kind, ends):
     obj = add_arc(kind=kind)

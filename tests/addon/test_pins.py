@@ -170,6 +170,7 @@ def test_a_link_counts_on(capfd):
     np.testing.assert_array_equal(frames[:, index], np.broadcast_to(ARC[5], (len(frames), 3)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["BEZIER", "NURBS"])
 def test_ends_of_smooth_splines_may_be_pinned(kind):
     obj = add_arc(kind=kind)

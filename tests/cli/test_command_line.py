@@ -113,6 +113,7 @@ def test_knots_are_listed(capsys):
     assert names == knot_names()
 
 
+@pytest.mark.slow
 def test_knots_that_no_command_reads_are_not_written(tmp_path, capsys):
     path = tmp_path / "k.txt"
     assert run("knot", "T(300,301)", path) == 2

@@ -13,6 +13,7 @@ KINDS = re.findall(r"^@kind\ndef (\w+)", (TOOLS / "odd_cases.py").read_text(enco
 PATIENT = ["--patience", "200"]  # on a machine that has other work to do
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_odd_commands_are_taken_well(kind: str) -> None:
     # a process of its own: the memory of the one that starts a command counts as the command's

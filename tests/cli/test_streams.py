@@ -210,6 +210,7 @@ def measured(words: list[str], **options: object) -> tuple[int, int, str]:
     return int(status), int(kilobytes) >> 10, done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is told by /proc")
 @pytest.mark.parametrize("command", ["relax", "energy", "compare"])
 @pytest.mark.parametrize("kind", ["vertices", "more", "dimension", "zero"])

@@ -52,6 +52,7 @@ def test_expansions_are_tightened_for_the_accuracy_asked_for() -> None:
     assert result.certified
 
 
+@pytest.mark.slow
 def test_what_cannot_be_reached_is_told() -> None:
     assert LESS_ACCURATE in short(accuracy=1e-12).message
 
@@ -91,6 +92,7 @@ def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  
     assert message.endswith("in the gradient's norm; the dense solver has none of them")
 
 
+@pytest.mark.slow
 def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     from mobius_flow.core.driver.interventions import check_accuracy
 

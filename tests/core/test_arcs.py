@@ -98,6 +98,7 @@ def test_coarse_starts_with_arcs(tmp_path: Path) -> None:
     assert len(result.curve) == 1600
 
 
+@pytest.mark.slow
 def test_hierarchical_solver(tmp_path: Path) -> None:
     result = relaxed(tmp_path, overhand(200), solver="hierarchical")
     assert result.status is Status.CONVERGED
@@ -125,6 +126,7 @@ def test_parts_far_from_each_other_are_held(tmp_path: Path) -> None:
     assert [part.mesh.closed for part in parts] == [(False, False), (True,)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_random_mixtures(tmp_path: Path, seed: int) -> None:
     rng = np.random.default_rng(1000 + seed)

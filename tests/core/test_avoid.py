@@ -86,6 +86,7 @@ def test_little_is_left_to_gain_where_a_run_has_converged(half):
     assert usual.final_energy == pytest.approx(sharp.final_energy, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_coarse_start_stays_clear(tmp_path):
     curve = torus_trefoil(1600)
     walls = (rod(0.0, 0.0), plate(1.3), box(9.0, 10.0))

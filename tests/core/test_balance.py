@@ -205,6 +205,7 @@ def test_until_it_is_balanced_a_run_is_the_same(runs) -> None:
         assert np.array_equal(a.curve.vertices, b.curve.vertices)
 
 
+@pytest.mark.slow
 def test_the_limit_of_iterations_holds_on_the_way(runs) -> None:
     plain = runs[False][0]
     limit = len(plain) + 10
@@ -216,6 +217,7 @@ def test_the_limit_of_iterations_holds_on_the_way(runs) -> None:
     assert CUT_OFF in result.message
 
 
+@pytest.mark.slow
 def test_without_iterations_left_nothing_is_said_to_be_balanced(runs) -> None:
     plain, result = runs[False]
     assert result.status is Status.CONVERGED
@@ -234,6 +236,7 @@ def test_what_is_cut_off_before_is_not_said_to_be_on_the_way(runs) -> None:
     assert CUT_OFF not in result.message
 
 
+@pytest.mark.slow
 def test_a_mesh_becomes_finer_where_strands_are_near_in_the_balanced_shape() -> None:
     """Not where they were near before: in its balanced shape this knot's strands are far enough apart."""
     plain, balanced = (minimize(knot("8_19"), RelaxOptions(balance=wanted)) for wanted in (False, True))

@@ -148,6 +148,7 @@ def test_an_interrupt_tells_that_vertices_are_missing() -> None:
     assert result.message.endswith(f"; it has {len(result.curve)} vertices, 900 at the start")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("everywhere")
 def test_vertices_come_back_in_a_tangle_too() -> None:
     """Strands leave way for part of the motion to the smooth curve."""

@@ -120,6 +120,7 @@ def test_the_whole_way_is_certified(hopped: Recorded, tmp_path: Path) -> None:
     assert hop_of(found).edge_length_error < 1e-6
 
 
+@pytest.mark.slow
 def test_more_hops_begin_with_the_same_ones_and_never_end_higher(hopped: Recorded, plain: Recorded) -> None:
     more, result = recorded(hops=2)
     assert same(more[: len(hopped[0])], hopped[0])
@@ -174,6 +175,7 @@ def test_a_trial_takes_no_more_iterations_than_are_left(plain: Recorded) -> None
     assert plain[1].last.index < run.iterations <= options.max_iterations
 
 
+@pytest.mark.slow
 def test_the_mesh_becomes_finer_before_and_after(tmp_path: Path) -> None:
     trajectory = Trajectory()
     result = minimize(saddle(), RelaxOptions(mesh="finer", vertices=VERTICES, hops=1, seed=1), trajectory.add)

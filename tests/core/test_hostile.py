@@ -134,6 +134,7 @@ def test_the_command_line_says_it_in_one_line(
     assert not out.exists()
 
 
+@pytest.mark.slow
 def test_thousands_of_components(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shifts = [[3.0 * (k % 80), 3.0 * (k // 80), 0.0] for k in range(4001)]
     text = "\n".join("".join(f"{x} {y} {z}\n" for x, y, z in (np.eye(3) + shift).tolist()) for shift in shifts)

@@ -139,6 +139,7 @@ def test_pins_survive_every_mesh(mesh: str) -> None:
     assert iterates[-1].energy < 0.5 * iterates[0].energy, message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "pins"), [(1500, (0, 7, 1000, 1499)), (3000, (0, 1250, 2999))])
 def test_pins_survive_a_coarse_start(count: int, pins: tuple[int, ...]) -> None:
     """By the dense solver and, in the end, by the hierarchical one."""

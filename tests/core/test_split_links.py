@@ -153,7 +153,10 @@ def test_linked_components_are_not_held():
     assert result.energies[-1] < 48
 
 
-@pytest.mark.parametrize("method", ["lbfgs", "cg", "flow-moebius"])
+SLOW = [pytest.param(method, marks=pytest.mark.slow) for method in ("cg", "flow-moebius")]
+
+
+@pytest.mark.parametrize("method", ["lbfgs", *SLOW])
 def test_strands_a_billionth_apart_come_apart(method):
     t = 2 * np.pi * np.arange(60) / 60
     eight = Curve(np.column_stack([np.sin(2 * t), np.cos(t), 0.5e-9 * np.sin(t)]))
@@ -190,6 +193,7 @@ def test_second_derivative_along_held_parts():
     assert abs(errors[1]) < 0.3 * abs(errors[0])
 
 
+@pytest.mark.slow
 def test_parts_are_judged_one_by_one():
     """Two split Hopf links, and a trefoil far from a ring: neither is composite."""
     hopf = [ring([0, 0, 0]), ring([0, 0, 0])[:, [0, 2, 1]] + [1.0, 0, 0]]

@@ -14,6 +14,7 @@ from mobius_flow.core.knots import torus_knot  # noqa: E402
 OPS = bpy.ops.curve
 
 
+@pytest.mark.slow
 def test_a_balanced_curve_goes_on_from_its_animation():
     curve = minimize(torus_knot(2, 3, 100), RelaxOptions(vertices=100)).curve
     away = curve.vertices - np.array([0.9, 0.4, 0.9])  # an inversion near the knot

@@ -37,6 +37,7 @@ def test_the_same_curve_as_the_headless_job(operator):
     assert operator.reports[-1][0] == {"INFO"}
 
 
+@pytest.mark.slow
 def test_points_that_are_added_in_the_end_are_in_every_key(operator):
     obj = add_curve([lattice_knot("5_1").vertices])
     start = stored(obj.data).astype(np.float64)
@@ -64,7 +65,7 @@ def test_esc_restores_what_has_got_more_points_meanwhile(operator):
     restored(obj, before)
 
 
-@pytest.mark.parametrize("kind", ["POLY", "BEZIER", "NURBS"])
+@pytest.mark.parametrize("kind", ["POLY", pytest.param("BEZIER", marks=pytest.mark.slow), "NURBS"])
 def test_esc_restores_bit_for_bit(operator, kind):
     rng = np.random.default_rng(7)
     obj = add_curve([torus_trefoil(24).vertices + 3 * k for k in (0, 4)], kind=kind)

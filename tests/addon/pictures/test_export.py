@@ -188,6 +188,7 @@ def test_a_read_only_directory(tmp_path, iterates):
         tmp_path.chmod(0o700)
 
 
+@pytest.mark.slow
 def test_the_trial_of_workbench_runs_nothing_of_the_working_directory(tmp_path, monkeypatch):
     mark = tmp_path / "mark"
     (tmp_path / "bpy.py").write_text(f"open({str(mark)!r}, 'w').close()\n")

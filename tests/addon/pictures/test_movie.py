@@ -202,6 +202,7 @@ export.write_movie("a.mp4", list(relax(curve, RelaxOptions(max_iterations=3))), 
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGINT, -signal.SIGINT), (signal.SIGTERM, 128 + signal.SIGTERM)]

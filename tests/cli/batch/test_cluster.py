@@ -76,6 +76,7 @@ def wait_for_one(out: Path) -> None:
         time.sleep(0.02)
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_costs_no_row(port: int, rings: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--scheduler", f"tcp://127.0.0.1:{port}"]
@@ -92,6 +93,7 @@ def test_a_worker_that_is_killed_costs_no_row(port: int, rings: Path, tmp_path: 
     assert {path.name for path in out.iterdir()} == {*(f"ring{k}" for k in range(8)), "results.csv", "results.parquet"}
 
 
+@pytest.mark.slow
 def test_an_interrupt_leaves_nothing_on_the_cluster(port: int, rings: Path, tmp_path: Path) -> None:
     out, address = tmp_path / "out", f"tcp://127.0.0.1:{port}"
     words = ["batch", str(rings), "7_1..8_21", "-o", str(out), "--scheduler", address]
@@ -115,6 +117,7 @@ def test_an_interrupt_leaves_nothing_on_the_cluster(port: int, rings: Path, tmp_
     assert psutil.wait_procs(children, timeout=PATIENCE)[1] == []
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_killed_costs_no_result(port: int, rings: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ["batch", str(rings), "-o", str(out), "--vertices", "60", "--tolerance", "1e-9"]
@@ -170,6 +173,7 @@ os._exit(0)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes")
 def test_children_end_with_their_parent() -> None:
     pid = finished([sys.executable, "-c", ORPHAN]).stdout.strip()

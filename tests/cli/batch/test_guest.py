@@ -179,6 +179,7 @@ def test_a_table_that_is_edited_during_the_work_survives(
     assert "ring,1," in table.read_text()
 
 
+@pytest.mark.slow
 def test_a_batch_that_is_killed_between_its_tables_goes_on(place: Path) -> None:
     old = (place / "out/results.csv").read_bytes()
     words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), "--quiet"]
@@ -240,6 +241,7 @@ def test_a_curve_in_four_dimensions_is_refused_at_once(tmp_path: Path, monkeypat
     assert row.message.startswith(f"{tmp_path / 'a.json'}: the curve is in dimension 4, and curve.txt holds")
 
 
+@pytest.mark.slow
 def test_any_time_limit(results: Path, tmp_path: Path) -> None:
     words = [str(results / "ring.txt"), "-o", str(tmp_path / "out"), *QUICK, "--time-limit", "1e300"]
     ended = finished([*PROGRAM, *words])
@@ -276,6 +278,7 @@ def full_disk(place: Path) -> Iterator[None]:
         subprocess.run(["umount", str(place)], check=True)
 
 
+@pytest.mark.slow
 def test_a_full_disk_costs_no_result(results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with full_disk(tmp_path / "disk"):
         out = tmp_path / "disk/out"

@@ -86,6 +86,7 @@ def test_methods_agree_on_the_minimum(minimum, method, tolerance, relative):
     assert result.energies[-1] == pytest.approx(minimum.energies[-1], rel=relative)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("q", [3, 5])
 def test_torus_knots_by_extrapolation(q):
     """Energies of 3_1 and 5_1 at three N, extrapolated in N⁻²."""

@@ -33,6 +33,7 @@ def test_primes_have_none(name):
     assert knotted_ball(knot(name)) is None
 
 
+@pytest.mark.slow
 def test_tangled_curves_have_none():
     assert knotted_ball(scramble(knot("0_1"), seed=3)) is None
     assert knotted_ball(scramble(knot("4_1"), seed=3)) is None
@@ -58,6 +59,7 @@ def test_chains_have_one_as_rings_that_are_linked_lie_together(rings):
     assert sides == {(False,), (True,), (False, True)}
 
 
+@pytest.mark.slow
 def test_a_closed_chain_has_none():
     assert knotted_ball(closed_chain(6)) is None
 

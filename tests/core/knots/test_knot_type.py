@@ -39,6 +39,7 @@ def test_mirror_images(name: str) -> None:
     assert found.proved
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["0_1", "3_1", "m5_1", "7_7", "8_19", "10_132", "L5a1", "mL7a6"])
 @pytest.mark.parametrize("seed", [1, 3])
 def test_scrambled_curves(name: str, seed: int) -> None:

@@ -30,7 +30,12 @@ def test_codes_read_off_other_polygons(name: str) -> None:
     assert knot_invariants(diagram_knot(code).vertices) == knot_invariants(curve.vertices)
 
 
-@pytest.mark.parametrize("name", HARD_UNKNOTS)
+LONG = ("ochiai-4", "haken", "ochiai-2", "ochiai-3")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=pytest.mark.slow if each in LONG else ()) for each in HARD_UNKNOTS]
+)
 def test_hard_unknots(name: str) -> None:
     curve = knot(name)
     code = HARD_UNKNOTS[name]

@@ -50,6 +50,7 @@ def test_doubles_of_the_circle_are_twist_knots(twists: int, clasp: int) -> None:
     assert found.genus == (1 if w else 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["3_1", "4_1", "m5_2"])
 @pytest.mark.parametrize("twists", [0, 2])
 def test_doubles_have_the_polynomial_of_their_twists(name: str, twists: int) -> None:

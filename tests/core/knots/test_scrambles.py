@@ -44,6 +44,7 @@ def test_it_is_messy_and_keeps_its_gap() -> None:
     assert np.linalg.norm(messy.vertices - center, axis=1).max() <= radius * (1 + 1e-12)
 
 
+@pytest.mark.slow
 def test_moves_pierce_nothing_in_exact_arithmetic() -> None:
     curve = knot("4_1", 40)
     points = curve.vertices.copy()

@@ -77,6 +77,7 @@ def test_knot_type_of_the_polygon(name: str) -> None:
     assert found.tau == int(tau)
 
 
+@pytest.mark.slow
 def test_polynomials_of_words_and_polygons_tell_all_but_four_pairs_apart() -> None:
     groups: dict[tuple[object, ...], set[str]] = defaultdict(set)
     for name in KNOWN:

@@ -55,7 +55,7 @@ def crosses(bent: FloatArray, strand: FloatArray) -> bool:
 @pytest.mark.parametrize("unit", UNITS)
 def test_random_transitions(tmp_path: Path, unit: float) -> None:
     rng, seen = np.random.default_rng(41), {True: 0, False: 0}
-    for _ in range(150):
+    for _ in range(60):
         bent = np.array([[-4, 0, 0], [0, 0, 0], [4, 0, 0], [4, 40, 0], [-4, 40, 0]], dtype=float)
         strand = np.array([[0, 0, -8], [0, 0, 8], [0, -40, 8], [0, -40, -8]], dtype=float)
         scale = 1.0 if unit < 1e-300 else unit * 2.0**50  # large numbers, in which the unit is a rounding error
