@@ -5,7 +5,7 @@ import csv
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 
@@ -79,6 +79,8 @@ def run(options: argparse.Namespace) -> int:
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         task, wanted = relax_options.task(options, file), relax_options.from_arguments(options)
+        if stages:  # what comes after the last one is not drawn
+            wanted = replace(wanted, max_iterations=min(wanted.max_iterations, stages[-1]))
         planned = compare(task, names, wanted, options.time_limit, stages)
         options.notes.show()
         runs, ended_by = _collected(planned)

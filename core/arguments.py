@@ -42,8 +42,12 @@ def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Re
 
     @wraps(function)
     def called(*args: _Arguments.args, **keywords: _Arguments.kwargs) -> _Result:
+        try:
+            given = parameters.bind(*args, **keywords).arguments
+        except TypeError:
+            return function(*args, **keywords)  # Python's own sentence names the function
         hints = _hints(function)
-        for name, value in parameters.bind(*args, **keywords).arguments.items():
+        for name, value in given.items():
             if name in hints and not _fits(value, hints[name]):
                 raise MobiusFlowError(f"{name} is {_described(value)}; give {_wanted(hints[name])}")
         return function(*args, **keywords)

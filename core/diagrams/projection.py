@@ -22,7 +22,9 @@ def views(curve: Curve, count: int, seed: int = 20217, clear: float = _CLEAR) ->
     another strand, or to the end of an edge, than ``clear``, a fraction of the curve's size or the edge's length.
     """
     rng = np.random.default_rng(seed)
-    middle = curve.vertices - curve.vertices.mean(axis=0)
+    _, power = np.frexp(np.abs(curve.vertices).max())
+    points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
+    middle = points - points.mean(axis=0)
     flattest = np.linalg.svd(middle, full_matrices=False)[2] + _TILT * rng.normal(size=(3, 3))
     for frame in (flattest, *rng.normal(size=(count - 1, 3, 3))):
         found = _seen(curve, middle @ _rotation(frame), clear)

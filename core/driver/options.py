@@ -46,7 +46,10 @@ def _is_weighted(value: object) -> bool:
     if isinstance(term, str):
         check_known("term", term, TERMS)
     known = isinstance(term, str) or _is_a(Term, term)
-    return known and isinstance(weight, Real) and not isinstance(weight, bool) and bool(np.isfinite(float(weight)))
+    try:
+        return known and isinstance(weight, Real) and not isinstance(weight, bool) and bool(np.isfinite(float(weight)))
+    except OverflowError:  # of whole numbers
+        return False
 
 
 def _weighted(text: str) -> tuple[tuple[str, float]]:

@@ -152,19 +152,21 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     try:
         run = Run(start_problem(start, options), start.curve, options)
     except np.linalg.LinAlgError as error:
-        raise CurveError(f"the curve is too degenerate to be relaxed: {error}; {_remedy(start.curve)}") from error
+        raise CurveError(
+            f"the curve is too degenerate to be relaxed: {error}; {_remedy(start.curve, options)}"
+        ) from error
     work = BLAS.bounding(hopping(run))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
-def _remedy(curve: Curve) -> str:
-    """What to do about a singular matrix: parts too small for their distances, or else strands that are too near."""
+def _remedy(curve: Curve, options: RelaxOptions) -> str:
+    """What to do about a singular matrix: parts too small for their distances, heavy terms, or strands too near."""
     lengths = curve.component_lengths
     shortest, width = int(lengths.argmin()), float(np.ptp(curve.vertices, axis=0).max())
     if width < WIDTHS * lengths[shortest]:
-        return "move near strands apart"
+        return "give terms smaller weights, or move near strands apart" if options.terms else "move near strands apart"
     return (
         f"component {shortest + 1} is only {lengths[shortest]:.3g} long in a link {width:.3g} wide, too small or too "
         "far away to be relaxed together with the rest: relax it by itself, or move or scale it"

@@ -7,7 +7,7 @@ from functools import lru_cache
 from ..checks import named
 from ..curve import Curve
 from ..descent import METHODS, Method
-from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Term, Weighted
+from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Term, Weighted
 from ..errors import CurveError, OptionError
 from ..hierarchy import HierarchicalMoebiusEnergy, compressed
 from ..hierarchy.inner_product import block_count
@@ -54,7 +54,7 @@ class Solver:
     def objective(self, obstacles: Iterable[Obstacle] = ()) -> Objective:
         """What is minimised among obstacles, which are in the units of curves."""
         energy = _energy(self.options)
-        further = (Weighted(_term(term), weight) for term, weight in self.options.terms)
+        further = (_weighted(_term(term), weight) for term, weight in self.options.terms)
         energy = HierarchicalMoebiusEnergy.instead_of(energy) if self.hierarchical else energy
         return Objective.of(energy, obstacles, further)
 
@@ -152,6 +152,15 @@ def _method(options: RelaxOptions) -> Method:
 
 def _term(term: str | Term) -> Term:
     return named(TERMS, "term", term) if isinstance(term, str) else term
+
+
+def _weighted(term: Term, weight: float) -> Weighted:
+    if weight < 0.0 and isinstance(term, Stiff):
+        raise OptionError(
+            f"term {term.name!r} has weight {weight:g}, with which its stiffness is no part of a metric; "
+            "give a weight of 0 or more"
+        )
+    return Weighted(term, weight)
 
 
 def _energy(options: RelaxOptions) -> Energy:

@@ -8,7 +8,7 @@ from .barrier import Barrier
 from .bending import Bending
 from .density import Density
 from .edge import EDGE_ENERGY
-from .energy import Energy, Term, TwiceDifferentiable, is_moebius_invariant
+from .energy import Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
 from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
 from .moebius_kpoint import moebius_kpoint
@@ -52,6 +52,7 @@ __all__ = [
     "MoebiusEnergy",
     "Objective",
     "Rule",
+    "Stiff",
     "Term",
     "TwiceDifferentiable",
     "Weighted",

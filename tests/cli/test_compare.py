@@ -103,6 +103,14 @@ def test_a_strip_has_a_row_for_each_method(tmp_path: Path, capsys: pytest.Captur
     assert capsys.readouterr().err.count("after 3 iterations") == 2
 
 
+def test_a_strip_ends_with_its_last_stage(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("matplotlib")
+    write_curve(tmp_path / "in.txt", torus_trefoil(40))
+    words = ["compare", tmp_path / "in.txt", "-o", tmp_path / "s.png", "--methods", "cg", "--strip", "2,0"]
+    assert main([str(word) for word in words]) == 0
+    assert "after 2 iterations" in capsys.readouterr().err
+
+
 def test_a_strip_shows_the_end_where_a_stage_was_not_reached(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     curve = torus_trefoil(20)

@@ -207,6 +207,13 @@ def test_the_argument_is_named(arguments, keywords, said):
     assert str(error.value) == said
 
 
+def test_a_call_that_does_not_fit_is_pythons_own_error():
+    with pytest.raises(TypeError, match=r"^bake\(\) missing 1 required positional argument: 'cakes'$"):
+        bake()
+    with pytest.raises(TypeError, match=r"^bake\(\) got an unexpected keyword argument 'tins'$"):
+        bake(1, tins=3)
+
+
 def test_numpys_numbers_are_numbers():
     assert bake(np.int64(3), np.float32(0.5), None) == 3
     assert bake.__doc__ == "Any function."

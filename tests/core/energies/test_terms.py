@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, MoebiusEnergy, Objective, OptionError, RelaxOptions, minimize
+from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, OptionError, RelaxOptions, minimize
 from mobius_flow.core.curve.bending import bending
 from mobius_flow.core.energies import ENERGIES, TERMS, Bending, Term, Weighted, is_moebius_invariant
 from mobius_flow.core.taylor import derivative_slope
@@ -95,3 +95,21 @@ def test_capabilities_are_those_of_all_terms() -> None:
 def test_what_does_not_go_together_is_refused(options: dict[str, object], said: str) -> None:
     with pytest.raises(OptionError, match=said):
         minimize(torus_trefoil(40), RelaxOptions(vertices=40, max_iterations=0, **options))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("weight", "said"),
+    [
+        (-0.01, "term 'bending' has weight -0.01, with which its stiffness is no part of a metric"),
+        (1e300, "give terms smaller weights"),
+        (10**400, "it must be a pair of a term and its weight"),
+    ],
+)
+def test_weights_that_no_run_survives_are_refused(weight: float, said: str) -> None:
+    with pytest.raises(MobiusFlowError, match=said):
+        minimize(torus_trefoil(40), RelaxOptions(vertices=40, max_iterations=1, terms=[("bending", weight)]))
+
+
+def test_terms_without_stiffness_may_have_any_sign() -> None:
+    options = RelaxOptions(terms=((Height(), -0.5),), vertices=40, max_iterations=1)
+    assert minimize(torus_trefoil(40), options).certified

@@ -151,3 +151,9 @@ def test_names_count_crossings() -> None:
         crossing_number(name) == int(name.lstrip("L").split("_")[0].split("a")[0].split("n")[0]) for name in KNOTS
     )
     assert all(braid_word(rolfsen) == KNOTS[name] for rolfsen, name in ROLFSEN.items())
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-160, 1e160, 1e308])
+def test_the_type_of_a_curve_of_any_size(scale: float) -> None:
+    curve = knot("3_1")
+    assert knot_type(curve.with_vertices(curve.vertices * (scale / np.abs(curve.vertices).max()))).names == ("3_1",)
