@@ -34,7 +34,8 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "name",
         metavar="NAME",
-        help='such as 3_1, K11n34 (with the extra knots), goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)" or a code, "DT: [4 6 2]"',
+        help='such as 3_1, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)", a code, "DT: [4 6 2]", or, with the '
+        "extra knots, K11n34",
     )
     parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(WRITTEN_FORMATS)}, or - for standard output")
     curves.add_format(parser, WRITTEN_FORMATS)
