@@ -60,7 +60,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         metavar="K,K,…",
         help="instead of graphs, draw the curves after these numbers of iterations, one row per method",
     )
-    parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"one of {', '.join(WRITERS)}")
+    parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"figure or table: {', '.join(WRITERS)}")
     relax_options.add_to(parser, without=("method", "time_limit"))
     relax_options.add_task(parser)
 

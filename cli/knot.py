@@ -40,7 +40,10 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(WRITTEN_FORMATS)}, or - for standard output")
     curves.add_format(parser, WRITTEN_FORMATS)
     parser.add_argument(
-        "--vertices", type=int, metavar="N", help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough)"
+        "--vertices",
+        type=int,
+        metavar="N",
+        help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough for edges to be shorter than gaps)",
     )
     parser.add_argument(
         "--smooth",

@@ -106,5 +106,5 @@ def _help(option: Option) -> str:
         return option.help
     if option.repeated:
         return f"{option.help}; may be given several times"
-    choices = f": one of {', '.join(option.choices)}" if option.choices else ""
+    choices = f"; one of {', '.join(option.choices)}" if option.choices else ""
     return f"{option.help}{choices} (default: {option.automatic or option.default})"

@@ -120,7 +120,7 @@ class RelaxOptions:
     terms: tuple[tuple[str | Term, float], ...] = _advanced(
         (),
         "Terms",
-        f"term added to the energy, and its weight; NAME is one of {', '.join(TERMS)}",
+        f"terms added to the energy, each with its weight; by name: {', '.join(TERMS)}",
         objects=("a pair of a term and its weight, such as ('bending', 0.1)", _is_weighted),
         example="(('bending', 0.1),)",
         flag="term",
