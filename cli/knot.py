@@ -43,7 +43,8 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         "--vertices",
         type=int,
         metavar="N",
-        help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough for edges to be shorter than gaps)",
+        help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough for edges to be shorter than the "
+        "gaps between strands)",
     )
     parser.add_argument(
         "--smooth",
