@@ -28,9 +28,9 @@ examples:
 
 A figure shows the energy, its distance to the least one, and the gradient norm, each over iterations and over seconds
 of processor time, which a busy machine does not change. The column, or key, "energy" of a table is the objective: the
-energy with the barrier between near strands, without the penalty of the methods that have one. The least one is that
-of the methods that keep lengths. Where a method is stuck another one helps out: "fallback" tells the steps it took,
-which are dots in a figure. A method that is slow per step is stopped in the middle of one when its time is up.
+energy with the barrier between near strands, without the penalty of the methods that have one. The least one is taken
+over the methods that keep lengths. Where a method is stuck a fallback method takes over: "fallback" marks its steps,
+which are dots in a figure. When its time is up, a method is stopped even in the middle of a step.
 
 exit status: 0; 2 on bad input or bad options, or where OUT cannot be written; 130 interrupted, where the methods that
 are done are written all the same
@@ -53,12 +53,14 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=30.0,
         metavar="SECONDS",
-        help="of processor time per method, all threads together (default: 30)",
+        help="limit per method, in seconds of processor time, all threads together (default: 30)",
     )
     parser.add_argument(
-        "--strip", metavar="K,K,…", help="draw the curves after so many iterations, a row for each method, instead"
+        "--strip",
+        metavar="K,K,…",
+        help="instead of graphs, draw the curves after these numbers of iterations, one row per method",
     )
-    parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"one of {', '.join(WRITERS)}")
+    parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"figure or table: {', '.join(WRITERS)}")
     relax_options.add_to(parser, without=("method", "time_limit"))
     relax_options.add_task(parser)
 

@@ -19,11 +19,12 @@ examples:
   mobius-flow info start.obj relaxed.obj --json
   mobius-flow knot 10_132 - | mobius-flow info -
 
-The type is told by moves that simplify a diagram and by polynomials that tell knots apart: 3_1 is the right-handed
-trefoil, m3_1 its mirror image, # a sum, and parts that come apart stand on both sides of a ⊔.  Thickness is the smaller
-of the least bending radius and half the least distance between strands; ropelength is length over thickness.  At rest
-is where the projected gradient is as small as relax has it by default, where nothing is pinned or avoided; the index,
-0 at a minimum, is the number of independent ways down.  Numbers of knots are KnotInfo's (see mobius-flow knot --help).
+The type is identified by simplifying a diagram and computing polynomial invariants: 3_1 is the right-handed trefoil,
+m3_1 its mirror image, # stands for a sum, and ⊔ separates parts that come apart.  Thickness is the smaller of the least
+radius of curvature and half the least distance between strands; ropelength is length over thickness.  A curve is at
+rest where the projected gradient is within the default tolerance of relax; pins and obstacles are not known here.  The
+index is the number of independent directions downhill, 0 at a minimum.  Knots are numbered as in KnotInfo (see
+mobius-flow knot --help).
 
 exit status: 0, or 2 on bad input or bad options
 """
@@ -31,7 +32,7 @@ exit status: 0, or 2 on bad input or bad options
 
 def add_to(parser: argparse.ArgumentParser) -> None:
     """Describe the subcommand."""
-    parser.description, parser.epilog = "Tell the knot type of curves, and measure them.", _EPILOG
+    parser.description, parser.epilog = "Identify the knot type of curves, and measure them.", _EPILOG
     parser.add_argument(
         "inputs", metavar="IN", nargs="+", help=f"curves: {', '.join(FORMATS)}, or - for standard input"
     )

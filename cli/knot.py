@@ -21,7 +21,7 @@ examples:
   mobius-flow knot K11n34 larger.txt
   mobius-flow knot --list
 
-Numbers of knots are KnotInfo's: 10_162 to 10_165 are 10_163 to 10_166 in Rolfsen's book, where 10_161 stands twice
+Knots are numbered as in KnotInfo: 10_162 to 10_165 are 10_163 to 10_166 in Rolfsen's book, where 10_161 stands twice
 (Perko's pair), and SnapPy has 10_83 and 10_86 the other way round.
 
 exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
@@ -34,18 +34,23 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "name",
         metavar="NAME",
-        help='such as 3_1, K11n34, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)" or a code, "DT: [4 6 2]"',
+        help='such as 3_1, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)", a code, "DT: [4 6 2]", or, with the '
+        "extra knots, K11n34",
     )
     parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(WRITTEN_FORMATS)}, or - for standard output")
     curves.add_format(parser, WRITTEN_FORMATS)
     parser.add_argument(
-        "--vertices", type=int, metavar="N", help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough)"
+        "--vertices",
+        type=int,
+        metavar="N",
+        help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough for edges to be shorter than the "
+        "gaps between strands)",
     )
     parser.add_argument(
         "--smooth",
         action="store_true",
-        help="a knot of the table as a smooth curve with evenly spread strands, by the tangent-point energy: a start "
-        "near a minimum of the Möbius energy, but no minimum (default: woven)",
+        help="a smooth curve for a knot of the table, with strands evenly spread by the tangent-point energy: a start "
+        "near a minimum of the Möbius energy, but not a minimum (default: woven)",
     )
     parser.add_argument("--list", action=_List, nargs=0, help="print the names, one per line, and exit")
 

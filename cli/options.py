@@ -33,15 +33,15 @@ def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
 
 def add_task(parser: argparse.ArgumentParser) -> None:
     """Add what a curve is to respect."""
-    group = parser.add_argument_group("what stands still")
-    text = "OBJ file of triangles or polylines, in the curve's units, that it never touches; may be given several times"
+    group = parser.add_argument_group("pins and obstacles")
+    text = "OBJ file of triangles or polylines, in the curve's units, not to be touched; may be given several times"
     group.add_argument("--avoid", metavar="MESH.obj", action="append", default=[], help=text)
     text = (
-        "vertices of the input that stay exactly where they are, counted from 1; nothing can move on an arc that is "
-        "straight from one of them to the next; may be given several times"
+        "vertices of the input that stay exactly in place, counted from 1; an arc that is straight from one to the "
+        "next cannot move at all; may be given several times"
     )
     group.add_argument("--pin", dest="pins", metavar="V,V,…", action="append", default=[], help=text)
-    text = "pin the neighbours that pinned vertices have in the refined start too, and so the curve's direction there"
+    text = "also pin the neighbours of pinned vertices in the refined start, which fixes the curve's direction there"
     group.add_argument("--pin-tangents", action="store_true", help=text)
 
 
@@ -106,5 +106,5 @@ def _help(option: Option) -> str:
         return option.help
     if option.repeated:
         return f"{option.help}; may be given several times"
-    choices = f": one of {', '.join(option.choices)}" if option.choices else ""
+    choices = f"; one of {', '.join(option.choices)}" if option.choices else ""
     return f"{option.help}{choices} (default: {option.automatic or option.default})"

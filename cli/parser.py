@@ -14,7 +14,7 @@ COMMANDS = {
     "batch": "relax many curves, on all cores or a cluster",
     "gallery": "show the results of a batch",
     "energy": "print the energy of a curve",
-    "info": "tell the knot type of curves, and measure them",
+    "info": "identify the knot type of curves, and measure them",
     "verify": "check a trajectory for contact",
     "compare": "compare descent methods on a curve",
     "knot": "write a named knot",

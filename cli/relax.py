@@ -35,7 +35,7 @@ from .recovery import Write, kept
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 KEYED = ("auto", "fixed", "finer")  # meshes that keyframes can follow
-_DESCRIPTION = "Relax a curve: a tangled one in, one of less energy of the same knot type out."
+_DESCRIPTION = "Relax a curve: lower its energy without changing its knot type."
 _EPILOG = """\
 examples:
   mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
@@ -52,10 +52,10 @@ exit status:
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; the best curve, the report and the trajectory are written
 
 In the report "energy" is the objective at every iterate, "final_energy" the Möbius energy of the result, exact up to
-30,000 vertices and beyond with a relative "final_energy_error" at most, and "sampled_errors" what the hierarchical
-solver's errors are by the last sample of edges. "pins" are the vertices of the result that were held, counted from 0
-as in "options".
-What cannot be written in the end is kept in a temporary directory that the message names.
+30,000 vertices; beyond, "final_energy_error" bounds its relative error. "sampled_errors" are the errors of the
+hierarchical solver, estimated from the last sample of edges. "pins" are the vertices of the result that were held,
+counted from 0 as in "options".
+An output that cannot be written in the end is saved in a temporary directory, which the message names.
 """
 
 
@@ -70,7 +70,7 @@ def add_to(parser: argparse.ArgumentParser) -> None:
     )
     curves.add_format(parser)
     parser.add_argument(
-        "--report", type=_extra, metavar="R.json", help="write what happened as JSON; - is standard output"
+        "--report", type=_extra, metavar="R.json", help="write a report of the run as JSON; - is standard output"
     )
     parser.add_argument(
         "--trajectory",

@@ -1,4 +1,4 @@
-"""The mathematics of Möbius Flow: NumPy and SciPy only.
+"""The mathematics of Möbius Flow, with NumPy and SciPy.
 
 `relax` yields the iterates of a relaxation; `minimize` runs it to its end.
 """

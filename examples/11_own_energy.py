@@ -1,6 +1,6 @@
 """
-An energy of one's own
-======================
+A custom energy
+===============
 
 A density :math:`F(r)` of pairs of points, given with its derivative, becomes an energy by a quadrature rule; here
 :math:`F = r^{-3}`. The barrier between near strands and the proof of every step come with it.

@@ -1,6 +1,6 @@
 """
-A metric of one's own
-=====================
+A custom metric
+===============
 
 A metric is an inner product on functions along the curve, here
 :math:`\\langle u, u\\rangle = \\int \\varepsilon\\,u'^2 + u^2` with a small weight ε. The weight decides which waves a

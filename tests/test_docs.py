@@ -7,6 +7,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+import mobius_flow.core
 import pytest
 from processes import finished
 
@@ -45,6 +46,12 @@ def test_examples_in_docstrings():
     ]
     assert sum(each.attempted for each in tried) > len(names)
     assert not sum(each.failed for each in tried)
+
+
+def test_the_reference_has_every_public_name():
+    pages = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("docs/api/*.md"))
+    listed = set(re.findall(r"^\.\. auto\w+:: ([\w.]+)$", pages, re.MULTILINE))
+    assert set(mobius_flow.core.__all__) <= listed
 
 
 def test_the_readme_is_one_page():

@@ -48,9 +48,11 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="also estimate the smooth curve's energy, from two more runs, with edges halved twice: as much work again",
     )
-    parser.add_argument("--time-limit", type=float, metavar="T", help="seconds per run (default: none)")
+    parser.add_argument("--time-limit", type=float, metavar="T", help="limit per run, in seconds (default: none)")
     parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="of a running Dask scheduler (default: all cores of this machine)"
+        "--scheduler",
+        metavar="ADDRESS",
+        help="address of a running Dask scheduler (default: use all cores of this machine)",
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser, without=("time_limit",))

@@ -64,7 +64,7 @@ def _weighted(text: str) -> tuple[tuple[str, float]]:
 @documented
 @dataclass(frozen=True, kw_only=True)
 class RelaxOptions:
-    """What `relax` is asked to do.
+    """The options of `relax`; energies, metrics and terms are names, or objects of your own.
 
     Raises
     ------
@@ -82,8 +82,8 @@ class RelaxOptions:
     time_limit: float | None = option(
         None,
         "Time Limit",
-        "stop after this many seconds of computing, also in the middle of a step; the curve reached so far is kept",
-        automatic="none",
+        "stop after this many seconds of computing, even in the middle of a step; the curve reached so far is kept",
+        automatic="no limit",
         low=0,
         metavar="SECONDS",
         group="scripts",
@@ -91,22 +91,22 @@ class RelaxOptions:
     vertices: int | None = option(
         None,
         "Vertices",
-        "number of vertices to refine to, those of all components together",
-        automatic="so many that neighbours are nearer than strands",  # Section 6.1.3 of [RS21]
+        "number of vertices to refine to, over all components",
+        automatic="enough for edges to be shorter than the gaps between strands",  # Section 6.1.3 of [RS21]
         low=3,
         metavar="N",
     )
     energy: str | Energy = _advanced(  # noqa: RUF009 (a field, made for this class)
         "moebius",
         "Energy",
-        "what is minimised, with a barrier between strands",
+        "energy to minimise; a barrier between strands is added to it",
         choices=ENERGIES,
         objects=("an energy", partial(_is_a, Energy)),
     )
     metric: str | Metric | None = _advanced(  # noqa: RUF009 (a field, made for this class)
         None,
         "Metric",
-        "inner product that gradients are taken in",
+        "inner product that defines the gradient",
         automatic="the method's own",
         choices=METRICS,
         objects=("a metric", partial(_is_a, Metric)),
@@ -114,7 +114,7 @@ class RelaxOptions:
     quadrature_points: int | None = _advanced(
         None,
         "Gauss Points",
-        "Gauss points per edge of the metric J_C; work grows with their square",
+        "Gauss points per edge for the metric J_C; the cost grows with their square",
         automatic="the energy's own",
         low=1,
         high=16,
@@ -123,7 +123,7 @@ class RelaxOptions:
     terms: tuple[tuple[str | Term, float], ...] = _advanced(
         (),
         "Terms",
-        f"what is added to the energy, each with its weight: {', '.join(TERMS)}, or objects of your own",
+        f"terms added to the energy, each with its weight; by name: {', '.join(TERMS)}",
         objects=("a pair of a term and its weight, such as ('bending', 0.1)", _is_weighted),
         example="(('bending', 0.1),)",
         flag="term",
@@ -142,17 +142,17 @@ class RelaxOptions:
     solver: str = _advanced(
         "auto",
         "Solver",
-        "how sums over all pairs of edges are made: dense, one by one; hierarchical, distant clusters as one, for many "
-        "vertices; auto takes the faster one",
+        "how sums over all pairs of edges are computed: dense, pair by pair; hierarchical, with distant edges in "
+        "clusters, for many vertices; auto takes the faster one",
         choices=SOLVERS,
         metavar="S",
     )
     accuracy: float = _advanced(
         1e-4,
         "Accuracy",
-        "largest error of the hierarchical solver, kept by checks against dense sums over sampled edges: of the "
-        "projected gradient's norm, relative to it or to √E; a hundredth of it for the energy; the norm is that of the "
-        "solver's own metric, some per cent from the dense solver's",
+        "largest error of the hierarchical solver in the projected gradient's norm, relative to the larger of that "
+        "norm and √E; the energy is a hundred times as accurate; both are checked by dense sums over sampled edges, in "
+        "the solver's own metric, whose norm is within a few per cent of the dense one",
         low=0,
         high=1e-2,
         metavar="A",
@@ -160,9 +160,9 @@ class RelaxOptions:
     edge_lengths: str | tuple[float, ...] = _advanced(
         "auto",
         "Edge Lengths",
-        "target lengths, equal within each component or kept as in the refined start; auto keeps them only among "
-        "obstacles, and where they, or the gaps between edges, differ by more than 10:1: evening them out would press "
-        "the curve against walls, or crumple it",
+        "target edge lengths: equal within each component, or kept as in the refined start; auto keeps them among "
+        "obstacles, and where the longest edge is over ten times the shortest edge or gap, since evening them out "
+        "would press the curve against walls, or crumple it",
         choices=EDGE_LENGTHS,
         objects=("as many numbers above 0 as there are edges", _are_lengths),
         metavar="L",
@@ -170,10 +170,10 @@ class RelaxOptions:
     mesh: str = _advanced(
         "auto",
         "Mesh",
-        "what becomes of the vertices: fixed; finer, in the end more of them where strands are nearer than they "
-        "resolve; adaptive, edges split and collapsed on the way so that neighbours stay nearer than strands, and then "
-        "the same; auto, curves of many vertices begin with fewer, which is faster, and end with all, and then finer "
-        "if neither vertices nor edge_lengths are asked for",
+        "how vertices may change: fixed, not at all; finer, edges are split at the end where strands are closer than "
+        "the mesh resolves; adaptive, edges are also split and collapsed along the way, to stay shorter than the gaps "
+        "between strands; auto, a curve of many vertices starts with fewer, which is faster, gets them all back, and "
+        "ends as with finer unless vertices or edge_lengths are given",
         choices=MESHES,
         metavar="M",
         keyframes=False,
@@ -182,23 +182,23 @@ class RelaxOptions:
     stability: bool = _advanced(
         False,
         "Stability",
-        "tell whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian",
+        "check whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian",
     )
     escape_saddles: bool = _advanced(
-        False, "Escape Saddles", "tell whether a converged curve is a minimum, and go on downhill from a saddle"
+        False, "Escape Saddles", "check whether a converged curve is a minimum, and continue downhill from a saddle"
     )
     balance: bool = _advanced(
         False,
         "Balance",
-        "go from a converged curve to the one of its Möbius images, all of the same energy, that bends least for its "
+        "continue from a converged curve to its Möbius image (all have the same energy) that bends least for its "
         "length, and relax that",
     )
 
     grow: float = _advanced(
         1.0,
         "Grow",
-        "multiply all lengths by this: at once where nothing is in the way, otherwise step by step as obstacles and "
-        "pins leave room, with edges split as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
+        "multiply all lengths by this factor: at once if nothing is in the way, otherwise step by step as obstacles "
+        "and pins leave room, splitting edges as strands draw near unless the mesh is fixed; below 1 the curve shrinks",
         low=MIN_GROWTH,
         high=MAX_GROWTH,
         metavar="F",
@@ -206,15 +206,15 @@ class RelaxOptions:
     hops: int = _advanced(
         0,
         "Hops",
-        "number of tries to get on from a minimum, or from where the curve is stuck: a random motion, proved like all "
-        "others, and a relaxation; those that end lower are kept, and the iterations of all count",
+        "number of attempts to leave a minimum, or a place where the curve is stuck: each is a random motion, proved "
+        "free of contact like any other, and a relaxation, and is kept if it ends lower; all their iterations count",
         low=0,
         metavar="K",
     )
     seed: int = _advanced(
         0,
         "Seed",
-        "of random motions, of hops and of scrambled starts: equal numbers, equal motions",
+        "seed of the random motions of hops and scrambled starts; the same seed gives the same motions",
         low=0,
         metavar="S",
     )

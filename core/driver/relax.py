@@ -128,21 +128,21 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
     In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
-    `minimize`.  BLAS has one thread at work, and between iterates as many as the caller gave it.
+    `minimize`.  BLAS runs with one thread while this computes, and as the caller set it between iterates.
 
     Parameters
     ----------
     curve
         An embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.
     options
-        What is asked for.
+        How to relax; None stands for the defaults.
 
     Raises
     ------
     CurveError
         If the curve touches itself or an obstacle, or is degenerate; the message says where.
     OptionError
-        If an option does not fit.
+        If options contradict the task or each other.
     """
     began = time.perf_counter()
     options = RelaxOptions() if options is None else options
