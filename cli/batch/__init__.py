@@ -48,14 +48,13 @@ def add_to(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="also estimate the smooth curve's energy, from two more runs, with edges halved twice: as much work again",
     )
-    parser.add_argument("--time-limit", type=float, metavar="T", help="limit per run, in seconds (default: none)")
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
         help="address of a running Dask scheduler (default: use all cores of this machine)",
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    relax_options.add_to(parser, without=("time_limit",))
+    relax_options.add_to(parser)
     relax_options.add_task(parser)
 
 
@@ -65,8 +64,6 @@ def run(options: argparse.Namespace) -> int:
         raise OptionError("output is empty; name the directory of the results")
     if options.starts < 1:
         raise OptionError(f"starts is {options.starts}; it must be 1 or more")
-    if options.time_limit is not None and not 0.0 < options.time_limit < float("inf"):
-        raise OptionError(f"time-limit is {options.time_limit}; it must be a finite number of seconds above 0")
     wanted = relax_options.from_arguments(options)
     from .campaign import campaign
 

@@ -74,7 +74,7 @@ def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argpar
         _Progress(shown, total=len(left), unit="run", smoothing=0.1) as progress,
     ):
         try:
-            for job, row in cluster.rows(submit, left, options.time_limit):
+            for job, row in cluster.rows(submit, left):
                 rows[job] = row
                 progress.show(row)
         finally:

@@ -89,12 +89,12 @@ async def _greet(address: str) -> None:
     await comm.close()
 
 
-def rows(submit: Submit, jobs: Iterable[Job], limit: float | None) -> Iterator[tuple[Job, Row]]:
+def rows(submit: Submit, jobs: Iterable[Job]) -> Iterator[tuple[Job, Row]]:
     """Do all runs, and give each with its row as they come; a MobiusFlowError says why the others cannot be done."""
     waiting, under_way, ended = iter(jobs), dict[Any, tuple[Job, int]](), queue.SimpleQueue[Any]()
 
     def begin(job: Job, tries: int = 1) -> None:
-        future = submit(sandbox.run, job, limit)
+        future = submit(sandbox.run, job)
         under_way[future] = job, tries
         future.add_done_callback(ended.put)
 

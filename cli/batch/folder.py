@@ -11,9 +11,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from ...core import MobiusFlowError
+from ...core import MobiusFlowError, Status
 from ...core.errors import reason_of
-from .job import CURVE, REPORT, TRAJECTORY, Job, sha256_of
+from .job import CURVE, REPORT, TRAJECTORY, Job, limit_of, sha256_of
 from .table import Row, foreign
 
 _ROOM = ".mobius-flow-{}.partial"  # short, so that whatever can be the name of results has one beside it
@@ -123,11 +123,16 @@ def sweep(directory: Path) -> None:
 
 
 def finished(job: Job) -> Row | None:
-    """The row of a run whose results are there already; None if they are missing, or of another recipe."""
+    """The row of a run whose results are there already; None if they are missing, or of another recipe.
+
+    A run that was stopped by its time limit is not finished where there is more time now.
+    """
     report = _report(Path(job.folder))
     try:
-        return Row(**report["row"]) if report["recipe"] == job.recipe else None
-    except (KeyError, TypeError):
+        row = Row(**report["row"]) if report["recipe"] == job.recipe else None
+        stopped = row is not None and row.status == Status.TIME_LIMIT.value
+        return None if stopped and job.time_limit > limit_of(report["options"]) else row
+    except (KeyError, TypeError, ValueError):
         return None
 
 

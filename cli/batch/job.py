@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
@@ -36,14 +37,25 @@ class Job:
         return hash(self.folder)
 
     @property
+    def time_limit(self) -> float:
+        """Seconds that the relaxation may take; infinite without a limit."""
+        return limit_of(self.options)
+
+    @property
     def recipe(self) -> dict[str, object]:
         """All that the results depend on, as JSON has it: runs of equal recipes need not be repeated."""
         made = asdict(self)
-        del made["folder"], made["file"]
+        del made["folder"], made["file"], made["options"]["time_limit"]
         if not self.options.get("hops"):
             made["options"].pop("seed", None)  # which only hops draw from: that of a scrambled start is the job's own
         plain: dict[str, object] = json.loads(json.dumps(made))
         return plain
+
+
+def limit_of(options: Mapping[str, object]) -> float:
+    """The time limit among options, in seconds; infinite without one."""
+    limit = options["time_limit"]
+    return math.inf if limit is None else float(str(limit))
 
 
 def folder_name(name: str, start: int) -> str:

@@ -19,6 +19,7 @@ from . import child
 from .job import Job
 from .table import Row
 
+PATIENCE, GRACE = 2.0, 60.0  # of its time limit, and seconds: a run that takes more hangs, and is killed
 _own = threading.local()
 _open: "WeakSet[Sandbox]" = WeakSet()
 _closed = threading.Event()
@@ -48,8 +49,8 @@ class Sandbox:
             self.close()
         self._answer()  # it is ready, or there would be an error
 
-    def run(self, job: Job, limit: float | None) -> Row:
-        """The row of a run of so many seconds at most.
+    def run(self, job: Job) -> Row:
+        """The row of a run, which is killed where it goes on long after its time limit.
 
         Raises
         ------
@@ -58,7 +59,7 @@ class Sandbox:
         MobiusFlowError
             If results cannot be written.
         """
-        seconds = min(limit or threading.TIMEOUT_MAX, threading.TIMEOUT_MAX)
+        seconds = min(GRACE + PATIENCE * job.time_limit, threading.TIMEOUT_MAX)
         watchdog, began = threading.Timer(seconds, self._process.kill), time.monotonic()
         watchdog.start()
         try:
@@ -66,7 +67,7 @@ class Sandbox:
         except ChildDiedError:
             if time.monotonic() - began < seconds:
                 raise
-            return Row.failure(job, f"stopped at the time limit, {seconds:g} s")
+            return Row.failure(job, f"stopped after {seconds:g} s, long after its time limit")
         finally:
             watchdog.cancel()
         if child.REFUSED in answer:
@@ -101,12 +102,12 @@ class Sandbox:
         return answer
 
 
-def run(job: Job, limit: float | None) -> Row:
+def run(job: Job) -> Row:
     """Do a run in the child of this thread; raises as `Sandbox.run` does."""
     box: Sandbox | None = getattr(_own, "box", None)
     if box is None or not box.alive:
         box = _own.box = Sandbox()
-    return box.run(job, limit)
+    return box.run(job)
 
 
 @contextmanager

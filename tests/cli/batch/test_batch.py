@@ -107,9 +107,9 @@ def test_what_is_finished_is_not_repeated(
     done: list[tuple[str, int]] = []
     run = cluster.rows
 
-    def spied(client: Any, jobs: list[Job], limit: float | None) -> Any:
+    def spied(submit: Any, jobs: list[Job]) -> Any:
         done.extend((job.name, job.start) for job in jobs)
-        return run(client, jobs, limit)
+        return run(submit, jobs)
 
     monkeypatch.setattr(cluster, "rows", spied)
 
@@ -172,9 +172,24 @@ def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path, caps
 
 
 def test_the_time_limit(batch: Batch, ring: Path, tmp_path: Path) -> None:
-    assert pick(batch("7_7", "--time-limit", 0.05), "status", "message") == [
-        ("failed", "stopped at the time limit, 0.05 s")
-    ]
+    """What was reached is kept, and done again where there is more time; what is finished is not."""
+    short, shorter, longer = (("7_7", "--max-iterations", 3, "--time-limit", limit) for limit in (1e-3, 1e-4, 1000))
+    curve = tmp_path / "out" / "7_7" / "curve.txt"
+    assert pick(batch(*short), "status") == [("time_limit",)]
+    written = curve.stat().st_mtime_ns
+    assert pick(batch(*shorter), "status") == [("time_limit",)]
+    assert curve.stat().st_mtime_ns == written
+    assert pick(batch(*longer), "status") != [("time_limit",)]
+    assert curve.stat().st_mtime_ns != written
+
+
+def test_a_run_that_goes_on_after_its_time_limit_is_killed(
+    batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sandbox, "GRACE", 0.0)
+    told = pick(batch("7_7", "--time-limit", 0.02), "status", "message")
+    assert told == [("failed", "stopped after 0.04 s, long after its time limit")]
+    monkeypatch.undo()
     assert pick(batch(ring, *TINY), "status") != [("failed",)]  # in a new process
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"ring", "results.csv", "results.parquet"}
 
@@ -213,7 +228,7 @@ def test_an_interrupt_leaves_the_table(
 
 def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster, "WINDOW", 3)
-    monkeypatch.setattr(sandbox, "run", lambda job, _limit: Row.failure(job, "as asked for"))
+    monkeypatch.setattr(sandbox, "run", lambda job: Row.failure(job, "as asked for"))
     jobs = [Job(f"{k}", 1, None, None, None, f"{tmp_path}/{k}", {}, False) for k in range(20)]
     submitted = []
     with cluster.submitting(scheduler) as submit:
@@ -222,7 +237,7 @@ def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkey
             submitted.append(1)
             return submit(*words)
 
-        for done, (job, row) in enumerate(cluster.rows(counted, jobs, None), 1):
+        for done, (job, row) in enumerate(cluster.rows(counted, jobs), 1):
             assert (row.name, row.message) == (job.name, "as asked for")
             assert len(submitted) <= done + 3
     assert done == 20 == len(submitted)
@@ -234,8 +249,8 @@ def test_few_runs_are_submitted_at_a_time(scheduler: str, tmp_path: Path, monkey
         (["3_1", "-o", ""], "output is empty; name the directory of the results"),
         (["3_1", "--starts", "0"], "starts is 0; it must be 1 or more"),
         (["3_1", "--seed", "-1"], "seed is -1; it must be 0 or more"),
-        (["3_1", "--time-limit", "0"], "time-limit is 0.0; it must be"),
-        (["3_1", "--time-limit", "inf"], "time-limit is inf; it must be"),
+        (["3_1", "--time-limit", "0"], "time_limit is 0.0; it must be"),
+        (["3_1", "--time-limit", "inf"], "time_limit is inf; it must be"),
         (["3_1", "--vertices", "2"], "vertices is 2"),
         (["none.txt"], "none.txt: there is no such file"),
         (["3_1", "--scheduler", "tcp://127.0.0.1:9"], "tcp://127.0.0.1:9: no Dask scheduler answers there"),
