@@ -80,8 +80,8 @@ def test_help_and_version_need_no_numpy(tmp_path: Path) -> None:
 
 
 @linux
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
-@pytest.mark.parametrize("words", ["--help", "relax --help", "methods", "relax nö.txt o.txt"])
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+@pytest.mark.parametrize("words", ["relax --help", "relax nö.txt o.txt"])
 def test_terminals_of_few_letters(trefoil: str, encoding: str, words: str) -> None:
     done = shell(f"flow {words}", trefoil, {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"})
     assert done.returncode == (2 if "nö" in words else 0)
@@ -90,7 +90,7 @@ def test_terminals_of_few_letters(trefoil: str, encoding: str, words: str) -> No
 
 
 @linux
-@pytest.mark.parametrize("words", ["methods", "--help", "--version", 'energy "$1"', "knot 3_1 -", 'info "$1"'])
+@pytest.mark.parametrize("words", ["methods", "--help", 'energy "$1"', "knot 3_1 -"])
 @pytest.mark.parametrize("end", [">/dev/full", ">&-"])
 def test_standard_output_that_takes_nothing(trefoil: str, words: str, end: str) -> None:
     done = shell(f"flow {words} {end}", trefoil)

@@ -13,7 +13,7 @@ from mobius_flow.addon.live import handlers, registry, run  # noqa: E402
 from modal_operator import restored  # noqa: E402
 
 
-@pytest.fixture(params=["SHAPE_KEYS", "FCURVES"])
+@pytest.fixture(params=["SHAPE_KEYS", pytest.param("FCURVES", marks=pytest.mark.slow)])
 def baked(request):
     """A baked trefoil, drawn at its first frame."""
     obj = add_trefoil()

@@ -1,4 +1,4 @@
-"""The numbers of knots that docs/energies.md tells apart, by invariants."""
+"""The numbers of knots that docs/least-energies.md tells apart, by invariants."""
 
 import re
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from mobius_flow.core.knots import knot, knot_type
 
-PAGE = (Path(__file__).parents[3] / "docs" / "energies.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "least-energies.md").read_text(encoding="utf-8")
 ROWS = re.findall(r"^\| (10_\d+) \| (\d+) \|", PAGE, re.MULTILINE)
 
 
