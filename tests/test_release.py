@@ -11,7 +11,7 @@ import pytest
 from processes import finished
 
 ROOT = Path(__file__).resolve().parents[1]
-FILES = ("blender_manifest.toml", "pyproject.toml", "__init__.py", "CHANGELOG.md")
+FILES = ("blender_manifest.toml", "pyproject.toml", "__init__.py", "CITATION.cff", "CHANGELOG.md")
 release = run_path(str(ROOT / "tools/release.py"))
 
 

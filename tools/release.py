@@ -22,11 +22,13 @@ HEADING = re.compile(r"^## \[(?P<version>[^\]]+)\](?: - (?P<date>.+))?$", re.MUL
 def versions(root: Path) -> dict[str, str]:
     """What each file says the version is."""
     heading = HEADING.search((root / "CHANGELOG.md").read_text(encoding="utf-8"))
+    cited = re.search(r"^version: (.+)$", (root / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE)
     package = re.search(r'^__version__ = "(.+)"$', (root / "__init__.py").read_text(encoding="utf-8"), re.MULTILINE)
     return {
         "blender_manifest.toml": tomllib.loads((root / "blender_manifest.toml").read_text("utf-8"))["version"],
         "pyproject.toml": tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]["version"],
         "__init__.py": package[1] if package else "none",
+        "CITATION.cff": cited[1] if cited else "none",
         "CHANGELOG.md": heading["version"] if heading else "none",
     }
 
