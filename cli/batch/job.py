@@ -45,7 +45,8 @@ class Job:
     def recipe(self) -> dict[str, object]:
         """All that the results depend on, as JSON has it: runs of equal recipes need not be repeated."""
         made = asdict(self)
-        del made["folder"], made["file"], made["options"]["time_limit"]
+        del made["folder"], made["file"]
+        made["options"].pop("time_limit", None)
         if not self.options.get("hops"):
             made["options"].pop("seed", None)  # which only hops draw from: that of a scrambled start is the job's own
         plain: dict[str, object] = json.loads(json.dumps(made))
@@ -54,7 +55,7 @@ class Job:
 
 def limit_of(options: Mapping[str, object]) -> float:
     """The time limit among options, in seconds; infinite without one."""
-    limit = options["time_limit"]
+    limit = options.get("time_limit")
     return math.inf if limit is None else float(str(limit))
 
 
