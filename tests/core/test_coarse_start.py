@@ -160,6 +160,7 @@ def test_vertices_come_back_in_a_tangle_too() -> None:
 
 
 @pytest.mark.usefixtures("everywhere")
+@pytest.mark.slow
 def test_penalised_lengths_keep_all_vertices() -> None:
     iterates, _ = relaxed(bent(torus_trefoil(900)), max_iterations=40, method="penalty-lbfgs")
     assert {len(iterate.curve) for iterate in iterates} == {900}

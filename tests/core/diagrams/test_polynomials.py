@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from braid_words import burau_alexander
+from families import family
 from jones import jones as slow_jones
 from mobius_flow.core.diagrams import (
     Diagram,
@@ -27,7 +28,7 @@ CIRCLE = Diagram(((),), ())
 SIGNATURES = {"9_42": 2, "10_132": 0, "10_136": 2, "10_139": -6, "10_145": 2, "10_152": -6, "10_154": -4, "10_161": -4}
 
 
-@pytest.mark.parametrize("name", ROWS)
+@pytest.mark.parametrize("name", family(ROWS))
 def test_invariants_of_the_table(name: str) -> None:
     diagram = braid_diagram(KNOTS[name])
     _, _, _, tau, polynomial, lowest, coefficients = ROWS[name]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from families import family
 from hard_curves import hard_unknot, lattice_closure
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.diagrams.codes import diagram_from_code
@@ -24,7 +25,7 @@ from mobius_flow.core.knots.table import AMPHICHEIRAL, ROLFSEN
 UNTOLD = {"10_71": ("10_71", "m10_71"), "m10_71": ("10_71", "m10_71")}
 
 
-@pytest.mark.parametrize("name", KNOTS)
+@pytest.mark.parametrize("name", family(KNOTS))
 def test_smooth_shapes_of_the_table(name: str) -> None:
     found = knot_type(smooth_knot(name))
     assert found.names == UNTOLD.get(name, (name,))

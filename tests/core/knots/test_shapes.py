@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from curve_checks import strand_distance
+from families import family
 from jones import jones
 from knot_diagrams import pairwise_linking, simplified
 from knot_type import knot_invariants
@@ -28,7 +29,7 @@ def test_every_name_of_the_table_has_a_shape() -> None:
     assert FILE.stat().st_size < 60_000
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@pytest.mark.parametrize("name", family(KNOWN))
 def test_every_shape_has_the_type_of_its_name(name: str) -> None:
     """Knot Floer homology and the Jones polynomial together tell all knots of the table apart, but for four pairs."""
     genus, fibered, tau, alexander, lowest, coefficients = KNOWN[name]
@@ -49,7 +50,7 @@ def test_every_link_has_the_type_of_its_name(name: str) -> None:
         assert knot_invariants(part) == knot_invariants(other)
 
 
-@pytest.mark.parametrize("name", KNOTS)
+@pytest.mark.parametrize("name", family(KNOTS))
 def test_shapes_are_flat_and_fill_their_room(name: str) -> None:
     curve = smooth_knot(name)
     widths = np.ptp(curve.vertices, axis=0)

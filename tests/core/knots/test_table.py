@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from braid_words import burau_alexander
 from curve_checks import strand_distance
+from families import family
 from jones import Laurent, jones
 from knot_diagrams import pairwise_linking, simplified
 from knot_type import UNKNOT, knot_invariants
@@ -67,7 +68,7 @@ def test_the_table_has_all_prime_knots_to_ten_crossings() -> None:
     assert set(KNOTS) - set(LINKS) == set(KNOWN)
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@pytest.mark.parametrize("name", family(KNOWN))
 def test_knot_type_of_the_polygon(name: str) -> None:
     genus, fibered, tau, alexander = KNOWN[name][:4]
     found = knot_invariants(knot(name).vertices)
@@ -124,7 +125,7 @@ def test_rolfsens_names_count_crossings_and_components() -> None:
         assert sum(map(abs, LINKS[ROLFSEN[rolfsen]][1].values())) == determinant  # alternating
 
 
-@pytest.mark.parametrize("name", [*KNOTS, *ALIASES])
+@pytest.mark.parametrize("name", family([*KNOTS, *ALIASES]))
 def test_geometry(name: str) -> None:
     curve = knot(name)
     lengths = curve.edge_lengths
