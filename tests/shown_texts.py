@@ -9,7 +9,7 @@ from mobius_flow.core.knots import KNOTS
 
 ADDON = Path(registration.__file__).parent
 _MARKS = {
-    "Phrase": 0,
+    "Message": 0,
     "iface_": 0,
     "rpt_": 0,
     "sentence": 2,

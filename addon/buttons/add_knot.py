@@ -6,7 +6,7 @@ import bpy
 from bpy.props import EnumProperty, IntProperty, StringProperty
 
 from ...core import Curve, OptionError
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 from .adding import AddsKnot
 
 _MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
@@ -50,7 +50,7 @@ def check_numbers(name: str) -> None:
     for number in re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))):
         if int(number) > _MAX_TURNS:
             raise OptionError(
-                Phrase(
+                Message(
                     "{name} has a number beyond {most}, which is too much for a window; use smaller ones",
                     name=name[:60],
                     most=_MAX_TURNS,

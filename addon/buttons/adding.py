@@ -5,21 +5,21 @@ from bpy.props import BoolProperty, FloatProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from ...core import Curve, MobiusFlowError, OptionError
+from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves import bevel
 from ..curves.exchange import new_curve_data, write_points
-from ..engine.phrase import Phrase
 from ..pictures.materials import colour_components
 from ..translations import rpt_, tip_
 
 _MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
 
 
-def check_length(label: Phrase, value: float) -> None:
+def check_length(label: Message, value: float) -> None:
     """Raise an OptionError for what Blender lets through but is no number."""
     if not value <= _MAX_NUMBER:
         sentence = "{label} is {value:g}; it must be a number up to {most:g}"
-        raise OptionError(Phrase(sentence, label=label, value=value, most=_MAX_NUMBER))
+        raise OptionError(Message(sentence, label=label, value=value, most=_MAX_NUMBER))
 
 
 class AddsKnot(AddObjectHelper):
@@ -81,8 +81,8 @@ class AddsKnot(AddObjectHelper):
 
     def _check(self) -> None:
         """Raise an OptionError for what is not a number."""
-        check_length(Phrase("Size"), self.size)
-        check_length(Phrase("Thickness"), self.thickness)
+        check_length(Message("Size"), self.size)
+        check_length(Message("Thickness"), self.thickness)
 
     def _fits(self) -> bool:
         given = self.properties.is_property_set

@@ -2,8 +2,8 @@
 
 import bpy
 
+from ...core.messages import Message
 from ..curves import neighbours, surroundings
-from ..engine.phrase import Phrase
 from ..engine.words import named
 from ..live.avoided import avoided
 from ..live.checks import running, selected_curves
@@ -21,8 +21,10 @@ class CURVE_OT_mobius_flow_avoid(Refusing, bpy.types.Operator):  # noqa: N801 - 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """There must be something, and nothing is being relaxed."""
-        nothing = None if _near(context) else Refusal(Phrase("Nothing is near the selected curves but what they avoid"))
-        return running() or nothing
+        if reason := running():
+            return reason
+        near = _near(context)
+        return None if near else Refusal(Message("Nothing is near the selected curves but what they avoid"))
 
     def act(self, context: bpy.types.Context) -> None:
         """Add all that is near."""

@@ -2,8 +2,8 @@
 
 import bpy
 
+from ...core.messages import Message
 from ..curves.mending import close
-from ..engine.phrase import Phrase
 from ..live.checks import closable, running, selected_curves
 from ..live.refusal import Refusal
 from .refusing import Refusing
@@ -22,7 +22,7 @@ class CURVE_OT_mobius_flow_close(Refusing, bpy.types.Operator):  # noqa: N801 - 
             return refused
         if any(closable(selected_curves(context))):
             return None
-        return Refusal(Phrase("No selected curve has an open spline without keys; select one in Object Mode"))
+        return Refusal(Message("No selected curve has an open spline without keys; select one in Object Mode"))
 
     def act(self, context: bpy.types.Context) -> None:
         """Close them."""

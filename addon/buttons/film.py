@@ -6,8 +6,8 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves.world_motion import drawn_radius
-from ..engine.phrase import Phrase
 from ..engine.words import named
 from ..live.checks import running, selected_curves, unreadable
 from ..live.refusal import Refusal
@@ -61,7 +61,7 @@ class CURVE_OT_mobius_flow_remove_stage(Refusing, bpy.types.Operator):  # noqa: 
         """There must be one."""
         if staging.own_stage(context.scene):
             return None
-        return Refusal(Phrase("The scene has no stage; press Set Up Stage first"))
+        return Refusal(Message("The scene has no stage; press Set Up Stage first"))
 
     def act(self, context: bpy.types.Context) -> None:
         """Take it away."""
@@ -108,9 +108,9 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Refusing, bpy.types.Operator):  
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """There must be a camera, and nothing else going on."""
         if is_rendering():
-            return Refusal(Phrase("Blender is rendering; wait until it is done, or stop it with Esc"))
+            return Refusal(Message("Blender is rendering; wait until it is done, or stop it with Esc"))
         if context.scene.camera is None:
-            return running() or Refusal(Phrase("The scene has no camera; press Set Up Stage first"))
+            return running() or Refusal(Message("The scene has no camera; press Set Up Stage first"))
         return running()
 
     def act(self, context: bpy.types.Context) -> None:
@@ -176,8 +176,8 @@ class CURVE_OT_mobius_flow_replace_film(_OfFilm, bpy.types.Operator):  # noqa: N
         return {"FINISHED"}
 
 
-def _made(filming: Filming) -> Phrase:
-    return Phrase("A film of {count} frames: {path}", count=filming.frames, path=filming.path)
+def _made(filming: Filming) -> Message:
+    return Message("A film of {count} frames: {path}", count=filming.frames, path=filming.path)
 
 
 CLASSES = (

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 import bpy
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves import copying, mending
-from ..engine.phrase import Phrase
 from ..live.checks import convertible, needing, running, selected_curves
 from ..live.refusal import Remedy
 from ..translations import rpt_, tip_
@@ -22,7 +22,7 @@ class _Mending:
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is something to mend, and nothing is being relaxed."""
         refused = running()
-        cls.poll_message_set(tip_(refused.sentence if refused else Phrase("Nothing selected needs that")))
+        cls.poll_message_set(tip_(refused.sentence if refused else Message("Nothing selected needs that")))
         return refused is None and any(cls.concerned(context))
 
     @classmethod

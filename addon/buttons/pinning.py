@@ -6,9 +6,9 @@ import bpy
 import numpy as np
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ...core.types import BoolArray
 from ..curves import bake, pins
-from ..engine.phrase import Phrase
 from ..engine.words import named
 from ..live.checks import curves_at_hand, unpinnable
 from ..live.refusal import Refusal
@@ -48,10 +48,10 @@ class _Pinning(Refusing):
 
     def _tell(self, context: bpy.types.Context) -> None:
         objects = curves_at_hand(context)
-        told = Phrase("Points that are pinned: {count}", count=sum(pins.count(obj.data) for obj in objects))
+        told = Message("Points that are pinned: {count}", count=sum(pins.count(obj.data) for obj in objects))
         if baked := [obj.name for obj in objects if bake.is_baked(obj.data)]:
             sentence = "{pinned}; Continue minds that, Bake Again begins with {names} as pinned before"
-            told = Phrase(sentence, pinned=told, names=named(baked))
+            told = Message(sentence, pinned=told, names=named(baked))
         self.report({"INFO"}, rpt_(told))
 
 
@@ -60,14 +60,14 @@ class CURVE_OT_mobius_flow_pin(_Pinning, bpy.types.Operator):  # noqa: N801 - Bl
 
     bl_idname = "curve.mobius_flow_pin"
     bl_label = "Pin Selected Points"
-    nothing = Phrase("No points are selected; select some to pin")
+    nothing = Message("No points are selected; select some to pin")
     points = staticmethod(pins.selected)
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """Points are selected in Edit Mode."""
         if context.mode != "EDIT_CURVE":
-            return Refusal(Phrase("Go to Edit Mode and select the points to pin"))
+            return Refusal(Message("Go to Edit Mode and select the points to pin"))
         return super().refusal(context)
 
 
@@ -76,7 +76,7 @@ class CURVE_OT_mobius_flow_pin_ends(_Pinning, bpy.types.Operator):  # noqa: N801
 
     bl_idname = "curve.mobius_flow_pin_ends"
     bl_label = "Pin Ends"
-    nothing = Phrase("All splines are closed and have no ends; select an open one")
+    nothing = Message("All splines are closed and have no ends; select an open one")
     points = staticmethod(pins.ends)
 
 
@@ -93,7 +93,7 @@ class CURVE_OT_mobius_flow_unpin(_Pinning, bpy.types.Operator):  # noqa: N801
             return refused
         if any(pins.count(obj.data) for obj in curves_at_hand(context)):
             return None
-        return Refusal(Phrase("No points of the selected curves are pinned"))
+        return Refusal(Message("No points of the selected curves are pinned"))
 
     def act(self, context: bpy.types.Context) -> None:
         """Let them go."""

@@ -6,10 +6,10 @@ from typing import Any
 import bpy
 
 from ...core import MobiusFlowError, Task
+from ...core.messages import Message
 from ..curves.baked_keys import BakedKeys
 from ..curves.pins import pinned_vertices
 from ..curves.surroundings import Surroundings
-from ..engine.phrase import Phrase
 from ..engine.rest import Rest
 from ..engine.words import named
 from ..live.avoided import avoided
@@ -97,9 +97,9 @@ def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
     return Rest.of(task, relax_options({**values, "balance": False}))
 
 
-def _told(context: bpy.types.Context, rest: Rest) -> Phrase:
+def _told(context: bpy.types.Context, rest: Rest) -> Message:
     names = named([obj.name for obj in selected_curves(context)])
-    return Phrase("{names}: {rest}", names=names, rest=rest.words)
+    return Message("{names}: {rest}", names=names, rest=rest.words)
 
 
 CLASSES = (CURVE_OT_mobius_flow_balance, CURVE_OT_mobius_flow_check, CURVE_OT_mobius_flow_leave_saddle)

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import bpy
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves import sampling
-from ..engine.phrase import Phrase
 from ..live import registry
 from ..live.checks import hindrance, selected_curves
 from ..live.modal import redraw_views
@@ -15,8 +15,8 @@ from ..live.run import Run, State
 from ..live.start import Listening, tell_end
 from ..translations import iface_, rpt_, tip_
 
-_NOTHING = Phrase("Nothing is being relaxed")
-_WRITING = Phrase("The relaxation is over; its keys are being written")
+_NOTHING = Message("Nothing is being relaxed")
+_WRITING = Message("The relaxation is over; its keys are being written")
 _PATIENCE = 0.005  # seconds between looks at whether the keys are ready
 
 

@@ -3,9 +3,9 @@
 import bpy
 from bpy.props import EnumProperty
 
+from ...core.messages import Message
 from ..curves.resized import keep_size
 from ..curves.turned import face_camera, lay_flat
-from ..engine.phrase import Phrase
 from ..engine.size import Measure
 from ..engine.words import named
 from ..live.checks import edited, refusal, selected_curves, unclearable
@@ -16,9 +16,9 @@ from .refusing import Refusing
 
 _KEYS = {"FIRST": 0, "LAST": -1}
 _KEPT = {
-    Measure.LENGTH: Phrase("The length"),
-    Measure.BOX: Phrase("The bounding box"),
-    Measure.RADIUS: Phrase("The radius"),
+    Measure.LENGTH: Message("The length"),
+    Measure.BOX: Message("The bounding box"),
+    Measure.RADIUS: Message("The radius"),
 }
 
 
@@ -51,7 +51,7 @@ class CURVE_OT_mobius_flow_keep_size(Refusing, bpy.types.Operator):  # noqa: N80
         keys = keep_size(objects, measure, _KEYS[self.reference])
         kept = "{measure} of {names} stays at all {count} keys"
         names = named([obj.name for obj in objects])
-        _tell(self, Phrase(kept, measure=_KEPT[measure], names=names, count=len(keys.frames)), keys.unproved)
+        _tell(self, Message(kept, measure=_KEPT[measure], names=names, count=len(keys.frames)), keys.unproved)
 
 
 class _Turning(Refusing):
@@ -65,7 +65,7 @@ class _Turning(Refusing):
     def act(self, context: bpy.types.Context) -> None:
         """Turn them."""
         if unproved := self.turn(context):
-            _tell(self, Phrase("The curves were turned"), unproved)
+            _tell(self, Message("The curves were turned"), unproved)
 
     def turn(self, context: bpy.types.Context) -> int:
         """Turn the selected curves, and count the motions that are not proved any more."""
@@ -92,7 +92,7 @@ class CURVE_OT_mobius_flow_face_camera(_Turning, bpy.types.Operator):  # noqa: N
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
         """There must be a camera."""
-        missing = None if context.scene.camera else Refusal(Phrase("The scene has no camera; add one first"))
+        missing = None if context.scene.camera else Refusal(Message("The scene has no camera; add one first"))
         return refusal(context) or missing
 
     def turn(self, context: bpy.types.Context) -> int:
@@ -100,7 +100,7 @@ class CURVE_OT_mobius_flow_face_camera(_Turning, bpy.types.Operator):  # noqa: N
         return face_camera(selected_curves(context), context.scene.camera)
 
 
-def _tell(operator: bpy.types.Operator, what: Phrase, unproved: int) -> None:
+def _tell(operator: bpy.types.Operator, what: Message, unproved: int) -> None:
     """Say what was done, and whether the animation is proved still."""
     if unproved:
         one, several = (

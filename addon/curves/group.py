@@ -9,11 +9,11 @@ import numpy as np
 from ...core import Curve, Obstacle
 from ...core.curve import Mesh
 from ...core.errors import Place
+from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.glossary import in_blenders_words, spline_names
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from ..engine.spots import Spot, spots
 from ..engine.words import named
@@ -114,7 +114,7 @@ class Group:
             and all(one.equals(another) for one, another in pairs)
         )
 
-    def lost(self, alone: bool = True) -> Phrase | None:
+    def lost(self, alone: bool = True) -> Message | None:
         """Say what somebody did to one of the objects that makes going on impossible.
 
         What is proved of a single one holds wherever it goes, if it is ``alone``, and avoids nothing.
@@ -122,7 +122,7 @@ class Group:
         reason = next((reason for member in self._members if (reason := member.lost())), None)
         if reason is None and not (alone and len(self._members) == 1):
             moved = next((member for member in self._members if member.moved), None)
-            reason = Phrase("'{name}' was moved against the others", name=moved.name) if moved else None
+            reason = Message("'{name}' was moved against the others", name=moved.name) if moved else None
         return reason
 
     @property

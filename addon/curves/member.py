@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...core import Curve
+from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame, Placement
 from . import bake, bevel, keyframes
 from .deforming import what_deforms
@@ -88,24 +88,24 @@ class Member:
         if not self.lost():
             write_points(self.data, points)
 
-    def lost(self) -> Phrase | None:
+    def lost(self) -> Message | None:
         """Say what somebody did to the curve that makes going on impossible."""
         obj, data = self.object, self.data
         if obj is None or data is None or not obj.users_scene:
-            return Phrase("'{name}' was deleted", name=self.name)
+            return Message("'{name}' was deleted", name=self.name)
         self.name, self._data_name = obj.name, data.name
         if obj.data != data:
-            return Phrase("'{name}' was given other curve data", name=self.name)
+            return Message("'{name}' was given other curve data", name=self.name)
         if obj.mode != "OBJECT":
-            return Phrase("'{name}' is being edited", name=self.name)
+            return Message("'{name}' is being edited", name=self.name)
         if shape(data) != self._shape:
             counts = [each.count for each in shape(data)] != [each.count for each in self._shape]
             changed = "Points of '{name}' were added or removed" if counts else "Splines of '{name}' were changed"
-            return Phrase(changed, name=self.name)
+            return Message(changed, name=self.name)
         if self._foreign_keys(data):
-            return Phrase("'{name}' was given shape keys", name=self.name)
+            return Message("'{name}' was given shape keys", name=self.name)
         deformer = what_deforms(obj)
-        return Phrase("{deformer} moves its points", deformer=deformer) if deformer else None
+        return Message("{deformer} moves its points", deformer=deformer) if deformer else None
 
     def writing(self, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
         """Write keys in short pieces; ``radii`` are those of the tube in the object's units, (keys,)."""

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...core import CurveError, Mesh
+from ...core.messages import Message
 from ...core.types import BoolArray, IntArray
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from .sampling import kind
 from .snapshot import control_points
@@ -115,7 +115,7 @@ def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None
             "Spline {number} of '{name}' is a {kind} spline, of which only the ends can be pinned; "
             "convert it to Poly first (Edit Mode, Curve > Set Spline Type > Poly)"
         )
-        raise CurveError(Phrase(sentence, number=number + 1, name=obj.name, kind=kind(spline)))
+        raise CurveError(Message(sentence, number=number + 1, name=obj.name, kind=kind(spline)))
 
 
 def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[int, ...]:

@@ -27,12 +27,12 @@ from ...core import (
 )
 from ...core.collision import is_free
 from ...core.curve import Mesh
+from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.glossary import as_phrase
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
 from ..engine.obstacles import in_common_space
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from ..engine.size import Measure, Size
 from ..engine.words import named
@@ -87,7 +87,7 @@ class Report:
     avoided: tuple[str, ...]
 
     @property
-    def sentence(self) -> Phrase:
+    def sentence(self) -> Message:
         """The same in words."""
         told: dict[str, Any] = {
             "names": named(self.names),
@@ -95,23 +95,23 @@ class Report:
             "proof": self._proof,
         }
         if self.keys == 1:
-            return Phrase("{names} {outcome}; {proof}", **told)
+            return Message("{names} {outcome}; {proof}", **told)
         told |= {"count": self.keys - self.continues, "frame": self.last_frame}
         if self.continues and told["count"] == 1:
-            return Phrase("{names} {outcome}; 1 new key up to frame {frame:g}, {proof}", **told)
+            return Message("{names} {outcome}; 1 new key up to frame {frame:g}, {proof}", **told)
         if self.continues:
-            return Phrase("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **told)
-        return Phrase("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **told)
+            return Message("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **told)
+        return Message("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **told)
 
     @property
-    def _proof(self) -> Phrase:
+    def _proof(self) -> Message:
         if not self.certified:
-            return Phrase("NOT proved free of contact everywhere")
+            return Message("NOT proved free of contact everywhere")
         # nothing but the curves that were relaxed, and what they avoid, is looked at
-        alone = Phrase("proved free of contact with itself")
-        whom = alone if len(self.names) == 1 else Phrase("proved free of contact with themselves and each other")
-        whom = Phrase("{proof}, and with {avoided}", proof=whom, avoided=named(self.avoided)) if self.avoided else whom
-        return Phrase("{proof}, before modifiers", proof=whom) if self.modified else whom
+        alone = Message("proved free of contact with itself")
+        whom = alone if len(self.names) == 1 else Message("proved free of contact with themselves and each other")
+        whom = Message("{proof}, and with {avoided}", proof=whom, avoided=named(self.avoided)) if self.avoided else whom
+        return Message("{proof}, before modifiers", proof=whom) if self.modified else whom
 
     @property
     def clean(self) -> bool:
@@ -201,7 +201,7 @@ class Session:
     def _fitting(self, options: RelaxOptions) -> RelaxOptions:
         """The requested options; raises OptionError if they do not go with the task."""
         if self.task.obstacles and options.balance:
-            raise OptionError(Phrase("Balance does not go with what is avoided; leave it out, or avoid nothing"))
+            raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
         if self.group.continues:  # the keys that are there have as many points as the curves have now
             return replace(options, vertices=len(self.group.curve), mesh="fixed")
         return options
@@ -217,7 +217,7 @@ class Session:
         try:
             prepared = self._relaxed()
             if reason := self.lost():
-                raise MobiusFlowError(Phrase("{reason} during the relaxation; nothing was written", reason=reason))
+                raise MobiusFlowError(Message("{reason} during the relaxation; nothing was written", reason=reason))
             for _ in self.writing(prepared):
                 pass
         except BaseException:
@@ -241,7 +241,7 @@ class Session:
         """What is avoided, in the common space."""
         return in_common_space(self.task.obstacles, self.group.link)
 
-    def lost(self) -> Phrase | None:
+    def lost(self) -> Message | None:
         """Say what somebody did to one of the objects, or to what they avoid, that makes going on impossible."""
         return self.group.lost(alone=not self.task.obstacles) or self.surroundings.lost()
 
@@ -296,7 +296,7 @@ class Session:
         MobiusFlowError
             If they are not.
         """
-        changed = Phrase("{names} changed since the relaxation ended; relax anew", names=self.group.title)
+        changed = Message("{names} changed since the relaxation ended; relax anew", names=self.group.title)
         objects = self.group.objects
         if len(objects) < len(self.group.names) or self.surroundings.lost():
             raise MobiusFlowError(changed)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from string import Formatter
 
 from ...core import Obstacle
-from .phrase import Phrase
+from ...core.messages import Message
 
 _WORDS = {
     "component": "spline",
@@ -18,10 +18,10 @@ _WORDS = {
 _TERM = rf"\bcomponent (\d+)\b|\b({'|'.join(_WORDS)})\b"
 
 _ENDS = (  # how most relaxations end, see `core.driver.outcome`
-    Phrase("converged: projected gradient {norm} ≤ {bound}"),
-    Phrase("stopped after {count} iterations, as asked for"),
-    Phrase("stopped after 1 iteration, as asked for"),
-    Phrase("stopped at the time limit, {seconds} s, as asked for"),
+    Message("converged: projected gradient {norm} ≤ {bound}"),
+    Message("stopped after {count} iterations, as asked for"),
+    Message("stopped after 1 iteration, as asked for"),
+    Message("stopped at the time limit, {seconds} s, as asked for"),
 )
 
 
@@ -45,7 +45,7 @@ def as_phrase(sentence: str) -> str:
     """The core's sentence about how a relaxation ended as a phrase, if it is one that can be translated."""
     for end in _ENDS:
         if match := _pattern(end).fullmatch(sentence):
-            return Phrase(end.template, **match.groupdict())
+            return Message(end.template, **match.groupdict())
     return sentence
 
 

@@ -11,7 +11,7 @@ from .obstacles import in_common_space
 from .placement import Frame, Link
 
 
-def messages(job: wire.Message) -> Iterator[wire.Message]:
+def messages(job: wire.Packet) -> Iterator[wire.Packet]:
     """Yield the iterates of a job as messages, or one message with the reason why it cannot be done."""
     task, options, link = wire.unpack_job(job)
     obstacles = in_common_space(task.obstacles, link)

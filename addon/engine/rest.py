@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from ...core import Curve, CurveError, RelaxOptions, Status, Task, minimize
-from .phrase import Phrase
+from ...core.messages import Message
 
 MAX_POINTS = 1500  # some ten seconds
 _ITERATIONS = 100  # that lead from points rounded to Blender's numbers back to a critical point
@@ -36,7 +36,7 @@ class Rest:
         task = Task.of(curve)
         if len(task.curve) > MAX_POINTS:
             raise CurveError(
-                Phrase(
+                Message(
                     "The curves have {count} points; minimum or saddle is told up to {most}",
                     count=len(task.curve),
                     most=MAX_POINTS,
@@ -46,11 +46,11 @@ class Rest:
         result = minimize(task, options)
         index = result.outcome.negative_eigenvalues
         if result.status is Status.ITERATION_LIMIT:
-            return cls(None, Phrase("not at rest yet; press Continue first"))
+            return cls(None, Message("not at rest yet; press Continue first"))
         if index is None:
             return cls(None, result.message)
         if not index:
-            return cls(0, Phrase("at a minimum, no small motion lowers the energy"))
+            return cls(0, Message("at a minimum, no small motion lowers the energy"))
         if index == 1:
-            return cls(1, Phrase("at a saddle, one way leads down; press Leave Saddle"))
-        return cls(index, Phrase("at a saddle, {count} independent ways lead down; press Leave Saddle", count=index))
+            return cls(1, Message("at a saddle, one way leads down; press Leave Saddle"))
+        return cls(index, Message("at a saddle, {count} independent ways lead down; press Leave Saddle", count=index))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ...core import Curve, RelaxOptions, Task
 from ...core.knots.alexander import TRIVIAL, signature
-from .phrase import Phrase
+from ...core.messages import Message
 
 CIRCLE = 4.0  # Möbius energy of the round circle, the least of any closed curve: Freedman, He and Wang (1994)
 SEGMENT = 0.0  # that of the straight segment, the least of any arc
@@ -16,7 +16,7 @@ class Target:
     """A least energy, and what has it."""
 
     energy: float
-    label: Phrase
+    label: Message
 
 
 def target_of(curve: Curve | Task, options: RelaxOptions) -> Target | None:
@@ -32,9 +32,9 @@ def target_of(curve: Curve | Task, options: RelaxOptions) -> Target | None:
     curve = task.curve
     closed = curve.mesh.closed
     if closed == (False,):
-        return Target(SEGMENT, Phrase("straight = {energy:g}", energy=SEGMENT))
+        return Target(SEGMENT, Message("straight = {energy:g}", energy=SEGMENT))
     if len(closed) > 1:
         floor = CIRCLE * sum(closed)
-        return Target(floor, Phrase("floor = {energy:g}", energy=floor))
+        return Target(floor, Message("floor = {energy:g}", energy=floor))
     knotted = len(curve) <= _MOST and signature(curve).alexander != (TRIVIAL,)
-    return None if knotted else Target(CIRCLE, Phrase("circle = {energy:g}", energy=CIRCLE))
+    return None if knotted else Target(CIRCLE, Message("circle = {energy:g}", energy=CIRCLE))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from .phrase import Phrase
+from ...core.messages import Message
 
 _MAX_NAMES = 3
 
@@ -11,9 +11,9 @@ def named(names: Sequence[str]) -> str:
     """Join names, such as 'A', 'B' and 'C'; of many the first, and how many more there are."""
     if len(names) > _MAX_NAMES + 1:
         first, count = ", ".join(map(_quoted, names[:_MAX_NAMES])), len(names) - _MAX_NAMES
-        return Phrase("{names} and {count} more", names=first, count=count)
+        return Message("{names} and {count} more", names=first, count=count)
     *others, last = map(_quoted, names)
-    return Phrase("{names} and {last}", names=", ".join(others), last=last) if others else last
+    return Message("{names} and {last}", names=", ".join(others), last=last) if others else last
 
 
 def _quoted(name: str) -> str:

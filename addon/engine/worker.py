@@ -18,11 +18,11 @@ import threadpoolctl
 from ...core import Iterate, MobiusFlowError, Outcome, RelaxOptions, Task
 from ...core.collision import is_free
 from ...core.curve import Mesh
+from ...core.messages import Message
 from ...core.types import FloatArray
 from . import wire
 from .job import messages
 from .obstacles import in_common_space
-from .phrase import Phrase
 from .placement import Link
 
 _AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the worker waits too: that is how it pauses
@@ -48,7 +48,7 @@ class Worker:
         self._job = wire.pack_job(task, options, link)
         self._obstacles = in_common_space(task.obstacles, link)
         self._proved: set[str] = set()
-        self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
+        self._queue: queue.Queue[wire.Packet | None] = queue.Queue(_AHEAD)
         self._closed = threading.Event()
         self.process = _start()
         self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
@@ -67,7 +67,7 @@ class Worker:
         except queue.Empty:
             return None
         if message is None:
-            raise WorkerError(Phrase("The computation ended unexpectedly; perhaps memory ran out"))
+            raise WorkerError(Message("The computation ended unexpectedly; perhaps memory ran out"))
         if "error" in message[0]:
             raise wire.unpack_error(message)
         if "outcome" in message[0]:
@@ -104,10 +104,10 @@ class Worker:
         finally:
             self._close_streams()
 
-    def _messages(self) -> Iterable[wire.Message]:
+    def _messages(self) -> Iterable[wire.Packet]:
         return messages(self._job) if self.process is None else _replies(self.process, self._job)
 
-    def _put(self, message: wire.Message | None) -> bool:
+    def _put(self, message: wire.Packet | None) -> bool:
         while not self._closed.is_set():
             try:
                 self._queue.put(message, timeout=_PATIENCE)
@@ -122,7 +122,7 @@ class Worker:
                 stream.close()
 
 
-def _replies(process: "subprocess.Popen[bytes]", job: wire.Message) -> Iterator[wire.Message]:
+def _replies(process: "subprocess.Popen[bytes]", job: wire.Packet) -> Iterator[wire.Packet]:
     to_worker, from_worker = _pipes(process)
     wire.write(to_worker, job)
     while True:

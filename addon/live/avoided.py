@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves.surroundings import avoidable
-from ..engine.phrase import Phrase
 from .checks import selected_curves
 
 if TYPE_CHECKING:
@@ -28,5 +28,5 @@ def _collection(name: str) -> "bpy.types.Collection | None":
 
     found = bpy.data.collections.get(name)
     if name and found is None:
-        raise MobiusFlowError(Phrase("There is no collection '{name}' to avoid", name=name))
+        raise MobiusFlowError(Message("There is no collection '{name}' to avoid", name=name))
     return found

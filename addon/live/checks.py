@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...core.messages import Message
 from ..curves import bake, bevel, sampling
 from ..curves.deforming import what_deforms
 from ..curves.moving import what_moves
-from ..engine.phrase import Phrase
 from . import registry
 from .refusal import Refusal, Remedy
 
@@ -108,7 +108,7 @@ def bare(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
         return None
     if bake.was_baked(found.data):
         return _changed(found)
-    return Refusal(Phrase("'{name}' has no keys of Möbius Flow; press Relax first", name=found.name))
+    return Refusal(Message("'{name}' has no keys of Möbius Flow; press Relax first", name=found.name))
 
 
 def edited(context: "bpy.types.Context") -> Refusal | None:
@@ -121,7 +121,7 @@ def edited_by_hand(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
     for obj in objects:
         if bake.is_baked(obj.data) and bake.is_edited(obj.data):
             sentence = "Keys of '{name}' were edited; undo that, or remove the keys to relax the curve as it is"
-            return Refusal(Phrase(sentence, name=obj.name), Remedy.COPY)
+            return Refusal(Message(sentence, name=obj.name), Remedy.COPY)
     return None
 
 
@@ -150,7 +150,7 @@ def unsampled(objects: Sequence["bpy.types.Object"]) -> Refusal | None:
 def running() -> Refusal | None:
     """Say that a relaxation is going on, or return None if there is none."""
     run = registry.current()
-    return Refusal(Phrase("{names} is being relaxed; stop that first", names=run.name)) if run else None
+    return Refusal(Message("{names} is being relaxed; stop that first", names=run.name)) if run else None
 
 
 def convertible(context: "bpy.types.Context") -> list["bpy.types.Object"]:
@@ -167,20 +167,20 @@ def _no_curve(context: "bpy.types.Context") -> Refusal:
     """Say what is wrong with the active object where no curve is selected; hiding deselects."""
     obj = context.active_object
     if obj is not None and obj.type == "CURVE" and not obj.visible_get():
-        return Refusal(Phrase("'{name}' is hidden; show it first", name=obj.name))
+        return Refusal(Message("'{name}' is hidden; show it first", name=obj.name))
     if obj is None or obj.type == "CURVE" or not obj.select_get():
-        return Refusal(Phrase("Select a curve object first"))
+        return Refusal(Message("Select a curve object first"))
     kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
     sentence = "'{name}' is of type {type}; select a curve object, or convert it with Object > Convert > Curve"
     return Refusal(
-        Phrase(sentence, name=obj.name, type=kind),
+        Message(sentence, name=obj.name, type=kind),
         Remedy.TO_CURVE if obj.mode == "OBJECT" and convertible(context) else None,
     )
 
 
 def _mode(obj: "bpy.types.Object") -> Iterator[Refusal]:
     if obj.mode != "OBJECT":
-        sentence = Phrase("'{name}' is being edited; go back to Object Mode first", name=obj.name)
+        sentence = Message("'{name}' is being edited; go back to Object Mode first", name=obj.name)
         yield Refusal(sentence, Remedy.OBJECT_MODE)
 
 
@@ -188,37 +188,37 @@ def _ownership(obj: "bpy.types.Object") -> Iterator[Refusal]:
     data = obj.data
     if obj.library or data.library:
         sentence = "'{name}' is linked from another file; make it local first (Object > Relations > Make Local)"
-        yield Refusal(Phrase(sentence, name=obj.name), Remedy.MAKE_LOCAL)
+        yield Refusal(Message(sentence, name=obj.name), Remedy.MAKE_LOCAL)
     elif obj.override_library or data.override_library:
         sentence = "'{name}' is a library override; make it local first (Object > Relations > Make Local)"
-        yield Refusal(Phrase(sentence, name=obj.name), Remedy.MAKE_LOCAL)
+        yield Refusal(Message(sentence, name=obj.name), Remedy.MAKE_LOCAL)
     elif data.users - data.use_fake_user > 1:
         sentence = (
             "'{name}' shares its curve data '{data}' with other objects; make it single-user first "
             "(Object > Relations > Make Single User)"
         )
-        yield Refusal(Phrase(sentence, name=obj.name, data=data.name), Remedy.SINGLE_USER)
+        yield Refusal(Message(sentence, name=obj.name, data=data.name), Remedy.SINGLE_USER)
 
 
 def _splines(obj: "bpy.types.Object") -> Iterator[Refusal]:
     data = obj.data
     if data.dimensions != "3D":
         sentence = "'{name}' is a 2D curve; set its Shape to 3D first (Object Data properties)"
-        yield Refusal(Phrase(sentence, name=obj.name), Remedy.MAKE_3D)
+        yield Refusal(Message(sentence, name=obj.name), Remedy.MAKE_3D)
     if not data.splines:
-        yield Refusal(Phrase("'{name}' has no splines; give it at least one poly spline", name=obj.name))
+        yield Refusal(Message("'{name}' has no splines; give it at least one poly spline", name=obj.name))
     for k, spline in enumerate(data.splines, 1):
         fewest = 3 if spline.use_cyclic_u and spline.type != "BEZIER" else 2
         count = len(spline.bezier_points if spline.type == "BEZIER" else spline.points)
         if count < fewest:
             sentence = "Spline {number} of '{name}' has fewer than {fewest} points; give it more, or delete it"
-            yield Refusal(Phrase(sentence, number=k, name=obj.name, fewest=fewest))
+            yield Refusal(Message(sentence, number=k, name=obj.name, fewest=fewest))
 
 
 def _bevel(obj: "bpy.types.Object") -> Iterator[Refusal]:
     if not bevel.can_fit(obj.data):
         sentence = "'{name}' has a profile, taper, extrusion, offset or point radii of its own; remove them first"
-        yield Refusal(Phrase(sentence, name=obj.name))
+        yield Refusal(Message(sentence, name=obj.name))
 
 
 def _smooth(obj: "bpy.types.Object") -> Iterator[Refusal]:
@@ -228,7 +228,7 @@ def _smooth(obj: "bpy.types.Object") -> Iterator[Refusal]:
                 "Spline {number} of '{name}' is a {kind} spline; convert it to Poly first "
                 "(Edit Mode, Curve > Set Spline Type > Poly), or set Sample Splines"
             )
-            yield Refusal(Phrase(sentence, number=k, name=obj.name, kind=sampling.kind(spline)), Remedy.TO_POLY)
+            yield Refusal(Message(sentence, number=k, name=obj.name, kind=sampling.kind(spline)), Remedy.TO_POLY)
 
 
 def _animation(obj: "bpy.types.Object") -> Iterator[Refusal]:
@@ -239,19 +239,19 @@ def _animation(obj: "bpy.types.Object") -> Iterator[Refusal]:
 def _changed(obj: "bpy.types.Object") -> Refusal:
     """Say that a curve was baked and is not any more what it was then: shape keys alone would be no hindrance."""
     sentence = "'{name}' has other keys or points than it was baked with; undo that, or relax a copy"
-    return Refusal(Phrase(sentence, name=obj.name), Remedy.COPY)
+    return Refusal(Message(sentence, name=obj.name), Remedy.COPY)
 
 
-def _animated(obj: "bpy.types.Object") -> Phrase | None:
+def _animated(obj: "bpy.types.Object") -> Message | None:
     data = obj.data
     animation = data.animation_data
     if data.shape_keys:
-        return Phrase("'{name}' has shape keys; remove them or relax a copy without them", name=obj.name)
+        return Message("'{name}' has shape keys; remove them or relax a copy without them", name=obj.name)
     if animation and (animation.action or animation.nla_tracks):
         sentence = "The curve data of '{name}' is animated; remove the animation or relax a copy without it"
-        return Phrase(sentence, name=obj.name)
+        return Message(sentence, name=obj.name)
     if animation and any(driver.data_path.startswith("splines") for driver in animation.drivers):
-        return Phrase("Points of '{name}' are driven; remove the drivers or relax a copy without them", name=obj.name)
+        return Message("Points of '{name}' are driven; remove the drivers or relax a copy without them", name=obj.name)
     return None
 
 
@@ -260,7 +260,7 @@ def _deformation(obj: "bpy.types.Object") -> Iterator[Refusal]:
         sentence = (
             "{deformer} moves its points, so that strands may be seen to cross; remove it, or relax a copy without it"
         )
-        yield Refusal(Phrase(sentence, deformer=deformer), Remedy.COPY)
+        yield Refusal(Message(sentence, deformer=deformer), Remedy.COPY)
 
 
 def _transform(obj: "bpy.types.Object") -> Iterator[Refusal]:
@@ -268,7 +268,7 @@ def _transform(obj: "bpy.types.Object") -> Iterator[Refusal]:
     scales = np.linalg.svd(matrix[:3, :3], compute_uv=False) if np.isfinite(matrix).all() else np.zeros(3)
     if not scales[2] > _FLATTEST * scales[0]:
         sentence = "'{name}' is scaled to nothing in some direction; give it a scale other than 0"
-        yield Refusal(Phrase(sentence, name=obj.name))
+        yield Refusal(Message(sentence, name=obj.name))
 
 
 def _place(obj: "bpy.types.Object") -> Iterator[Refusal]:
@@ -277,7 +277,7 @@ def _place(obj: "bpy.types.Object") -> Iterator[Refusal]:
             "'{name}' is moved by {mover}, and curves relaxed together must keep their places; "
             "remove that, or relax each curve alone"
         )
-        yield Refusal(Phrase(sentence, name=obj.name, mover=mover), Remedy.COPY)
+        yield Refusal(Message(sentence, name=obj.name, mover=mover), Remedy.COPY)
 
 
 _CHECKS = (_mode, _ownership, _splines, _animation, _deformation, _transform)

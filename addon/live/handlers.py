@@ -5,7 +5,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 from . import registry
 from .modal import clear_status
 from .run import Run
@@ -14,7 +14,7 @@ from .run import Run
 @persistent  # type: ignore[untyped-decorator]
 def _load_pre(*_: Any) -> None:
     if run := registry.current():
-        run.cancel(Phrase("A file was loaded; the relaxation of {names} has ended", names=run.name))
+        run.cancel(Message("A file was loaded; the relaxation of {names} has ended", names=run.name))
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -53,7 +53,7 @@ def _before(run: Run, others: int) -> None:
     if others and run.endures:
         run.preview.set_aside()
     else:
-        run.cancel(Phrase("Undone; the relaxation of {names} has ended", names=run.name))
+        run.cancel(Message("Undone; the relaxation of {names} has ended", names=run.name))
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -93,7 +93,7 @@ def register() -> None:
 def unregister() -> None:
     """End what is running, and listen no more."""
     if run := registry.current():
-        run.cancel(Phrase("Möbius Flow was disabled; all is as it was"))
+        run.cancel(Message("Möbius Flow was disabled; all is as it was"))
     registry.forget()
     if bpy.app.timers.is_registered(clear_status):
         bpy.app.timers.unregister(clear_status)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 from ..translations import iface_
 from .run import Run, State
 
@@ -73,7 +73,7 @@ class Loop:
     def abandon(self) -> None:
         """Blender is closing the window of the run, or its file."""
         self._abandoned = True
-        self.run.cancel(Phrase("The window was closed; all is as it was"))
+        self.run.cancel(Message("The window was closed; all is as it was"))
 
     def _show(self, context: bpy.types.Context) -> None:
         self._shown = self._seen()
@@ -96,11 +96,11 @@ def status_line(run: Run) -> str:
         return iface_("{names}: waiting for the render", names=run.name)
     if run.state is State.FINISHING:
         return iface_("{names}: proving and writing keys   |   Esc: put all back", names=run.name)
-    where = Phrase("starting")
+    where = Message("starting")
     if run.last is not None:
-        where = Phrase("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
+        where = Message("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
     if run.state is State.PAUSED:
-        where = Phrase("paused at {where}", where=where)
+        where = Message("paused at {where}", where=where)
     return iface_("{names}: {where}   |   Enter: keep this shape   |   Esc: put all back", names=run.name, where=where)
 
 

@@ -1,8 +1,8 @@
 """The shape reached so far, shown in the curves themselves."""
 
 from ...core import Curve
+from ...core.messages import Message
 from ..curves.group import Group
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 
 
@@ -39,10 +39,10 @@ class Preview:
             self._group.make_polygons(self._start)
             self._group.show(self._start.mesh, self._frame)
 
-    def put_back(self) -> Phrase | None:
+    def put_back(self) -> Message | None:
         """Put back for good what is left of the curves; say how much that is, if there is more to say."""
         if self._group.restore():
-            return Phrase("and every curve is as it was")
+            return Message("and every curve is as it was")
         if len(self._group.names) > 1:
-            return Phrase("and the others are as they were")
+            return Message("and the others are as they were")
         return None

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 
 
 class Remedy(Enum):
@@ -30,5 +30,5 @@ class Refusal:
         What does so by itself, if anything can.
     """
 
-    sentence: Phrase
+    sentence: Message
     remedy: Remedy | None = None

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status
 from ...core.errors import Place
+from ...core.messages import Message
 from ..curves.group import Group
 from ..curves.imprint import Imprint
 from ..curves.pins import FREE, Held
 from ..curves.session import Report, Session
 from ..curves.surroundings import NOTHING, Surroundings
 from ..engine.key_options import KeyOptions
-from ..engine.phrase import Phrase
 from ..engine.spots import Spot
 from ..engine.target import Target, target_of
 from ..engine.worker import Worker, WorkerError
@@ -32,7 +32,7 @@ from .refresh import Refresh
 if TYPE_CHECKING:
     import bpy
 
-_CANCELLED = Phrase("Cancelled; all is as it was")
+_CANCELLED = Message("Cancelled; all is as it was")
 _SLICE = 0.02  # seconds of taking in iterates at a time
 
 
@@ -171,11 +171,11 @@ class Run:
         if self.state not in (State.RUNNING, State.PAUSED):
             return
         if self.last is None:
-            self.cancel(Phrase("Stopped before anything had moved"))
+            self.cancel(Message("Stopped before anything had moved"))
             return
         self._show()
         if self._session.outcome is None:
-            reason = reason or Phrase("stopped after {count} iterations", count=self.last.index)
+            reason = reason or Message("stopped after {count} iterations", count=self.last.index)
             self._session.outcome = Outcome(Status.INTERRUPTED, reason)
         self.state = State.FINISHING
         self._worker.close()
@@ -239,9 +239,9 @@ class Run:
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:
-            self._fail(Phrase("Memory ran out; all is as it was"))
+            self._fail(Message("Memory ran out; all is as it was"))
         except Exception:
-            self._fail(Phrase("Something went wrong; all is as it was"))
+            self._fail(Message("Something went wrong; all is as it was"))
             raise
 
     def _take(self) -> None:
@@ -299,12 +299,12 @@ class Run:
         self.trouble = self.group.spots(place, self.group.curve)
         self.cancel(message)
 
-    def _lose(self, reason: Phrase) -> None:
+    def _lose(self, reason: Message) -> None:
         """End because of what somebody did to an object; what else there is is put back."""
-        ended = Phrase("{reason}; the relaxation has ended", reason=reason)
+        ended = Message("{reason}; the relaxation has ended", reason=reason)
         self._close(State.LOST, ended)
         if more := self.preview.put_back():
-            self.message = Phrase("{ended}, {more}", ended=ended, more=more)
+            self.message = Message("{ended}, {more}", ended=ended, more=more)
         self._leave()
 
     def _leave(self) -> None:

@@ -5,12 +5,12 @@ from typing import Any
 import bpy
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves import bake
 from ..curves.pins import Held
 from ..curves.session import Report
 from ..curves.surroundings import Surroundings
 from ..engine.key_options import KeyOptions
-from ..engine.phrase import Phrase
 from ..properties import key_options, relax_options
 from ..translations import rpt_
 from . import registry
@@ -106,19 +106,19 @@ def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = F
     """Say what was done, and whether the scene shows all of it."""
     hidden = unseen(scene, report.scene_range)
     clean = report.clean and not failed and hidden is None
-    sentence = Phrase("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
+    sentence = Message("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
     operator.report({"INFO"} if clean else {"WARNING"}, rpt_(sentence))
 
 
-def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Phrase | None:
+def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Message | None:
     """Say that a scene does not play all frames of an animation, and what helps, or return None if it does."""
     if animation is None or (scene.frame_start <= animation[0] and animation[1] <= scene.frame_end):
         return None
     first, last = animation
-    helps = Phrase("press Set Scene Range to see all of it")
+    helps = Message("press Set Scene Range to see all of it")
     if first < scene.bl_rna.properties["frame_start"].hard_min:
-        helps = Phrase("no scene plays negative frames, so bake again with a later Start Frame")
-    return Phrase(
+        helps = Message("no scene plays negative frames, so bake again with a later Start Frame")
+    return Message(
         "The scene plays frames {start} to {end} only, the animation has {first} to {last}: {helps}",
         start=scene.frame_start,
         end=scene.frame_end,

@@ -2,12 +2,12 @@
 
 import bpy
 
+from ...core.messages import Message
 from ..buttons.add_family import CURVE_OT_mobius_flow_add_family
 from ..buttons.add_knot import CURVE_OT_mobius_flow_add_knot
 from ..buttons.draw_knot import CURVE_OT_mobius_flow_draw_knot
 from ..buttons.pick_knot import CURVE_OT_mobius_flow_pick_knot
 from ..engine.knot_list import COMMON, labels
-from ..engine.phrase import Phrase
 from ..pictures import icons
 from ..translations import iface_
 from .layout import InSidebar
@@ -28,7 +28,7 @@ class VIEW3D_PT_mobius_flow_knots(InSidebar, bpy.types.Panel):  # noqa: N801
         layout.template_icon_view(picked, "knot", show_labels=True, scale=7.0, scale_popup=4.0)
         row = layout.row(align=True)
         label = labels().get(picked.knot)
-        text = iface_("Add {knot}", knot=Phrase(label or ""))
+        text = iface_("Add {knot}", knot=Message(label or ""))
         button = row.operator(CURVE_OT_mobius_flow_pick_knot.bl_idname, text=text, icon="ADD")
         button.knot, button.mirror = label or "", picked.mirror
         row.prop(picked, "mirror", text="", icon="MOD_MIRROR")

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.messages import Message
 from ..buttons.add_knot import CURVE_OT_mobius_flow_add_knot
 from ..buttons.relaxing import CURVE_OT_mobius_flow_relax
 from ..buttons.running import (
@@ -12,7 +13,6 @@ from ..buttons.running import (
 )
 from ..buttons.showing import CURVE_OT_mobius_flow_show
 from ..curves.units import length
-from ..engine.phrase import Phrase
 from ..engine.quality import QUALITIES
 from ..engine.words import named
 from ..live import registry
@@ -26,12 +26,12 @@ from .refused import refused
 from .surroundings import warned
 
 _STATES = {
-    State.RUNNING: Phrase("Running"),
-    State.PAUSED: Phrase("Paused"),
-    State.FINISHING: Phrase("Finishing"),
-    State.DONE: Phrase("Done"),
-    State.CANCELLED: Phrase("Cancelled"),
-    State.LOST: Phrase("Lost"),
+    State.RUNNING: Message("Running"),
+    State.PAUSED: Message("Paused"),
+    State.FINISHING: Message("Finishing"),
+    State.DONE: Message("Done"),
+    State.CANCELLED: Message("Cancelled"),
+    State.LOST: Message("Lost"),
 }
 
 
@@ -92,10 +92,10 @@ def _run_buttons(row: bpy.types.UILayout, run: Run) -> None:
     row.operator(CURVE_OT_mobius_flow_cancel.bl_idname, icon="X")
 
 
-def _state(run: Run) -> Phrase:
+def _state(run: Run) -> Message:
     if run.waits:
-        return Phrase("Waiting for the render")
-    return Phrase("Failed") if run.failed and run.state is State.CANCELLED else _STATES[run.state]
+        return Message("Waiting for the render")
+    return Message("Failed") if run.failed and run.state is State.CANCELLED else _STATES[run.state]
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) -> None:
@@ -109,8 +109,8 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context, run: Run) 
         value(box, "Iteration", f"{run.last.index}")
         value(box, "Step", f"{run.last.step_size:.3g}")
         proved = run.last.certified if run.report is None else run.report.certified
-        whom = Phrase("with itself") if len(run.group.names) == 1 else Phrase("among themselves")
-        value(box, "Free of contact", whom if proved else Phrase("not proved"))
+        whom = Message("with itself") if len(run.group.names) == 1 else Message("among themselves")
+        value(box, "Free of contact", whom if proved else Message("not proved"))
         if run.avoided:
             value(box, "Avoided", named(run.avoided))
     if run.report is not None and run.report.radius is not None:

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.messages import Message
 from ..buttons.resting import (
     CURVE_OT_mobius_flow_balance,
     CURVE_OT_mobius_flow_check,
@@ -12,7 +13,6 @@ from ..buttons.shape import (
     CURVE_OT_mobius_flow_keep_size,
     CURVE_OT_mobius_flow_lay_flat,
 )
-from ..engine.phrase import Phrase
 from ..engine.size import Measure
 from ..translations import iface_
 from .layout import InSidebar, settings_column
@@ -29,7 +29,7 @@ class VIEW3D_PT_mobius_flow_shape(InSidebar, bpy.types.Panel):  # noqa: N801
         """Put in buttons, those that belong together in one row, and what is kept while curves move."""
         settings_column(layout, settings, "keep_size")
         column = layout.column(align=True)
-        text = iface_("Keep {measure}", measure=Phrase(Measure[settings.keep_size].value))
+        text = iface_("Keep {measure}", measure=Message(Measure[settings.keep_size].value))
         keep = column.operator(CURVE_OT_mobius_flow_keep_size.bl_idname, text=text, icon="FULLSCREEN_EXIT")
         keep.measure = settings.keep_size
         row = column.row(align=True)

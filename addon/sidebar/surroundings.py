@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import bpy
 
+from ...core.messages import Message
 from ..buttons.avoiding import CURVE_OT_mobius_flow_avoid
 from ..curves import neighbours
 from ..curves.standing import unsteady
-from ..engine.phrase import Phrase
 from ..engine.words import named
 from ..live.avoided import avoided
 from ..live.checks import selected_curves
@@ -30,10 +30,10 @@ class VIEW3D_PT_mobius_flow_surroundings(InSidebar, bpy.types.Panel):  # noqa: N
             return
         found = avoided(context)
         if not found:
-            sentence(layout, context, Phrase("Nothing in it is visible"))
+            sentence(layout, context, Message("Nothing in it is visible"))
         elif not unsteady(found, selected_curves(context)):
             names = named([obj.name for obj in found])
-            sentence(layout, context, Phrase("Curves never touch {names}", names=names))
+            sentence(layout, context, Message("Curves never touch {names}", names=names))
 
 
 def warned(layout: bpy.types.UILayout, context: bpy.types.Context, objects: Sequence[bpy.types.Object]) -> None:

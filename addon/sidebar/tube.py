@@ -2,12 +2,12 @@
 
 import bpy
 
+from ...core.messages import Message
 from ..buttons.outputs import CURVE_OT_mobius_flow_smooth_curve, CURVE_OT_mobius_flow_tube_mesh
 from ..buttons.tube import CURVE_OT_mobius_flow_color_components, CURVE_OT_mobius_flow_fit_tube
 from ..curves import bevel
 from ..curves.exchange import stretch
 from ..curves.units import length
-from ..engine.phrase import Phrase
 from ..live.checks import selected_curves
 from .layout import InSidebar, value
 
@@ -32,14 +32,14 @@ class VIEW3D_PT_mobius_flow_tube(InSidebar, bpy.types.Panel):  # noqa: N801
         column.operator(CURVE_OT_mobius_flow_smooth_curve.bl_idname, icon="CURVE_BEZCURVE")
 
 
-def _radius(scene: bpy.types.Scene, obj: bpy.types.Object) -> Phrase:
+def _radius(scene: bpy.types.Scene, obj: bpy.types.Object) -> Message:
     """The radius of an object's tube, and whose it is."""
     depth = obj.data.bevel_depth
     if not depth:
-        return Phrase("None")
+        return Message("None")
     radius = length(scene, depth * stretch(obj))
     fitted = bevel.is_fitted(obj.data)
-    return Phrase("{radius} (fitted)", radius=radius) if fitted else Phrase("{radius} (your own)", radius=radius)
+    return Message("{radius} (fitted)", radius=radius) if fitted else Message("{radius} (your own)", radius=radius)
 
 
 CLASSES = (VIEW3D_PT_mobius_flow_tube,)

@@ -4,9 +4,9 @@ import re
 
 import pytest
 from mobius_flow.addon.engine.glossary import as_phrase, in_blenders_words, spline_names
-from mobius_flow.addon.engine.phrase import Phrase
 from mobius_flow.core import Curve, CurveError, Obstacle, relax
 from mobius_flow.core.driver.outcome import converged, out_of_iterations
+from mobius_flow.core.messages import Message
 from shapes import torus_trefoil
 
 NAMES = spline_names(["Ring", "Knot"], [1, 2])
@@ -70,9 +70,9 @@ def test_what_the_core_refuses_is_told_without_its_terms(components):
 def test_ends_of_relaxations_can_be_translated(outcome):
     phrase = as_phrase(outcome.message)
     assert phrase == outcome.message
-    assert isinstance(phrase, Phrase)
+    assert isinstance(phrase, Message)
 
 
 def test_other_ends_stay_as_they_are():
     message = converged(1.25e-5, 1e-4).adding("a minimum").message
-    assert not isinstance(as_phrase(message), Phrase)
+    assert not isinstance(as_phrase(message), Message)
