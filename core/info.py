@@ -56,7 +56,7 @@ class Rest:
             return "not at rest"
         if self.index is None:
             return "at rest; the Hessian is too ill-conditioned to tell a minimum from a saddle"
-        return f"at rest at {f'a saddle with index {self.index}' if self.index else 'a minimum'}"
+        return f"at rest at {f'a saddle of index {self.index}' if self.index else 'a minimum'}"
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,12 @@
 """Messages are data: English sentences that keep their template and facts, for other words and other languages."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
+
+# parts of curves, numbered from 1, and what is around them: facts of other messages, for which Blender has other words
+COMPONENT, OBSTACLE = "component {number}", "obstacle {name}"
+EDGE, EDGES = "edge {number}", "edges {first} and {second}"
+VERTEX, VERTICES, VERTEX_COUNT = "vertex {number}", "vertices {first} and {second}", "{count} vertices"
 
 
 class Message(str):
@@ -13,7 +18,7 @@ class Message(str):
     Parameters
     ----------
     template
-        A format string with named fields.
+        A format string with named fields. A message without facts marks one for translators.
     facts
         What the fields stand for.
 
@@ -40,9 +45,30 @@ class Message(str):
 
     def said(self, translate: Callable[[str], str]) -> str:
         """The same in a language, given by what its templates are there."""
-        facts = {name: fact.said(translate) if isinstance(fact, Message) else fact for name, fact in self.facts.items()}
-        return self._filled(translate(self.template), facts)
+        return self._filled(translate(self.template), self._with_messages(lambda fact: fact.said(translate)))
+
+    def reworded(self, word: Callable[["Message"], "Message"]) -> "Message":
+        """The same with other words for it and for the messages among its facts."""
+        return word(type(self)(self.template, **self._with_messages(lambda fact: fact.reworded(word))))
+
+    def _with_messages(self, change: Callable[["Message"], str]) -> dict[str, Any]:
+        return {name: change(fact) if isinstance(fact, Message) else fact for name, fact in self.facts.items()}
 
     @classmethod
     def _filled(cls, template: str, facts: Mapping[str, Any]) -> str:
         return template.format(**facts) if facts else template  # braces in names are no fields
+
+
+class Sentence(Message):
+    """A message with a capital at its start, in any language."""
+
+    @classmethod
+    def _filled(cls, template: str, facts: Mapping[str, Any]) -> str:
+        text = super()._filled(template, facts)
+        return text[:1].upper() + text[1:]
+
+
+def joined(parts: Sequence[str], between: str) -> Message:
+    """Messages one after the other."""
+    facts = {f"part_{k}": part for k, part in enumerate(parts)}
+    return Message(between.join(f"{{{name}}}" for name in facts), **facts)

@@ -6,17 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Curve, Obstacle
+from ...core import Curve
 from ...core.curve import Mesh
 from ...core.errors import Place
 from ...core.messages import Message
 from ...core.types import FloatArray
-from ..engine.glossary import in_blenders_words, spline_names
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame
 from ..engine.spots import Spot, spots
-from ..engine.words import named
+from ..engine.words import in_blenders_words, named, spline_names
 from .exchange import read_link, spline_points
 from .member import Member
 from .pins import pinned_vertices
@@ -82,9 +81,9 @@ class Group:
         """One of the objects, by its number among those that there were; None if it is gone."""
         return self._members[number].object
 
-    def told(self, sentence: str, avoided: Sequence[Obstacle] = ()) -> str:
+    def told(self, message: str) -> str:
         """What the core says of the link and of what it avoids, with the splines named by their objects."""
-        return in_blenders_words(sentence, spline_names(self.names, self.link.counts), avoided)
+        return in_blenders_words(message, spline_names(self.names, self.link.counts))
 
     def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
         """Where on the objects a place is on the link, or on the same with other vertices."""

@@ -27,9 +27,8 @@ from ...core import (
 )
 from ...core.collision import is_free
 from ...core.curve import Mesh
-from ...core.messages import Message
+from ...core.messages import Message, Sentence
 from ...core.types import FloatArray
-from ..engine.glossary import as_phrase
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
 from ..engine.obstacles import in_common_space
@@ -249,13 +248,11 @@ class Session:
         """The core's error in Blender's words; those about options use the names that options have."""
         if isinstance(error, OptionError):
             return error
-        sentence = self.group.told(str(error), self.task.obstacles)
-        return CurveError(sentence[:1].upper() + sentence[1:], error.place)
+        return CurveError(Sentence("{reason}", reason=self.group.told(str(error))), error.place)
 
     def end(self, outcome: Outcome) -> None:
         """Take in how the relaxation ended."""
-        message = self.group.told(outcome.message, self.task.obstacles)
-        self.outcome = replace(outcome, message=as_phrase(message.rstrip(".")))
+        self.outcome = replace(outcome, clauses=tuple(map(self.group.told, outcome.clauses)))
 
     def take(self, iterate: Iterate) -> None:
         """Take in an iterate."""

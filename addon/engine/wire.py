@@ -23,6 +23,7 @@ from ...core import (
     Task,
 )
 from ...core.errors import Place
+from ...core.messages import Message
 from ...core.types import FloatArray
 from .placement import Link, Placement
 
@@ -112,26 +113,43 @@ def unpack_iterate(message: Packet) -> tuple[Iterate, list[str]]:
 
 def pack_outcome(outcome: Outcome) -> Packet:
     """How the relaxation ended, after the last iterate."""
-    return {"outcome": asdict(outcome) | {"status": outcome.status.value}}, []
+    clauses = list(map(_pack_message, outcome.clauses))
+    return {"outcome": asdict(outcome) | {"status": outcome.status.value, "clauses": clauses}}, []
 
 
 def unpack_outcome(message: Packet) -> Outcome:
     """The inverse of `pack_outcome`."""
     values = message[0]["outcome"]
-    return Outcome(**values | {"status": Status(values["status"]), "place": _place(values["place"])})
+    values |= {"status": Status(values["status"]), "place": _place(values["place"])}
+    return Outcome(**values | {"clauses": tuple(map(_unpack_message, values["clauses"]))})
 
 
 def pack_error(error: MobiusFlowError) -> Packet:
     """Why a job cannot be done."""
     place = error.place if isinstance(error, CurveError) else None
-    header = {"error": str(error), "place": None if place is None else asdict(place)}
+    header = {"error": _pack_message(str(error)), "place": None if place is None else asdict(place)}
     return header | {"of_option": isinstance(error, OptionError)}, []
 
 
 def unpack_error(message: Packet) -> MobiusFlowError:
     """The inverse of `pack_error`, as far as Blender tells errors apart."""
     header = message[0]
-    return OptionError(header["error"]) if header["of_option"] else CurveError(header["error"], _place(header["place"]))
+    sentence = _unpack_message(header["error"])
+    return OptionError(sentence) if header["of_option"] else CurveError(sentence, _place(header["place"]))
+
+
+def _pack_message(fact: Any) -> Any:
+    """A message or one of its facts as JSON has it."""
+    if not isinstance(fact, Message):
+        return fact
+    return {"template": fact.template, "facts": {name: _pack_message(value) for name, value in fact.facts.items()}}
+
+
+def _unpack_message(packed: Any) -> Any:
+    """The inverse of `_pack_message`."""
+    if not isinstance(packed, dict):
+        return packed
+    return Message(packed["template"], **{name: _unpack_message(fact) for name, fact in packed["facts"].items()})
 
 
 def _place(values: dict[str, Any] | None) -> Place | None:

@@ -1,10 +1,18 @@
-"""Names of objects in sentences."""
+"""Names of objects in sentences, and Blender's words for parts of curves."""
 
 from collections.abc import Sequence
 
-from ...core.messages import Message
+from ...core.messages import COMPONENT, EDGE, EDGES, OBSTACLE, VERTEX, VERTEX_COUNT, VERTICES, Message
 
 _MAX_NAMES = 3
+_WORDS = {
+    EDGE: Message("segment {number}"),
+    EDGES: Message("segments {first} and {second}"),
+    OBSTACLE: Message("'{name}'"),
+    VERTEX: Message("point {number}"),
+    VERTEX_COUNT: Message("{count} points"),
+    VERTICES: Message("points {first} and {second}"),
+}
 
 
 def named(names: Sequence[str]) -> str:
@@ -18,3 +26,23 @@ def named(names: Sequence[str]) -> str:
 
 def _quoted(name: str) -> str:
     return f"'{name}'"
+
+
+def spline_names(objects: Sequence[str], counts: Sequence[int]) -> list[Message]:
+    """Names of all splines of some objects, of which each has so many."""
+    return [
+        Message("spline {number} of '{name}'", number=k, name=name)
+        for name, count in zip(objects, counts, strict=True)
+        for k in range(1, count + 1)
+    ]
+
+
+def in_blenders_words(message: str, splines: Sequence[Message]) -> str:
+    """What the core says, to somebody who sees objects; ``splines`` are the names of the components in turn."""
+
+    def word(said: Message) -> Message:
+        if said.template == COMPONENT:
+            return splines[said.facts["number"] - 1]
+        return Message(_WORDS[said.template], **said.facts) if said.template in _WORDS else said
+
+    return message.reworded(word) if isinstance(message, Message) else message

@@ -176,7 +176,7 @@ class Run:
         self._show()
         if self._session.outcome is None:
             reason = reason or Message("stopped after {count} iterations", count=self.last.index)
-            self._session.outcome = Outcome(Status.INTERRUPTED, reason)
+            self._session.outcome = Outcome(Status.INTERRUPTED, (reason,))
         self.state = State.FINISHING
         self._worker.close()
         self._keys.start()

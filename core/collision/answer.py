@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from ..messages import EDGE, EDGES, Message
+
 
 class Limit(Enum):
     """What ends a free motion."""
@@ -29,9 +31,13 @@ class Contact:
     edges: tuple[int, ...]
     obstacle: str | None = None
 
-    def __str__(self) -> str:
+    @property
+    def message(self) -> Message:
+        """The two, as sentences call them."""
         first, *second = (edge + 1 for edge in self.edges)
-        return f"edge {first} and {self.obstacle}" if self.obstacle else f"edges {first} and {second[0]}"
+        if self.obstacle is None:
+            return Message(EDGES, first=first, second=second[0])
+        return Message("{edge} and {obstacle}", edge=Message(EDGE, number=first), obstacle=self.obstacle)
 
 
 @dataclass(frozen=True)

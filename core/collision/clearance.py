@@ -7,6 +7,7 @@ import numpy as np
 from ..curve import Curve
 from ..curve.places import at_edges
 from ..errors import CurveError
+from ..messages import EDGE, Message
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level
@@ -17,6 +18,10 @@ from .exact_triangle import EDGES, crossing
 from .gap import MIN_GAP, squared_gaps
 from .planes import Separation, relative_motion
 from .still import still_triangles
+
+PIERCES = Message("{component}: {edge} pierces {obstacle} at {place}; move one of them away")
+TOUCHES = Message("{component}: {edge} touches {obstacle} at {place}; move one of them away")
+TOO_NEAR = Message("{component}: {edge} comes too near to {obstacle} at {place}; move one of them away")
 
 
 def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
@@ -38,7 +43,9 @@ def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
     for edge, corners, obstacle in _near(curve, obstacles, MIN_GAP * curve.length):
         what, where = _meeting(corners)
         component, k = numbered(curve.mesh, edge)
-        reason = f"component {component}: edge {k} {what} {obstacle.title} at {written(where)}; move one of them away"
+        reason = Message(
+            what, component=component, edge=Message(EDGE, number=k), obstacle=obstacle.title, place=written(where)
+        )
         raise CurveError(reason, at_edges(curve, (edge,), where))
 
 
@@ -82,8 +89,8 @@ def _meeting(corners: FloatArray) -> tuple[str, FloatArray]:
     """What an edge does to a triangle near it, and where; ``corners`` has shape (5, 3)."""
     s = crossing(corners[0], corners[1], corners[2:])
     if s is not None:
-        return ("pierces" if 0 < s < 1 else "touches"), corners[0] + s * (corners[1] - corners[0])
+        return (PIERCES if 0 < s < 1 else TOUCHES), corners[0] + s * (corners[1] - corners[0])
     touched = [four for four in (corners[[0, 1, *ends]] for ends in EDGES) if first_contact(four, four) is not None]
     if touched:
-        return "touches", meeting_point(touched[0])
-    return "comes too near to", np.asarray(corners[:2].mean(axis=0))
+        return TOUCHES, meeting_point(touched[0])
+    return TOO_NEAR, np.asarray(corners[:2].mean(axis=0))

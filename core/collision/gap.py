@@ -6,6 +6,7 @@ import numpy as np
 
 from ..curve import Curve
 from ..errors import CurveError, Place
+from ..messages import Message
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, corners
 from .chords import closest_chord
@@ -55,10 +56,12 @@ def check_gap(curve: Curve) -> None:
             k = int(np.where(near, squares, np.inf).argmin())
             point = curve.vertices[curve.mesh.tails[i[k]]]
             gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in point)
+            near = (
+                "strands are only {gap:.2g} apart near ({place}), less than {least:g} of the curve's length: too close "
+                "to compute their energy; move them apart"
+            )
             raise CurveError(
-                f"strands are only {gap:.2g} apart near ({place}), less than {MIN_GAP:g} of the curve's "
-                "length, which is too near to compute their energy; move them apart",
-                Place((), tuple(point.tolist())),
+                Message(near, gap=float(gap), place=place, least=MIN_GAP), Place((), tuple(point.tolist()))
             )
 
 

@@ -13,7 +13,7 @@ from .interventions import INTERVENTIONS, Intervention
 from .interventions.check_accuracy import with_errors
 from .interventions.grow import with_growth
 from .iterate import Iterate
-from .outcome import DEGENERATE, Outcome, out_of_time, stalled
+from .outcome import Outcome, degenerate, out_of_time, stalled
 from .rises import Rises
 from .run import Run
 from .termination import at_limit, termination
@@ -71,7 +71,7 @@ def descent(
     try:
         return (yield from _descent(run, [make(run) for make in interventions], rises))
     except np.linalg.LinAlgError as error:
-        return stalled(DEGENERATE.format(error=error))
+        return stalled(degenerate(error))
 
 
 def told(outcome: Outcome, run: Run, rises: Rises) -> Outcome:

@@ -12,7 +12,7 @@ from ..types import FloatArray
 from .events import Change
 from .iterate import Iterate
 from .options import RelaxOptions
-from .outcome import DEGENERATE
+from .outcome import degenerate
 
 
 class Run:
@@ -90,7 +90,7 @@ class Run:
                 step = step.within(self.problem)
                 step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
         except np.linalg.LinAlgError as error:
-            return NoStep(DEGENERATE.format(error=error))
+            return NoStep(degenerate(error))
         return step
 
     def accept(self, step: Step) -> Iterate:

@@ -5,7 +5,7 @@ import numpy as np
 from ..curve import Mesh
 from ..energies.components import energy_scale
 from .options import RelaxOptions
-from .outcome import FROZEN, UNEVEN, Outcome, converged, out_of_iterations
+from .outcome import Outcome, converged, out_of_iterations
 from .run import Run
 
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
@@ -18,7 +18,11 @@ def termination(run: Run) -> Outcome | None:
         norm = run.point.with_own_metric().gradient_norm
         if norm <= bound:
             outcome = converged(norm, bound)
-            return outcome.adding(FROZEN) if run.frozen else outcome
+            return (
+                outcome.adding("nothing can move: the curve is pinned, or straight between pins")
+                if run.frozen
+                else outcome
+            )
     return at_limit(run) if run.iterations_left <= 0 else None
 
 
@@ -30,7 +34,11 @@ def gradient_bound(options: RelaxOptions, mesh: Mesh, energy: float) -> float:
 def at_limit(run: Run) -> Outcome:
     """How a run ends that may not go on."""
     outcome = out_of_iterations(run.iterations)
-    return outcome if _feasible(run) else outcome.adding(UNEVEN.format(percent=100 * run.iterate.edge_length_error))
+    if _feasible(run):
+        return outcome
+    return outcome.adding(
+        "lengths are still up to {percent:.2g} % off target", percent=100 * run.iterate.edge_length_error
+    )
 
 
 def _feasible(run: Run) -> bool:

@@ -182,9 +182,8 @@ def test_a_balanced_run_bends_less_at_no_more_energy(runs) -> None:
     assert bending(result.curve) < 0.7 * bending(plain.curve)
     assert result.final_energy < plain.final_energy + 1e-3
     assert iterates[-1].edge_length_error < 1e-6
-    told = (
-        f"; balanced: bending {bending(result.curve):.4g} instead of {bending(plain.curve):.4g} (4π² on a round circle)"
-    )
+    before, after = bending(plain.curve), bending(result.curve)
+    told = f"; balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
     assert told in result.message
     assert "energy rose" not in result.message, "that is about the flow's own steps"
 
@@ -248,7 +247,7 @@ def test_a_mesh_becomes_finer_where_strands_are_near_in_the_balanced_shape() -> 
 
 def test_what_is_balanced_already_is_said_to_be() -> None:
     result = minimize(knot("3_1"), RelaxOptions(balance=True))
-    assert result.message.endswith("; no Möbius image that there is a way to bends less")
+    assert result.message.endswith("; no Möbius image within reach bends less")
 
 
 @pytest.mark.parametrize("method", ["flow-moebius", "penalty-lbfgs"])

@@ -65,7 +65,7 @@ def test_what_is_asked_for_is_kept_and_said_to_be_coarse(options):
     result, curves = recorded(start, **options)
     assert len(curves) == 1
     assert result.status is Status.CONVERGED
-    assert "nearer than this mesh resolves" in result.message
+    assert "closer than this mesh resolves" in result.message
 
 
 def test_a_run_that_is_about_to_end_keeps_its_mesh():
@@ -85,7 +85,7 @@ def test_there_are_never_more_than_there_is_time_for(finest, count, monkeypatch)
     assert len(result.curve) == count
     assert result.status is Status.CONVERGED
     unresolved = Objective().barrier.value(result.curve) < -1e-3
-    assert ("nearer than this mesh resolves" in result.message) == unresolved == (count == 40)
+    assert ("closer than this mesh resolves" in result.message) == unresolved == (count == 40)
 
 
 def test_edges_per_gap():

@@ -126,7 +126,7 @@ def test_energies_are_those_of_the_iterates():
         assert Objective().value(iterate.curve) == pytest.approx(iterate.energy, rel=1e-12)
     assert result.energies == tuple(iterate.energy for iterate in iterates)
     assert result.status is Status.ITERATION_LIMIT
-    assert "5 iterations" in result.message
+    assert "iteration limit (5)" in result.message
 
 
 def test_the_first_iterate_of_a_relaxed_curve_is_the_last():
@@ -309,14 +309,14 @@ def test_a_mesh_that_cannot_be_finer_ends_the_run_in_good_order(monkeypatch):
     result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, mesh="finer"))
     assert len(result.curve) == 60
     assert result.status is Status.CONVERGED
-    assert "nearer than this mesh resolves" in result.message
+    assert "closer than this mesh resolves" in result.message
 
 
 def test_strands_that_are_too_near_for_the_mesh_come_with_a_remedy():
     result = minimize(knot("5_1", 60), RelaxOptions(vertices=60))
     assert result.status is Status.CONVERGED
-    assert "nearer than this mesh resolves" in result.message
-    assert "with more vertices or a finer mesh" in result.message
+    assert "closer than this mesh resolves" in result.message
+    assert "a finer one" in result.message
     assert result.final_energy > result.energies[-1] + 1  # the midpoint rule does not see them well
 
 

@@ -3,9 +3,8 @@
 import numpy as np
 
 from ...energies.components import energy_scale
-from ...errors import counted
 from ..loop import Relaxation, descent, told
-from ..outcome import HOPS, Outcome
+from ..outcome import Outcome
 from ..rises import Rises
 from ..run import Run
 from .motions import MOTIONS, Motion
@@ -72,9 +71,12 @@ class Hops:
     def told(self, outcome: Outcome) -> Outcome:
         """The outcome with what hops were good for, or what they may be good for."""
         if self._tried:
-            outcome = outcome.adding(HOPS.format(taken=self._taken, tried=counted(self._tried, "hop")))
+            outcome = outcome.adding(
+                "hops that lowered the energy: {taken} of {tried}", taken=self._taken, tried=self._tried
+            )
         run = self._run
         unknot = told_of_unknot(run.iterate.curve) if outcome.may_be_left and run.problem.unconfined else None
         if unknot is None:
             return outcome
-        return outcome.adding(f"{unknot}: {'more ' if self._run.options.hops else ''}hops may find the way")
+        more = "{unknot}: more hops may reach it" if run.options.hops else "{unknot}: hops may reach it"
+        return outcome.adding(more, unknot=unknot)

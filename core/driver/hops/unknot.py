@@ -6,8 +6,12 @@ from ...curve import Curve
 from ...errors import CurveError
 from ...knots import knot_type
 from ...knots.alexander import signature
-from ..outcome import IS_UNKNOT, MAY_BE_UNKNOT
+from ...messages import Message
 
+IS_UNKNOT = Message("the curve is an unknot, and a circle has less energy")
+MAY_BE_UNKNOT = Message(
+    "the curve may be an unknot, for its Alexander polynomial is trivial, and a circle has less energy"
+)
 ROUND = 0.9  # of the area of the circle of the same length: coarse and uneven ones have that
 MOST_VERTICES = 10_000  # of a curve whose type is looked at: a few seconds
 
@@ -25,7 +29,7 @@ def is_circle(curve: Curve) -> bool:
     return bool(4.0 * np.pi * area > ROUND * curve.length**2)
 
 
-def told_of_unknot(curve: Curve) -> str | None:
+def told_of_unknot(curve: Curve) -> Message | None:
     """Say that a curve is or may be an unknot, though it is no circle; None if it is one, or is knotted or a link."""
     alone = len(curve.mesh.component_sizes) == 1
     if not alone or curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):

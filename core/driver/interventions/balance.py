@@ -7,9 +7,9 @@ from ..outcome import Outcome, Status
 from ..run import Run
 from ..termination import at_limit
 
-BALANCED = "balanced: bending {after:.4g} instead of {before:.4g} (4π² on a round circle)"
-CUT_OFF = "it has not come to rest yet at the Möbius image that bends least"
-IS_BALANCED = "no Möbius image that there is a way to bends less"
+BALANCED = "balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
+CUT_OFF = "the Möbius image of least bending has not converged yet"
+IS_BALANCED = "no Möbius image within reach bends less"
 
 
 class Balance:
@@ -32,7 +32,7 @@ class Balance:
             before, after = self._before, bending(run.iterate.curve)
             # on coarse and uneven meshes energies of images differ, and the flow may have gone all the way back
             gained = after <= (1.0 - GAIN) * before
-            return event.adding(BALANCED.format(before=before, after=after) if gained else IS_BALANCED)
+            return event.adding(BALANCED, before=before, after=after) if gained else event.adding(IS_BALANCED)
         steps = way_to_balance(run.point)
         if not steps:
             return event.adding(IS_BALANCED)

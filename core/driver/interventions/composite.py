@@ -6,10 +6,15 @@ from ...curve import Curve
 from ...hierarchy import moebius_energy
 from ...knots.composite import is_searchable, knotted_ball
 from ..events import Event
-from ..outcome import COMPOSITE, UNTESTED, Outcome
+from ..outcome import Outcome
 from ..run import Run
 from .split_links import split
 
+COMPOSITE = (
+    "strands pull tight without limit: the curve is composite, knotted both inside and outside the ball of radius "
+    "{radius:.3g} around ({center}), and has no shape of least energy"
+)
+UNTESTED = "whether the link is composite was not tested, as there are too many ways to divide it"
 COMPOSITE_KNOT = 140.0  # less energy than any composite: two trefoils (74.4 each) less a circle make 144.8,
 COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
 
@@ -33,7 +38,7 @@ class Composite:
             if not all(map(ball.is_clear_of, problem.obstacles)):
                 return event  # around what stands still nothing shrinks to a point
             center = ", ".join(f"{x:.3g}" for x in ball.center)
-            return replace(event.stalling(COMPOSITE.format(radius=ball.radius, center=center)), unbounded=True)
+            return replace(event.stalling(COMPOSITE, radius=ball.radius, center=center), unbounded=True)
         return event if all(map(is_searchable, parts)) else event.adding(UNTESTED)
 
 

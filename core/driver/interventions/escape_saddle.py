@@ -6,9 +6,12 @@ from ...descent import Point, Step
 from ...descent.searches import Escape
 from ...metrics import MoebiusMetric
 from ..events import Change, Event
-from ..outcome import ILL_CONDITIONED, MINIMUM, NO_WAY_DOWN, SADDLE, Outcome
+from ..outcome import Outcome
 from ..run import Run
 from ..stability import stability
+
+MINIMUM = "a minimum"
+ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
 
 
 class EscapeSaddle:
@@ -26,11 +29,11 @@ class EscapeSaddle:
         event = replace(event, negative_eigenvalues=found.index)
         if not found.index:
             return event.adding(ILL_CONDITIONED if found.index is None else MINIMUM)
-        event = event.adding(SADDLE.format(index=found.index))
+        event = event.adding("a saddle of index {index}", index=found.index)
         if not options.escape_saddles:
             return event
         step = Escape().step(self._run.point, found.modes.vectors[0], float(found.modes.values[0]))
-        return Change((step,)) if isinstance(step, Step) else event.adding(NO_WAY_DOWN)
+        return Change((step,)) if isinstance(step, Step) else event.adding("no step down from it was found")
 
     def _point(self) -> Point:
         """The present one in J_C, against which eigenvalues are counted whatever metric steps are taken in."""

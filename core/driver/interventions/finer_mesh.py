@@ -12,9 +12,10 @@ from ...energies.near_pairs import near_pairs
 from ...errors import MobiusFlowError
 from ...task import check_refined
 from ..events import Change, Event
-from ..outcome import UNRESOLVED, Outcome
+from ..outcome import Outcome
 from ..run import Run
 
+UNRESOLVED = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
 EDGES_PER_GAP = 6.0  # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
 FINEST = 10_000  # vertices, unless there are more: what the hierarchical solver has time for
 MIN_ITERATIONS = 5  # that are left: it takes two or three to get back what corners cost when their edges are split

@@ -18,7 +18,7 @@ from ...task import check_refined
 from ...types import IntArray
 from ...units import Units
 from ..events import Change, Event
-from ..outcome import CROWDED, GREW, Outcome
+from ..outcome import Outcome
 from ..run import Run
 from .finer_mesh import FINEST
 
@@ -28,6 +28,7 @@ SETTLED = 0.01  # decrease of the objective in a step, relative to its scale, fr
 LATER = 0.1  # factor of that after no motion was found
 EDGES_PER_GAP = 2.0  # what is packed bends as narrowly as strands are near
 REACHED = 1e-9  # logarithm of what may be missing
+CROWDED = "every motion that changes the lengths as requested causes contact or costs too much energy"
 
 
 class Grow:
@@ -140,4 +141,8 @@ class Grow:
 def with_growth(outcome: Outcome, run: Run) -> Outcome:
     """What is told of a run's end, with how far lengths have come that were to change."""
     wanted = run.options.grow
-    return outcome if wanted == 1.0 else outcome.adding(GREW.format(grown=run.iterate.grown, wanted=wanted))
+    if wanted == 1.0:
+        return outcome
+    return outcome.adding(
+        "grew to {grown:.6g} of {wanted:.6g} times its length", grown=run.iterate.grown, wanted=wanted
+    )

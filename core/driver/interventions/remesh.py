@@ -9,11 +9,13 @@ from ...curve import Curve
 from ...curve.refine import Resolution
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
 from ...descent import Leg, Problem, Step
+from ...messages import Message, joined
 from ...types import FloatArray, IntArray
 from ..events import Change, Event, Start
-from ..outcome import ADVICE, Outcome
+from ..outcome import Outcome
 from ..run import Run
 
+ADVICE = Message("a finer or an adaptive mesh may help")
 INTERVAL = 5  # accepted steps between two looks at the mesh
 
 
@@ -29,7 +31,7 @@ class Remesh:
         if isinstance(event, Start | Outcome):
             return event
         if self._run.options.mesh != "adaptive":
-            return event if isinstance(event, Step) else replace(event, reason=f"{event.reason}; {ADVICE}")
+            return event if isinstance(event, Step) else replace(event, reason=joined((event.reason, ADVICE), "; "))
         if isinstance(event, Step):
             self._just_refined = False
             due = self._run.iterate.index % INTERVAL == 0

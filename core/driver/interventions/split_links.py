@@ -15,9 +15,13 @@ from ...hierarchy import moebius_energy
 from ...obstacle import Obstacle
 from ...types import FloatArray, IntArray
 from ..events import Change, Event
-from ..outcome import HELD, Outcome
+from ..outcome import Outcome
 from ..run import Run
 
+HELD = (
+    "unlinked parts, which would drift apart without limit, are held in place; their own energies add up to "
+    "{energy:.6g}"
+)
 INTERVAL = 5  # accepted steps between two looks
 APART = 1.0  # gap between the balls around two parts, in radii of the larger one
 MAX_PARTS = 50  # each has rows of its own in the linear systems
@@ -34,7 +38,7 @@ class SplitLinks:
         run, constraints = self._run, self._run.problem.constraints
         if isinstance(event, Outcome) and event.converged and self._holds:
             alone = sum(moebius_energy(part)[0] for part in split(run.iterate.curve, constraints.parts))
-            return event.adding(HELD.format(energy=alone))
+            return event.adding(HELD, energy=alone)
         if isinstance(event, Step) and run.problem.geometry.prescribes and run.iterate.index % INTERVAL == 0:
             parts = separate_parts(run.iterate.curve, run.problem.obstacles)
             if max(parts) > max(constraints.parts or (0,)):

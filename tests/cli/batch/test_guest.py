@@ -62,7 +62,7 @@ def moved_and_linked(path: Path) -> None:
 
 
 def with_a_note_in_the_table(path: Path) -> None:
-    path.write_text(path.read_text().replace("stopped after", "discuss with Anna: stopped after"))
+    path.write_text(path.read_text().replace("stopped at", "discuss with Anna: stopped at"))
 
 
 def with_a_column(path: Path) -> None:
