@@ -4,11 +4,19 @@ import math
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import TracebackType
 from typing import Any, Self
 
 from ..core import Iterate, RelaxOptions
 from ..core.driver.termination import gradient_bound
+
+
+def bar(**options: Any) -> Any:
+    """A bar of tqdm that vanishes in the end; None if it is not installed."""
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        return None
+    return tqdm(leave=False, **options)
 
 
 class WithBar:
@@ -20,9 +28,7 @@ class WithBar:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: Any) -> None:
         if self._bar is not None:
             self._bar.close()
 
@@ -53,25 +59,16 @@ class Progress(WithBar):
 def leg_progress(shown: bool) -> Iterator[Callable[[int, int], None] | None]:
     """Give what shows the numbers of legs that are checked and of all, or None where nothing can be shown."""
     legs = bar(unit=" legs") if shown else None
-    if legs is None:
-        yield None
-        return
 
     def show(done: int, total: int) -> None:
         legs.total = total or None
         legs.update(done - legs.n)
 
-    with legs:
-        yield show
-
-
-def bar(**options: Any) -> Any:
-    """A bar of tqdm that vanishes in the end; None if it is not installed."""
     try:
-        from tqdm import tqdm
-    except ImportError:
-        return None
-    return tqdm(leave=False, **options)
+        yield show if legs is not None else None
+    finally:
+        if legs is not None:
+            legs.close()
 
 
 def show_frames(done: int, total: int) -> None:

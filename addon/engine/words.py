@@ -42,7 +42,8 @@ def in_blenders_words(message: str, splines: Sequence[Message]) -> str:
 
     def word(said: Message) -> Message:
         if said.template == COMPONENT:
-            return splines[said.facts["number"] - 1]
+            number: int = said.facts["number"]
+            return splines[number - 1]
         return Message(_WORDS[said.template], **said.facts) if said.template in _WORDS else said
 
     return message.reworded(word) if isinstance(message, Message) else message

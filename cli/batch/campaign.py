@@ -1,20 +1,20 @@
 """A batch from its inputs to its table."""
 
 import argparse
+import os
 import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from ...core import RelaxOptions
-from ...core.errors import OutputError
+from ...core.errors import OptionError, OutputError
+from .. import options as relax_options
 from .. import signals
-from ..options import pinned
 from ..places import check_place
 from ..progress import WithBar
+from ..streams import emit
 from . import cluster
 from .folder import check_replaceable, finished, sweep
-from .inputs import inputs
-from .job import CSV, PARQUET, Job, jobs
+from .job import CSV, PARQUET, Job, inputs, jobs
 from .table import Row, Table, check_tables
 
 
@@ -31,11 +31,16 @@ class _Progress(WithBar):
             self._bar.update()
 
 
-def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
-    """Do the runs that are not finished; the table is written in the end, also of an interrupted batch."""
+def campaign(options: argparse.Namespace) -> None:
+    """Do the runs that are not finished, write the table, also of an interrupted batch, and print a line about it."""
+    if not options.output:
+        raise OptionError("output is empty; name the directory of the results")
+    if options.starts < 1:
+        raise OptionError(f"starts is {options.starts}; it must be 1 or more")
+    wanted = relax_options.from_arguments(options)
     cluster.require(options.scheduler)
     directory = Path(options.output).resolve()
-    pins = [pin for text in options.pins for pin in pinned(text)]
+    pins = [pin for text in options.pins for pin in relax_options.pinned(text)]
     still = {"avoid": options.avoid, "pins": pins, "pin_tangents": options.pin_tangents}
     planned = jobs(inputs(options.inputs), options.starts, directory, wanted, still, options.extrapolate)
     rows = _found(planned)
@@ -45,7 +50,10 @@ def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
         _run(left, rows, directory, options)
     else:
         Table(rows.values()).save(directory)
-    return Table(rows.values())
+    if not options.quiet:
+        failed = any(row.failed for row in rows.values())
+        why = f"; {os.path.join(options.output, CSV)} says why" if failed else ""
+        emit(Table(rows.values()).summary() + why)
 
 
 def _found(planned: Iterable[Job]) -> dict[Job, Row]:

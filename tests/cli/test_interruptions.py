@@ -101,7 +101,7 @@ if kind == "trajectory":
     write = lambda: trajectory.save(target)
 elif kind == "report":
     result = minimize(curve, RelaxOptions(vertices=len(curve), max_iterations=0))
-    write = lambda: _write_report(target, result)
+    write = lambda: _write_report(result, {}, target)
 else:
     write = lambda: write_curve(target, curve)
 write()

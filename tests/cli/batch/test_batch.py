@@ -156,7 +156,7 @@ def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path, caps
     assert len(rows) == 16
     assert [row["name"] for row in rows if row["status"] != "failed"] == ["ring", "ring"]
     for name, reason in {
-        "pipe": "no regular file",
+        "pipe": "not a regular file",
         "broken": "missing",
         "cross": "edges 1 and 3 touch",
         "empty": "empty",

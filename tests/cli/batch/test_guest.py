@@ -18,8 +18,7 @@ import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli.batch import campaign, single
 from mobius_flow.cli.batch.folder import new_folder
-from mobius_flow.cli.batch.inputs import inputs
-from mobius_flow.cli.batch.job import jobs
+from mobius_flow.cli.batch.job import inputs, jobs
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, read_curve, write_curve
 from processes import finished, listening, running
 from shapes import regular_polygon
