@@ -14,7 +14,7 @@ from ..core.errors import wrong_suffix
 from . import curves
 from .progress import show_frames
 
-Writer = Callable[[str, Result, Sequence[Iterate], bool], None]
+Writer = Callable[[str, Result, Sequence[Iterate], bool], object]
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ def _curve_output(form: Format, name: str | None = None) -> Output:
     return Output(lambda path, result, *_: curves.write(path, result.curve, name), form.text)
 
 
-def _scene_output(write: Callable[[str, Sequence[Iterate], bool], None]) -> Output:
+def _scene_output(write: Callable[[str, Sequence[Iterate], bool], object]) -> Output:
     def admit(curve: Curve) -> None:
         film.check_dimension(curve)
         check_closed(curve, "scenes, films and pictures")

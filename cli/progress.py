@@ -58,7 +58,7 @@ class Progress(WithBar):
 @contextmanager
 def leg_progress(shown: bool) -> Iterator[Callable[[int, int], None] | None]:
     """Give what shows the numbers of legs that are checked and of all, or None where nothing can be shown."""
-    legs = bar(unit=" legs") if shown else None
+    legs: Any = bar(unit=" legs") if shown else None
 
     def show(done: int, total: int) -> None:
         legs.total = total or None

@@ -71,7 +71,7 @@ class Outcome:
 
     def stalling(self, reason: str, **facts: object) -> "Outcome":
         """Stalled instead, for another reason; the other clauses stay."""
-        return replace(self, status=Status.STALLED, clauses=(*stalled(reason, **facts).clauses, *self.clauses[1:]))
+        return replace(self, status=Status.STALLED, clauses=(*stalled(Message(reason, **facts)).clauses, *self.clauses[1:]))
 
 
 def converged(norm: float, bound: float) -> Outcome:
@@ -90,10 +90,9 @@ def out_of_time(seconds: float) -> Outcome:
     return Outcome(Status.TIME_LIMIT, (Message("stopped at the time limit ({seconds:g} s)", seconds=seconds),))
 
 
-def stalled(reason: str, place: Place | None = None, **facts: object) -> Outcome:
+def stalled(reason: str, place: Place | None = None) -> Outcome:
     """There is no way on, for a reason that is a clause, at some place if it is somewhere."""
-    message = Message("stalled: {reason}", reason=Message(reason, **facts) if facts else reason)
-    return Outcome(Status.STALLED, (message,), place=place)
+    return Outcome(Status.STALLED, (Message("stalled: {reason}", reason=reason),), place=place)
 
 
 def degenerate(error: Exception) -> Message:

@@ -38,18 +38,18 @@ class Rises:
         """The outcome after so many steps, with a clause for each kind of rise."""
         rises = [rise for rise in self._steps if rise]
         if rises:
-            told = "the energy rose in {count} of {steps} steps, by {total:.3g} in total, while lengths were equalized"
-            outcome = outcome.adding(told, count=len(rises), steps=steps, total=sum(rises))
+            rose = "the energy rose in {count} of {steps} steps, by {total:.3g} in total, while lengths were equalized"
+            outcome = outcome.adding(rose, count=len(rises), steps=steps, total=sum(rises))
         changes = [change for change in self._changes if _total(change)]
         if not changes:
             return outcome
-        rises, rest = joined([_energies(change) for change in changes[:NAMED]], ", "), changes[NAMED:]
+        told, rest = joined([_energies(change) for change in changes[:NAMED]], ", "), changes[NAMED:]
         if rest:
             more = "{rises}, and in {count} further changes by {total:.3g} in total"
             if len(rest) == 1:
                 more = "{rises}, and in another change by {total:.3g}"
-            rises = Message(more, rises=rises, count=len(rest), total=sum(map(_total, rest)))
-        return outcome.adding("changes of mesh or shape raised the energy: {rises}", rises=rises)
+            told = Message(more, rises=told, count=len(rest), total=sum(map(_total, rest)))
+        return outcome.adding("changes of mesh or shape raised the energy: {rises}", rises=told)
 
 
 def _rise(before: Iterate, after: Iterate) -> float:
