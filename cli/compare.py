@@ -141,9 +141,4 @@ def _write_csv(path: Path, runs: Sequence[History]) -> None:
             table.writerows([run.method, run.status, k, *values, int(k in run.fallback)] for k, values in rows)
 
 
-WRITERS: Mapping[str, Writer] = {
-    ".png": write_figure,
-    ".svg": write_figure,
-    ".csv": _write_csv,
-    ".json": _write_json,
-}
+WRITERS: Mapping[str, Writer] = {".png": write_figure, ".svg": write_figure, ".csv": _write_csv, ".json": _write_json}

@@ -22,12 +22,7 @@ FAINTEST = 0.55  # share of white in the colour of what is farthest away
 PIECES = 120  # of a polygon, which are in front of each other or behind
 FLAT = 0.2  # depth, in widths of the curve, below which its parts differ less in colour
 OVERLAP = 0.006  # of neighbouring pieces, in widths of the curve: less than a pixel
-_ENDS = {
-    "converged": "",
-    "time_limit": " (time is up)",
-    "iteration_limit": " (not done)",
-    "stalled": " (stuck)",
-}
+_ENDS = {"converged": "", "time_limit": " (time is up)", "iteration_limit": " (not done)", "stalled": " (stuck)"}
 _CELL = 1.9  # inches of a curve's picture
 
 

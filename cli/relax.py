@@ -7,18 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from typing import NamedTuple
 
-from ..core import (
-    Iterate,
-    MobiusFlowError,
-    Outcome,
-    RelaxOptions,
-    Result,
-    Status,
-    Task,
-    Trajectory,
-    relax,
-    write_curve,
-)
+from ..core import Iterate, MobiusFlowError, Outcome, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
 from ..core.driver import Relaxation, finish
 from ..core.errors import OptionError, counted
 from . import curves, signals

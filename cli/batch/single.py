@@ -8,17 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ... import __version__
-from ...core import (
-    Curve,
-    CurveError,
-    MobiusFlowError,
-    RelaxOptions,
-    Result,
-    Task,
-    Trajectory,
-    minimize,
-    read_obstacle,
-)
+from ...core import Curve, CurveError, MobiusFlowError, RelaxOptions, Result, Task, Trajectory, minimize, read_obstacle
 from ...core.collision import check_embedded
 from ...core.collision.thickness import thickness
 from ...core.curve.io import FORMATS, CurveFile, load_curve

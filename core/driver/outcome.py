@@ -71,7 +71,9 @@ class Outcome:
 
     def stalling(self, reason: str, **facts: object) -> "Outcome":
         """Stalled instead, for another reason; the other clauses stay."""
-        return replace(self, status=Status.STALLED, clauses=(*stalled(Message(reason, **facts)).clauses, *self.clauses[1:]))
+        return replace(
+            self, status=Status.STALLED, clauses=(*stalled(Message(reason, **facts)).clauses, *self.clauses[1:])
+        )
 
 
 def converged(norm: float, bound: float) -> Outcome:
