@@ -4,7 +4,7 @@ import argparse
 import csv
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
@@ -99,18 +99,15 @@ def _numbers(text: str) -> list[int]:
     return sorted(set(numbers))
 
 
-def _collected(planned: Iterator[History]) -> tuple[list[History], BaseException | None]:
+def _collected(planned: Generator[History, None, None]) -> tuple[list[History], BaseException | None]:
     """The runs that were finished, and what ended them before all were."""
     runs: list[History] = []
     try:
-        for result in planned:
-            signals.hold()
+        for result in signals.interruptible(planned):
             runs.append(result)
             print(_line(result), file=sys.stderr, flush=True)
-            signals.allow()
     except (KeyboardInterrupt, MemoryError) as error:
         return runs, error
-    signals.hold()
     return runs, None
 
 

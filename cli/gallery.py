@@ -69,11 +69,11 @@ def _run(options: argparse.Namespace) -> int:
     shown = _results(Path(options.results))
     with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
         pictures = [Path(room, f"{k}.png") for k in range(len(shown))]
-        progress = bar(total=len(shown), unit=" pictures") if sys.stderr.isatty() else None
-        for each, picture in zip(shown, pictures, strict=True):
-            export.write_picture(picture, each.look(), SIZE, SIZE)
-            if progress is not None:
-                progress.update()
+        with bar(sys.stderr.isatty(), total=len(shown), unit=" pictures") as progress:
+            for each, picture in zip(shown, pictures, strict=True):
+                export.write_picture(picture, each.look(), SIZE, SIZE)
+                if progress is not None:
+                    progress.update()
         _write_page(options.output, [each.title for each in shown], pictures)
     return 0
 

@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from typing import NamedTuple
 
-from ..core import Iterate, MobiusFlowError, Outcome, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
-from ..core.driver import Relaxation, finish
+from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
+from ..core.driver import finish
 from ..core.errors import OptionError, counted
 from . import curves, signals
 from . import options as relax_options
 from .outputs import OUTPUTS, Output, admit, output_for
 from .places import Write, check_places, is_file, kept, writing
-from .progress import Progress
+from .progress import Progress, bar
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 KEYED = ("auto", "fixed", "finer")  # meshes that keyframes can follow
@@ -96,30 +96,21 @@ def _relax(
     recorded = output.is_scene or options.trajectory is not None
     relaxation = relax(task, wanted)
     signals.hold()
-    with Progress(wanted, shown=not options.quiet and sys.stderr.isatty()) as progress:
+    progress = Progress(wanted)
+    with bar(_shown(options), total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}") as shown:
 
         def on_iterate(iterate: Iterate) -> None:
             if recorded:
                 iterates.append(iterate)
             if iterate.index == 0 and not options.quiet:
                 options.notes.show()  # the curve is accepted: there will be no refusal
-            progress.update(iterate)
+            progress.update(shown, iterate)
 
-        return finish(_interruptible(relaxation), task, wanted, on_iterate), iterates
+        return finish(signals.interruptible(relaxation), task, wanted, on_iterate), iterates
 
 
-def _interruptible(relaxation: Relaxation) -> Relaxation:
-    """The same, interrupted by signals while it computes, and only then."""
-    while True:
-        signals.allow()
-        try:
-            iterate = next(relaxation)
-        except StopIteration as end:
-            signals.hold()
-            outcome: Outcome = end.value
-            return outcome
-        signals.hold()
-        yield iterate
+def _shown(options: argparse.Namespace) -> bool:
+    return not options.quiet and sys.stderr.isatty()
 
 
 class _Job(NamedTuple):
@@ -169,8 +160,7 @@ def _jobs(
 
     extras = (options.report, partial(_write_report, result, origin)), (options.trajectory, save_trajectory)
     yield from (_Job(path, write, slow=not is_file(path)) for path, write in extras if path is not None)
-    shown = not options.quiet and sys.stderr.isatty()
-    job = _Job(options.output, lambda path: output.write(path, result, iterates, shown))
+    job = _Job(options.output, lambda path: output.write(path, result, iterates, _shown(options)))
     if output.is_scene:  # a film takes a minute
         plain = partial(write_curve, curve=result.curve)
         yield job._replace(rescue=plain, name=f"{options.output}.obj", slow=True)

@@ -377,9 +377,9 @@ MUTANTS = (
     ),
     Mutant(
         "iterates lost to signals",
-        "cli/relax.py",
-        "        signals.hold()\n        yield iterate",
-        "        yield iterate",
+        "cli/signals.py",
+        "        hold()\n        yield item",
+        "        yield item",
         "tests/cli/test_signals.py::test_signals_wait_while_an_iterate_is_recorded",
     ),
     Mutant(

@@ -24,7 +24,7 @@ TALKATIVE = """
 import sys
 from mobius_flow.cli import main
 from mobius_flow.cli.progress import Progress
-Progress.update = lambda self, iterate: iterate.index == 2 and print("running", flush=True)
+Progress.update = lambda self, bar, iterate: iterate.index == 2 and print("running", flush=True)
 sys.exit(main(sys.argv[1:]))
 """
 

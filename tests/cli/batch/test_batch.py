@@ -219,7 +219,7 @@ def test_a_killed_run_is_tried_again(
 def test_an_interrupt_leaves_the_table(
     batch: Batch, ring: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(campaign._Progress, "show", lambda *_: os.kill(os.getpid(), signal.SIGINT))
+    monkeypatch.setattr(campaign, "_show", lambda *_: os.kill(os.getpid(), signal.SIGINT))
     rows = batch(ring, "3_1..8_21", *TINY, status=130)
     assert len(rows) == 1
     assert rows[0]["status"] != "failed"

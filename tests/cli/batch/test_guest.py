@@ -167,13 +167,13 @@ def test_a_table_that_is_edited_during_the_work_survives(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = place / "out/results.csv"
-    monkeypatch.setattr(campaign._Progress, "show", lambda *_: table.write_text("mine"))
+    monkeypatch.setattr(campaign, "_show", lambda *_: table.write_text("mine"))
     words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), *OTHERWISE]
     assert main(words) == 2
     assert f"{table}: was not written by" in capsys.readouterr().err
     assert table.read_text() == "mine"
     table.unlink()
-    monkeypatch.setattr(campaign._Progress, "show", lambda *_: pytest.fail("done twice"))
+    monkeypatch.setattr(campaign, "_show", lambda *_: pytest.fail("done twice"))
     assert main(words) == 0
     assert "ring,1," in table.read_text()
 
