@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..addon.pictures import export
 from ..core import Curve, MobiusFlowError, Status, read_curve
-from ..core.driver.balance import balanced
+from ..core.driver.interventions.balance import balanced
 from ..core.errors import OutputError, wrong_suffix
 from ..core.system.files import atomic_write
 from .batch.job import CSV, CURVE, folder_name

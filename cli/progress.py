@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from ..core import Iterate, RelaxOptions
-from ..core.driver.termination import gradient_bound
+from ..core.driver.run import gradient_bound
 
 
 class WithBar:
