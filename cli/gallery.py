@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..addon.pictures import export
 from ..core import Curve, MobiusFlowError, Status, read_curve
-from ..core.driver.balance import balanced
+from ..core.driver.interventions.balance import balanced
 from ..core.errors import wrong_suffix
 from .batch.job import CSV, CURVE, folder_name
 from .batch.table import FAILED

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from ..core import Iterate, RelaxOptions
-from ..core.driver.termination import gradient_bound
+from ..core.driver.run import gradient_bound
 
 
 @contextmanager

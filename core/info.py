@@ -10,9 +10,9 @@ from .curve import Curve
 from .curve.writhe import writhe_and_crossings
 from .descent import Point
 from .driver import RelaxOptions
+from .driver.interventions.saddle import stability
 from .driver.prepare import start_problem
-from .driver.stability import stability
-from .driver.termination import gradient_bound
+from .driver.run import gradient_bound
 from .knots import KnotType, knot_type
 from .measure import MAX_VERTICES as PAIRS_UP_TO
 from .measure import measure

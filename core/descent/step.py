@@ -3,13 +3,23 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..collision import Contact, FreeMotion
 from ..messages import Message
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from .problem import Point, Problem
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What a method remembers between steps: its own memory, None at the start, and the last accepted step size."""
+
+    memory: Any = None
+    last_step: float = np.inf
 
 
 class Leg(NamedTuple):

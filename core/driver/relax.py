@@ -16,14 +16,14 @@ from ..messages import COMPONENT, VERTEX_COUNT, Message
 from ..system.threads import BLAS
 from ..task import Task
 from ..units import centred
-from .hops import hopping
-from .iterate import Iterate
+from .hopping import hopping
 from .loop import Relaxation, WithOutcome, within
 from .options import RelaxOptions
 from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import start_problem
 from .run import Run
 from .solver import check_size
+from .trajectory import Iterate
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
 

@@ -4,8 +4,8 @@ from itertools import pairwise
 
 from ..energies.components import energy_scale
 from ..messages import Message, joined
-from .iterate import Iterate
 from .outcome import Outcome
+from .trajectory import Iterate
 
 RISE = 1e-9  # increase of the energy, by its scale, that is told of; less is rounding
 NAMED = 3  # changes of mesh whose energies are told one by one

@@ -41,7 +41,7 @@ class ConstraintPreconditioner:
         self.constraints = constraints
         self._tension = model.tension(constraints.tangents)
         rows = len(constraints.edges)
-        forced = [constraints.apply(model.solve(row))[rows:] for row in constraints.barycenter_rows()]
+        forced = [constraints.apply(model.solve(row))[rows:] for row in constraints.border()]
         self._held = np.linalg.inv(np.reshape(forced, (len(forced), len(forced))))
 
     def project(self, r: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:

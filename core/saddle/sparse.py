@@ -28,7 +28,7 @@ class SparseTangentSpace(TangentSpace):
         self._free = _free(constraints)
         lengths, full = constraints.length_rows(), sp.kron(_vanishing(gram, constraints), sp.eye_array(m))
         self._factor = factorised(sp.block_array([[full, lengths.T], [lengths, None]]))
-        border = np.reshape(list(constraints.barycenter_rows()), (-1, full.shape[0]))
+        border = np.reshape(list(constraints.border()), (-1, full.shape[0]))
         self._border = np.hstack([border, np.zeros((len(border), rows))])
         self._response = self._factor.solve(self._border.T)
         self._held = self._border @ self._response

@@ -41,10 +41,10 @@ class TangentSpace(ABC):
         """C^† ξ, the shortest u with C u = ξ; shapes (rows of C,) -> (n, m)."""
         return self.solve(None, xi)[0]
 
-    def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
+    def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:
         """A short u with DΦ u = −Φ at a curve near by, where a small residual Φ is left: Newton's method; shape (n, m).
 
-        By default the shortest in the Euclidean metric, at O(n).
+        By default the shortest in the Euclidean metric, at O(n); None if there is none so cheap.
         """
         return euclidean_correction(constraints, curve, residual)
 

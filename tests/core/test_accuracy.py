@@ -94,16 +94,16 @@ def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  
 
 @pytest.mark.slow
 def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mobius_flow.core.driver.interventions import check_accuracy
+    from mobius_flow.core.driver.interventions import fallback
 
     looked_at: list[int] = []
-    original = check_accuracy.SampledErrors.at
+    original = fallback.SampledErrors.at
 
     def at(energy, curve, *rest):  # type: ignore[no-untyped-def]
         looked_at.append(len(curve))
         return original(energy, curve, *rest)
 
-    monkeypatch.setattr(check_accuracy.SampledErrors, "at", at)
+    monkeypatch.setattr(fallback.SampledErrors, "at", at)
     short(1700)
     assert looked_at == [1700, 1700]
     looked_at.clear()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, RelaxOptions, Result, Status, minimize
 from mobius_flow.core.driver import Trajectory
-from mobius_flow.core.driver.interventions.split_links import split
+from mobius_flow.core.driver.interventions.links import split
 from mobius_flow.core.knots import knot_type, overhand
 from mobius_flow.core.knots.alexander import linking_numbers, signature
 from mobius_flow.core.knots.composite import knotted_ball

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from changed_interventions import change
 from hard_curves import hard_unknot
 from mobius_flow.core import Curve, Iterate, Outcome, RelaxOptions, Status, Trajectory, minimize
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.curve.smooth import smoothed
-from mobius_flow.core.driver.interventions import coarse_start
+from mobius_flow.core.driver.interventions import CoarseStart
 from mobius_flow.core.driver.rises import Rises
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.verify import verify
@@ -19,7 +20,7 @@ from shapes import regular_polygon, torus_trefoil
 @pytest.fixture
 def everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also for curves that are small enough for tests."""
-    monkeypatch.setattr(coarse_start, "MIN_VERTICES", 100)
+    change(monkeypatch, CoarseStart, min_vertices=100)
 
 
 def bent(curve: Curve) -> Curve:
@@ -68,11 +69,11 @@ def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
 
 
 @pytest.mark.usefixtures("everywhere")
-@pytest.mark.parametrize("limit", [0, 1, 5, 12, coarse_start.MIN_ITERATIONS, 33])
-@pytest.mark.parametrize("least", [0, coarse_start.MIN_ITERATIONS])
+@pytest.mark.parametrize("limit", [0, 1, 5, 12, CoarseStart.min_iterations, 33])
+@pytest.mark.parametrize("least", [1, CoarseStart.min_iterations])
 def test_a_run_that_is_cut_short_has_all_vertices(limit: int, least: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """The way back is within the limit, and ends on the smooth curve: no corners of the coarse one are left."""
-    monkeypatch.setattr(coarse_start, "MIN_ITERATIONS", least)
+    change(monkeypatch, CoarseStart, min_iterations=least)
     options = RelaxOptions(vertices=900, max_iterations=limit, tolerance=1e-9, method="flow-h1")
     result = minimize(torus_trefoil(900), options)
     assert result.status is Status.ITERATION_LIMIT
@@ -83,7 +84,7 @@ def test_a_run_that_is_cut_short_has_all_vertices(limit: int, least: int, monkey
 
 
 @pytest.mark.usefixtures("everywhere")
-@pytest.mark.parametrize("limit", [coarse_start.MIN_ITERATIONS, 34])
+@pytest.mark.parametrize("limit", [CoarseStart.min_iterations, 34])
 def test_a_run_that_is_cut_short_ends_on_the_constraints(limit: int) -> None:
     """Between strands the smooth curve with all vertices is a hundredth off."""
     result = minimize(hard_unknot(20, seed=3), RelaxOptions(vertices=900, max_iterations=limit))

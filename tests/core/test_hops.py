@@ -11,11 +11,17 @@ from mobius_flow.core import Curve, Iterate, Mesh, OptionError, RelaxOptions, Re
 from mobius_flow.core.collision import FreeMotion, Limit
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import Point, Step
-from mobius_flow.core.driver.hops import hopping
-from mobius_flow.core.driver.hops.motions import MOTIONS, Motion
-from mobius_flow.core.driver.hops.trial import trial
-from mobius_flow.core.driver.hops.unknot import IS_UNKNOT, MAY_BE_UNKNOT, MOST_VERTICES, is_circle, told_of_unknot
+from mobius_flow.core.driver.hopping import (
+    IS_UNKNOT,
+    MAY_BE_UNKNOT,
+    MOST_VERTICES,
+    hopping,
+    is_circle,
+    told_of_unknot,
+    trial,
+)
 from mobius_flow.core.driver.loop import WithOutcome, iterates
+from mobius_flow.core.driver.motions import MOTIONS, Motion
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import double, knot, torus_knot

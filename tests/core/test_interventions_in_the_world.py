@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Obstacle, OptionError, RelaxOptions, Status, minimize
-from mobius_flow.core.driver.interventions import composite as composite_curves
-from mobius_flow.core.driver.interventions.split_links import separate_parts
+from mobius_flow.core.driver.interventions import links
+from mobius_flow.core.driver.interventions.links import separate_parts
 from mobius_flow.core.knots import knot, overhand
 from mobius_flow.core.knots.composite import Ball
 from shapes import opened, regular_polygon, straight_arc
@@ -96,7 +96,7 @@ def test_balls_and_obstacles() -> None:
 def test_a_knotted_part_around_a_post_does_not_shrink(
     post: tuple[float, float], composite: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(composite_curves, "knotted_ball", lambda curve: Ball(np.zeros(3), 1.0))
+    monkeypatch.setattr(links, "knotted_ball", lambda curve: Ball(np.zeros(3), 1.0))
     curve = knot("3_1#3_1")
     size = float(np.abs(curve.vertices).max())
     far = curve.with_vertices(curve.vertices / size * 3.0 + [20.0, 0.0, 0.0])

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_interventions import change
 from mobius_flow.core import (
     METHODS,
     Curve,
@@ -24,7 +25,7 @@ from mobius_flow.core import (
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.compare import compare
-from mobius_flow.core.driver.interventions import coarse_start
+from mobius_flow.core.driver.interventions import CoarseStart
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import knot
 from mobius_flow.core.measure import measure
@@ -330,7 +331,7 @@ def test_energies_know_how_they_scale(name):
 
 def test_steps_are_compared_on_one_mesh(monkeypatch):
     """Also of curves that `relax` would begin with fewer vertices."""
-    monkeypatch.setattr(coarse_start, "MIN_VERTICES", 100)
+    change(monkeypatch, CoarseStart, min_vertices=100)
     options = RelaxOptions(vertices=600, max_iterations=40)
     (history,) = compare(torus_trefoil(600), ["lbfgs"], options, 60.0)
     fixed = minimize(torus_trefoil(600), replace(options, mesh="fixed"))

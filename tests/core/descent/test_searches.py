@@ -18,9 +18,8 @@ from descent_contracts import (
 from mobius_flow.core import OptionError
 from mobius_flow.core.collision import Contact
 from mobius_flow.core.descent import NoStep, State
-from mobius_flow.core.descent.constrained import Constrained
 from mobius_flow.core.descent.directions import SteepestDescent
-from mobius_flow.core.descent.penalised import Penalised
+from mobius_flow.core.descent.geometries import Constrained, Penalised
 from mobius_flow.core.descent.searches import (
     Armijo,
     BackwardEuler,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from energy_references import arc_density, circle_density, pair_sum, tangent_point_density
 from mobius_flow.core import Curve, MoebiusEnergy
-from mobius_flow.core.constraints import ConstraintDerivative
+from mobius_flow.core.constraints import Constraints
 from mobius_flow.core.energies import ENERGIES, Energy, KPointEnergy, Rule, moebius_kpoint
 from mobius_flow.core.energies.arc_density import ArcDensity
 from mobius_flow.core.energies.contributions import Contributions
@@ -98,7 +98,7 @@ def test_arc_derivative(energy: KPointEnergy, sizes: tuple[int, ...]) -> None:
 
     full, partial = (e.value_and_derivative(curve)[1] for e in (energy, without))
     assert np.abs(full - partial).max() > 1e-3 * np.abs(full).max()
-    saddle = MoebiusMetric().at(curve).tangent_space(ConstraintDerivative.at(curve))
+    saddle = MoebiusMetric().at(curve).tangent_space(Constraints.of(curve).derivative(curve))
     projected, expected = saddle.gradient(partial)[0], saddle.gradient(full)[0]
     np.testing.assert_allclose(projected, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
 
