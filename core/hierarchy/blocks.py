@@ -5,11 +5,12 @@ from functools import cached_property
 
 import numpy as np
 
+from ..clusters import ClusterTree, ranges
 from ..curve import Curve, Mesh
 from ..curve.tiles import EdgePairIndices
 from ..errors import OptionError
 from ..types import BoolArray, FloatArray, IntArray
-from .clusters import ClusterTree
+from .clusters import balls, edge_clusters
 
 ClusterPairs = tuple[IntArray, IntArray]
 
@@ -26,6 +27,8 @@ class BlockList:
 
     Attributes
     ----------
+    mesh
+        Connectivity.
     tree
         The clusters; all ranges are of positions in ``tree.order``.
     first, second
@@ -34,6 +37,7 @@ class BlockList:
         The pairs of leaves that are no blocks, two arrays; a leaf and itself are such a pair.
     """
 
+    mesh: Mesh
     tree: ClusterTree
     first: IntArray
     second: IntArray
@@ -42,16 +46,15 @@ class BlockList:
     @classmethod
     def of(cls, curve: Curve, theta: float, leaf: int) -> "BlockList":
         """The list of a curve: separation parameter 0 < θ < 1, and the largest number of edges in a leaf."""
-        tree = ClusterTree.of(curve, leaf)
-        blocks, near = _traverse(tree, *tree.balls(curve), theta)
-        return cls(tree, *blocks, near)
+        tree = edge_clusters(curve, leaf)
+        blocks, near = _traverse(tree, *balls(tree, curve), theta)
+        return cls(curve.mesh, tree, *blocks, near)
 
     def is_separated(self, curve: Curve, theta: float) -> bool:
         """Whether another curve has the same mesh, and all blocks are admissible there with such a parameter."""
-        if curve.mesh != self.tree.mesh:
+        if curve.mesh != self.mesh:
             return False
-        centre, radius = self.tree.balls(curve)
-        return bool(_admissible(centre, radius, self.first, self.second, theta).all())
+        return bool(_admissible(*balls(self.tree, curve), self.first, self.second, theta).all())
 
     @property
     def i(self) -> IntArray:
@@ -65,14 +68,14 @@ class BlockList:
 
     @cached_property
     def _edge_pairs(self) -> EdgePairIndices:
-        return _edge_pairs(self.tree, self.leaves)
+        return _edge_pairs(self.mesh, self.tree, self.leaves)
 
     @property
     def near_share(self) -> float:
         """How many of all pairs of edges are near ones, neighbours among them; they are not listed for that."""
         first, second = ((self.tree.stop - self.tree.start)[side] for side in self.leaves)
         count = float(np.where(self.leaves[0] == self.leaves[1], 0.5, 1.0) @ (first * second))
-        return count / (0.5 * self.tree.mesh.edges**2)
+        return count / (0.5 * self.mesh.edges**2)
 
     @property
     def mostly_near(self) -> bool:
@@ -89,7 +92,7 @@ class BlockList:
         """
         if without is None or not without[0].size:
             return self.i, self.j
-        n = self.tree.mesh.edges
+        n = self.mesh.edges
         code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
         place = np.searchsorted(code, left_out)
         if not np.array_equal(code[place[place < len(code)]], left_out):
@@ -147,7 +150,7 @@ def _admissible(centre: FloatArray, radius: FloatArray, first: IntArray, second:
 
 
 def _split(tree: ClusterTree, radius: FloatArray, first: IntArray, second: IntArray) -> ClusterPairs:
-    """Pairs with the children of one of the two clusters, the larger one if it has any, in its place."""
+    """Pairs in which the children replace one of the two clusters, the larger one if it has any."""
     same = first == second
     diagonal = tree.child[first[same]]
     first, second = first[~same], second[~same]
@@ -160,13 +163,13 @@ def _split(tree: ClusterTree, radius: FloatArray, first: IntArray, second: IntAr
     )
 
 
-def _edge_pairs(tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
+def _edge_pairs(mesh: Mesh, tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
     """All pairs of edges of two leaves that have no vertex in common, i < j, sorted by i and then by j."""
-    row, begin, end = _without_neighbours(tree.mesh, tree.order, *_rows(tree, leaves))
+    row, begin, end = _without_neighbours(mesh, tree.order, *_rows(tree, leaves))
     count = np.maximum(end - begin, 0)
-    i, j = tree.order[np.repeat(row, count)], tree.order[_ranges(begin, count)]
+    i, j = tree.order[np.repeat(row, count)], tree.order[ranges(begin, count)]
     if np.any(np.diff(tree.order) < 0):
-        i, j = np.divmod(np.sort(_code(i, j, tree.mesh.edges)), tree.mesh.edges)
+        i, j = np.divmod(np.sort(_code(i, j, mesh.edges)), mesh.edges)
     return i, j
 
 
@@ -180,7 +183,7 @@ def _rows(tree: ClusterTree, leaves: ClusterPairs) -> tuple[IntArray, IntArray, 
     partners = np.searchsorted(tree.start[first], [tree.start[own], tree.stop[own]])
     size = (tree.stop - tree.start)[own]
     start, count = np.repeat(partners[0], size), np.repeat(partners[1] - partners[0], size)
-    row, partner = np.repeat(np.arange(len(tree.order)), count), second[_ranges(start, count)]
+    row, partner = np.repeat(np.arange(len(tree.order)), count), second[ranges(start, count)]
     return row, np.maximum(tree.start[partner], row + 1), tree.stop[partner]
 
 
@@ -199,11 +202,6 @@ def _without_neighbours(
         np.insert(begin, cut + 1, last[cut] + 1),
         np.insert(end, cut, last[cut]),
     )
-
-
-def _ranges(start: IntArray, count: IntArray) -> IntArray:
-    """start, start + 1, … of each of some ranges, one after the other."""
-    return np.asarray(np.repeat(start - np.cumsum(count) + count, count) + np.arange(count.sum()))
 
 
 def _code(i: IntArray, j: IntArray, n: int) -> IntArray:

@@ -6,18 +6,24 @@ J_C the eigenvalues are between 0.85 and 1.2, on smooth curves and on tangles, a
 1.5.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 import scipy.sparse as sp
 
+from ..checks import check_fields
 from ..constraints import ConstraintDerivative
 from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs
+from ..errors import OptionError
+from ..metrics import FractionalMetric, Metric, MoebiusMetric
 from ..metrics.inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
 from ..metrics.local import arc_stiffness, lumped_mass, mass
 from ..metrics.moebius import pair_kernels
+from ..quadrature import MIDPOINT, Rule
 from ..saddle import TangentSpace
 from ..saddle.circulant import Circulants
 from ..saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
@@ -26,12 +32,10 @@ from ..saddle.resolvent import Resolvents
 from ..saddle.two_level import TwoLevel
 from ..types import FloatArray
 from .blocks import BlockList
-from .pair_forms import PairForms
-from .running_sum import RunningSum
+from .pair_forms import PairForms, RunningSum
 
 FarForm = tuple[RunningSum, sp.csr_array]
-SEPARATION = 0.5  # θ of the block list
-LEAF = 4
+MAX_VERTICES = 200_000  # some 3 GB, and half a minute a step
 EVEN_RATIO = 20.0  # of the longest edge of a component to its shortest, up to which Fourier transforms are faster
 SOLVED = 1e-10  # relative error of A⁻¹ f
 MAX_ITERATIONS = 1000
@@ -114,9 +118,11 @@ class CompressedInnerProduct:
         return TwoLevel(mesh, along(mesh, ell, self.apply), self.coupling, _indicators(self.curve).T @ self.vectors)
 
 
-def moebius_inner_product(curve: Curve, tolerances: Tolerances | None = None) -> CompressedInnerProduct:
+def moebius_inner_product(
+    curve: Curve, tolerances: Tolerances | None = None, theta: float = 0.5, leaf: int = 4
+) -> CompressedInnerProduct:
     """J_C by the midpoint rule, as in `MoebiusMetric`, compressed."""
-    blocks = BlockList.of(curve, SEPARATION, LEAF)
+    blocks = BlockList.of(curve, theta, leaf)
     forms = PairForms(curve, blocks)
     near, far = pair_kernels(curve, *forms.near), pair_kernels(curve, *forms.middles)
     slopes = forms.of_slopes(near.inverse, far.inverse)
@@ -131,14 +137,11 @@ def moebius_inner_product(curve: Curve, tolerances: Tolerances | None = None) ->
     )
 
 
-def block_count(curve: Curve) -> int:
-    """Number of blocks of these inner products."""
-    return len(BlockList.of(curve, SEPARATION, LEAF).first)
-
-
-def fractional_inner_product(curve: Curve, tolerances: Tolerances | None = None) -> CompressedInnerProduct:
+def fractional_inner_product(
+    curve: Curve, tolerances: Tolerances | None = None, theta: float = 0.5, leaf: int = 4
+) -> CompressedInnerProduct:
     """W^{3/2,2}, as in `FractionalMetric`, compressed."""
-    blocks = BlockList.of(curve, SEPARATION, LEAF)
+    blocks = BlockList.of(curve, theta, leaf)
     forms = PairForms(curve, blocks)
     near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (forms.near, forms.middles))
     n, indicators, weight = len(curve), _indicators(curve), mass(curve)
@@ -150,6 +153,84 @@ def fractional_inner_product(curve: Curve, tolerances: Tolerances | None = None)
         indicators.T @ weight @ indicators,
         tolerances or Tolerances(),
     )
+
+
+_COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]] = MappingProxyType(
+    {MoebiusMetric: moebius_inner_product, FractionalMetric: fractional_inner_product}
+)
+
+
+@dataclass(frozen=True)
+class CompressedMetric:
+    """One of the nonlocal metrics by products in O(N log N), with the midpoint rule.
+
+    Parameters
+    ----------
+    metric
+        The dense one, which has the same name, description, rule and penalty.
+    tolerances
+        Of what is solved with it.
+    theta
+        Separation parameter of blocks, below 1.
+    leaf
+        Edges up to which clusters are not halved.
+
+    Raises
+    ------
+    OptionError
+        If one of these is out of range.
+    """
+
+    metric: Metric
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    theta: float = 0.5
+    leaf: int = 4
+    most_vertices = MAX_VERTICES
+
+    def __post_init__(self) -> None:
+        check_fields(self, theta=(0.0, 1.0), leaf=(0, np.inf))
+
+    @property
+    def name(self) -> str:
+        return self.metric.name
+
+    @property
+    def description(self) -> str:
+        return self.metric.description
+
+    @property
+    def extends_penalty(self) -> bool:
+        return self.metric.extends_penalty
+
+    @property
+    def rule(self) -> Rule | None:
+        return self.metric.rule
+
+    def with_rule(self, rule: Rule) -> "CompressedMetric":
+        """Itself: there is no other rule.
+
+        Raises
+        ------
+        OptionError
+            If another rule is asked for.
+        """
+        if self.rule is not None and rule != MIDPOINT:
+            raise OptionError("metrics for so many vertices use one Gauss point per edge; leave quadrature_points out")
+        return self
+
+    def at(self, curve: Curve) -> InnerProduct:
+        """The inner product on functions along a curve."""
+        return _COMPRESSED[type(self.metric)](curve, self.tolerances, self.theta, self.leaf)
+
+
+def compressed(metric: Metric, tolerances: Tolerances) -> Metric:
+    """A metric in the form for many vertices: local ones are sparse as they are."""
+    return CompressedMetric(metric, tolerances) if type(metric) in _COMPRESSED else metric
+
+
+def block_count(curve: Curve) -> int:
+    """Number of blocks of these inner products."""
+    return len(BlockList.of(curve, CompressedMetric.theta, CompressedMetric.leaf).first)
 
 
 def _long_slopes(curve: Curve, forms: PairForms, blocks: BlockList, far: FloatArray) -> tuple[FarForm, ...]:

@@ -6,7 +6,6 @@ from ...curve import Mesh
 from ...descent import NoStep
 from ...energies.near_pairs import replaced_pairs
 from ...hierarchy import HierarchicalMoebiusEnergy, SampledErrors
-from ...hierarchy.energy import ORDER
 from ..events import Change, Event
 from ..outcome import INACCURATE, TIGHTENED, Outcome
 from ..run import Run
@@ -58,7 +57,7 @@ def with_errors(outcome: Outcome, run: Run) -> Outcome:
     if errors is None:
         return outcome
     outcome = replace(outcome, sampled_errors=errors)
-    if errors.order > ORDER:
+    if errors.order > HierarchicalMoebiusEnergy.order:
         outcome = outcome.adding(TIGHTENED.format(order=errors.order))
     if errors.within(run.options.accuracy):
         return outcome
