@@ -13,25 +13,13 @@ Cut = Callable[[IntArray, IntArray], IntArray]
 
 @dataclass(frozen=True, eq=False)
 class ClusterTree:
-    """Clusters, numbered level by level from the root.
+    """Clusters, numbered level by level from the root."""
 
-    Attributes
-    ----------
-    order
-        What is at each position; shape (k,).
-    start, stop
-        Cluster c holds ``order[start[c]:stop[c]]``; shape (clusters,).
-    child
-        The first of a cluster's two children, which are numbered consecutively; 0 for leaves.
-    levels
-        The clusters of each level, from the root.
-    """
-
-    order: IntArray
-    start: IntArray
+    order: IntArray  # what is at each position; shape (k,)
+    start: IntArray  # cluster c holds order[start[c]:stop[c]]; shape (clusters,)
     stop: IntArray
-    child: IntArray
-    levels: tuple[slice, ...]
+    child: IntArray  # the first of a cluster's two children, which are numbered consecutively; 0 for leaves
+    levels: tuple[slice, ...]  # the clusters of each level, from the root
 
     @classmethod
     def halved(cls, order: IntArray, leaf: int, cut: Cut) -> "ClusterTree":

@@ -20,7 +20,7 @@ from ...core import (
     read_obstacle,
 )
 from ...core.collision import check_embedded
-from ...core.collision.thickness import thickness
+from ...core.collision.gap import thickness
 from ...core.curve.io import FORMATS, CurveFile, load_curve
 from ...core.curve.writhe import writhe_and_crossings
 from ...core.errors import OutputError

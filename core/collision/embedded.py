@@ -9,10 +9,9 @@ from ..curve.places import at_edges, at_vertices
 from ..errors import CurveError
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, corners
-from .chords import closest_chord
 from .exact import first_contact
 from .gap import near_edges, scaled_points
-from .planes import ROUNDING, Separation, relative_motion
+from .planes import ROUNDING, Separation, closest_chord, relative_motion
 
 MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
 

@@ -8,18 +8,23 @@ q = 1 and 0 from q = 9/4, so B is one C² function of the vertices and vanishes 
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.spatial import cKDTree
 
 from ..arguments import checked_fields
 from ..curve import Curve
+from ..curve.tiles import EdgePairIndices
 from ..types import BoolArray, FloatArray, IntArray
-from .contributions import Contributions
-from .edge_pairs import EdgePairs, scatter_first, scatter_second
-from .jets import Jet
-from .near_pairs import FAR, NEAR, is_replaced, near_pairs
+from .edge_pairs import DELTA, E, EdgePairs, F, Jet, scatter_first, scatter_second
+from .inverse_square import inverse_square
+
+NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,
+FAR = 2.25  # and from where on only its midpoint energy does
+MIN_INDEX_DISTANCE = 4
 
 
 @checked_fields
@@ -31,7 +36,7 @@ class Barrier:
     ----------
     replaces_midpoint
         Whether the midpoint contributions are subtracted, as is right for the default energy that contains them.
-        Other energies do not: theirs is Σ χ W_exact, a positive barrier on top of what they say themselves.
+        For other energies the barrier is Σ χ W_exact, positive and on top of their own contributions.
     left_out
         Whether the energy leaves the pairs with χ = 1 out (`replaced_pairs`), so that theirs is W_exact alone.  The sum
         is the same, but nothing is added that is subtracted again: at a distance g that would be some 1/g² times the
@@ -83,11 +88,9 @@ class Barrier:
 
     def _contributions(self, pairs: EdgePairs, replaced: BoolArray) -> Jet:
         """χ (W_exact − W_mid) of pairs of edges, those ``replaced`` that have χ = 1."""
-        w = Contributions(pairs)
-        q = w.closeness()
-        excess = w.exact()
+        q, excess = closeness(pairs), exact(pairs)
         if self.replaces_midpoint:
-            excess = excess - (w.midpoint().where(~replaced) if self.left_out else w.midpoint())
+            excess = excess - (midpoint(pairs).where(~replaced) if self.left_out else midpoint(pairs))
         return q.compose(*cutoff(q.value)) * excess
 
 
@@ -111,3 +114,77 @@ def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     slope, curvature = 30.0 * product**2, 60.0 * product * (1.0 - 2.0 * x)
     chi = np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x * x))
     return chi, -slope / (FAR - NEAR), curvature / (FAR - NEAR) ** 2
+
+
+def closeness(pairs: EdgePairs) -> Jet:
+    """q = |Δ|²/(|e| + |f|)², as a jet in (Δ, e, f)."""
+    total = pairs.inner(E, E).sqrt() + pairs.inner(F, F).sqrt()
+    return pairs.inner(DELTA, DELTA) * (total * total).reciprocal()
+
+
+def midpoint(pairs: EdgePairs) -> Jet:
+    """W_mid = (|e||f| + ⟨e, f⟩)/|Δ|² − 2 ⟨Δ, e⟩⟨Δ, f⟩/|Δ|⁴, the one-point rule, as a jet in (Δ, e, f)."""
+    s = pairs.inner(DELTA, DELTA).reciprocal()
+    p, q = pairs.inner(DELTA, E) * s, pairs.inner(DELTA, F) * s
+    return (_area(pairs) + pairs.inner(E, F)) * s - (p * q).scaled(2.0)
+
+
+def exact(pairs: EdgePairs) -> Jet:
+    """W_exact = ∬ (1 − cos α)/r² over both edges, however near they are, as a jet in (Δ, e, f).
+
+    For edges from x₀ to x₁ and y₀ to y₁ the cosine part is log(|x₁−y₁| |x₀−y₀| / (|x₁−y₀| |x₀−y₁|)); only ∬ 1/r² needs
+    quadrature.  Relative error of the values at most 1e-8; edges must not touch.
+    """
+
+    def log_square(x: float, y: float) -> Jet:
+        return pairs.inner((1.0, x, -y), (1.0, x, -y)).log()
+
+    same = log_square(0.5, 0.5) + log_square(-0.5, -0.5)
+    cosine = (same - log_square(0.5, -0.5) - log_square(-0.5, 0.5)).scaled(0.5)
+    return _area(pairs) * inverse_square(pairs) - cosine
+
+
+def _area(pairs: EdgePairs) -> Jet:
+    return pairs.inner(E, E).sqrt() * pairs.inner(F, F).sqrt()
+
+
+def replaced_pairs(curve: Curve) -> EdgePairIndices:
+    """Those of the near pairs that count with their exact energy alone."""
+    i, j = near_pairs(curve)
+    replaced = is_replaced(curve, i, j)
+    return i[replaced], j[replaced]
+
+
+def is_replaced(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
+    """Whether q ≤ 1; coordinate by coordinate, so that the answer for a pair does not depend on the others."""
+    chord = (curve.midpoints[i] - curve.midpoints[j]).T
+    return np.asarray(sum(c * c for c in chord) <= NEAR * (curve.edge_lengths[i] + curve.edge_lengths[j]) ** 2)
+
+
+@lru_cache(maxsize=2)
+def near_pairs(curve: Curve) -> tuple[IntArray, IntArray]:
+    """Unordered pairs of edges with q < 9/4 that the barrier counts, as two index arrays, no longer edge first.
+
+    A k-d tree per octave of edge lengths keeps the candidates few when lengths differ a lot: a near pair
+    has |Δ| < 3 max(ℓ_I, ℓ_J), so each edge is searched within 3 lengths among edges no longer than its octave.
+    The last answers are kept, because energy and barrier ask the same.
+    """
+    ell, midpoints = curve.edge_lengths, curve.midpoints
+    octave = np.frexp(ell)[1]
+    found: list[FloatArray] = []
+    for level in np.unique(octave):
+        long = np.flatnonzero(octave == level)
+        short = np.flatnonzero(octave <= level)
+        reach = 2.0 * np.sqrt(FAR) * float(np.max(ell[long]))
+        tree = cKDTree(midpoints[long])
+        near = tree.sparse_distance_matrix(cKDTree(midpoints[short]), reach, output_type="ndarray")
+        found.append(np.stack([short[near["j"]], long[near["i"]], near["v"]]))
+    table = np.concatenate(found, axis=1)
+    i, j, distance = table[0].astype(np.intp), table[1].astype(np.intp), table[2]
+    # within one octave every pair is found twice
+    kept = (distance**2 < FAR * (ell[i] + ell[j]) ** 2) & ((octave[i] != octave[j]) | (i < j))
+    i, j = i[kept], j[kept]
+    kept = curve.mesh.index_distance(i, j) >= MIN_INDEX_DISTANCE
+    i, j = i[kept], j[kept]
+    swapped = ell[i] > ell[j]
+    return np.where(swapped, j, i), np.where(swapped, i, j)

@@ -23,15 +23,9 @@ def energy_scale(mesh: Mesh, energy: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class ComponentShares:
-    """Σ over the components: 1 for each closed one, ½ log(L/|a − b|) for each arc.
+    """Σ over the components: 1 for each closed one, ½ log(L/|a − b|) for each arc."""
 
-    Parameters
-    ----------
-    curve
-        The curve.
-    """
-
-    curve: Curve
+    curve: Curve  # the curve
 
     def value(self) -> float:
         """The sum."""

@@ -24,24 +24,13 @@ class BlockList:
     A pair of clusters c, d is a block (is *admissible*) if r_c + r_d < θ |p_c − p_d|, for balls of centres p and radii
     r around their edges.  In a block, therefore, midpoints of edges are never nearer than (1/θ − 1)(ℓ_I + ℓ_J)/2: with
     θ ≤ 1/4 every pair that the barrier counts, |Δ| < 3/2 (ℓ_I + ℓ_J), is a near one.
-
-    Attributes
-    ----------
-    mesh
-        Connectivity.
-    tree
-        The clusters; all ranges are of positions in ``tree.order``.
-    first, second
-        The two clusters of each block; shape (blocks,).
-    leaves
-        The pairs of leaves that are no blocks, two arrays; a leaf and itself are such a pair.
     """
 
-    mesh: Mesh
-    tree: ClusterTree
-    first: IntArray
+    mesh: Mesh  # connectivity
+    tree: ClusterTree  # the clusters; all ranges are of positions in tree.order
+    first: IntArray  # the two clusters of each block; shape (blocks,)
     second: IntArray
-    leaves: ClusterPairs
+    leaves: ClusterPairs  # the pairs of leaves that are no blocks, two arrays; a leaf and itself are such a pair
 
     @classmethod
     def of(cls, curve: Curve, theta: float, leaf: int) -> "BlockList":

@@ -25,18 +25,10 @@ BLOCKS, PAIRS = 1024, 8192  # handled at once, for the processor's cache
 
 @dataclass(frozen=True, eq=False)
 class NearField:
-    """Σ W_IJ over listed pairs.
+    """Σ W_IJ over listed pairs."""
 
-    Parameters
-    ----------
-    edges
-        The curve's edges.
-    pairs
-        Pairs i, j, sorted by i.
-    """
-
-    edges: Edges
-    pairs: EdgePairIndices
+    edges: Edges  # the curve's edges
+    pairs: EdgePairIndices  # pairs i, j, sorted by i
 
     def value(self) -> float:
         """The sum."""
@@ -127,21 +119,11 @@ class _Chunk(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FarField:
-    """Σ W_IJ over all blocks of a list, unordered pairs.
+    """Σ W_IJ over all blocks of a list, unordered pairs."""
 
-    Parameters
-    ----------
-    blocks
-        The list, made at this curve or at one nearby.
-    vectors
-        The curve's edges; of size 1, for high powers of lengths are in use.
-    order
-        p, the order of the expansions in distances from the centres.
-    """
-
-    blocks: BlockList
-    vectors: Vectors
-    order: int
+    blocks: BlockList  # the list, made at this curve or at one nearby
+    vectors: Vectors  # the curve's edges; of size 1, for high powers of lengths are in use
+    order: int  # p, the order of the expansions in distances from the centres
 
     @cached_property
     def _expansion(self) -> Expansion:

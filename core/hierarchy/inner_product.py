@@ -28,8 +28,8 @@ from ..saddle import TangentSpace
 from ..saddle.circulant import Circulants
 from ..saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
 from ..saddle.krylov import conjugate_gradients, relative
+from ..saddle.models import TwoLevel
 from ..saddle.resolvent import Resolvents
-from ..saddle.two_level import TwoLevel
 from ..types import FloatArray
 from .blocks import BlockList
 from .pair_forms import PairForms, RunningSum
@@ -47,26 +47,16 @@ class CompressedInnerProduct:
 
     Attributes
     ----------
-    curve
-        The curve on which functions are.
-    local
-        S, sparse, shape (n, n).
-    far
-        Each B, running sums, and its Q, sparse, shape (edges + 1, edges + 1).
-    vectors
-        V, shape (n, r) for a small r.
     coupling
         S + Σ Bᵀ Q B on functions constant on each component, or near it; sparse, shape (components, components).
-    tolerances
-        Of all that is solved with it.
     """
 
-    curve: Curve
-    local: sp.csr_array
-    far: tuple[FarForm, ...]
-    vectors: FloatArray
+    curve: Curve  # the curve on which functions are
+    local: sp.csr_array  # S, sparse, shape (n, n)
+    far: tuple[FarForm, ...]  # each B, running sums, and its Q, sparse, shape (edges + 1, edges + 1)
+    vectors: FloatArray  # V, shape (n, r) for a small r
     coupling: sp.csr_array
-    tolerances: Tolerances
+    tolerances: Tolerances  # of all that is solved with it
 
     def apply(self, u: FloatArray) -> FloatArray:
         """A u."""

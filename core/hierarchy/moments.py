@@ -24,17 +24,10 @@ class Expansion:
 
     With u_I = m_I − centre they are Σ_I ℓ_I exp⟨u_I, ξ⟩ up to degree p and Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1.
     Arrays of derivatives with respect to these have rows for those with respect to the centre besides.
-
-    Parameters
-    ----------
-    dimension
-        m, that of space.
-    order
-        p.
     """
 
-    dimension: int
-    order: int
+    dimension: int  # m, that of space
+    order: int  # p
 
     @property
     def table(self) -> Polynomials:
@@ -75,21 +68,11 @@ class _Leaves(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MomentTree:
-    """The clusters of a curve with their centres, the means of their edges' midpoints.
+    """The clusters of a curve with their centres, the means of their edges' midpoints."""
 
-    Parameters
-    ----------
-    tree
-        The clusters.
-    expansion
-        What their moments are.
-    vectors
-        Edge vectors, lengths and midpoints.
-    """
-
-    tree: ClusterTree
-    expansion: Expansion
-    vectors: Vectors
+    tree: ClusterTree  # the clusters
+    expansion: Expansion  # what their moments are
+    vectors: Vectors  # edge vectors, lengths and midpoints
 
     @cached_property
     def centres(self) -> FloatArray:

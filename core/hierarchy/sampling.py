@@ -28,18 +28,10 @@ NORM_SHARE = 0.5  # of an accuracy, which the derivative's error may have in the
 
 @dataclass(frozen=True)
 class Estimate:
-    """An estimate of an error, with its sign, from a sample.
+    """An estimate of an error, with its sign, from a sample."""
 
-    Attributes
-    ----------
-    mean
-        What is expected.
-    standard_error
-        Of that; 0 where all has been looked at.
-    """
-
-    mean: float
-    standard_error: float
+    mean: float  # what is expected
+    standard_error: float  # of that; 0 where all has been looked at
 
     @classmethod
     def of_sum(cls, sample: FloatArray, size: int, rest: float = 0.0) -> "Estimate":
@@ -111,18 +103,14 @@ class SampledErrors:
 
     Attributes
     ----------
-    energy
-        Of the energy E, relative.
     gradient_norm
         Of the norm |u| that the projected gradient has in the metric it is taken in, relative to it, or to √E if that
         is larger.
-    order
-        Of the expansions.
     """
 
-    energy: Estimate
+    energy: Estimate  # of the energy E, relative
     gradient_norm: Estimate
-    order: int
+    order: int  # of the expansions
 
     @classmethod
     def at(

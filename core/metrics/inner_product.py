@@ -13,7 +13,9 @@ from scipy.sparse.linalg import SuperLU
 
 from ..arguments import checked
 from ..constraints import ConstraintDerivative
+from ..curve import Curve
 from ..curve.pins import NOWHERE
+from ..quadrature import Rule
 from ..saddle import TangentSpace
 from ..saddle.dense import DenseTangentSpace, DenseWholeSpace, cholesky
 from ..saddle.sparse import SparseTangentSpace, SparseWholeSpace, factorised
@@ -166,3 +168,34 @@ def _filled(lower: FloatArray) -> FloatArray:
         diagonal[...] = np.tril(diagonal) + np.tril(diagonal, -1).T
         lower[first:last, last:] = lower[last:, first:last].T
     return lower
+
+
+@runtime_checkable
+class Metric(Protocol):
+    """An inner product on functions along the curve; on R^m-valued ones it acts coordinate by coordinate."""
+
+    @property
+    def name(self) -> str:
+        """Name in the registry."""
+
+    @property
+    def description(self) -> str:
+        """The space, in mathematicians' notation."""
+
+    @property
+    def extends_penalty(self) -> bool:
+        """Whether penalised methods add the lengths' part to it (footnote 8 of [RS21])."""
+
+    @property
+    def most_vertices(self) -> int:
+        """Number of vertices up to which its inner products fit into memory."""
+
+    @property
+    def rule(self) -> Rule | None:
+        """The quadrature rule for pairs of edges; None if there is nothing to choose."""
+
+    def with_rule(self, rule: Rule) -> "Metric":
+        """The same metric by another rule; itself if there is nothing to choose."""
+
+    def at(self, curve: Curve) -> InnerProduct:
+        """The inner product on functions along a curve of at most so many vertices."""

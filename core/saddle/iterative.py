@@ -13,9 +13,15 @@ from ..checks import check_fields
 from ..constraints import ConstraintDerivative, Constraints
 from ..curve import Curve
 from ..types import FloatArray
-from .krylov import conjugate_gradients, flexible_conjugate_gradients, relative
-from .pinned import vanishing_at
-from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
+from .krylov import (
+    ROUNDING,
+    ConstraintPreconditioner,
+    Model,
+    conjugate_gradients,
+    flexible_conjugate_gradients,
+    relative,
+)
+from .models import vanishing_at
 from .tangent_space import TangentSpace, WholeSpace
 
 MIN_FORCING = 1e-4  # relative residual of Newton's method for the constraints

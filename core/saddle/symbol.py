@@ -19,19 +19,11 @@ Symbol = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True, eq=False)
 class Parameter:
-    """A way to run along the components of a mesh, each at its own constant speed: by index, or by arc length.
-
-    Attributes
-    ----------
-    positions
-        Of each vertex, 0 at the first one of its component; shape (n,).
-    periods
-        Of each component; shape (components,).
-    """
+    """A way to run along the components of a mesh, each at its own constant speed: by index, or by arc length."""
 
     mesh: Mesh
-    positions: FloatArray
-    periods: FloatArray
+    positions: FloatArray  # of each vertex, 0 at the first one of its component; shape (n,)
+    periods: FloatArray  # of each component; shape (components,)
 
     @classmethod
     def of_steps(cls, mesh: Mesh, steps: FloatArray) -> "Parameter":

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from ...curve import Mesh
 from ...descent import NoStep
-from ...energies.near_pairs import replaced_pairs
+from ...energies.barrier import replaced_pairs
 from ...hierarchy import HierarchicalMoebiusEnergy, SampledErrors
 from ..events import Change, Event
 from ..outcome import INACCURATE, TIGHTENED, Outcome

@@ -8,7 +8,7 @@ from ...curve import Curve
 from ...curve.distances import arc_distance_of_pairs
 from ...curve.refine import STRAND_RATIO, affordable_pieces, subdivide
 from ...curve.remesh import graded_spacing
-from ...energies.near_pairs import near_pairs
+from ...energies.barrier import near_pairs
 from ...errors import MobiusFlowError
 from ...task import check_refined
 from ..events import Change, Event

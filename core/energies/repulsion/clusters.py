@@ -11,30 +11,14 @@ from .simplices import Simplices, dot
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """Clusters of simplices, halved by number across their longest extent down to single ones.
+    """Clusters of simplices, halved by number across their longest extent down to single ones."""
 
-    Attributes
-    ----------
-    simplices
-        Sorted: the clusters are ranges.
-    tree
-        Its leaves are single simplices.
-    centre
-        Centroids c; shape (3, clusters).
-    radius
-        Of the smallest balls around the centroids that hold the clusters; shape (clusters,).
-    size
-        Areas or lengths W = ∫ dA; shape (clusters,).
-    spread
-        Second moments Q = ∫ (y − c)(y − c)ᵀ dA; shape (3, 3, clusters).
-    """
-
-    simplices: Simplices
-    tree: ClusterTree
-    centre: FloatArray
-    radius: FloatArray
-    size: FloatArray
-    spread: FloatArray
+    simplices: Simplices  # sorted: the clusters are ranges
+    tree: ClusterTree  # its leaves are single simplices
+    centre: FloatArray  # centroids c; shape (3, clusters)
+    radius: FloatArray  # of the smallest balls around the centroids that hold the clusters; shape (clusters,)
+    size: FloatArray  # areas or lengths W = ∫ dA; shape (clusters,)
+    spread: FloatArray  # second moments Q = ∫ (y − c)(y − c)ᵀ dA; shape (3, 3, clusters)
 
     @classmethod
     def of(cls, corners: FloatArray) -> "Clusters":

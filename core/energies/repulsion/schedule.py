@@ -113,20 +113,14 @@ class Schedule:
 
     Attributes
     ----------
-    curve
-        The curve that it was made for.
-    single
-        Panels that see simplices.
     clustered
         Panels that see clusters: those with (radius of the cluster + half length) < θ (distance of the centres).
-    theta
-        The separation parameter θ.
     """
 
-    curve: Curve
-    single: tuple[Group, ...]
+    curve: Curve  # the curve that it was made for
+    single: tuple[Group, ...]  # panels that see simplices
     clustered: tuple[Group, ...]
-    theta: float
+    theta: float  # the separation parameter θ
 
     @classmethod
     def of(cls, curve: Curve, clusters: Clusters, theta: float) -> "Schedule":

@@ -29,15 +29,9 @@ _SLOPE = [-((-1.0) ** k) * (k + 1) / (2 * k + 3) for k in range(6)]  # of DÂ³ âˆ
 
 @dataclass(frozen=True, eq=False)
 class Simplices:
-    """Triangles or segments in space.
+    """Triangles or segments in space."""
 
-    Parameters
-    ----------
-    corners
-        Shape (3, 3, f) for triangles, (2, 3, f) for segments: corner, coordinate, simplex.
-    """
-
-    corners: FloatArray
+    corners: FloatArray  # shape (3, 3, f) for triangles, (2, 3, f) for segments: corner, coordinate, simplex
 
     @property
     def are_triangles(self) -> bool:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, OptionError
-from mobius_flow.core.energies.near_pairs import near_pairs
+from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.hierarchy import BlockList
 from mobius_flow.core.hierarchy.clusters import edge_clusters
 from mobius_flow.core.knots import knot

@@ -5,7 +5,7 @@ import pytest
 from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, RelaxOptions, minimize
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.energies import ENERGIES, Energy
-from mobius_flow.core.energies.near_pairs import near_pairs, replaced_pairs
+from mobius_flow.core.energies.barrier import near_pairs, replaced_pairs
 from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy, moebius_energy
 from mobius_flow.core.knots import knot
 from mobius_flow.core.metrics import FractionalMetric

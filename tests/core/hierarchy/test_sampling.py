@@ -11,7 +11,7 @@ from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.descent import Point
 from mobius_flow.core.driver import RelaxOptions
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.energies.near_pairs import replaced_pairs
+from mobius_flow.core.energies.barrier import replaced_pairs
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, SampledErrors, moebius_energy, sampling
 from mobius_flow.core.hierarchy.sampling import Estimate, energy_error, sampled_edges, slope_error
 from mobius_flow.core.knots import knot

@@ -3,7 +3,7 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from mobius_flow.core.energies.contributions import Contributions
+from mobius_flow.core.energies.barrier import exact
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.energies.repulsion.repulsion import STEP
 from mobius_flow.core.energies.repulsion.simplices import Simplices
@@ -66,7 +66,7 @@ def test_parallel_strands_repel_like_walls() -> None:
     gap, along = 1e-5, np.array([[1.0, 0.0, 0.0]])
     for other in (along, -along):
         pair = EdgePairs(np.array([[0.0, 0.0, gap]]), along, other, np.empty((1, 9, 0)))
-        assert 2 * Contributions(pair).exact().value[0] == pytest.approx(2 * np.pi / gap, rel=1e-3)
+        assert 2 * exact(pair).value[0] == pytest.approx(2 * np.pi / gap, rel=1e-3)
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9])
