@@ -19,12 +19,14 @@ from ..arguments import checked_fields
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices
 from ..types import BoolArray, FloatArray, IntArray
+from .complex_steps import change, stepped
 from .edge_pairs import DELTA, E, EdgePairs, F, Jet, scatter_first, scatter_second
 from .inverse_square import inverse_square
 
 NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,
 FAR = 2.25  # and from where on only its midpoint energy does
 MIN_INDEX_DISTANCE = 4
+BLOCK = 4096  # pairs at once, for the processor's cache
 
 
 @checked_fields
@@ -54,37 +56,33 @@ class Barrier:
         return self.value_and_derivative(curve)[0]
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """B and its derivative with respect to the vertices, shape (n, m)."""
-        total, first = 0.0, _by_pair(curve)
-        for block, i, j in _blocks(curve, 4096):
-            jet = self._contributions(EdgePairs.of(curve, i, j), is_replaced(curve, i, j))
-            total += float(jet.value.sum())
-            first[block] = jet.first
-        # unordered pairs are listed, the sum is over ordered ones
-        return 2.0 * total, 2.0 * scatter_first(curve.mesh, *near_pairs(curve), first)
+        value, first = self._sum(curve, curve.vertices)
+        return float(value), first
 
     def hessian(self, curve: Curve) -> FloatArray:
-        """Second derivative D²B, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
         return np.asarray(self.sparse_hessian(curve).toarray())
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²B as a sparse matrix: it couples near edges only."""
         total = sp.csr_array((curve.vertices.size, curve.vertices.size))
-        for _, i, j in _blocks(curve, 16384):
-            # the jets' matrices, many of 3m × 3m for each pair, should stay in the processor's cache
-            parts = [slice(first, first + 128) for first in range(0, len(i), 128)]
-            pairs = [(EdgePairs.of(curve, i[s], j[s]), is_replaced(curve, i[s], j[s])) for s in parts]
-            second = [self._contributions(p.with_coordinates(), replaced).second for p, replaced in pairs]
-            total = total + scatter_second(curve.mesh, i, j, 2.0 * np.concatenate(second))
+        for i, j in _blocks(curve):
+            pairs, replaced = EdgePairs.of(curve.mesh, curve.vertices, i, j), is_replaced(curve, i, j)
+            second = [change(self._contributions(each, replaced).first) for each in pairs.along_coordinates()]
+            total = total + scatter_second(curve.mesh, i, j, 2.0 * np.stack(second, axis=2))
         return total
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        """D²B v for ``v`` of shape (n, m); shape (n, m)."""
-        first = _by_pair(curve)
-        for block, i, j in _blocks(curve, 4096):
-            jet = self._contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v), is_replaced(curve, i, j))
-            first[block] = jet.second[:, :, 0]
-        return 2.0 * scatter_first(curve.mesh, *near_pairs(curve), first)
+        return change(self._sum(curve, stepped(curve.vertices, v))[1])
+
+    def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """B and its derivative at a curve's vertices, or after a complex step from them."""
+        total, first = np.zeros((), vertices.dtype), [np.empty((0, 3 * curve.dimension), vertices.dtype)]
+        for i, j in _blocks(curve):
+            jet = self._contributions(EdgePairs.of(curve.mesh, vertices, i, j), is_replaced(curve, i, j))
+            total = total + jet.value.sum()
+            first.append(jet.first)
+        # unordered pairs are listed, the sum is over ordered ones
+        return 2.0 * total, 2.0 * scatter_first(curve.mesh, *near_pairs(curve), np.concatenate(first))
 
     def _contributions(self, pairs: EdgePairs, replaced: BoolArray) -> Jet:
         """χ (W_exact − W_mid) of pairs of edges, those ``replaced`` that have χ = 1."""
@@ -94,26 +92,17 @@ class Barrier:
         return q.compose(*cutoff(q.value)) * excess
 
 
-def _blocks(curve: Curve, size: int) -> Iterator[tuple[slice, IntArray, IntArray]]:
+def _blocks(curve: Curve) -> Iterator[tuple[IntArray, IntArray]]:
     """The near pairs in blocks, to bound the memory."""
     i, j = near_pairs(curve)
-    for first in range(0, len(i), size):
-        block = slice(first, first + size)
-        yield block, i[block], j[block]
+    for first in range(0, len(i), BLOCK):
+        yield i[first : first + BLOCK], j[first : first + BLOCK]
 
 
-def _by_pair(curve: Curve) -> FloatArray:
-    """Room for the derivative of each near pair by (Δ, e, f); shape (pairs, 3m)."""
-    return np.empty((len(near_pairs(curve)[0]), 3 * curve.dimension))
-
-
-def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """χ(q), the quintic smoothstep from 1 (q ≤ 1) to 0 (q ≥ 9/4), and its first and second derivative."""
+def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """χ(q), the quintic smoothstep from 1 (q ≤ 1) to 0 (q ≥ 9/4), and its derivative."""
     x = np.clip((FAR - q) / (FAR - NEAR), 0.0, 1.0)
-    product = x * (1.0 - x)
-    slope, curvature = 30.0 * product**2, 60.0 * product * (1.0 - 2.0 * x)
-    chi = np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x * x))
-    return chi, -slope / (FAR - NEAR), curvature / (FAR - NEAR) ** 2
+    return np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x * x)), -30.0 * (x * (1.0 - x)) ** 2 / (FAR - NEAR)
 
 
 def closeness(pairs: EdgePairs) -> Jet:

@@ -108,7 +108,6 @@ class HierarchicalMoebiusEnergy:
         return replace(self, order=self.order + 2) if self.order < MAX_ORDER else None
 
     def value(self, curve: Curve) -> float:
-        """Energy E of the curve."""
         blocks = self.block_list(curve)
         if blocks.mostly_near:
             return self.exact.value(curve)
@@ -116,7 +115,6 @@ class HierarchicalMoebiusEnergy:
         return energy_of_pairs(curve, near.value() + far.value())
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """Energy and its derivative with respect to the vertices, shape (n, m)."""
         blocks = self.block_list(curve)
         if blocks.mostly_near:
             return self.exact.value_and_derivative(curve)
@@ -127,7 +125,6 @@ class HierarchicalMoebiusEnergy:
         return energy_of_pairs(curve, value), np.ldexp(derivative, -exponent)
 
     def hessian(self, curve: Curve) -> FloatArray:
-        """Second derivative of the sum that this one approximates; shape (n·m, n·m)."""
         return self.exact.hessian(curve)
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
@@ -142,7 +139,6 @@ class HierarchicalMoebiusEnergy:
         return 0.5 * rate * (ahead - behind)
 
     def row_energies(self, curve: Curve) -> FloatArray:
-        """What `MoebiusEnergy.row_energies` gives for all edges; shape (edges,)."""
         blocks = self.block_list(curve)
         if blocks.mostly_near:
             return self.exact.row_energies(curve, np.arange(curve.mesh.edges))

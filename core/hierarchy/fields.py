@@ -31,11 +31,9 @@ class NearField:
     pairs: EdgePairIndices  # pairs i, j, sorted by i
 
     def value(self) -> float:
-        """The sum."""
         return sum(self._scalars(part).energy() for part in self._parts())
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
-        """The sum and the sums that make its derivative."""
         value, coefficients = 0.0, Coefficients(*(np.empty(len(self.pairs[0])) for _ in Coefficients._fields))
         for part in self._parts():
             scalars = self._scalars(part)
@@ -134,12 +132,10 @@ class FarField:
         return MomentTree(self.blocks.tree, self._expansion, self.vectors)
 
     def value(self) -> float:
-        """The sum."""
         kernels = (kernel for chunk in self._chunks() for kernel in chunk.kernels)
         return sum(float(np.vdot(kernel.first, kernel.by_first())) for kernel in kernels)
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
-        """The sum and the sums that make its derivative."""
         value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_centre.stop))
         by_second = np.zeros_like(by_first)
         for first, second, (square, log) in self._chunks():

@@ -43,30 +43,22 @@ MAX_ITERATIONS = 1000
 
 @dataclass(frozen=True, eq=False)
 class CompressedInnerProduct:
-    """A = S + Σ Bᵀ Q B + V Vᵀ.
+    """A = S + Σ Bᵀ Q B + V Vᵀ, and S + Σ Bᵀ Q B on functions constant on each component, or near it: the coupling."""
 
-    Attributes
-    ----------
-    coupling
-        S + Σ Bᵀ Q B on functions constant on each component, or near it; sparse, shape (components, components).
-    """
-
-    curve: Curve  # the curve on which functions are
+    curve: Curve  # on which functions are
     local: sp.csr_array  # S, sparse, shape (n, n)
     far: tuple[FarForm, ...]  # each B, running sums, and its Q, sparse, shape (edges + 1, edges + 1)
     vectors: FloatArray  # V, shape (n, r) for a small r
-    coupling: sp.csr_array
+    coupling: sp.csr_array  # shape (components, components)
     tolerances: Tolerances  # of all that is solved with it
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """A u."""
         product = self.local @ u
         for running, form in self.far:
             product += running.apply_transpose(form @ running.apply(u))
         return np.asarray(product + self.vectors @ (self.vectors.T @ u))
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """A⁻¹ f, to ten digits."""
         return conjugate_gradients(self.apply, self.model.solve, f, relative(SOLVED), MAX_ITERATIONS)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
@@ -86,16 +78,13 @@ class CompressedInnerProduct:
         return DenseInnerProduct(self.dense() + weight * other.dense())
 
     def dense(self) -> FloatArray:
-        """A, product by product."""
         matrix = self.apply(np.eye(len(self.curve)))
         return 0.5 * (matrix + matrix.T)
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        """By projected conjugate gradients."""
         return IterativeTangentSpace(self, constraints, self.tolerances)
 
     def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        """By conjugate gradients."""
         return IterativeWholeSpace(self, constraints, weights, self.tolerances)
 
     @cached_property
@@ -113,14 +102,16 @@ def moebius_inner_product(
 ) -> CompressedInnerProduct:
     """J_C by the midpoint rule, as in `MoebiusMetric`, compressed."""
     blocks = BlockList.of(curve, theta, leaf)
-    forms = PairForms(curve, blocks)
-    near, far = pair_kernels(curve, *forms.near), pair_kernels(curve, *forms.middles)
-    slopes = forms.of_slopes(near.inverse, far.inverse)
+    forms, order = PairForms(curve, blocks), blocks.tree.order
+    near, far = (pair_kernels(curve, *pairs) for pairs in (blocks.near_pairs(), blocks.middles))
     values, sums = forms.of_values(near.density, far.density)
+    far_forms = [(RunningSum.of_values(curve, order), sums)]
+    if not curve.mesh.all_closed:  # blocks of clusters of several components, some of them open
+        far_forms.append((RunningSum.of_slopes(curve, order), forms.of_long_slopes(far.inverse)))
     return CompressedInnerProduct(
         curve,
-        slopes + values + arc_stiffness(curve),
-        ((RunningSum.of_values(curve, blocks.tree.order), sums), *_long_slopes(curve, forms, blocks, far.inverse)),
+        forms.of_slopes(near.inverse, far.inverse) + values + arc_stiffness(curve),
+        tuple(far_forms),
         lumped_mass(curve)[:, None],
         forms.of_components(near.density, far.density),
         tolerances or Tolerances(),
@@ -133,7 +124,7 @@ def fractional_inner_product(
     """W^{3/2,2}, as in `FractionalMetric`, compressed."""
     blocks = BlockList.of(curve, theta, leaf)
     forms = PairForms(curve, blocks)
-    near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (forms.near, forms.middles))
+    near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (blocks.near_pairs(), blocks.middles))
     n, indicators, weight = len(curve), _indicators(curve), mass(curve)
     return CompressedInnerProduct(
         curve,
@@ -209,7 +200,6 @@ class CompressedMetric:
         return self
 
     def at(self, curve: Curve) -> InnerProduct:
-        """The inner product on functions along a curve."""
         return _COMPRESSED[type(self.metric)](curve, self.tolerances, self.theta, self.leaf)
 
 
@@ -221,13 +211,6 @@ def compressed(metric: Metric, tolerances: Tolerances) -> Metric:
 def block_count(curve: Curve) -> int:
     """Number of blocks of these inner products."""
     return len(BlockList.of(curve, CompressedMetric.theta, CompressedMetric.leaf).first)
-
-
-def _long_slopes(curve: Curve, forms: PairForms, blocks: BlockList, far: FloatArray) -> tuple[FarForm, ...]:
-    """Blocks of clusters of several components, where some of these are open."""
-    if curve.mesh.all_closed:
-        return ()
-    return ((RunningSum.of_slopes(curve, blocks.tree.order), forms.of_long_slopes(far)),)
 
 
 def _indicators(curve: Curve) -> sp.csr_array:

@@ -1,6 +1,6 @@
 """The upward and the downward pass: moments of all clusters, and derivatives at the edges from those at the clusters.
 
-In the words of the fast multipole method they are P2M and M2M, and L2L and L2P; what is between is in `far_field`.
+In the words of the fast multipole method they are P2M and M2M, and L2L and L2P; what is between is in `fields`.
 """
 
 from collections.abc import Iterable, Iterator
@@ -70,7 +70,7 @@ class _Leaves(NamedTuple):
 class MomentTree:
     """The clusters of a curve with their centres, the means of their edges' midpoints."""
 
-    tree: ClusterTree  # the clusters
+    tree: ClusterTree
     expansion: Expansion  # what their moments are
     vectors: Vectors  # edge vectors, lengths and midpoints
 

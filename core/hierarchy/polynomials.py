@@ -146,6 +146,5 @@ def _logarithm(table: Polynomials, d: FloatArray, s: FloatArray, degree: int) ->
 
 
 def _factorials(table: Polynomials, degree: int) -> FloatArray:
-    """α!; shape (monomials, 1)."""
     factorial = np.cumprod(np.maximum(np.arange(degree + 1), 1)).astype(np.float64)
     return np.asarray(factorial[table.exponents[: table.size(degree)]].prod(axis=1)[:, None])

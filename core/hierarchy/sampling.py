@@ -46,11 +46,9 @@ class Estimate:
         return abs(self.mean) + CONFIDENCE * self.standard_error
 
     def as_report(self) -> dict[str, float]:
-        """As the plain values of a report."""
         return {"mean": self.mean, "standard_error": self.standard_error}
 
     def relative(self, scale: float) -> "Estimate":
-        """The same in units of something positive."""
         return Estimate(self.mean / scale, self.standard_error / scale)
 
 
@@ -131,7 +129,6 @@ class SampledErrors:
         return self.energy.bound <= energy and self.gradient_norm.bound <= norm
 
     def as_report(self) -> dict[str, object]:
-        """As the plain values of a report."""
         energy, norm = self.energy.as_report(), self.gradient_norm.as_report()
         return {"energy": energy, "gradient_norm": norm, "order": self.order}
 

@@ -65,27 +65,21 @@ class DenseInnerProduct:
         self._pinned: DenseInnerProduct | None = None
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """A u."""
         return _symmetric_product(self._matrix, u)
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """A⁻¹ f."""
         return _symmetric_product(self.inverse, f)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        """The sum, dense."""
         return DenseInnerProduct(self._matrix + weight * other.dense())
 
     def dense(self) -> FloatArray:
-        """A."""
         return _filled(self._matrix.copy(order="F"))
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        """By two Cholesky factorisations."""
         return DenseTangentSpace(self._vanishing_at(constraints.pins), constraints)
 
     def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        """By two Cholesky factorisations."""
         return DenseWholeSpace(self._vanishing_at(constraints.pins), constraints, weights)
 
     def _vanishing_at(self, pins: IntArray) -> "DenseInnerProduct":
@@ -124,29 +118,23 @@ class SparseInnerProduct:
         self.matrix = sp.csr_array(matrix)
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """A u."""
         return np.asarray(self.matrix @ u)
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """A⁻¹ f."""
         return np.asarray(self._factor.solve(f))
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        """The sum, sparse if both are."""
         if isinstance(other, SparseInnerProduct):
             return SparseInnerProduct(self.matrix + weight * other.matrix)
         return DenseInnerProduct(self.dense() + weight * other.dense())
 
     def dense(self) -> FloatArray:
-        """A."""
         return np.asarray(self.matrix.toarray())
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        """By a sparse factorisation."""
         return SparseTangentSpace(self.matrix, constraints)
 
     def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        """By a sparse factorisation."""
         return SparseWholeSpace(self.matrix, constraints, weights)
 
     @cached_property

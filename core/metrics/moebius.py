@@ -54,11 +54,9 @@ class MoebiusMetric:
     most_vertices = MAX_DENSE_ROWS
 
     def with_rule(self, rule: Rule) -> "MoebiusMetric":
-        """J_C by another rule."""
         return MoebiusMetric(rule)
 
     def at(self, curve: Curve) -> InnerProduct:
-        """Dense: every pair of edges weighs in."""
         mesh, slope, weights = curve.mesh, Stencil.slope(curve), _PairWeights(curve, self.rule)
         points = list(zip(self.rule.points, self.rule.weights, strict=True))
         form = DifferenceForm(mesh)
@@ -135,7 +133,6 @@ class FractionalMetric(WithoutRule):
     most_vertices = MAX_DENSE_ROWS
 
     def at(self, curve: Curve) -> InnerProduct:
-        """Dense: every pair of edges weighs in."""
         ell, slope = curve.mesh.at_tails(curve.edge_lengths), Stencil.slope(curve)
         form = DifferenceForm(curve.mesh)
         for stripe in stripes(curve.mesh):

@@ -1,4 +1,8 @@
-"""Preconditioned conjugate gradients for systems of which only products are at hand."""
+"""Preconditioned conjugate gradients for systems of which only products are at hand, and constraint preconditioners.
+
+The latter solve the saddle-point system (41) of [RS21] with a model M in place of J: Gould, Hribar and Nocedal, On the
+solution of equality constrained quadratic programming problems arising in optimization, SIAM J. Sci. Comput. 23 (2001).
+"""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -8,6 +12,9 @@ import numpy as np
 from ..constraints import ConstraintDerivative
 from ..deadline import check_time
 from ..types import FloatArray
+
+ROUNDING = 1e-12  # relative to all of a covector, below which its tangential part is rounding
+MAX_ITERATIONS = 500
 
 LinearMap = Callable[[FloatArray], FloatArray]
 
@@ -21,15 +28,9 @@ def conjugate_gradients(
 ) -> FloatArray:
     """Solve ``operator`` x = ``right``, for arrays of any shape.
 
-    Parameters
-    ----------
-    operator
-        Symmetric and positive definite.
-    precondition
-        Near its inverse, symmetric and positive definite too.
-    enough
-        Whether to stop, from rᵀz, the square of the preconditioned residual, and from xᵀ ``right``, which grows to the
-        squared norm of the solution in the operator's inner product.
+    The operator and ``precondition``, near its inverse, are symmetric and positive definite.  ``enough`` says whether
+    to stop, from rᵀz, the square of the preconditioned residual, and from xᵀ ``right``, which grows to the squared norm
+    of the solution in the operator's inner product.
 
     Raises
     ------
@@ -68,13 +69,9 @@ def flexible_conjugate_gradients(
 ) -> FloatArray:
     """The same with a preconditioner that varies from iteration to iteration (Polak and Ribière's formula).
 
-    Parameters
-    ----------
-    precondition
-        From r to z and the residual to go on with: r itself, or r without a part that is of no consequence.
-    enough
-        Whether to stop, from the decrease of ½ xᵀ A x − xᵀ ``right`` in all iterations so far, twice each: these are
-        what each took off the squared norm of the error.
+    ``precondition`` leads from r to z and the residual to go on with: r itself, or r without a part that is of no
+    consequence.  ``enough`` says whether to stop, from the decrease of ½ xᵀ A x − xᵀ ``right`` in all iterations so
+    far, twice each: these are what each took off the squared norm of the error.
     """
     x, direction, rho = np.zeros_like(right), np.zeros_like(right), 1.0
     r = last = right
@@ -100,10 +97,6 @@ def _positive(curvature: float) -> float:
     if not curvature > 0.0:
         raise np.linalg.LinAlgError("matrix is not positive definite: conjugate gradients met no positive curvature")
     return curvature
-
-
-ROUNDING = 1e-12  # relative to all of a covector, below which its tangential part is rounding
-MAX_ITERATIONS = 500
 
 
 class Model(Protocol):

@@ -1,4 +1,4 @@
-"""Models of inner products on links and on functions that vanish at pins."""
+"""Models of inner products on links, and on functions that vanish at pins."""
 
 import numpy as np
 import scipy.sparse as sp
@@ -10,25 +10,16 @@ from ..types import FloatArray, IntArray
 from .krylov import LinearMap, Model
 from .sparse import factorised
 
+DEPTH = 2  # pins that count on either side of those in a row
+
 
 class TwoLevel:
-    """M⁻¹ = M₀⁻¹ + Z E⁻¹ Zᵀ, Z the indicators of the components.
+    """M⁻¹ = M₀⁻¹ + Z E⁻¹ Zᵀ with E = coupling + V Vᵀ, Z the indicators of the components.
 
-    Parameters
-    ----------
-    mesh
-        Connectivity.
-    fine
-        M₀, along the components.
-    coupling
-        Symmetric positive semidefinite, shape (components, components).
-    vectors
-        V with E = coupling + V Vᵀ positive definite, shape (components, r).
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If E is singular.
+    Components of a link hold each other like masses on springs.  Their graph may be long, such as that of a chain,
+    which a model M₀ along the components, ``fine``, does not see; a sparse factorisation of one row a component does.
+    ``coupling`` is positive semidefinite, ``vectors`` V have shape (components, r).  A LinAlgError says if E is
+    singular.
     """
 
     def __init__(self, mesh: Mesh, fine: Model, coupling: sp.sparray, vectors: FloatArray) -> None:
@@ -40,7 +31,6 @@ class TwoLevel:
         self._factor = factorised(sp.block_array([[coupling, border], [border.T, -sp.eye_array(self._rank)]]))
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """M⁻¹ f; shape (n, k)."""
         force = np.add.reduceat(f, self._starts, axis=0)
         padded = np.concatenate([force, np.zeros((self._rank, f.shape[1]))])
         shift = self._factor.solve(padded)[: len(force)]
@@ -51,26 +41,13 @@ class TwoLevel:
         return self._fine.tension(tangents)
 
 
-DEPTH = 2  # pins that count on either side of those in a row
-
-
 class PinnedModel:
     """A model M restricted to functions that vanish at pins: its inverse, continued by 0 to the pins.
 
     That is M⁻¹ − M⁻¹E (Eᵀ M⁻¹ E)⁻¹ Eᵀ M⁻¹, E the unit functions of the pins.  A restriction inherits the bounds of
     eigenvalues.  Of many pins in a row only the first and the last ones count: beyond them hardly anything is left.
-
-    Parameters
-    ----------
-    whole
-        M, on all n vertices.
-    pins
-        Indices; for k of them that are near free vertices it takes k solves with M, and room for k·n numbers.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If M is not positive definite.
+    For k pins near free vertices it takes k solves with M, and room for k·n numbers.  A LinAlgError says if M is not
+    positive definite.
     """
 
     def __init__(self, whole: Model, mesh: Mesh, pins: IntArray) -> None:

@@ -12,17 +12,9 @@ from ..types import FloatArray
 def euclidean_correction(constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
     """The solution of C u = −Φ, C = DΦ at the curve, that is shortest up to translations, in O(n); shape (n, m).
 
-    Lengths do not see translations, so these are left to the barycenters.  At pins u is 0.
-
-    Parameters
-    ----------
-    residual
-        Φ, shape (r + p·m,) for r lengths and p barycenters.
-
-    Returns
-    -------
-    u
-        Too large to be of any use if all edges of a closed component, or of an arc between two pins, are collinear.
+    Lengths do not see translations, so these are left to the barycenters.  At pins u is 0.  The residual Φ has shape
+    (r + p·m,) for r lengths and p barycenters.  Where all edges of a closed component, or of an arc between two pins,
+    are collinear, u is too large to be of any use.
     """
     ell, mesh, pins = curve.edge_lengths, curve.mesh, constraints.pins.vertices
     rows, free = free_edges(mesh, pins), np.where(holds(mesh, pins), 0.0, 1.0)

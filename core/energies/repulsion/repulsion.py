@@ -18,6 +18,7 @@ from ...curve import Curve
 from ...obstacle import Obstacle
 from ...quadrature import gauss_legendre
 from ...types import FloatArray
+from ..complex_steps import change, stepped
 from .clusters import Clusters
 from .schedule import Schedule
 from .simplices import Simplices, norm
@@ -25,7 +26,6 @@ from .simplices import Simplices, norm
 THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
 KEPT = 0.9  # slack up to which a schedule is as good as a new one
 OUTDATED = 0.75  # slack up to which it is good enough for a line search
-STEP = 1e-100  # of complex steps: their squares vanish beside any coordinate
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,17 +71,14 @@ class Repulsion:
         return replace(self, schedule=_schedule(curve, self.clusters, self.theta))
 
     def value(self, curve: Curve) -> float:
-        """R of the curve."""
         return self.value_and_derivative(curve)[0]
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """R and its derivative with respect to the vertices, shape (n, 3)."""
         tails, heads = _ends(curve, curve.vertices)
         value, derivative = self._at_ends(self._schedule(curve), tails, heads)
         return float(value), curve.mesh.scatter(*derivative.transpose(0, 2, 1))
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        """D²R v for ``v`` of shape (n, 3), exact to rounding; shape (n, 3)."""
         return curve.mesh.scatter(*self._change(curve, *_ends(curve, v)).transpose(0, 2, 1))
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
@@ -118,9 +115,8 @@ class Repulsion:
 
     def _change(self, curve: Curve, tails: FloatArray, heads: FloatArray) -> FloatArray:
         """How the derivative by the ends of edges changes as these move, by a complex step; shape (2, 3, edges)."""
-        here = _ends(curve, curve.vertices)
-        moved = (x + STEP * 1j * v for x, v in zip(here, (tails, heads), strict=True))
-        return np.asarray(self._at_ends(self._schedule(curve), *moved)[1].imag / STEP)
+        moved = map(stepped, _ends(curve, curve.vertices), (tails, heads))
+        return change(self._at_ends(self._schedule(curve), *moved)[1])
 
     def _at_ends(self, schedule: Schedule, tails: FloatArray, heads: FloatArray) -> tuple[FloatArray, FloatArray]:
         """R and its derivative by the tails and heads of edges, shape (2, 3, edges).

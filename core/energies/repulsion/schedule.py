@@ -53,7 +53,6 @@ class Panels:
 
     @classmethod
     def joined(cls, parts: "Sequence[Panels]") -> "Panels":
-        """All of them."""
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in cls.__match_args__))
 
     def seeing(self, source: IntArray) -> "Panels":
@@ -82,7 +81,6 @@ class _View:
         self._length = curve.edge_lengths
 
     def half(self, panels: Panels) -> FloatArray:
-        """Half of their lengths."""
         return np.asarray(0.5 * panels.width * self._length[panels.edge])
 
     def are_far(self, panels: Panels, theta: float) -> BoolArray:

@@ -7,7 +7,7 @@ with the solid angle Ω or the angle ψ that the simplex subtends at x, and the 
 tan(Ω/2) = N/D (Van Oosterom and Strackee, 1983) and tan ψ = N/D, with N proportional to h, both are a constant times
 g(N², D) = atan2(N, D)/N, which is regular beside the simplex too, where x is in the plane or on the line.
 
-Points x may be complex: x + iεv with ε below the rounding has the derivative along v as its imaginary part over ε.
+Points may be after complex steps.
 """
 
 from dataclasses import dataclass
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from ...types import BoolArray, FloatArray, IntArray, frozen
+from ..complex_steps import arctan2
 from ..moments import CONTACT
 
 Form = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
@@ -35,7 +36,6 @@ class Simplices:
 
     @property
     def are_triangles(self) -> bool:
-        """Whether they are triangles rather than segments."""
         return len(self.corners) == 3
 
     @property
@@ -121,10 +121,7 @@ def _triangle_form(corners: FloatArray, normal: FloatArray) -> Form:
 def _arctangent_quotient(square: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """g = atan2(N, D)/N, ∂g/∂N² = (D/(N² + D²) − g)/(2N²) and ∂g/∂D = −1/(N² + D²), from N² > 0 and D."""
     n, inverse = np.sqrt(square), 1.0 / (square + d * d)
-    angle = np.arctan2(n.real, d.real)
-    if np.iscomplexobj(d):
-        angle = angle + 1j * (d.real * n.imag - n.real * d.imag) * inverse.real
-    value = angle / n
+    value = arctan2(n, d) / n
     by_square = (d * inverse - value) / (2.0 * square)
     flat = (d.real > 0.0) & (square.real < _FLAT * d.real**2)
     x, y = d[flat], square[flat] / d[flat] ** 2

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from mobius_flow.core import Curve, MoebiusEnergy, Objective
 from mobius_flow.core.energies import Barrier
 from mobius_flow.core.energies.barrier import closeness, cutoff, exact, midpoint, near_pairs
+from mobius_flow.core.energies.complex_steps import change, stepped
 from mobius_flow.core.energies.edge_pairs import EdgePairs
 from mobius_flow.core.knots import knot
 from mobius_flow.core.taylor import taylor_slope
@@ -20,7 +21,7 @@ def one_pair(x0: list[float], x1: list[float], y0: list[float], y1: list[float])
     """One pair of edges, by way of a curve that has them as edges 0 and 4."""
     far = [[50.0, 0, 0], [50.0, 50.0, 0], [0, 50.0, 50.0], [0, 0, 90.0], [-70.0, 0, 0]]
     curve = Curve([x0, x1, far[0], far[1], y0, y1, *far[2:]])
-    return EdgePairs.of(curve, np.array([0]), np.array([4]))
+    return EdgePairs.of(curve.mesh, curve.vertices, np.array([0]), np.array([4]))
 
 
 @pytest.mark.parametrize(
@@ -106,11 +107,15 @@ def test_one_point_rule_alone_is_no_barrier() -> None:
 
 def test_the_cutoff_joins_with_two_derivatives() -> None:
     for q, value in ((0.2, 1.0), (1.0, 1.0), (2.25, 0.0), (3.0, 0.0)):
-        assert [float(part[0]) for part in cutoff(np.array([q]))] == [value, 0.0, 0.0]
+        assert [float(part[0]) for part in cutoff_and_derivatives(q)] == pytest.approx([value, 0.0, 0.0], abs=1e-150)
     x = (2.25 - 1.7) / 1.25
     assert cutoff(np.array([1.7]))[0] == pytest.approx(x**3 * (10 - 15 * x + 6 * x**2))
-    chi, slope, curvature = cutoff(np.array([1.7]))
-    assert taylor_slope(lambda t: cutoff(np.array([1.7 + t]))[0], [chi, slope, curvature]) == pytest.approx(3, abs=0.02)
+    terms = cutoff_and_derivatives(1.7)
+    assert taylor_slope(lambda t: cutoff(np.array([1.7 + t]))[0], terms) == pytest.approx(3, abs=0.02)
+
+
+def cutoff_and_derivatives(q: float) -> list[np.ndarray]:
+    return [*cutoff(np.array([q])), change(cutoff(stepped(np.array([q]), np.ones(1)))[1])]
 
 
 @pytest.mark.parametrize("factor", [1e-3, 1e3])

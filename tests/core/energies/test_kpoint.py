@@ -71,7 +71,7 @@ def quadrature_error(points: int, size: float, seed: int) -> float:
     first, second = size * np.random.default_rng(seed).normal(size=(2, 3, 3))
     curve = Curve.from_components([first, second + np.array([2.0, 0.5, 0.3])])
     rows, columns = (np.ravel(index) for index in np.meshgrid([0, 1, 2], [3, 4, 5]))
-    reference = 2 * float(exact(EdgePairs.of(curve, rows, columns)).value.sum())
+    reference = 2 * float(exact(EdgePairs.of(curve.mesh, curve.vertices, rows, columns)).value.sum())
     return abs(moebius_kpoint(points).value(curve) - 8 - reference) / reference
 
 

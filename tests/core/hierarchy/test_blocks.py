@@ -5,7 +5,7 @@ import pytest
 from mobius_flow.core import Curve, OptionError
 from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.hierarchy import BlockList
-from mobius_flow.core.hierarchy.clusters import edge_clusters
+from mobius_flow.core.hierarchy.blocks import edge_clusters
 from mobius_flow.core.knots import knot
 from shapes import hopf_link, opened, regular_polygon, scattered_rings, torus_trefoil
 from smooth_curves import random_polygon

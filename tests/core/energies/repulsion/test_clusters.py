@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve
+from mobius_flow.core.energies.complex_steps import change, stepped
 from mobius_flow.core.energies.repulsion.clusters import Clusters
-from mobius_flow.core.energies.repulsion.repulsion import STEP, THETA
+from mobius_flow.core.energies.repulsion.repulsion import THETA
 from mobius_flow.core.energies.repulsion.schedule import Schedule
 from mobius_flow.core.obstacle import Obstacle
 from mobius_flow.core.taylor import taylor_slope
@@ -108,9 +109,9 @@ def test_far_clusters(corners: int) -> None:
     errors = np.abs(far[0] / near.sum(axis=0) - 1)
     assert np.all(errors[1:] < errors[:-1] / 14)
     v = np.broadcast_to(np.array([1.0, 2.0, -1.0])[:, None, None], x.shape)
-    value_change, change = (part.imag / STEP for part in clusters.potential(ROOT, x + STEP * 1j * v))
+    value_change, gradient_change = map(change, clusters.potential(ROOT, stepped(x, v)))
     np.testing.assert_allclose(np.sum(gradient * v, axis=0), value_change, rtol=1e-12)
-    slope = taylor_slope(lambda t: clusters.potential(ROOT, x + t * v)[1], [gradient, change])
+    slope = taylor_slope(lambda t: clusters.potential(ROOT, x + t * v)[1], [gradient, gradient_change])
     assert slope == pytest.approx(2, abs=0.02)
 
 
