@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from .arguments import checked
 from .collision import check_embedded, check_gap, minimal_gap
-from .collision.thickness import thickness
+from .collision.gap import thickness
 from .curve import Curve
 from .curve.writhe import writhe_and_crossings
 from .descent import Point
@@ -68,7 +68,7 @@ class Info:
     energies
         By the names of :data:`ENERGIES`.
     thickness
-        See :func:`~mobius_flow.core.collision.thickness.thickness`.
+        See :func:`~mobius_flow.core.collision.gap.thickness`.
     writhe, average_crossing_number
         See :func:`~mobius_flow.core.curve.writhe.writhe_and_crossings`.
     gap

@@ -265,7 +265,7 @@ MUTANTS = (
     ),
     Mutant(
         "vertices rounded onto obstacles",
-        "core/collision/rounding.py",
+        "core/collision/clearance.py",
         " and clears(curve, obstacles, float(1.1 * rounding))",
         "",
         "tests/core/collision/test_clearance.py::test_rounding_must_not_reach_an_obstacle",
@@ -588,7 +588,7 @@ MUTANTS = (
     Mutant(
         "a block list for every mesh",
         "core/hierarchy/blocks.py",
-        "        if curve.mesh != self.tree.mesh:\n            return False\n",
+        "        if curve.mesh != self.mesh:\n            return False\n",
         "",
         f"{HIERARCHY}/test_blocks.py::test_a_list_is_of_one_mesh_only",
     ),

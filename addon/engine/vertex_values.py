@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...core import Curve
-from ...core.energies.moebius_by_length import moebius_by_length
+from ...core.energies.moebius import moebius_by_length
 from ...core.types import FloatArray
 from .colours import of_components, ramp
 from .strands import strand_distances

@@ -10,7 +10,7 @@ from typing import Any
 from ... import __version__
 from ...core import Curve, CurveError, MobiusFlowError, RelaxOptions, Result, Task, Trajectory, minimize, read_obstacle
 from ...core.collision import check_embedded
-from ...core.collision.thickness import thickness
+from ...core.collision.gap import thickness
 from ...core.curve.io import FORMATS, CurveFile, load_curve
 from ...core.curve.writhe import writhe_and_crossings
 from ...core.errors import OutputError

@@ -10,10 +10,9 @@ from ..errors import CurveError
 from ..messages import COMPONENT, EDGE, EDGES, VERTEX, VERTICES, Message
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, corners
-from .chords import closest_chord
 from .exact import first_contact
 from .gap import near_edges, scaled_points
-from .planes import ROUNDING, Separation, relative_motion
+from .planes import ROUNDING, Separation, closest_chord, relative_motion
 
 MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
 

@@ -10,8 +10,7 @@ from ..descent import METHODS, Method
 from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Term, Weighted
 from ..errors import CurveError, OptionError
 from ..hierarchy import HierarchicalMoebiusEnergy, compressed
-from ..hierarchy.inner_product import block_count
-from ..hierarchy.metric import MAX_VERTICES
+from ..hierarchy.inner_product import MAX_VERTICES, block_count
 from ..messages import VERTEX_COUNT, Message
 from ..metrics import METRICS, Metric
 from ..obstacle import Obstacle

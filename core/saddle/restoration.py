@@ -12,18 +12,9 @@ from ..types import FloatArray
 def euclidean_correction(constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:
     """The solution of C u = −Φ, C = DΦ at the curve, that is shortest as lengths are concerned, in O(n); shape (n, m).
 
-    What changes no length, such as a translation, is left to the blocks of further rows.  At pins u is 0.
-
-    Parameters
-    ----------
-    residual
-        Φ, shape (r + k,) for r lengths and k rows of blocks.
-
-    Returns
-    -------
-    u
-        Too large to be of any use if all edges of a closed component, or of an arc between two pins, are collinear;
-        None if a block knows no such correction.
+    What changes no length, such as a translation, is left to the blocks of further rows.  At pins u is 0.  Φ has shape
+    (r + k,) for r lengths and k rows of blocks.  Where all edges of a closed component, or of an arc between two pins,
+    are collinear, u is too large to be of any use; it is None if a block knows no such correction.
     """
     ell, mesh, pins = curve.edge_lengths, curve.mesh, constraints.pins.vertices
     rows, free = free_edges(mesh, pins), np.where(holds(mesh, pins), 0.0, 1.0)

@@ -60,12 +60,7 @@ class TangentSpace(ABC):
 class WholeSpace(TangentSpace):
     """All of R^(n·m), nothing being constrained but pins, with J + Cᵀ w C: how Section 6.4 of [RS21] penalises lengths.
 
-    Parameters
-    ----------
-    constraints
-        C.
-    weights
-        w ≥ 0, shape (rows of C,).
+    The weights w ≥ 0 have shape (rows of C,).
     """
 
     def __init__(self, constraints: ConstraintDerivative, weights: FloatArray) -> None:
@@ -82,5 +77,4 @@ class WholeSpace(TangentSpace):
         return u, np.zeros(self.constraints.count)
 
     def project(self, u: FloatArray) -> FloatArray:
-        """Everything is tangent: u."""
         return u

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, RelaxOptions, Result, minimize
-from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, far_field
+from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, fields
 
 INACCURATE = "the hierarchical solver misses the requested accuracy"
 
@@ -59,14 +59,14 @@ def test_what_cannot_be_reached_is_told() -> None:
 
 def wrong_kernels(monkeypatch: pytest.MonkeyPatch) -> None:
     """One Taylor coefficient of the logarithm is wrong."""
-    original = far_field.kernel_derivatives
+    original = fields.kernel_derivatives
 
     def kernels(*arguments):  # type: ignore[no-untyped-def]
         square, log = original(*arguments)
         log[4] *= 1.01
         return square, log
 
-    monkeypatch.setattr(far_field, "kernel_derivatives", kernels)
+    monkeypatch.setattr(fields, "kernel_derivatives", kernels)
 
 
 def wrong_derivative(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,7 +115,7 @@ def test_the_last_line_says_the_error_of_an_energy_that_is_not_exact(monkeypatch
     from mobius_flow.cli.relax import _summary
 
     assert "±" not in _summary(short(300))
-    monkeypatch.setattr("mobius_flow.core.hierarchy.reported.EXACT_UP_TO", 200)
+    monkeypatch.setattr("mobius_flow.core.hierarchy.sampling.EXACT_UP_TO", 200)
     result = short(300)
     assert f" ± {result.final_energy * result.final_energy_error:.1g}, certified" in _summary(result)
     assert result.report()["final_energy_error"] == result.final_energy_error > 0.0

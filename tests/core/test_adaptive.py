@@ -22,7 +22,7 @@ from mobius_flow.core.curve.remesh import (
 )
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Change, Run
-from mobius_flow.core.energies.near_pairs import near_pairs
+from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil

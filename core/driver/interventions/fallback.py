@@ -6,9 +6,8 @@ from dataclasses import dataclass, field, replace
 from ...checks import check_fields
 from ...curve import Mesh
 from ...descent import METHODS, Method, NoStep
-from ...energies.near_pairs import replaced_pairs
+from ...energies.barrier import replaced_pairs
 from ...hierarchy import HierarchicalMoebiusEnergy, SampledErrors
-from ...hierarchy.energy import ORDER
 from ..outcome import Outcome
 from ..run import Change, Event, Intervention, Run
 
@@ -109,7 +108,7 @@ def with_errors(outcome: Outcome, run: Run) -> Outcome:
     if errors is None:
         return outcome
     outcome = replace(outcome, sampled_errors=errors)
-    if errors.order > ORDER:
+    if errors.order > HierarchicalMoebiusEnergy.order:
         tightened = "far-field expansions were raised to order {order} for the requested accuracy"
         outcome = outcome.adding(tightened, order=errors.order)
     if errors.within(run.options.accuracy):

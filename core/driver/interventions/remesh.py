@@ -12,7 +12,7 @@ from ...curve.distances import arc_distance_of_pairs
 from ...curve.refine import STRAND_RATIO, Resolution, affordable_pieces, subdivide
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
 from ...descent import Leg, NoStep, Problem, Step
-from ...energies.near_pairs import near_pairs
+from ...energies.barrier import near_pairs
 from ...errors import MobiusFlowError
 from ...messages import Message, joined
 from ...task import check_refined

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, Obstacle
 from mobius_flow.core.collision import Contact, FreeMotion, Limit, free_motion, is_free
-from mobius_flow.core.collision.boxes import BoxTree
-from mobius_flow.core.collision.still import still_triangles
+from mobius_flow.core.collision.boxes import BoxTree, still_triangles
 from obstacle_motions import first_contact
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from solids import box, plate, rod, sphere

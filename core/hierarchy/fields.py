@@ -1,7 +1,8 @@
-"""The Möbius energy of blocks by Taylor expansion about the centres of their clusters, and its exact derivative.
+"""The Möbius energy of near pairs one by one, and of blocks by Taylor expansion about the centres of their clusters.
 
 With G = log|Δ| the contribution of a pair of edges is W_IJ = ℓ_I ℓ_J/|Δ|² + ⟨e_I, ∇⟩⟨e_J, ∇⟩ G: sums over a block are
 products of two moments applied to two kernels, both up to the same order, so that errors cancel on straight pieces.
+The derivative is exactly that of the value.
 """
 
 from collections.abc import Iterator
@@ -10,15 +11,64 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
 
-from ..energies.moebius_pairs import DerivativeSums, Vectors
+from ..curve.tiles import EdgePairIndices
+from ..energies.moebius_pairs import Coefficients, DerivativeSums, Edges, Pairs, Vectors
 from ..types import FloatArray, IntArray
 from .blocks import BlockList
-from .expansion import Expansion
-from .kernels import kernel_derivatives
-from .moments import MomentTree, polynomial_rows
+from .moments import Expansion, MomentTree, polynomial_rows
+from .polynomials import kernel_derivatives
 
-CHUNK = 1024  # blocks handled at once, for the processor's cache
+BLOCKS, PAIRS = 1024, 8192  # handled at once, for the processor's cache
+
+
+@dataclass(frozen=True, eq=False)
+class NearField:
+    """Σ W_IJ over listed pairs."""
+
+    edges: Edges  # the curve's edges
+    pairs: EdgePairIndices  # pairs i, j, sorted by i
+
+    def value(self) -> float:
+        return sum(self._scalars(part).energy() for part in self._parts())
+
+    def value_and_derivative(self) -> tuple[float, DerivativeSums]:
+        value, coefficients = 0.0, Coefficients(*(np.empty(len(self.pairs[0])) for _ in Coefficients._fields))
+        for part in self._parts():
+            scalars = self._scalars(part)
+            value += scalars.energy()
+            for whole, values in zip(coefficients, scalars.coefficients(), strict=True):
+                whole[part] = values
+        sums = DerivativeSums.zeros(*self.edges.tau.shape)
+        sums.add(slice(None), slice(None), Coefficients(*map(self._matrix, coefficients)), self.edges.vectors)
+        return value, sums
+
+    def _parts(self) -> Iterator[slice]:
+        return (slice(first, first + PAIRS) for first in range(0, len(self.pairs[0]), PAIRS))
+
+    def _scalars(self, part: slice) -> Pairs:
+        """The scalars of some pairs, each of shape (pairs,)."""
+        dimension = self.edges.tau.shape[1]
+        i, j = (np.take(self._columns, side[part], axis=1) for side in self.pairs)
+        (m, e_ell), (n, f_ell) = np.split(i, [dimension]), np.split(j, [dimension])
+        d = m - n
+        s = 1.0 / _inner(d, d)
+        return Pairs(_inner(e_ell, f_ell), _inner(d, e_ell[:-1]) * s, _inner(d, f_ell[:-1]) * s, s)
+
+    @cached_property
+    def _columns(self) -> FloatArray:
+        """Midpoint, edge vector and length of each edge, one below the other; shape (2m + 1, edges)."""
+        return np.ascontiguousarray(np.column_stack([self.edges.vectors.m, self.edges.vectors.e_ell]).T)
+
+    def _matrix(self, entries: FloatArray) -> sp.csr_array:
+        """Numbers of the pairs as a sparse matrix; shape (edges, edges)."""
+        n = len(self.edges.tau)
+        return sp.csr_array((entries, self.pairs[1], self._row_ends), shape=(n, n))
+
+    @cached_property
+    def _row_ends(self) -> IntArray:
+        return np.searchsorted(self.pairs[0], np.arange(len(self.edges.tau) + 1))
 
 
 class _Kernel(NamedTuple):
@@ -67,21 +117,11 @@ class _Chunk(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FarField:
-    """Σ W_IJ over all blocks of a list, unordered pairs.
+    """Σ W_IJ over all blocks of a list, unordered pairs."""
 
-    Parameters
-    ----------
-    blocks
-        The list, made at this curve or at one nearby.
-    vectors
-        The curve's edges; of size 1, for high powers of lengths are in use.
-    order
-        p, the order of the expansions in distances from the centres.
-    """
-
-    blocks: BlockList
-    vectors: Vectors
-    order: int
+    blocks: BlockList  # the list, made at this curve or at one nearby
+    vectors: Vectors  # the curve's edges; of size 1, for high powers of lengths are in use
+    order: int  # p, the order of the expansions in distances from the centres
 
     @cached_property
     def _expansion(self) -> Expansion:
@@ -92,12 +132,10 @@ class FarField:
         return MomentTree(self.blocks.tree, self._expansion, self.vectors)
 
     def value(self) -> float:
-        """The sum."""
         kernels = (kernel for chunk in self._chunks() for kernel in chunk.kernels)
         return sum(float(np.vdot(kernel.first, kernel.by_first())) for kernel in kernels)
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
-        """The sum and the sums that make its derivative."""
         value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_centre.stop))
         by_second = np.zeros_like(by_first)
         for first, second, (square, log) in self._chunks():
@@ -112,8 +150,8 @@ class FarField:
     def _chunks(self) -> Iterator[_Chunk]:
         moments, centres, x = self._clusters.moments(), self._clusters.centres, self._expansion
         signed = moments * x.signs[: x.edges.stop]
-        for start in range(0, len(self.blocks.first), CHUNK):
-            first, second = (side[start : start + CHUNK] for side in (self.blocks.first, self.blocks.second))
+        for start in range(0, len(self.blocks.first), BLOCKS):
+            first, second = (side[start : start + BLOCKS] for side in (self.blocks.first, self.blocks.second))
             d = np.ascontiguousarray((centres[first] - centres[second]).T)
             square, log = kernel_derivatives(x.table, d, self.order + 1)
             own, other = polynomial_rows(moments, first), polynomial_rows(signed, second)
@@ -130,3 +168,7 @@ def _add_rows(total: FloatArray, clusters: IntArray, values: FloatArray) -> None
     ordered = clusters[order]
     starts = np.flatnonzero(np.diff(ordered, prepend=-1))
     total[ordered[starts]] += np.add.reduceat(np.take(values, order, axis=1).T, starts)
+
+
+def _inner(x: FloatArray, y: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("ik,ik->k", x, y))
