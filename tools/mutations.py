@@ -503,10 +503,10 @@ MUTANTS = (
     ),
     Mutant(
         "a bend is two strands",
-        "addon/engine/strands.py",
+        "addon/engine/vertex_values.py",
         " > STRAND_RATIO * r",
         " > 0.0 * r",
-        f"{ENGINE}/test_strands.py::test_the_two_sides_of_a_bend_are_one_strand",
+        f"{ENGINE}/test_vertex_values.py::test_the_two_sides_of_a_bend_are_one_strand",
     ),
     Mutant(
         "curves that are mirrored",
@@ -516,18 +516,18 @@ MUTANTS = (
         f"{ENGINE}/test_turning.py::test_a_curve_is_turned_and_never_mirrored",
     ),
     Mutant(
-        "an edge beyond the end of an arc",
-        "addon/engine/refinement.py",
-        "np.minimum(place.astype(np.intp), len(original) - 1)",
-        "place.astype(np.intp)",
-        f"{ENGINE}/test_refinement.py::test_an_arc_keeps_the_values_of_its_ends",
+        "values that do not close",
+        "addon/engine/interpolation.py",
+        "old[:-1], values, period=1.0)",
+        "old[:-1], values)",
+        f"{ENGINE}/test_interpolation.py::test_coordinates_of_refined_vertices_lie_between_those_of_corners",
     ),
     Mutant(
         "rims that cut nothing",
-        "addon/engine/thumbnail.py",
+        "addon/engine/knot_list.py",
         "height[chosen] > depth[rows[chosen], columns[chosen]]",
         "height[chosen] > -np.inf",
-        f"{ENGINE}/test_thumbnail.py::test_the_rim_of_the_upper_strand_cuts_the_lower_one",
+        f"{ENGINE}/test_knot_list.py::test_the_rim_of_the_upper_strand_cuts_the_lower_one",
     ),
     Mutant(
         "ways twice as long",

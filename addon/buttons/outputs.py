@@ -16,8 +16,8 @@ from ..curves.recorded import Recorded, in_world
 from ..curves.smooth_curve import smooth_objects
 from ..curves.units import length
 from ..engine.cubic_spline import FEWEST
-from ..engine.in_between import places_between
 from ..engine.smooth_fit import SmoothFit
+from ..engine.tube_mesh import places_between
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
 from ..live.checks import selected_curves, unreadable

@@ -3,8 +3,8 @@
 import bpy
 import numpy as np
 
-from ..curves.snapshot import control_points
-from ..engine.spots import Spot, at
+from ..curves.splines import control_points
+from ..engine.placement import Spot, at
 from ..live import registry
 from ..live.run import Run
 from ..translations import rpt_, tip_

@@ -147,7 +147,7 @@ class Session:
     Attributes
     ----------
     group
-        The objects; baked ones are set aside until the session's end or `Group.restore`.
+        The objects, which show stand-ins until the session's end or `Group.discard`.
     options
         The requested options, with what is pinned and what is avoided.
     surroundings
@@ -178,7 +178,7 @@ class Session:
             self.task = self._task(held)
             self.options = self._fitting(options)
         except BaseException:
-            self.group.restore()
+            self.group.discard()
             raise
         self._motion = Motion(self.group.link, self.group.stored if continues else None)
         self._size: Size | None = None
@@ -220,7 +220,7 @@ class Session:
             for _ in self.writing(prepared):
                 pass
         except BaseException:
-            self.group.restore()
+            self.group.discard()
             raise
         return self.report(prepared)
 
@@ -285,8 +285,8 @@ class Session:
         beside = self._avoided
         return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh), beside) for key in shown])
 
-    def take_up(self) -> None:
-        """Go on after `Group.restore` with curves that are still what they were when the session began.
+    def reopen(self) -> None:
+        """Go on after `Group.discard` with curves that are still what they were when the session began.
 
         Raises
         ------
@@ -299,7 +299,7 @@ class Session:
             raise MobiusFlowError(changed)
         group = Group(objects, self.group.continues)
         if not group.equals(self.group):
-            group.restore()
+            group.discard()
             raise MobiusFlowError(changed)
         self.group = group
 

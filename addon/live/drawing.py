@@ -6,7 +6,7 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 
 from ...core.types import FloatArray
-from ..engine.contrast import Colour
+from ..engine.colours import Colour
 
 _FONT = 0  # Blender's own
 

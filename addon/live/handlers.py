@@ -6,6 +6,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ...core.messages import Message
+from ..curves.member import show_originals
 from . import registry
 from .modal import clear_status
 from .run import Run
@@ -20,6 +21,7 @@ def _load_pre(*_: Any) -> None:
 @persistent  # type: ignore[untyped-decorator]
 def _load_post(*_: Any) -> None:
     registry.forget()  # it was about another file
+    show_originals()  # of a run during which the file was saved automatically
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -38,22 +40,30 @@ def _redo_pre(*_: Any) -> None:
 def _undo_post(*_: Any) -> None:
     if run := registry.current():
         run.history.undo()
-        run.preview.put_forward()
+    _after(run)
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _redo_post(*_: Any) -> None:
     if run := registry.current():
         run.history.redo()
-        run.preview.put_forward()
+    _after(run)
 
 
 def _before(run: Run, others: int) -> None:
     """The curve must be as undo knows it; unless something else is undone or done again, the run is over."""
     if others and run.endures:
-        run.preview.set_aside()
+        run.group.hide()
     else:
         run.cancel(Message("Undone; the relaxation of {names} has ended", names=run.name))
+
+
+def _after(run: Run | None) -> None:
+    """Show what the run has reached; without one, Blender may have gone back to the middle of one that is over."""
+    if run:
+        run.group.resume()
+    else:
+        show_originals()
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -62,13 +72,13 @@ def _save_pre(*_: Any) -> None:
     if run := registry.current():
         run.complete()
     if run := registry.current():
-        run.preview.set_aside()
+        run.group.hide()
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _save_post(*_: Any) -> None:
     if run := registry.current():
-        run.preview.put_forward()
+        run.group.resume()
 
 
 _HANDLERS = {

@@ -11,7 +11,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from ...core.types import FloatArray
 from ..curves import pins
-from ..engine.contrast import Colour, legible
+from ..engine.colours import Colour, legible
 from ..engine.plot import dashes, plot
 from ..translations import iface_
 from . import registry

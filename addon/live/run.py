@@ -16,17 +16,16 @@ from ...core import CurveError, Iterate, MobiusFlowError, Outcome, RelaxOptions,
 from ...core.errors import Place
 from ...core.messages import Message
 from ..curves.group import Group
-from ..curves.imprint import Imprint
 from ..curves.pins import FREE, Held
 from ..curves.session import Report, Session
+from ..curves.splines import digest
 from ..curves.surroundings import NOTHING, Surroundings
 from ..engine.key_options import KeyOptions
-from ..engine.spots import Spot
-from ..engine.target import Target, target_of
+from ..engine.placement import Spot
+from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from .history import History
 from .key_writer import KeyWriter
-from .preview import Preview
 from .refresh import Refresh
 
 if TYPE_CHECKING:
@@ -102,19 +101,15 @@ class Run:
         self.shown: Iterate | None = None
         self.energies: list[float] = []
         self.trouble: list[Spot] = []
-        self._left: Imprint | None = None  # what the objects were at its end
+        self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self.history = History()
         self._refresh = refresh
         self._session = Session(objects, options, key_options, continues, surroundings, held)
         try:
             self._worker = Worker(self._session.task, self._session.options, self.group.link)
         except BaseException:
-            self.group.restore()
+            self.group.discard()
             raise
-        self._prepare()
-
-    def _prepare(self) -> None:
-        self.preview = Preview(self.group)
         self._keys = KeyWriter(self._session, self._worker.is_free)
 
     @property
@@ -139,7 +134,9 @@ class Run:
 
     def concerns(self, obj: "bpy.types.Object | None") -> bool:
         """Whether it is about an object: always while it goes on, and afterwards if the object is as it was left."""
-        return self._left is None or self._left.fits(obj)
+        if self._left is None:
+            return True
+        return obj is not None and obj.type == "CURVE" and self._left.get(obj.session_uid) == digest(obj.data)
 
     @property
     def spots(self) -> dict["bpy.types.Object", Spot]:
@@ -157,7 +154,7 @@ class Run:
     @property
     def endures(self) -> bool:
         """Whether it can go on from wherever undo puts the curves."""
-        return self.state in (State.RUNNING, State.PAUSED) and not self.group.rebakes
+        return self.state in (State.RUNNING, State.PAUSED)
 
     # -- what the buttons do ------------------------------------------------------------------------------------
 
@@ -185,7 +182,7 @@ class Run:
         """Put the curve back as it was."""
         if not self.state.over:
             self._close(State.CANCELLED, message)
-            self.preview.put_back()
+            self.group.discard()
             self._leave()
 
     @property
@@ -201,8 +198,8 @@ class Run:
         MobiusFlowError
             If the curves are no longer what they were when the run began.
         """
-        self._session.take_up()
-        self._prepare()
+        self._session.reopen()
+        self._keys = KeyWriter(self._session, self._worker.is_free)
         self.state, self.message, self.failed, self.shown = State.RUNNING, "", False, None
         self.trouble, self._left = [], None
         self.keep()
@@ -279,7 +276,7 @@ class Run:
     def _show(self) -> None:
         """Show the last iterate, unless it is shown."""
         if self.last is not None and self.last is not self.shown:
-            self.preview.show(self._session.start, self._session.frame)
+            self.group.show(self._session.start, self._session.frame)
             self.shown = self.last
             self._refresh.shown()
 
@@ -303,13 +300,15 @@ class Run:
         """End because of what somebody did to an object; what else there is is put back."""
         ended = Message("{reason}; the relaxation has ended", reason=reason)
         self._close(State.LOST, ended)
-        if more := self.preview.put_back():
+        restored = self.group.discard()
+        more = Message("and every curve is as it was") if restored else Message("and the others are as they were")
+        if restored or len(self.group.names) > 1:
             self.message = Message("{ended}, {more}", ended=ended, more=more)
         self._leave()
 
     def _leave(self) -> None:
         """Note how the objects are at the end."""
-        self._left = Imprint(self.group.objects)
+        self._left = {obj.session_uid: digest(obj.data) for obj in self.group.objects}
 
     def _close(self, state: State, message: str) -> None:
         self.state, self.message = state, message

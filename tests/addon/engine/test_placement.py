@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine.placement import Link, Placement
-from mobius_flow.addon.engine.spots import at, spots
+from mobius_flow.addon.engine.placement import Link, Placement, at, spots
 from mobius_flow.core import Curve
 from mobius_flow.core.errors import Place
 

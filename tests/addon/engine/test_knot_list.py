@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.addon.engine.colours import PALETTE, linear
-from mobius_flow.addon.engine.thumbnail import thumbnail
+from mobius_flow.addon.engine.knot_list import thumbnail
 from mobius_flow.core import Curve
 from mobius_flow.core.knots import smooth_knot
 from shapes import regular_polygon
