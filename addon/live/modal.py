@@ -1,9 +1,22 @@
-"""The event loop of a live relaxation: what the timer, Esc, Enter and the undo keys do, and what is shown meanwhile."""
+"""The live half of operators that relax: how a run starts in a window, its event loop, and what is said at its end."""
+
+from typing import Any
 
 import bpy
 
+from ...core import MobiusFlowError
+from ..curves import bake
+from ..curves.pins import Held
+from ..curves.session import Report
+from ..curves.surroundings import Surroundings
+from ..engine.key_options import KeyOptions
 from ..engine.phrase import Phrase
-from ..translations import iface_
+from ..properties import key_options, relax_options
+from ..translations import iface_, rpt_
+from . import registry
+from .checks import POLYGONS, RELAXABLE, UNEDITED
+from .preview import Refresh
+from .requirements import selected_curves
 from .run import Run, State
 
 _INTERVAL = 1 / 60  # seconds
@@ -11,15 +24,7 @@ _PASS = {"PASS_THROUGH"}
 
 
 class Loop:
-    """A timer in a window and a line in its status bar, for as long as a run goes on.
-
-    Parameters
-    ----------
-    run
-        The run.
-    context
-        Where it was started.
-    """
+    """The event loop: a timer in the window where a run was started and a line in its status bar, while it goes on."""
 
     def __init__(self, run: Run, context: bpy.types.Context) -> None:
         self.run = run
@@ -31,28 +36,28 @@ class Loop:
         self._show(context)
 
     def handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Do what an event asks for; most are none of a relaxation's business, and Blender stays usable."""
+        """Handle an event; most do not concern the relaxation, and Blender stays usable."""
         handled = _PASS
-        self.run.history.look()
+        registry.history.look()
         if self.run.state.over:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":
             self.run.tick()
         elif event.value == "PRESS" and not self.run.waits and _is_meant(context, event):
             handled = self._key(event)
-        if self._seen() != self._shown:
+        if self._visible() != self._shown:
             self._show(context)
         if self.run.state.over:
             return {"FINISHED"} if self.run.state is State.DONE else {"CANCELLED"}
         return handled
 
-    def _seen(self) -> tuple[object, ...]:
-        """What is shown depends on nothing else."""
+    def _visible(self) -> tuple[object, ...]:
+        """All that what is shown depends on."""
         return self.run.state, self.run.shown, self.run.waits
 
     def _key(self, event: bpy.types.Event) -> set[str]:
         undo = event.type == "Z" and (event.ctrl or event.oskey) and not event.shift
-        if event.type == "ESC" or (undo and not self.run.history.others):
+        if event.type == "ESC" or (undo and not registry.history.others):
             self.run.cancel()
         elif event.type in {"RET", "NUMPAD_ENTER"}:
             self.run.keep()
@@ -76,7 +81,7 @@ class Loop:
         self.run.cancel(Phrase("The window was closed; all is as it was"))
 
     def _show(self, context: bpy.types.Context) -> None:
-        self._shown = self._seen()
+        self._shown = self._visible()
         if not self.run.state.over and context.window is not None:
             context.workspace.status_text_set(status_line(self.run))
         redraw_views(context.window_manager)
@@ -121,4 +126,105 @@ def _is_meant(context: bpy.types.Context, event: bpy.types.Event) -> bool:
     return not screen.is_animation_playing and any(
         area.type == "VIEW_3D" and 0 <= x - area.x < area.width and 0 <= y - area.y < area.height
         for area in screen.areas
+    )
+
+
+class Listening:
+    """What an operator does in a window while a run goes on."""
+
+    loop: Loop | None = None
+
+    def listen(self, context: bpy.types.Context, run: Run) -> set[str]:
+        """Start the event loop of a run."""
+        self.loop = Loop(run, context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        assert self.loop is not None, "invoke makes it"
+        result = self.loop.handle(context, event)
+        if self.loop.run.state.over:
+            tell_end(self, context.scene, self.loop.run)
+        return result
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender gives up the operator: its window or its file is closed."""
+        if self.loop is not None:
+            self.loop.abandon()
+
+
+class LiveRelax(Listening):
+    """What an operator that relaxes does in a window: `invoke` starts a worker, `modal` shows what it finds."""
+
+    continues = False  # whether baked curves are relaxed on from the ends of their animations
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Relax the selected curves live; ask first if smooth splines have to become polygons."""
+        if bpy.app.background or context.window is None:
+            return set(self.execute(context))
+        context.view_layer.update()
+        try:
+            values = self.values(context)
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, rpt_(str(error)))
+            return {"CANCELLED"}
+        if POLYGONS.of(selected_curves(context)) and not self.sample_splines:
+            return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
+        return self.begin(context, values)
+
+    def begin(self, context: bpy.types.Context, values: dict[str, Any]) -> set[str]:
+        """Start the run and its event loop."""
+        try:
+            if refused := RELAXABLE(context) or UNEDITED(context):
+                raise MobiusFlowError(refused.sentence)
+            options, refresh = self.key_options(context, values), Refresh(values["view_every"])
+            objects = selected_curves(context)
+            surroundings = Surroundings.of(values["avoid"], objects)
+            run = Run(objects, relax_options(values), options, self.continues, refresh, surroundings, Held.of(values))
+            registry.begin(run)
+        except MobiusFlowError as error:
+            self.report({"ERROR"}, rpt_(str(error)))
+            return {"CANCELLED"}
+        return self.listen(context, run)
+
+    def key_options(self, context: bpy.types.Context, values: dict[str, Any]) -> KeyOptions:
+        """How the run becomes an animation; raises OptionError."""
+        options = key_options(values)
+        return bake.continued(selected_curves(context), options) if self.continues else options
+
+
+def tell_end(operator: Any, scene: bpy.types.Scene, run: Run) -> None:
+    """Say how a run ended, and keep showing the shape that was kept."""
+    if run.state is State.DONE and run.report is not None:
+        if run.report.keys > 1:
+            whole = int(run.report.last_frame // 1)
+            scene.frame_set(whole, subframe=run.report.last_frame - whole)
+        tell(operator, scene, run.report, failed=run.failed)
+    else:
+        operator.report({"ERROR"} if run.failed else {"INFO"}, rpt_(run.message))
+
+
+def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = False) -> None:
+    """Say what was done, and whether the scene shows all of it."""
+    hidden = unseen(scene, report.scene_range)
+    clean = report.clean and not failed and hidden is None
+    sentence = Phrase("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
+    operator.report({"INFO"} if clean else {"WARNING"}, rpt_(sentence))
+
+
+def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Phrase | None:
+    """Say that a scene does not play all frames of an animation, and what helps, or return None if it does."""
+    if animation is None or (scene.frame_start <= animation[0] and animation[1] <= scene.frame_end):
+        return None
+    first, last = animation
+    helps = Phrase("press Set Scene Range to see all of it")
+    if first < scene.bl_rna.properties["frame_start"].hard_min:
+        helps = Phrase("no scene plays negative frames, so bake again with a later Start Frame")
+    return Phrase(
+        "The scene plays frames {start} to {end} only, the animation has {first} to {last}: {helps}",
+        start=scene.frame_start,
+        end=scene.frame_end,
+        first=first,
+        last=last,
+        helps=helps,
     )

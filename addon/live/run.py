@@ -1,7 +1,6 @@
 """One live relaxation: takes in the worker's iterates, shows them in the curves, and ends cleanly whatever happens.
 
-That there is one is known here, in Python, and never in the file. The curves themselves move, so that the window
-shows them as they are; what they were is kept and put back unless the run is to be kept.
+The curves themselves move; what they were is put back unless the run is to be kept.
 """
 
 import math
@@ -24,10 +23,9 @@ from ..engine.phrase import Phrase
 from ..engine.spots import Spot
 from ..engine.target import Target, target_of
 from ..engine.worker import Worker, WorkerError
-from .history import History
+from ..pictures.rendering import is_rendering
 from .key_writer import KeyWriter
-from .preview import Preview
-from .refresh import Refresh
+from .preview import Preview, Refresh
 
 if TYPE_CHECKING:
     import bpy
@@ -37,8 +35,6 @@ _SLICE = 0.02  # seconds of taking in iterates at a time
 
 
 class State(Enum):
-    """Where a run stands."""
-
     RUNNING = "running"
     PAUSED = "paused"
     FINISHING = "finishing"
@@ -48,30 +44,11 @@ class State(Enum):
 
     @property
     def over(self) -> bool:
-        """Whether nothing happens any more."""
         return self in (State.DONE, State.CANCELLED, State.LOST)
 
 
 class Run:
-    """A live relaxation of curve objects as one link.
-
-    Parameters
-    ----------
-    objects
-        Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
-    options, key_options
-        The requested options.
-    continues
-        Whether baked curves are relaxed on from the ends of their animations.
-    refresh
-        When the curves are shown.
-    surroundings
-        What they avoid.
-
-    Raises
-    ------
-    MobiusFlowError
-        If the curves cannot be relaxed; the message says why.
+    """A live relaxation of curve objects as one link; its arguments are those of `Session`, and when they are shown.
 
     Attributes
     ----------
@@ -81,6 +58,11 @@ class Run:
         The objective at all iterates that were taken in.
     trouble
         Where on the objects the reason is why it failed or got stuck, if it is somewhere.
+
+    Raises
+    ------
+    MobiusFlowError
+        If the curves cannot be relaxed; the message says why.
     """
 
     def __init__(
@@ -103,7 +85,6 @@ class Run:
         self.energies: list[float] = []
         self.trouble: list[Spot] = []
         self._left: Imprint | None = None  # what the objects were at its end
-        self.history = History()
         self._refresh = refresh
         self._session = Session(objects, options, key_options, continues, surroundings, held)
         try:
@@ -119,7 +100,6 @@ class Run:
 
     @property
     def group(self) -> Group:
-        """What is relaxed."""
         return self._session.group
 
     @property
@@ -150,16 +130,12 @@ class Run:
     @property
     def waits(self) -> bool:
         """Whether Blender renders the curve, which must not move then."""
-        import bpy
-
-        return not self.state.over and bool(bpy.app.is_job_running("RENDER"))
+        return not self.state.over and is_rendering()
 
     @property
     def endures(self) -> bool:
         """Whether it can go on from wherever undo puts the curves."""
         return self.state in (State.RUNNING, State.PAUSED) and not self.group.rebakes
-
-    # -- what the buttons do ------------------------------------------------------------------------------------
 
     def toggle_pause(self) -> None:
         """Show no more iterates, or go on; meanwhile the worker fills its queue and then waits too."""
@@ -186,7 +162,7 @@ class Run:
         if not self.state.over:
             self._close(State.CANCELLED, message)
             self.preview.put_back()
-            self._leave()
+            self._left = Imprint(self.group.objects)
 
     @property
     def recoverable(self) -> bool:
@@ -194,20 +170,12 @@ class Run:
         return self.state in (State.CANCELLED, State.LOST) and self.last is not None
 
     def recover(self) -> None:
-        """Keep after all what the run had reached when it was cancelled.
-
-        Raises
-        ------
-        MobiusFlowError
-            If the curves are no longer what they were when the run began.
-        """
+        """Keep what a cancelled run had reached; raises MobiusFlowError if the curves have changed since."""
         self._session.take_up()
         self._prepare()
         self.state, self.message, self.failed, self.shown = State.RUNNING, "", False, None
         self.trouble, self._left = [], None
         self.keep()
-
-    # -- what the timer does ------------------------------------------------------------------------------------
 
     def tick(self) -> None:
         """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
@@ -277,7 +245,6 @@ class Run:
             return None
 
     def _show(self) -> None:
-        """Show the last iterate, unless it is shown."""
         if self.last is not None and self.last is not self.shown:
             self.preview.show(self._session.start, self._session.frame)
             self.shown = self.last
@@ -290,9 +257,7 @@ class Run:
             assert self.last is not None, "it was kept"
             self.trouble = self.group.spots(report.outcome.place, self.last.curve)
             self._close(State.DONE, report.sentence)
-            self._leave()
-
-    # -- ends ---------------------------------------------------------------------------------------------------
+            self._left = Imprint(self.group.objects)
 
     def _fail(self, message: str, place: Place | None = None) -> None:
         self.failed = True
@@ -305,10 +270,6 @@ class Run:
         self._close(State.LOST, ended)
         if more := self.preview.put_back():
             self.message = Phrase("{ended}, {more}", ended=ended, more=more)
-        self._leave()
-
-    def _leave(self) -> None:
-        """Note how the objects are at the end."""
         self._left = Imprint(self.group.objects)
 
     def _close(self, state: State, message: str) -> None:

@@ -158,7 +158,7 @@ def test_undo_of_something_else_does_not_end_a_run(operator):
     before = Snapshot.of(obj.data)
     operator.start()
     operator.reach(2)
-    operator.run.history.others = 2
+    registry.history.others = 2
     assert operator.event("Z", ctrl=True) == {"PASS_THROUGH"}
     handlers._undo_pre()
     restored(obj, before)
@@ -169,8 +169,8 @@ def test_undo_of_something_else_does_not_end_a_run(operator):
     for before_it, after_it in ((handlers._redo_pre, handlers._redo_post), (handlers._undo_pre, handlers._undo_post)):
         before_it()
         after_it()
-    assert (operator.run.history.others, operator.run.history.undone) == (1, 1)
-    operator.run.history.others = 0
+    assert (registry.history.others, registry.history.undone) == (1, 1)
+    registry.history.others = 0
     handlers._undo_pre()
     assert registry.current() is None
     restored(obj, before)

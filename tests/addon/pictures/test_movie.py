@@ -137,14 +137,14 @@ def test_stopped_within_one_frame_without_a_trace(tmp_path, scene, rendered, sto
 
 
 def test_stopped_while_it_is_encoded(tmp_path, scene, monkeypatch):
-    splice = movie._splice
+    splice = movie._spliced
 
     def stop(*arguments):
         splice(*arguments)
         raise KeyboardInterrupt
 
     before = state(scene)
-    monkeypatch.setattr(movie, "_splice", stop)
+    monkeypatch.setattr(movie, "_spliced", stop)
     with pytest.raises(KeyboardInterrupt):
         movie.render_movie(scene, tmp_path / "a.mp4")
     assert os.listdir(tmp_path) == []

@@ -6,7 +6,7 @@ pytest.importorskip("bpy")
 
 import itertools
 
-from mobius_flow.addon.sidebar.labels import wrapped
+from mobius_flow.addon.sidebar.layout import wrapped
 
 
 @pytest.mark.parametrize("room", [1, 9, 20, 1000])

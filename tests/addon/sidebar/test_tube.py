@@ -1,12 +1,14 @@
 """What the sub-panel says of a tube: its radius in the scene's units, and whose it is."""
 
+from types import SimpleNamespace
+
 import pytest
 
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil  # noqa: E402
 from mobius_flow.addon.curves.units import length  # noqa: E402
-from mobius_flow.addon.sidebar.tube import VIEW3D_PT_mobius_flow_tube  # noqa: E402
+from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow_tube  # noqa: E402
 
 
 @pytest.mark.parametrize(
@@ -43,7 +45,7 @@ class Layout:
 
 def shown():
     layout = Layout()
-    VIEW3D_PT_mobius_flow_tube.fill(None, layout, bpy.context, bpy.context.scene.mobius_flow)
+    VIEW3D_PT_mobius_flow_tube.draw(SimpleNamespace(layout=layout, rows=VIEW3D_PT_mobius_flow_tube.rows), bpy.context)
     return layout
 
 
