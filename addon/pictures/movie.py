@@ -1,4 +1,4 @@
-"""Films of copies of scenes, whole or not at all: by Blender's own loop over frames, or frame by frame.
+"""Films of scenes, whole or not at all: by Blender's own loop over frames, or frame by frame.
 
 Blender's own loop shows a window with progress and an Esc, and otherwise cannot be interrupted. Frame by frame every
 picture is a file, and then they are put together.
@@ -88,7 +88,8 @@ def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None
     Parameters
     ----------
     scene
-        What to render; all that moves is moved by F-curves. It stays as it is.
+        What to render, made for that: its frame and its settings for pictures change. All that moves is moved by
+        F-curves.
     path
         The file; it appears whole or not at all.
     progress
@@ -103,13 +104,12 @@ def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None
     """
     try:
         with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room:
-            copy = copied(scene)
-            copy.render.resolution_percentage *= oversampling
-            pictures = list(_pictures(copy, Path(room), progress or (lambda *_: None)))
+            scene.render.resolution_percentage *= oversampling
+            pictures = list(_pictures(scene, Path(room), progress or (lambda *_: None)))
+            scene.render.resolution_percentage //= oversampling
             Reel(_spliced(scene, pictures), path).render()
     finally:
         sweep()
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
 def copied(scene: "bpy.types.Scene") -> "bpy.types.Scene":
