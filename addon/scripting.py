@@ -11,7 +11,7 @@ and with the Python package beside `bpy`::
 
 import numbers
 import os
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +26,7 @@ from .curves.session import Report, Session
 from .curves.surroundings import Surroundings
 from .engine.timing import Pace
 from .live.checks import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, UNEDITED
-from .live.requirements import Curves, idle
+from .live.requirements import idle, require
 from .pictures import staging
 from .pictures.filming import Filming
 from .properties import key_options, relax_options, settings
@@ -107,31 +107,25 @@ class Relaxation:
         MobiusFlowError
             If the curves cannot be relaxed or a setting is wrong; the message says why and what helps.
         """
-        return self._run(avoid, settings, continues=False)
+        return begin(self.objects, complete(settings) | {"avoid": avoid}, False, self.sample_splines).run()
 
     def relax_further(self, avoid: Iterable["bpy.types.Object"] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
 
         With ``balance=True`` or ``escape_saddles=True`` this is what the buttons *Balance* and *Leave Saddle* do.
         """
-        return self._run(avoid, settings, continues=True)
+        return begin(self.objects, complete(settings) | {"avoid": avoid}, True, self.sample_splines).run()
 
     def clear(self) -> None:
         """Take the keys away, and give the curves back as they were before; raises MobiusFlowError as `relax`."""
-        self._require(CLEARABLE, UNEDITED)
+        require(idle() or CLEARABLE.of(self.objects) or UNEDITED.of(self.objects))
         for obj in self.objects:
             bake.clear(obj)
 
     @property
     def curves(self) -> list[Curve]:
-        """The link in the world at each key, the last of them being the result.
-
-        Raises
-        ------
-        MobiusFlowError
-            If a curve has no keys of a relaxation, or not as many as the others.
-        """
-        self._require(BAKED, idle_too=False)
+        """The link in the world at each key, the last of them being the result; raises MobiusFlowError without keys."""
+        require(BAKED.of(self.objects))
         return BakedKeys(self.objects).curves
 
     def set_up_stage(self, use_camera: bool = True, use_world: bool = True) -> "bpy.types.Collection":
@@ -141,45 +135,45 @@ class Relaxation:
         """
         import bpy
 
-        self._evaluate()
-        self._require(READABLE)
+        _update()
+        require(idle() or READABLE.of(self.objects))
         return staging.set_up(bpy.context.scene, self.objects, use_camera, use_world)
 
     def film(self, path: str | os.PathLike[str], look: str = "SCENE", overwrite: bool = False) -> Path:
-        """Render the frames that the open scene plays to an MP4, whole or not at all, and return where it is.
+        """Render the frames that the open scene plays to an MP4, and return where it is.
 
-        Raises MobiusFlowError if it cannot be made or is there already; see `Filming`.
+        Raises MobiusFlowError if it cannot be made, or is there already and may not be overwritten.
         """
         import bpy
 
-        self._require()
+        require(idle())
         filming = Filming(bpy.context.scene, os.fspath(path), look, overwrite)
         filming.render()
         return filming.path
 
-    def _run(self, avoid: Iterable["bpy.types.Object"], settings: Mapping[str, Any], continues: bool) -> Report:
-        values = complete(settings)
-        self._evaluate()
-        self._require(RELAXABLE, *[BAKED] * continues, UNEDITED, *[POLYGONS] * (not self.sample_splines))
-        options = key_options(values)
-        options = bake.continued(self.objects, options) if continues else options
-        surroundings = Surroundings.of(_objects(avoid), self.objects)
-        return Session(self.objects, relax_options(values), options, continues, surroundings, Held.of(values)).run()
 
-    @staticmethod
-    def _evaluate() -> None:
-        """Let Blender know where objects are that a script has just moved."""
-        import bpy
+def begin(
+    objects: Sequence["bpy.types.Object"], values: Mapping[str, Any], continues: bool, sample_splines: bool
+) -> Session:
+    """A session with the values of all settings; raises MobiusFlowError."""
+    _update()
+    require(
+        idle() or RELAXABLE.of(objects),
+        BAKED.of(objects) if continues else None,
+        UNEDITED.of(objects),
+        None if sample_splines else POLYGONS.of(objects),
+    )
+    options = key_options(values)
+    options = bake.continued(objects, options) if continues else options
+    surroundings = Surroundings.of(_objects(values["avoid"]), objects)
+    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values))
 
-        bpy.context.view_layer.update()
 
-    def _require(self, *needs: Curves, idle_too: bool = True) -> None:
-        """Raise a MobiusFlowError unless the curves are what is needed, and nothing is being relaxed."""
-        refused = idle() if idle_too else None
-        for each in needs:
-            refused = refused or each.of(self.objects)
-        if refused is not None:
-            raise MobiusFlowError(refused.sentence)
+def _update() -> None:
+    """Let Blender know where objects are that a script has just moved."""
+    import bpy
+
+    bpy.context.view_layer.update()
 
 
 def _objects(avoid: Iterable["bpy.types.Object"]) -> list["bpy.types.Object"]:
@@ -202,13 +196,7 @@ def implied(given: Collection[str]) -> dict[str, Any]:
 
 
 def complete(given: Mapping[str, Any]) -> dict[str, Any]:
-    """All settings, with defaults for those that are not given.
-
-    Raises
-    ------
-    OptionError
-        If there is no setting of a name, or a value is none that it may have.
-    """
+    """All settings, with defaults for those that are not given; raises OptionError for what is no setting or value."""
     for name, value in given.items():
         if name not in ("any_bevel", "pins"):
             _check(name, value)

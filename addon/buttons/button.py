@@ -7,7 +7,7 @@ import bpy
 
 from ...core import MobiusFlowError
 from ..live.modal import redraw_views
-from ..live.requirements import Refusal, Requirement, first
+from ..live.requirements import Refusal, Requirement, first, require
 from ..translations import rpt_, tip_
 
 _PREFIX = "CURVE_OT_"
@@ -41,8 +41,7 @@ class Button:
     def execute(self, context: bpy.types.Context) -> set[str]:
         context.view_layer.update()  # a script may have moved an object just before
         try:
-            if refused := self.refusal(context) or first(context, self.needs_at_last):
-                raise MobiusFlowError(refused.sentence)
+            require(self.refusal(context) or first(context, self.needs_at_last))
             self.act(context)
         except MobiusFlowError as error:
             return self.fail(error)

@@ -10,15 +10,19 @@ from ...core import MobiusFlowError, Task
 from ..curves import bake
 from ..curves.baked_keys import BakedKeys
 from ..curves.pins import pinned_vertices
+from ..curves.session import Session
 from ..curves.surroundings import Surroundings
 from ..engine.phrase import Phrase
 from ..engine.rest import Rest
 from ..engine.words import named
-from ..live.checks import BAKED, CLEARABLE, RELAXABLE, UNEDITED
-from ..live.modal import LiveRelax, tell, unseen
+from ..live import registry
+from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
+from ..live.modal import Listening, tell, unseen
+from ..live.preview import Refresh
 from ..live.requirements import Condition, avoided, selected_curves
+from ..live.run import Run
 from ..properties import SETTINGS, relax_options, settings
-from ..scripting import Relaxation, implied
+from ..scripting import Relaxation, begin, implied
 from ..translations import rpt_
 from .button import Button, button
 
@@ -27,8 +31,8 @@ _ANIMATED = Condition(
 )
 
 
-class Relaxing(LiveRelax, Button):
-    """What all operators that relax have in common: their settings, and the whole job in one call."""
+class Relaxing(Listening, Button):
+    """What all operators that relax have in common: the whole job in one call, or a live run in a window."""
 
     # For scripts; what is not given comes from the scene's settings, and nothing is remembered from run to run.
     __annotations__ = {
@@ -45,6 +49,26 @@ class Relaxing(LiveRelax, Button):
         ),
     }
     needs = (RELAXABLE,)
+    continues = False  # whether baked curves are relaxed on from the ends of their animations
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Relax the selected curves live; ask first if smooth splines have to become polygons."""
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        context.view_layer.update()
+        if POLYGONS.of(selected_curves(context)) and not self.sample_splines:
+            return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
+        return self.begin(context)
+
+    def begin(self, context: bpy.types.Context) -> set[str]:
+        """Start a live run and its event loop."""
+        try:
+            values = self.values(context)
+            run = Run(self.session(context, values), Refresh(values["view_every"]))
+        except MobiusFlowError as error:
+            return self.fail(error)
+        registry.begin(run)
+        return self.listen(context, run)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job."""
@@ -56,10 +80,11 @@ class Relaxing(LiveRelax, Button):
             return {"CANCELLED"}
 
     def act(self, context: bpy.types.Context) -> None:
-        values = self.values(context)
-        relaxation = Relaxation(*selected_curves(context), sample_splines=self.sample_splines)
-        report = (relaxation.relax_further if self.continues else relaxation.relax)(**values)
-        tell(self, context.scene, report)
+        tell(self, context.scene, self.session(context, self.values(context)).run())
+
+    def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
+        """Begin to relax the selected curves; raises MobiusFlowError."""
+        return begin(selected_curves(context), values, self.continues, self.sample_splines)
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
         """The settings: those given to the operator, and the scene's; raises MobiusFlowError."""
@@ -139,9 +164,9 @@ class CURVE_OT_mobius_flow_leave_saddle(Relaxing, bpy.types.Operator):
         """Do the whole job, if there is anything to leave."""
         return {"CANCELLED"} if self._at_minimum(context) else super().execute(context)
 
-    def begin(self, context: bpy.types.Context, values: dict[str, Any]) -> set[str]:
+    def begin(self, context: bpy.types.Context) -> set[str]:
         """Start the run, if there is anything to leave."""
-        return {"CANCELLED"} if self._at_minimum(context) else super().begin(context, values)
+        return {"CANCELLED"} if self._at_minimum(context) else super().begin(context)
 
     def _at_minimum(self, context: bpy.types.Context) -> bool:
         """Whether there is no way down, which is said; what else is wrong the relaxation reports."""

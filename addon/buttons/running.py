@@ -13,7 +13,7 @@ from ..engine.spots import Spot, at
 from ..live import registry
 from ..live.checks import RELAXABLE
 from ..live.modal import Listening, tell_end
-from ..live.requirements import Condition, selected_curves
+from ..live.requirements import Condition, require, selected_curves
 from ..live.run import Run, State
 from ..translations import iface_
 from .button import Button, button
@@ -90,8 +90,7 @@ class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
     def _recovered(self) -> Run:
         run = registry.latest()
         assert run is not None, "poll looks for it"
-        if refused := RELAXABLE.of(run.group.objects):
-            raise MobiusFlowError(refused.sentence)
+        require(RELAXABLE.of(run.group.objects))
         run.recover()
         return run
 

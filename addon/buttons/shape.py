@@ -12,7 +12,7 @@ from ..engine.words import named
 from ..live.checks import CLEARABLE, FITTABLE, PAINTABLE, RELAXABLE, UNEDITED
 from ..live.requirements import Condition, selected_curves
 from ..pictures.materials import colour_components
-from ..properties import measure_items
+from ..properties import MEASURE_ITEMS
 from ..translations import rpt_
 from .button import Button, button
 
@@ -32,7 +32,7 @@ class CURVE_OT_mobius_flow_keep_size(Button, bpy.types.Operator):
     needs = (CLEARABLE,)
     needs_at_last = (UNEDITED,)
 
-    measure: EnumProperty(name="Keep", description="What stays", items=measure_items(), default=Measure.BOX.name)
+    measure: EnumProperty(name="Keep", description="What stays", items=MEASURE_ITEMS, default=Measure.BOX.name)
     reference: EnumProperty(
         name="Size Of",
         description="Which key has the size that all are given",

@@ -1,22 +1,13 @@
-"""The live half of operators that relax: how a run starts in a window, its event loop, and what is said at its end."""
+"""A run in a window: its event loop, what operators do meanwhile, and what is said at its end."""
 
 from typing import Any
 
 import bpy
 
-from ...core import MobiusFlowError
-from ..curves import bake
-from ..curves.pins import Held
 from ..curves.session import Report
-from ..curves.surroundings import Surroundings
-from ..engine.key_options import KeyOptions
 from ..engine.phrase import Phrase
-from ..properties import key_options, relax_options
 from ..translations import iface_, rpt_
 from . import registry
-from .checks import POLYGONS, RELAXABLE, UNEDITED
-from .preview import Refresh
-from .requirements import selected_curves
 from .run import Run, State
 
 _INTERVAL = 1 / 60  # seconds
@@ -151,46 +142,6 @@ class Listening:
         """Blender gives up the operator: its window or its file is closed."""
         if self.loop is not None:
             self.loop.abandon()
-
-
-class LiveRelax(Listening):
-    """What an operator that relaxes does in a window: `invoke` starts a worker, `modal` shows what it finds."""
-
-    continues = False  # whether baked curves are relaxed on from the ends of their animations
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Relax the selected curves live; ask first if smooth splines have to become polygons."""
-        if bpy.app.background or context.window is None:
-            return set(self.execute(context))
-        context.view_layer.update()
-        try:
-            values = self.values(context)
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, rpt_(str(error)))
-            return {"CANCELLED"}
-        if POLYGONS.of(selected_curves(context)) and not self.sample_splines:
-            return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
-        return self.begin(context, values)
-
-    def begin(self, context: bpy.types.Context, values: dict[str, Any]) -> set[str]:
-        """Start the run and its event loop."""
-        try:
-            if refused := RELAXABLE(context) or UNEDITED(context):
-                raise MobiusFlowError(refused.sentence)
-            options, refresh = self.key_options(context, values), Refresh(values["view_every"])
-            objects = selected_curves(context)
-            surroundings = Surroundings.of(values["avoid"], objects)
-            run = Run(objects, relax_options(values), options, self.continues, refresh, surroundings, Held.of(values))
-            registry.begin(run)
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, rpt_(str(error)))
-            return {"CANCELLED"}
-        return self.listen(context, run)
-
-    def key_options(self, context: bpy.types.Context, values: dict[str, Any]) -> KeyOptions:
-        """How the run becomes an animation; raises OptionError."""
-        options = key_options(values)
-        return bake.continued(selected_curves(context), options) if self.continues else options
 
 
 def tell_end(operator: Any, scene: bpy.types.Scene, run: Run) -> None:

@@ -102,6 +102,12 @@ def first(context: "bpy.types.Context", requirements: Sequence[Requirement]) -> 
     return next((refusal for each in requirements if (refusal := each(context))), None)
 
 
+def require(*refusals: Refusal | None) -> None:
+    """Raise a MobiusFlowError with the first of some refusals, if there is any."""
+    if refused := next((each for each in refusals if each), None):
+        raise MobiusFlowError(refused.sentence)
+
+
 def idle(_context: "bpy.types.Context | None" = None) -> Refusal | None:
     """Require that nothing is being relaxed."""
     run = registry.current()

@@ -5,20 +5,17 @@ The curves themselves move; what they were is put back unless the run is to be k
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from ...core import CurveError, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status
+from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.errors import Place
 from ..curves.group import Group
 from ..curves.imprint import Imprint
-from ..curves.pins import FREE, Held
 from ..curves.session import Report, Session
-from ..curves.surroundings import NOTHING, Surroundings
-from ..engine.key_options import KeyOptions
 from ..engine.phrase import Phrase
 from ..engine.spots import Spot
 from ..engine.target import Target, target_of
@@ -48,7 +45,7 @@ class State(Enum):
 
 
 class Run:
-    """A live relaxation of curve objects as one link; its arguments are those of `Session`, and when they are shown.
+    """A session that is fed by a worker, while its curves are shown.
 
     Attributes
     ----------
@@ -58,23 +55,9 @@ class Run:
         The objective at all iterates that were taken in.
     trouble
         Where on the objects the reason is why it failed or got stuck, if it is somewhere.
-
-    Raises
-    ------
-    MobiusFlowError
-        If the curves cannot be relaxed; the message says why.
     """
 
-    def __init__(
-        self,
-        objects: Sequence["bpy.types.Object"],
-        options: RelaxOptions,
-        key_options: KeyOptions,
-        continues: bool,
-        refresh: Refresh,
-        surroundings: Surroundings = NOTHING,
-        held: Held = FREE,
-    ) -> None:
+    def __init__(self, session: Session, refresh: Refresh) -> None:
         self.state = State.RUNNING
         self.message = ""
         self.failed = False
@@ -85,8 +68,7 @@ class Run:
         self.energies: list[float] = []
         self.trouble: list[Spot] = []
         self._left: Imprint | None = None  # what the objects were at its end
-        self._refresh = refresh
-        self._session = Session(objects, options, key_options, continues, surroundings, held)
+        self._session, self._refresh = session, refresh
         try:
             self._worker = Worker(self._session.task, self._session.options, self.group.link)
         except BaseException:
