@@ -3,6 +3,7 @@
 import math
 import zlib
 from collections.abc import Collection, Mapping
+from enum import Enum
 from typing import Any
 
 import bpy
@@ -14,23 +15,21 @@ from .engine.key_options import KeyOptions, Output
 from .engine.size import Measure
 from .engine.timing import FRAMES_PER_ITERATE, LAST_FRAME, Pace, Timing
 
-_KEY_DEFAULTS = KeyOptions()
-_TIMING_DEFAULTS = Timing()
 _TINY = 1e-37  # just above the smallest of 32-bit numbers that are computed with
 _Item = tuple[str, str, str, str, int]
 _PROPERTIES = {bool: BoolProperty, int: IntProperty, float: FloatProperty}
 _AUTOMATIC = "AUTO"  # stands for None among names, as 0 does among numbers
-_OUTPUT_DESCRIPTIONS = {
+_OUTPUTS = {
     Output.SHAPE_KEYS: "Absolute shape keys and one F-curve on their evaluation time: small, fast, renders anywhere",
     Output.FCURVES: "An F-curve for every coordinate of every point, for exporters that know no shape keys",
     Output.RESULT: "Move the points to the relaxed curves, without animation",
 }
-_MEASURE_DESCRIPTIONS = {
+_MEASURES = {
     Measure.LENGTH: "The length of the curves, which is what the relaxation itself keeps",
     Measure.BOX: "The longest side of the box around the curves",
     Measure.RADIUS: "The mean distance of the curves from their center (root mean square)",
 }
-_PACE_DESCRIPTIONS = {
+_PACES = {
     Pace.EVEN: "The curves move about evenly over the whole length, and their last, small motions get some frames too",
     Pace.DISTANCE: "The curves move by the same distance in every frame of the whole length",
     Pace.FLOW_TIME: "The sizes of the steps add up evenly over the whole length: the time of a gradient flow",
@@ -38,13 +37,12 @@ _PACE_DESCRIPTIONS = {
 }
 
 
-def _output_items() -> list[tuple[str, str, str]]:
-    return [(output.name, output.value, _OUTPUT_DESCRIPTIONS[output]) for output in Output]
+def _enum_items(descriptions: Mapping[Enum, str]) -> list[tuple[str, str, str]]:
+    return [(each.name, each.value, description) for each, description in descriptions.items()]
 
 
-def measure_items() -> list[tuple[str, str, str]]:
-    """What can be kept while curves move."""
-    return [(measure.name, measure.value, _MEASURE_DESCRIPTIONS[measure]) for measure in Measure]
+MEASURE_ITEMS = _enum_items(_MEASURES)
+"""What can be kept while curves move."""
 
 
 def shown(group: str | None = None) -> list[Option]:
@@ -53,7 +51,6 @@ def shown(group: str | None = None) -> list[Option]:
 
 
 def _property(option: Option, options: set[str]) -> Any:
-    """The property that is an option of a relaxation."""
     automatic = option.default is None
     words: dict[str, Any] = {"name": option.label, "options": options}
     if option.choices is None:
@@ -95,101 +92,76 @@ def _bounds(option: Option) -> dict[str, Any]:
 
 def settings(options: set[str]) -> dict[str, Any]:
     """Declare the settings as properties with the given options."""
+
+    def declare(kind: Any, name: str, description: str, default: Any, **more: Any) -> Any:
+        return kind(name=name, description=description, default=default, options=options, **more)
+
+    def choice(name: str, description: str, default: Enum, descriptions: Mapping[Enum, str]) -> Any:
+        return declare(EnumProperty, name, description, default.name, items=_enum_items(descriptions))
+
+    def frames(name: str, description: str, default: int, low: int) -> Any:
+        return declare(IntProperty, name, description, default, min=low, max=LAST_FRAME, soft_max=1000)
+
+    keys, timing = KeyOptions(), Timing()
     return {option.name: _property(option, options) for option in shown()} | {
-        "pin_tangents": _pin_tangents(options),
-        "keyframes": EnumProperty(
-            name="Keyframes",
-            description="What the animation is written as",
-            items=_output_items(),
-            default=_KEY_DEFAULTS.output.name,
-            options=options,
+        "pin_tangents": declare(
+            BoolProperty,
+            "Pin Tangents",
+            "Pin the neighbours of pinned points in the refined start, and so the direction there",
+            default=False,
         ),
-        **_timing(options),
-        "max_keys": IntProperty(
-            name="Max Keys",
-            description=(
-                "Thin the animation out to this many keys, 0 for one key for every iterate; "
-                "where the straight motion between keys is not proved free of contact, more are kept"
-            ),
-            default=0,
-            min=0,
-            options=options,
-        ),
-        "fit_bevel": BoolProperty(
-            name="Keep Tubes Fitted",
-            description=(
-                "Fit tubes again that were fitted before, at every key. A bevel of your own is not changed; "
-                "in a script, to give this asks for it to be fitted"
-            ),
-            default=True,
-            options=options,
-        ),
-        "keep_size": EnumProperty(
-            name="Keep",
-            description="What stays as it is at the beginning while the curves move; they are scaled for that",
-            items=measure_items(),
-            default=_KEY_DEFAULTS.keep_size.name,
-            options=options,
-        ),
-        "view_every": IntProperty(
-            name="Update View Every",
-            description=(
-                "Show every so many iterates while relaxing; "
-                "0: as often as leaves two thirds of the time to anything but drawing"
-            ),
-            default=0,
-            min=0,
-            options=options,
-        ),
-    }
-
-
-def _pin_tangents(options: set[str]) -> Any:
-    return BoolProperty(
-        name="Pin Tangents",
-        description="Pin the neighbours of pinned points in the refined start, and so the direction there",
-        default=False,
-        options=options,
-    )
-
-
-def _timing(options: set[str]) -> dict[str, Any]:
-    """Declare what `Timing` is made of."""
-    return {
-        "timing": EnumProperty(
-            name="Timing",
-            description="What passes evenly from frame to frame",
-            items=[(pace.name, pace.value, _PACE_DESCRIPTIONS[pace]) for pace in Pace],
-            default=_TIMING_DEFAULTS.pace.name,
-            options=options,
-        ),
-        "start_frame": IntProperty(
-            name="Start Frame",
-            description="Frame at which the animation begins",
-            default=int(_TIMING_DEFAULTS.start_frame),
+        "keyframes": choice("Keyframes", "What the animation is written as", keys.output, _OUTPUTS),
+        "timing": choice("Timing", "What passes evenly from frame to frame", timing.pace, _PACES),
+        "start_frame": declare(
+            IntProperty,
+            "Start Frame",
+            "Frame at which the animation begins",
+            int(timing.start_frame),
             soft_min=-LAST_FRAME,
             soft_max=LAST_FRAME,
-            options=options,
         ),
-        "length": _frames("Length", "Number of frames of the whole animation", _TIMING_DEFAULTS.length, 2, options),
-        "frames_per_iterate": FloatProperty(
-            name="Frames/Iterate",
-            description="Number of frames from one iterate to the next",
-            default=_TIMING_DEFAULTS.frames_per_iterate,
+        "length": frames("Length", "Number of frames of the whole animation", timing.length, 2),
+        "frames_per_iterate": declare(
+            FloatProperty,
+            "Frames/Iterate",
+            "Number of frames from one iterate to the next",
+            timing.frames_per_iterate,
             min=FRAMES_PER_ITERATE[0],
             soft_max=100.0,
             max=FRAMES_PER_ITERATE[1],
-            options=options,
         ),
-        "hold_start": _frames("Hold at Start", "Frames at rest before the curves move", 0, 0, options),
-        "hold_end": _frames("Hold at End", "Frames at rest after the curves have moved", 0, 0, options),
+        "hold_start": frames("Hold at Start", "Frames at rest before the curves move", 0, 0),
+        "hold_end": frames("Hold at End", "Frames at rest after the curves have moved", 0, 0),
+        "max_keys": declare(
+            IntProperty,
+            "Max Keys",
+            "Thin the animation out to this many keys, 0 for one key for every iterate; "
+            "where the straight motion between keys is not proved free of contact, more are kept",
+            default=0,
+            min=0,
+        ),
+        "fit_bevel": declare(
+            BoolProperty,
+            "Keep Tubes Fitted",
+            "Fit tubes again that were fitted before, at every key. A bevel of your own is not changed; "
+            "in a script, to give this asks for it to be fitted",
+            default=True,
+        ),
+        "keep_size": choice(
+            "Keep",
+            "What stays as it is at the beginning while the curves move; they are scaled for that",
+            keys.keep_size,
+            _MEASURES,
+        ),
+        "view_every": declare(
+            IntProperty,
+            "Update View Every",
+            "Show every so many iterates while relaxing; "
+            "0: as often as leaves two thirds of the time to anything but drawing",
+            default=0,
+            min=0,
+        ),
     }
-
-
-def _frames(name: str, description: str, default: int, low: int, options: set[str]) -> Any:
-    return IntProperty(
-        name=name, description=description, default=default, min=low, max=LAST_FRAME, soft_max=1000, options=options
-    )
 
 
 SETTINGS = tuple(settings(set()))

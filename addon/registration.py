@@ -1,33 +1,44 @@
 """What Blender is told about at registration, and forgets at unregistration."""
 
+from types import ModuleType
+
 import bpy
-from bpy.props import PointerProperty
 
-from . import buttons, film_settings, panel_settings, sidebar, surroundings_settings, translations
-from .buttons import gallery, presets
+from . import settings, translations
+from .buttons import adding, drawing, families, film, mending, outputs, pinning, presets, relaxing, running, shape
 from .live import handlers, overlay
-from .properties import MobiusFlowSettings
-from .sidebar import menus
+from .sidebar import menus, panels, relax
 
-_SETTINGS = (panel_settings, film_settings, surroundings_settings)
-_CLASSES = (MobiusFlowSettings, *(cls for part in (*_SETTINGS, buttons, sidebar) for cls in part.CLASSES))
+# presets go into the head of the panel; the sub-panels follow in the order they are shown
+_MODULES = (
+    *(relaxing, running, mending, pinning, shape, outputs, film, adding, families, drawing, presets),
+    *(menus, relax, panels),
+)
 # what else there is to register
-_PARTS = (translations, *_SETTINGS, presets, gallery, menus, handlers, overlay)
+_PARTS = (translations, settings, presets, menus, handlers, overlay)
+
+
+def declared(module: ModuleType) -> list[type]:
+    """The classes for Blender that a module declares, in the order in which they stand there."""
+    classes = (each for each in vars(module).values() if isinstance(each, type))
+    return [each for each in classes if issubclass(each, bpy.types.bpy_struct) and each.__module__ == module.__name__]
+
+
+CLASSES = (*settings.GROUPS_OF_SCENE.values(), *(cls for module in _MODULES for cls in declared(module)))
 
 
 def register() -> None:
-    """Add the classes, the settings and the menu entry; an error leaves nothing half done."""
+    """Add the classes, the settings and the menu entries; an error leaves nothing half done."""
     done = []
-    translations.mark(_CLASSES)
+    translations.mark(CLASSES)
     try:
-        for cls in _CLASSES:
+        for cls in CLASSES:
             bpy.utils.register_class(cls)
             done.append(cls)
     except Exception:
         for cls in reversed(done):
             bpy.utils.unregister_class(cls)
         raise
-    bpy.types.Scene.mobius_flow = PointerProperty(type=MobiusFlowSettings)
     for part in _PARTS:
         part.register()
 
@@ -36,6 +47,5 @@ def unregister() -> None:
     """Remove all of it; what is running ends first."""
     for part in reversed(_PARTS):
         part.unregister()
-    del bpy.types.Scene.mobius_flow
-    for cls in reversed(_CLASSES):
+    for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

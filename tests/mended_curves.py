@@ -2,8 +2,8 @@
 
 import bpy
 from blender_scenes import add_curve, add_trefoil, relax
-from mobius_flow.addon.live.checks import refusal
-from mobius_flow.addon.live.refusal import Remedy
+from mobius_flow.addon.live.checks import RELAXABLE
+from mobius_flow.addon.live.requirements import Remedy
 from shapes import torus_trefoil
 
 SHAPE = torus_trefoil(12).vertices
@@ -17,14 +17,14 @@ def call(remedy: Remedy) -> object:
 def mend(remedy: Remedy) -> None:
     """See that it is this remedy that is offered next, and take it."""
     bpy.context.view_layer.update()
-    assert refusal(bpy.context).remedy is remedy
+    assert RELAXABLE(bpy.context).remedy is remedy
     assert call(remedy)() == {"FINISHED"}
     bpy.context.view_layer.update()
 
 
 def may_be_relaxed() -> None:
     bpy.context.view_layer.update()
-    assert refusal(bpy.context) is None
+    assert RELAXABLE(bpy.context) is None
     assert bpy.ops.curve.mobius_flow_relax(max_iterations=1, sample_splines=True) == {"FINISHED"}
 
 

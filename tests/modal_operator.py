@@ -18,11 +18,13 @@ class Operator:
     cancel = CURVE_OT_mobius_flow_relax.cancel
     begin = CURVE_OT_mobius_flow_relax.begin
     listen = CURVE_OT_mobius_flow_relax.listen
-    key_options = CURVE_OT_mobius_flow_relax.key_options
+    session = CURVE_OT_mobius_flow_relax.session
+    fail = CURVE_OT_mobius_flow_relax.fail
+    sample_splines = True
 
     def __init__(self, continues=False, **values):
         self.loop, self.reports, self.continues = None, [], continues
-        self.values = {"view_every": 1, "avoid": ()} | values
+        self.given = {"view_every": 1, "avoid": ()} | values
 
     def report(self, kind, message):
         self.reports.append((kind, message))
@@ -43,7 +45,8 @@ class Operator:
         )
         bpy.context.view_layer.update()
         scene = bpy.context.scene.mobius_flow
-        return self.begin(self.context, {name: getattr(scene, name) for name in SETTINGS} | self.values)
+        self.values = lambda _context: {name: getattr(scene, name) for name in SETTINGS} | self.given
+        return self.begin(self.context)
 
     def event(self, kind="TIMER", mouse=(0, 0), **keys):
         modifiers = {"ctrl": False, "shift": False, "oskey": False} | keys

@@ -10,6 +10,8 @@ from mobius_flow.core.knots import KNOTS
 ADDON = Path(registration.__file__).parent
 CORE = ADDON.parent / "core"
 _MARKS = {
+    "Check": 0,
+    "Condition": 0,
     "Message": 0,
     "adding": 0,
     "iface_": 0,
@@ -27,7 +29,7 @@ _WORDS = {"message", "text", "title"}  # what it is told to draw, by these names
 
 def labels():
     """Titles of operators, panels and menus, names of settings and of what they let choose."""
-    names = {cls.bl_label for cls in registration._CLASSES if hasattr(cls, "bl_label")}
+    names = {cls.bl_label for cls in registration.CLASSES if hasattr(cls, "bl_label")}
     for each in _properties():
         names |= {each.name, *(item.name for item in _items(each))}
     return {name for name in names if name and name not in KNOTS}
@@ -35,7 +37,7 @@ def labels():
 
 def tooltips():
     """Descriptions of the same."""
-    told = {_rna(cls).description for cls in registration._CLASSES if issubclass(cls, bpy.types.Operator)}
+    told = {_rna(cls).description for cls in registration.CLASSES if issubclass(cls, bpy.types.Operator)}
     for each in _properties():
         told |= {each.description, *(item.description for item in _items(each))}
     return {text for text in told if text}
@@ -50,7 +52,7 @@ def _rna(cls):
 
 def _properties():
     """The properties that our classes declare; Blender's own are not ours to translate."""
-    for cls in registration._CLASSES:
+    for cls in registration.CLASSES:
         declared = {name for base in cls.__mro__ if _is_ours(base) for name in _deferred(base)}
         yield from (each for each in _rna(cls).properties if each.identifier in declared)
 

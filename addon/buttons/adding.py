@@ -1,17 +1,23 @@
-"""What operators that add knots have in common: size, tube, colours, and the place of the new object."""
+"""The operators that add knots by name, woven or smooth, and what all that add knots have in common."""
+
+import re
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
-from ...core import Curve, MobiusFlowError, OptionError
+from ...core import Curve, OptionError
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves import bevel
 from ..curves.exchange import new_curve_data, write_points
+from ..engine.knot_list import labels, name_of
+from ..live.requirements import Condition
 from ..pictures.materials import colour_components
-from ..translations import rpt_, tip_
+from .button import Button
 
+OBJECT_MODE = Condition("Go back to Object Mode first", lambda context: context.mode != "OBJECT")
+_MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
 _MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
 
 
@@ -22,10 +28,10 @@ def check_length(label: Message, value: float) -> None:
         raise OptionError(Message(sentence, label=label, value=value, most=_MAX_NUMBER))
 
 
-class AddsKnot(AddObjectHelper):
+class AddsKnot(Button, AddObjectHelper):
     """An operator that makes a curve and adds it as an object at the 3D cursor."""
 
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012
+    needs = (OBJECT_MODE,)
 
     size: FloatProperty(name="Size", description="Half of the knot's width", default=1.0, min=1e-4, unit="LENGTH")
     fit_bevel: BoolProperty(
@@ -44,28 +50,16 @@ class AddsKnot(AddObjectHelper):
         name="Color Components", description="Give each spline of a link a material of its own", default=True
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether an object can be added."""
-        cls.poll_message_set(tip_("Go back to Object Mode first"))
-        return context.mode == "OBJECT"
-
     def make(self) -> tuple[str, Curve]:
         """Make the curve, in any size and place, and name it; raises a MobiusFlowError for what cannot be made."""
         raise NotImplementedError
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Add the object at the 3D cursor."""
-        try:
-            self._check()
-            name, curve = self.make()
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, rpt_(str(error)))
-            return {"CANCELLED"}
+    def act(self, context: bpy.types.Context) -> None:
+        self.check_lengths()
+        name, curve = self.make()
         low, high = curve.vertices.min(axis=0), curve.vertices.max(axis=0)
         scale = 2 * self.size / (high - low).max()
         object_data_add(context, self.curve_data(name, scale * (curve.vertices - 0.5 * (low + high)), curve), self)
-        return {"FINISHED"}
 
     def curve_data(self, name: str, vertices: FloatArray, curve: Curve) -> bpy.types.Curve:
         """Make curve data of a curve with these vertices, shape (n, 3), its tube and its colours."""
@@ -79,8 +73,7 @@ class AddsKnot(AddObjectHelper):
             colour_components(data)
         return data
 
-    def _check(self) -> None:
-        """Raise an OptionError for what is not a number."""
+    def check_lengths(self) -> None:
         check_length(Message("Size"), self.size)
         check_length(Message("Thickness"), self.thickness)
 
@@ -93,7 +86,6 @@ class AddsKnot(AddObjectHelper):
         raise NotImplementedError
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Show the knot's settings, then size, tube and place."""
         layout = self.layout
         layout.use_property_split = True
         self.draw_kind(layout)
@@ -104,8 +96,106 @@ class AddsKnot(AddObjectHelper):
             layout.prop(self, name)
 
     def draw_tube(self, layout: bpy.types.UILayout) -> None:
-        """Show the tube's settings."""
         layout.prop(self, "fit_bevel")
         row = layout.row()
         row.enabled = not self.fit_bevel
         row.prop(self, "thickness")
+
+
+class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
+    """Add a knot or link as it is woven, to be relaxed: a name of the table, a torus knot, a braid or a hard unknot"""
+
+    bl_label = "Knot"
+
+    kind: EnumProperty(
+        name="Kind",
+        items=[
+            ("TABLE", "Name", "A knot or link of the table"),
+            ("TORUS", "Torus", "The torus knot or link T(p, q)"),
+        ],
+        default="TABLE",
+    )
+    knot: StringProperty(name="Knot", description="Name in the table, such as 3_1 or T(2,5)", default="3_1")
+    p: IntProperty(name="p", description="How often the curve goes round the torus", default=2, soft_min=2)
+    q: IntProperty(name="q", description="How often the curve goes through the torus", default=3, soft_min=2)
+
+    def make(self) -> tuple[str, Curve]:
+        from ...core.knots import knot
+
+        name = self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})"
+        check_numbers(name)
+        return name, knot(name)
+
+    def draw_kind(self, layout: bpy.types.UILayout) -> None:
+        layout.prop(self, "kind")
+        for name in ("knot",) if self.kind == "TABLE" else ("p", "q"):
+            layout.prop(self, name)
+
+
+def check_numbers(name: str) -> None:
+    """Raise an OptionError for a torus knot or braid that would freeze the window."""
+    for number in re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))):
+        if int(number) > _MAX_TURNS:
+            raise OptionError(
+                Message(
+                    "{name} has a number beyond {most}, which is too much for a window; use smaller ones",
+                    name=name[:60],
+                    most=_MAX_TURNS,
+                )
+            )
+
+
+def found(_operator: bpy.types.Operator, _context: bpy.types.Context, _text: str) -> list[str]:
+    """All labels; Blender shows those that match what is typed."""
+    return list(labels().values())
+
+
+class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):
+    """Add a knot or link of the table, smooth, lying flat, with evenly spread strands; Relax lowers its energy"""
+
+    bl_label = "Search Knot"
+    bl_property = "choice"  # what the list of the popup is about
+
+    knot: StringProperty(
+        name="Knot",
+        description="Name in the table, from 0_1 to 10_165, or of a link such as L2a1",
+        default=labels()["3_1"],
+        search=found,
+    )
+    choice: EnumProperty(
+        name="Knot",
+        description="Knot picked from the list",
+        items=[(name, label, "") for name, label in labels().items()],
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    mirror: BoolProperty(
+        name="Mirror", description="Make the mirror image: every crossing changes over into under", default=False
+    )
+    vertices: IntProperty(
+        name="Points",
+        description="Number of points, 0 for as many as look smooth",
+        default=0,
+        min=0,
+        max=20_000,
+        soft_max=2000,
+    )
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Ask which one, unless it was given."""
+        if self.properties.is_property_set("knot"):
+            return self.execute(context)
+        context.window_manager.invoke_search_popup(self)
+        return {"FINISHED"}
+
+    def make(self) -> tuple[str, Curve]:
+        from ...core.knots import smooth_knot
+
+        if self.properties.is_property_set("choice"):
+            self.knot = labels()[self.choice]
+            self.properties.property_unset("choice")  # from now on the name is what counts
+        name = ("m" if self.mirror else "") + name_of(self.knot)
+        return name, smooth_knot(name, self.vertices or None)
+
+    def draw_kind(self, layout: bpy.types.UILayout) -> None:
+        for name in ("knot", "mirror", "vertices"):
+            layout.prop(self, name)

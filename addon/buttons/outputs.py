@@ -20,18 +20,18 @@ from ..engine.smooth_fit import SmoothFit
 from ..engine.tube_mesh import places_between
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
-from ..live.checks import selected_curves, unreadable
-from ..live.refusal import Refusal
+from ..live.checks import READABLE
+from ..live.requirements import selected_curves
 from ..pictures.materials import vertex_colours
 from ..translations import rpt_
 from .adding import check_length
-from .refusing import Refusing
+from .button import Button
 
 _PLAIN = "NONE"
 _MAX_POINTS = 10_000
 
 
-class _Output(Refusing):
+class _Output(Button):
     """What operators that make other objects of the selected curves have in common."""
 
     __annotations__ = {
@@ -42,10 +42,7 @@ class _Output(Refusing):
         ),
     }
 
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
-        """The curves must be drawn."""
-        return unreadable(context)
+    needs = (READABLE,)
 
     def act(self, context: bpy.types.Context) -> None:
         """Make all of them before any is shown."""
@@ -61,7 +58,6 @@ class _Output(Refusing):
         """Raise an OptionError for what Blender lets through but is no number."""
 
     def read(self, obj: bpy.types.Object) -> Recorded:
-        """Read the shapes of a curve."""
         return Recorded.of(obj)
 
     def make(
@@ -71,12 +67,11 @@ class _Output(Refusing):
         raise NotImplementedError
 
 
-class CURVE_OT_mobius_flow_tube_mesh(_Output, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+class CURVE_OT_mobius_flow_tube_mesh(_Output, bpy.types.Operator):
     """Make meshes of the selected curves' tubes, with their keys as shape keys of the same vertices. \
 glTF, USD and Alembic keep motion and colors (Alembic with Color Attributes on); \
 FBX does with NLA Strips and All Actions off, one frame later"""
 
-    bl_idname = "curve.mobius_flow_tube_mesh"
     bl_label = "Tube Mesh"
     __annotations__ = {
         "color": EnumProperty(
@@ -104,7 +99,6 @@ FBX does with NLA Strips and All Actions off, one frame later"""
     }
 
     def check_values(self) -> None:
-        """Check the radius."""
         check_length(Message("Radius"), self.radius)
 
     def read(self, obj: bpy.types.Object) -> Recorded:
@@ -125,7 +119,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             if colours is not None:
                 tube_mesh.write_colours(tube.data, colours[part], vertex_colours(tube_mesh.COLOUR))
             made.append(tube)
-        self._tell(objects, recorded)
+        self._report(objects, recorded)
         return made
 
     def _radii(
@@ -139,7 +133,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             for obj, each, depth in zip(objects, recorded, drawn, strict=True)
         ]
 
-    def _tell(self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded]) -> None:
+    def _report(self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded]) -> None:
         own = [obj.name for obj in objects if obj.data.bevel_mode != "ROUND" or obj.data.taper_object]
         if own:
             sentence = "The tube of {names} is round: profiles and tapers are left out"
@@ -151,11 +145,10 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             self.report({"INFO"}, rpt_(several if keys > 1 else "{names}: {count} vertices", **made))
 
 
-class CURVE_OT_mobius_flow_smooth_curve(_Output, bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_smooth_curve(_Output, bpy.types.Operator):
     """Make smooth splines of the selected curves as they are at the end of their animation, and say how far off they \
 are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF nothing without a bevel)"""
 
-    bl_idname = "curve.mobius_flow_smooth_curve"
     bl_label = "Smooth Curve"
     __annotations__ = {
         "kind": EnumProperty(
@@ -184,10 +177,10 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
         """Make the splines of all objects together: what one comes near to may be in another."""
         points = max(self.points, FEWEST) if self.points else None
         made, fit = smooth_objects(objects, link, points, self.kind)
-        self._tell(objects, fit)
+        self._report(objects, fit)
         return made
 
-    def _tell(self, objects: Sequence[bpy.types.Object], fit: SmoothFit) -> None:
+    def _report(self, objects: Sequence[bpy.types.Object], fit: SmoothFit) -> None:
         scene = bpy.context.scene
         said = Message(
             "{names}: {count} points, at most {error} off",
@@ -202,6 +195,3 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
             gap = length(scene, fit.gap)
             said = Message("{made}, where strands are only {gap} apart", made=said, gap=gap)
         self.report({"WARNING"}, rpt_("{made}; NOT proved to be the same knot, so give it more Points", made=said))
-
-
-CLASSES = (CURVE_OT_mobius_flow_tube_mesh, CURVE_OT_mobius_flow_smooth_curve)

@@ -1,9 +1,12 @@
 """Presets: settings under a name, in files of Blender's own kind; some come with the extension."""
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import bpy
 from bl_operators.presets import AddPresetBase
+from bl_ui.utils import PresetPanel
 from bpy.props import StringProperty
 
 from ..properties import SETTINGS, shown
@@ -17,12 +20,12 @@ _GONE = "There is no preset {name} any more; choose another one"
 _OURS = "The preset {name} belongs to Möbius Flow; only your own can be removed"
 
 
-class CURVE_OT_mobius_flow_preset(bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
     """Set the options of this preset; options that it does not name get their defaults"""
 
     bl_idname = "curve.mobius_flow_preset"
     bl_label = "Use Preset"
-    bl_options = {"REGISTER", "UNDO", "INTERNAL"}  # noqa: RUF012 - read by Blender
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"})
 
@@ -36,7 +39,7 @@ class CURVE_OT_mobius_flow_preset(bpy.types.Operator):  # noqa: N801 - Blender's
         return set(bpy.ops.script.execute_preset(filepath=self.filepath, menu_idname=PANEL))
 
 
-class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):
     """Keep all settings as a preset, or remove one"""
 
     bl_idname = "curve.mobius_flow_preset_add"
@@ -59,6 +62,21 @@ def _shipped() -> list[str]:
     return [bpy.path.display_name(path.name, title_case=False) for path in SHIPPED.glob("*.py")]
 
 
+class VIEW3D_PT_mobius_flow_presets(PresetPanel, bpy.types.Panel):
+    """The menu of presets of the extension and the user's own, in the head of the panel."""
+
+    bl_idname = PANEL
+    bl_label = "Möbius Flow Presets"
+    preset_subdir = SUBDIRECTORY
+    preset_operator = CURVE_OT_mobius_flow_preset.bl_idname
+    preset_add_operator = CURVE_OT_mobius_flow_preset_add.bl_idname
+
+    def path_menu(self, places: Sequence[str], operator: str, **more: Any) -> None:
+        """List the presets; those of the extension also where Blender (4.2.0) could not be told of their place."""
+        ours = [] if str(SHIPPED) in places else [str(SHIPPED)]
+        PresetPanel.path_menu(self, [*ours, *places], operator, **more)
+
+
 def register() -> None:
     """Tell Blender where the presets of the extension are; 4.2.0 cannot be told, see the panel."""
     if hasattr(bpy.utils, "register_preset_path"):
@@ -66,9 +84,5 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take that back."""
     if hasattr(bpy.utils, "unregister_preset_path"):
         bpy.utils.unregister_preset_path(str(ROOM))
-
-
-CLASSES = (CURVE_OT_mobius_flow_preset, CURVE_OT_mobius_flow_preset_add)

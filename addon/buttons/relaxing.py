@@ -1,24 +1,38 @@
-"""The operator that relaxes: it checks, starts a session, and says what happened."""
+"""The operators that relax, anew or further, and those for the animations that come of it."""
 
+from contextlib import suppress
 from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
-from ...core import MobiusFlowError
-from ..live.avoided import avoided
-from ..live.checks import refusal, selected_curves
-from ..live.refusal import Refusal
-from ..live.start import LiveRelax, tell
-from ..properties import SETTINGS, settings
-from ..scripting import Relaxation
-from ..scripting.settings import implied
+from ...core import MobiusFlowError, Task
+from ...core.messages import Message
+from ..curves import bake
+from ..curves.baked_keys import BakedKeys
+from ..curves.pins import pinned_vertices
+from ..curves.session import Session
+from ..curves.surroundings import Surroundings
+from ..engine.rest import Rest
+from ..engine.words import named
+from ..live import registry
+from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
+from ..live.modal import Listening, tell, unseen
+from ..live.refresh import Refresh
+from ..live.requirements import Condition, avoided, selected_curves
+from ..live.run import Run
+from ..properties import SETTINGS, relax_options, settings
+from ..scripting import Relaxation, begin, implied
 from ..translations import rpt_
-from .refusing import Refusing
+from .button import Button, button
+
+_ANIMATED = Condition(
+    "Select a curve that was baked first", lambda context: bake.scene_range(selected_curves(context)) is None
+)
 
 
-class Relaxing(LiveRelax, Refusing):
-    """What all operators that relax have in common: their settings, and the whole job in one call."""
+class Relaxing(Listening, Button):
+    """What all operators that relax have in common: the whole job in one call, or a live run in a window."""
 
     # For scripts; what is not given comes from the scene's settings, and nothing is remembered from run to run.
     __annotations__ = {
@@ -34,30 +48,43 @@ class Relaxing(LiveRelax, Refusing):
             options={"SKIP_SAVE", "HIDDEN"},
         ),
     }
+    needs = (RELAXABLE,)
+    continues = False  # whether baked curves are relaxed on from the ends of their animations
 
-    @classmethod
-    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
-        """Say why the selected curves cannot be relaxed in this way, or return None if they can."""
-        return refusal(context)
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Relax the selected curves live; ask first if smooth splines have to become polygons."""
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        context.view_layer.update()
+        if POLYGONS.of(selected_curves(context)) and not self.sample_splines:
+            return set(bpy.ops.curve.mobius_flow_sample("INVOKE_DEFAULT")) and {"CANCELLED"}
+        return self.begin(context)
+
+    def begin(self, context: bpy.types.Context) -> set[str]:
+        """Start a live run and its event loop."""
+        try:
+            values = self.values(context)
+            run = Run(self.session(context, values), Refresh(values["view_every"]))
+        except MobiusFlowError as error:
+            return self.fail(error)
+        registry.begin(run)
+        return self.listen(context, run)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job."""
-        context.view_layer.update()  # a script may have moved the object just before
         try:
-            values = self.values(context)
-            if refused := self.refusal(context):
-                raise MobiusFlowError(refused.sentence)
-            relaxation = Relaxation(*selected_curves(context), sample_splines=self.sample_splines)
-            report = (relaxation.relax_further if self.continues else relaxation.relax)(**values)
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, rpt_(str(error)))
-            return {"CANCELLED"}
+            return super().execute(context)
         except MemoryError:
             sentence = "Memory ran out; all is as it was. Take fewer Vertices or Max Iterations"
             self.report({"ERROR"}, rpt_(sentence))
             return {"CANCELLED"}
-        tell(self, context.scene, report)
-        return {"FINISHED"}
+
+    def act(self, context: bpy.types.Context) -> None:
+        tell(self, context.scene, self.session(context, self.values(context)).run())
+
+    def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
+        """Begin to relax the selected curves; raises MobiusFlowError."""
+        return begin(selected_curves(context), values, self.continues, self.sample_splines)
 
     def values(self, context: bpy.types.Context) -> dict[str, Any]:
         """The settings: those given to the operator, and the scene's; raises MobiusFlowError."""
@@ -68,11 +95,102 @@ class Relaxing(LiveRelax, Refusing):
         return values | implied([name for name in SETTINGS if given(name)]) | {"avoid": avoid}
 
 
-class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):
     """Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes"""
 
-    bl_idname = "curve.mobius_flow_relax"
     bl_label = "Relax"
 
 
-CLASSES = (CURVE_OT_mobius_flow_relax,)
+class CURVE_OT_mobius_flow_bake_again(Relaxing, bpy.types.Operator):
+    """Relax the selected curves anew from how they were before they were baked; new keys replace the old ones"""
+
+    bl_label = "Bake Again"
+    needs = (RELAXABLE, BAKED)
+
+
+class CURVE_OT_mobius_flow_continue(Relaxing, bpy.types.Operator):
+    """Relax the selected curves on from the end of their animation, with the points that they have, whatever \
+Vertices says; new keys follow the old ones"""
+
+    bl_label = "Continue"
+    needs = (RELAXABLE, BAKED)
+    continues = True
+
+
+@button("Clear", CLEARABLE)
+def clear(_operator: Button, context: bpy.types.Context) -> None:
+    """Take the keys away and give the selected curves back as they were before they were baked"""
+    Relaxation(*selected_curves(context)).clear()
+
+
+@button("Set Scene Range", _ANIMATED)
+def scene_range(operator: Button, context: bpy.types.Context) -> None:
+    """Let the scene play all frames of the selected curves' animation, and no others"""
+    scene, animation = context.scene, bake.scene_range(selected_curves(context))
+    scene.frame_start, scene.frame_end = animation
+    if hidden := unseen(scene, animation):
+        operator.report({"WARNING"}, rpt_(hidden))
+
+
+class CURVE_OT_mobius_flow_balance(Relaxing, bpy.types.Operator):
+    """Go on to the shape of the same energy that bends least for its length; new keys follow the old ones"""
+
+    bl_label = "Balance"
+    needs = (RELAXABLE, BAKED)
+    continues = True
+
+    def values(self, context: bpy.types.Context) -> dict[str, Any]:
+        return super().values(context) | {"balance": True}
+
+
+@button("Check", RELAXABLE, BAKED, needs_at_last=(UNEDITED,), bl_options={"REGISTER"})  # nothing to undo
+def check(operator: Button, context: bpy.types.Context) -> None:
+    """Tell whether the selected curves have come to rest at a minimum of the energy or at a saddle; nothing changes"""
+    values = {name: getattr(context.scene.mobius_flow, name) for name in SETTINGS}
+    operator.report({"INFO"}, rpt_(_described(context, _rest(context, values | {"avoid": avoided(context)}))))
+
+
+class CURVE_OT_mobius_flow_leave_saddle(Relaxing, bpy.types.Operator):
+    """Go on downhill where the selected curves rest on a saddle of the energy; new keys follow the old ones"""
+
+    bl_label = "Leave Saddle"
+    needs = (RELAXABLE, BAKED)
+    continues = True
+
+    def values(self, context: bpy.types.Context) -> dict[str, Any]:
+        return super().values(context) | {"escape_saddles": True}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Do the whole job, if there is anything to leave."""
+        return {"CANCELLED"} if self._at_minimum(context) else super().execute(context)
+
+    def begin(self, context: bpy.types.Context) -> set[str]:
+        """Start the run, if there is anything to leave."""
+        return {"CANCELLED"} if self._at_minimum(context) else super().begin(context)
+
+    def _at_minimum(self, context: bpy.types.Context) -> bool:
+        """Whether there is no way down, which is said; what else is wrong the relaxation reports."""
+        with suppress(MobiusFlowError):
+            rest = _rest(context, self.values(context))
+            if rest.index == 0:
+                self.report({"INFO"}, rpt_(_described(context, rest)))
+                return True
+        return False
+
+
+def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
+    """Where the selected curves rest; raises MobiusFlowError."""
+    context.view_layer.update()
+    objects = selected_curves(context)
+    keys = BakedKeys(objects)
+    task = Task(
+        curve=keys.curves[-1],
+        obstacles=Surroundings.of(values["avoid"], objects).obstacles,
+        pins=pinned_vertices(objects, keys.mesh),
+    )
+    return Rest.of(task, relax_options({**values, "balance": False}))
+
+
+def _described(context: bpy.types.Context, rest: Rest) -> Message:
+    names = named([obj.name for obj in selected_curves(context)])
+    return Message("{names}: {rest}", names=names, rest=rest.words)

@@ -1,171 +1,150 @@
-"""The buttons for a run that is going on, or has been cancelled, and the question before one starts."""
+"""The buttons for a run that is going on, has been cancelled, or got stuck, and the question before one starts."""
 
 import time
-from collections.abc import Callable
 
 import bpy
+import numpy as np
 
 from ...core import MobiusFlowError
 from ...core.messages import Message
 from ..curves import sampling
+from ..curves.splines import control_points
+from ..engine.placement import Spot, at
 from ..live import registry
-from ..live.checks import hindrance, selected_curves
-from ..live.modal import redraw_views
+from ..live.checks import RELAXABLE
+from ..live.modal import Listening, tell_end
+from ..live.requirements import Condition, require, selected_curves
 from ..live.run import Run, State
-from ..live.start import Listening, tell_end
-from ..translations import iface_, rpt_, tip_
+from ..translations import iface_
+from .button import Button, button
 
-_NOTHING = Message("Nothing is being relaxed")
-_WRITING = Message("The relaxation is over; its keys are being written")
 _PATIENCE = 0.005  # seconds between looks at whether the keys are ready
 
 
-class _RunButton:
-    """A button for the run that is going on."""
-
-    poll_message_set: Callable[[str], None]
-
-    @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
-        """Whether there is a run that still computes."""
-        run = registry.current()
-        busy = run is not None and run.state is State.FINISHING
-        cls.poll_message_set(tip_(_WRITING if busy else _NOTHING))
-        return run is not None and not busy
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Do what the button says."""
-        run = registry.current()
-        assert run is not None, "poll looks for it"
-        self.act(run)
-        redraw_views(context.window_manager)
-        return {"FINISHED"}
-
-    def act(self, run: Run) -> None:
-        """What the button does."""
-        raise NotImplementedError
+def _is_writing(_context: bpy.types.Context) -> bool:
+    run = registry.current()
+    return run is not None and run.state is State.FINISHING
 
 
-class CURVE_OT_mobius_flow_pause(_RunButton, bpy.types.Operator):  # noqa: N801 - Blender's naming scheme
+def _has_no_trouble(context: bpy.types.Context) -> bool:
+    run = registry.shown(context.active_object)
+    return run is None or not run.state.over or not run.trouble
+
+
+def _is_lost(_context: bpy.types.Context) -> bool:
+    run = registry.latest()
+    return run is None or not run.recoverable
+
+
+_GOING_ON = Condition("Nothing is being relaxed", lambda _: registry.current() is None)
+_COMPUTING = Condition("The relaxation is over; its keys are being written", _is_writing)
+_TROUBLE = Condition("Nothing is the matter at any place of this curve", _has_no_trouble)
+_RECOVERABLE = Condition("No relaxation was cancelled", _is_lost)
+
+
+@button("Pause", _COMPUTING, _GOING_ON, bl_options=set())
+def pause(_operator: Button, _context: bpy.types.Context) -> None:
     """Pause the relaxation, or go on with it"""
-
-    bl_idname = "curve.mobius_flow_pause"
-    bl_label = "Pause"
-
-    def act(self, run: Run) -> None:
-        """Pause or resume."""
-        run.toggle_pause()
+    registry.current().toggle_pause()
 
 
-class CURVE_OT_mobius_flow_stop(_RunButton, bpy.types.Operator):  # noqa: N801
+@button("Keep", _COMPUTING, _GOING_ON, bl_options=set())
+def stop(_operator: Button, _context: bpy.types.Context) -> None:
     """Stop here: keep the shape that the curves have now, and the motion up to it"""
-
-    bl_idname = "curve.mobius_flow_stop"
-    bl_label = "Keep"
-
-    def act(self, run: Run) -> None:
-        """Stop; the event loop writes the result."""
-        run.keep()
+    registry.current().keep()  # the event loop writes the result
 
 
-class CURVE_OT_mobius_flow_cancel(bpy.types.Operator):  # noqa: N801
+@button("Cancel", _GOING_ON, bl_options=set())
+def cancel(_operator: Button, _context: bpy.types.Context) -> None:
     """Stop, and put everything back as it was; Recover brings it back again"""
-
-    bl_idname = "curve.mobius_flow_cancel"
-    bl_label = "Cancel"
-
-    @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
-        """Whether there is a run, even one whose keys are being written."""
-        cls.poll_message_set(tip_(_NOTHING))
-        return registry.current() is not None
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Put everything back."""
-        run = registry.current()
-        assert run is not None, "poll looks for it"
-        run.cancel()
-        redraw_views(context.window_manager)
-        return {"FINISHED"}
+    registry.current().cancel()
 
 
-class CURVE_OT_mobius_flow_recover(Listening, bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
     """Keep what the last relaxation had reached when it was cancelled"""
 
-    bl_idname = "curve.mobius_flow_recover"
     bl_label = "Recover"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - read by Blender
-
-    @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
-        """Whether there is something to recover."""
-        run = registry.latest()
-        cls.poll_message_set(tip_("No relaxation was cancelled"))
-        return run is not None and run.recoverable
+    needs = (_RECOVERABLE,)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Write the keys while Blender stays usable."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        run = self._recovered()
-        return {"CANCELLED"} if run is None else self.listen(context, run)
+        try:
+            return self.listen(context, self._recovered())
+        except MobiusFlowError as error:
+            return self.fail(error)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Write the keys."""
-        run = self._recovered()
-        if run is None:
-            return {"CANCELLED"}
+        try:
+            run = self._recovered()
+        except MobiusFlowError as error:
+            return self.fail(error)
         while not run.state.over:
             run.tick()
             time.sleep(_PATIENCE)
         tell_end(self, context.scene, run)
         return {"FINISHED"} if run.state is State.DONE else {"CANCELLED"}
 
-    def _recovered(self) -> Run | None:
+    def _recovered(self) -> Run:
         run = registry.latest()
         assert run is not None, "poll looks for it"
-        try:
-            if refused := hindrance(run.group.objects):
-                raise MobiusFlowError(refused.sentence)
-            run.recover()
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, rpt_(str(error)))
-            return None
+        require(RELAXABLE.of(run.group.objects))
+        run.recover()
         return run
 
 
-class CURVE_OT_mobius_flow_sample(bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_sample(Button, bpy.types.Operator):
     """Ask whether smooth splines may become polygons, then relax"""
 
-    bl_idname = "curve.mobius_flow_sample"
     bl_label = "Sample and Relax"
-    bl_options = {"INTERNAL"}  # noqa: RUF012 - read by Blender
+    bl_options = {"INTERNAL"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Ask."""
         try:
             self.questions = sampling.questions(selected_curves(context))
         except MobiusFlowError as error:
-            self.report({"ERROR"}, rpt_(str(error)))
-            return {"CANCELLED"}
+            return self.fail(error)
         return set(context.window_manager.invoke_props_dialog(self, width=420))
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Show the questions."""
         for question in self.questions:
             self.layout.label(text=iface_(question), icon="QUESTION")
         self.layout.label(text=iface_("For more or fewer points change the curve's Resolution Preview U."))
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Relax with the answer."""
+    def act(self, _context: bpy.types.Context) -> None:
         bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT", sample_splines=True)
-        return {"FINISHED"}
 
 
-CLASSES = (
-    CURVE_OT_mobius_flow_pause,
-    CURVE_OT_mobius_flow_stop,
-    CURVE_OT_mobius_flow_cancel,
-    CURVE_OT_mobius_flow_recover,
-    CURVE_OT_mobius_flow_sample,
-)
+@button("Show", _TROUBLE)
+def show(_operator: Button, context: bpy.types.Context) -> None:
+    """Select the points that the message is about, in Edit Mode"""
+    run = registry.shown(context.active_object)
+    spots = {obj: spot for obj, spot in run.spots.items() if obj.visible_get()}
+    if not spots:
+        sentence = "The curve is hidden, or not in this view layer; make it visible first"
+        raise MobiusFlowError(Message(sentence))
+    if context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    for obj in context.view_layer.objects:
+        obj.select_set(obj in spots)
+    context.view_layer.objects.active = next(iter(spots))
+    for obj, spot in spots.items():
+        _select(obj.data, spot)
+    bpy.ops.object.mode_set(mode="EDIT")
+    if context.region_data is not None:
+        bpy.ops.view3d.view_selected()
+
+
+def _select(data: bpy.types.Curve, spot: Spot) -> None:
+    """Select the nearest points of a curve, and no others."""
+    points = [point for spline in data.splines for point in control_points(spline)]
+    chosen = at(np.array([point.co[:3] for point in points]), spot.points)
+    for point, wanted in zip(points, chosen.tolist(), strict=True):
+        if isinstance(point, bpy.types.BezierSplinePoint):
+            point.select_control_point = wanted
+            point.select_left_handle = point.select_right_handle = False
+        else:
+            point.select = wanted

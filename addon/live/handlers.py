@@ -1,5 +1,7 @@
 """What happens to a live relaxation when a file is loaded or saved, or somebody undoes."""
 
+from collections.abc import Callable
+from functools import wraps
 from typing import Any
 
 import bpy
@@ -12,10 +14,20 @@ from .modal import clear_status
 from .run import Run
 
 
-@persistent  # type: ignore[untyped-decorator]
-def _load_pre(*_: Any) -> None:
-    if run := registry.current():
-        run.cancel(Message("A file was loaded; the relaxation of {names} has ended", names=run.name))
+def _during_run(handle: Callable[[Run], None]) -> Any:
+    """Call a handler with the run that is going on, if there is one."""
+
+    @wraps(handle)
+    def handler(*_: Any) -> None:
+        if run := registry.current():
+            handle(run)
+
+    return persistent(handler)
+
+
+@_during_run
+def _load_pre(run: Run) -> None:
+    run.cancel(Message("A file was loaded; the relaxation of {names} has ended", names=run.name))
 
 
 @persistent  # type: ignore[untyped-decorator]
@@ -24,29 +36,27 @@ def _load_post(*_: Any) -> None:
     show_originals()  # of a run during which the file was saved automatically
 
 
-@persistent  # type: ignore[untyped-decorator]
-def _undo_pre(*_: Any) -> None:
-    if run := registry.current():
-        _before(run, run.history.others)
+@_during_run
+def _undo_pre(run: Run) -> None:
+    _before(run, registry.history.others)
 
 
-@persistent  # type: ignore[untyped-decorator]
-def _redo_pre(*_: Any) -> None:
-    if run := registry.current():
-        _before(run, run.history.undone)
+@_during_run
+def _redo_pre(run: Run) -> None:
+    _before(run, registry.history.undone)
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _undo_post(*_: Any) -> None:
     if run := registry.current():
-        run.history.undo()
+        registry.history.undo()
     _after(run)
 
 
 @persistent  # type: ignore[untyped-decorator]
 def _redo_post(*_: Any) -> None:
     if run := registry.current():
-        run.history.redo()
+        registry.history.undo(-1)
     _after(run)
 
 
@@ -66,19 +76,17 @@ def _after(run: Run | None) -> None:
         show_originals()
 
 
-@persistent  # type: ignore[untyped-decorator]
-def _save_pre(*_: Any) -> None:
+@_during_run
+def _save_pre(run: Run) -> None:
     """A file holds curves as they were or with all their keys, and nothing in between."""
-    if run := registry.current():
-        run.complete()
-    if run := registry.current():
+    run.complete()
+    if not run.state.over:
         run.group.hide()
 
 
-@persistent  # type: ignore[untyped-decorator]
-def _save_post(*_: Any) -> None:
-    if run := registry.current():
-        run.group.resume()
+@_during_run
+def _save_post(run: Run) -> None:
+    run.group.resume()
 
 
 _HANDLERS = {
@@ -95,7 +103,6 @@ _HANDLERS = {
 
 
 def register() -> None:
-    """Listen."""
     for name, handler in _HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
 

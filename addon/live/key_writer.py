@@ -19,13 +19,7 @@ class _AbandonedError(Exception):
 
 
 class KeyWriter:
-    """Chooses, proves and writes the keys of a session without ever blocking for long.
-
-    Parameters
-    ----------
-    session, proof
-        What is keyed, and what proves its motions free of contact, called in the thread.
-    """
+    """Chooses, proves and writes the keys of a session without ever blocking for long; the proof runs in a thread."""
 
     def __init__(self, session: Session, proof: Proof) -> None:
         self._session = session
@@ -49,13 +43,7 @@ class KeyWriter:
         return self._pieces is not None
 
     def advance(self, seconds: float | None = None) -> Report | None:
-        """Write for so long, by default a moment, if the keys are ready, and report once all are written.
-
-        Raises
-        ------
-        MobiusFlowError
-            If the thread failed.
-        """
+        """Write for so long, by default a moment, if the keys are ready, and report once all are written."""
         if self._thread.is_alive():
             return None
         if self._prepared is None:

@@ -1,9 +1,13 @@
-"""The event loop of a live relaxation: what the timer, Esc, Enter and the undo keys do, and what is shown meanwhile."""
+"""A run in a window: its event loop, what operators do meanwhile, and what is said at its end."""
+
+from typing import Any
 
 import bpy
 
 from ...core.messages import Message
-from ..translations import iface_
+from ..curves.session import Report
+from ..translations import iface_, rpt_
+from . import registry
 from .run import Run, State
 
 _INTERVAL = 1 / 60  # seconds
@@ -11,15 +15,7 @@ _PASS = {"PASS_THROUGH"}
 
 
 class Loop:
-    """A timer in a window and a line in its status bar, for as long as a run goes on.
-
-    Parameters
-    ----------
-    run
-        The run.
-    context
-        Where it was started.
-    """
+    """The event loop: a timer in the window where a run was started and a line in its status bar, while it goes on."""
 
     def __init__(self, run: Run, context: bpy.types.Context) -> None:
         self.run = run
@@ -31,28 +27,28 @@ class Loop:
         self._show(context)
 
     def handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Do what an event asks for; most are none of a relaxation's business, and Blender stays usable."""
+        """Handle an event; most do not concern the relaxation, and Blender stays usable."""
         handled = _PASS
-        self.run.history.look()
+        registry.history.look()
         if self.run.state.over:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":
             self.run.tick()
         elif event.value == "PRESS" and not self.run.waits and _is_meant(context, event):
             handled = self._key(event)
-        if self._seen() != self._shown:
+        if self._visible() != self._shown:
             self._show(context)
         if self.run.state.over:
             return {"FINISHED"} if self.run.state is State.DONE else {"CANCELLED"}
         return handled
 
-    def _seen(self) -> tuple[object, ...]:
-        """What is shown depends on nothing else."""
+    def _visible(self) -> tuple[object, ...]:
+        """All that what is shown depends on."""
         return self.run.state, self.run.shown, self.run.waits
 
     def _key(self, event: bpy.types.Event) -> set[str]:
         undo = event.type == "Z" and (event.ctrl or event.oskey) and not event.shift
-        if event.type == "ESC" or (undo and not self.run.history.others):
+        if event.type == "ESC" or (undo and not registry.history.others):
             self.run.cancel()
         elif event.type in {"RET", "NUMPAD_ENTER"}:
             self.run.keep()
@@ -76,7 +72,7 @@ class Loop:
         self.run.cancel(Message("The window was closed; all is as it was"))
 
     def _show(self, context: bpy.types.Context) -> None:
-        self._shown = self._seen()
+        self._shown = self._visible()
         if not self.run.state.over and context.window is not None:
             context.workspace.status_text_set(status_line(self.run))
         redraw_views(context.window_manager)
@@ -121,4 +117,65 @@ def _is_meant(context: bpy.types.Context, event: bpy.types.Event) -> bool:
     return not screen.is_animation_playing and any(
         area.type == "VIEW_3D" and 0 <= x - area.x < area.width and 0 <= y - area.y < area.height
         for area in screen.areas
+    )
+
+
+class Listening:
+    """What an operator does in a window while a run goes on."""
+
+    loop: Loop | None = None
+
+    def listen(self, context: bpy.types.Context, run: Run) -> set[str]:
+        """Start the event loop of a run."""
+        self.loop = Loop(run, context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        assert self.loop is not None, "invoke makes it"
+        result = self.loop.handle(context, event)
+        if self.loop.run.state.over:
+            tell_end(self, context.scene, self.loop.run)
+        return result
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender gives up the operator: its window or its file is closed."""
+        if self.loop is not None:
+            self.loop.abandon()
+
+
+def tell_end(operator: Any, scene: bpy.types.Scene, run: Run) -> None:
+    """Say how a run ended, and keep showing the shape that was kept."""
+    if run.state is State.DONE and run.report is not None:
+        if run.report.keys > 1:
+            whole = int(run.report.last_frame // 1)
+            scene.frame_set(whole, subframe=run.report.last_frame - whole)
+        tell(operator, scene, run.report, failed=run.failed)
+    else:
+        operator.report({"ERROR"} if run.failed else {"INFO"}, rpt_(run.message))
+
+
+def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = False) -> None:
+    """Say what was done, and whether the scene shows all of it."""
+    hidden = unseen(scene, report.scene_range)
+    clean = report.clean and not failed and hidden is None
+    sentence = Message("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
+    operator.report({"INFO"} if clean else {"WARNING"}, rpt_(sentence))
+
+
+def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Message | None:
+    """Say that a scene does not play all frames of an animation, and what helps, or return None if it does."""
+    if animation is None or (scene.frame_start <= animation[0] and animation[1] <= scene.frame_end):
+        return None
+    first, last = animation
+    helps = Message("press Set Scene Range to see all of it")
+    if first < scene.bl_rna.properties["frame_start"].hard_min:
+        helps = Message("no scene plays negative frames, so bake again with a later Start Frame")
+    return Message(
+        "The scene plays frames {start} to {end} only, the animation has {first} to {last}: {helps}",
+        start=scene.frame_start,
+        end=scene.frame_end,
+        first=first,
+        last=last,
+        helps=helps,
     )

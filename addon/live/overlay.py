@@ -4,10 +4,13 @@ import logging
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+import blf
 import bpy
+import gpu
 import mathutils
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
+from gpu_extras.batch import batch_for_shader
 
 from ...core.types import FloatArray
 from ..curves import pins
@@ -15,8 +18,7 @@ from ..engine.colours import Colour, legible
 from ..engine.plot import dashes, plot
 from ..translations import iface_
 from . import registry
-from .checks import curves_at_hand
-from .drawing import area, line, text
+from .requirements import curves_at_hand
 from .run import Run
 
 _SIZE = np.array([280.0, 120.0])  # of the plot, at the usual scale of the interface
@@ -26,6 +28,7 @@ _CAPTION = 18.0  # height of the line of text above the plot
 _LINE = 2.0
 _DASH = 8.0
 _RADIUS = 14.0  # of marks
+_FONT = 0  # Blender's own
 _FONT_SHARE = 0.9  # of the interface's size of text
 _OPACITY = 0.85
 _RED = (0.95, 0.25, 0.2)
@@ -36,12 +39,10 @@ _handles: list[object] = []
 
 
 def register() -> None:
-    """Draw from now on."""
     _handles.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL"))
 
 
 def unregister() -> None:
-    """Draw no more."""
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
 
@@ -99,7 +100,6 @@ def _plot(context: bpy.types.Context, run: Run) -> None:
 
 
 def _curve(style: _Style, run: Run, origin: FloatArray, size: FloatArray) -> None:
-    """Draw the energies, and the target below them."""
     drawn = plot(run.energies, run.target, *size)
     if run.target is not None and drawn.target is not None:
         _target(style, iface_(run.target.label), origin + np.array([0.0, drawn.target]), size[0])
@@ -107,7 +107,6 @@ def _curve(style: _Style, run: Run, origin: FloatArray, size: FloatArray) -> Non
 
 
 def _caption(style: _Style, run: Run, start: FloatArray, width: float) -> None:
-    """Write what has been reached."""
     assert run.last is not None, "it has energies"
     x, y = start.tolist()
     text(iface_("Energy {energy:.4f}", energy=run.energies[-1]), (x, y), style.words, style.font)
@@ -152,3 +151,35 @@ def _seen(context: bpy.types.Context, places: Iterable[tuple[bpy.types.Object, F
         world = obj.matrix_world @ mathutils.Vector(place)
         if (there := location_3d_to_region_2d(context.region, context.region_data, world)) is not None:
             yield np.array(there)
+
+
+def area(low: tuple[float, float], high: tuple[float, float], colour: Colour) -> None:
+    """Fill a rectangle, given by two corners; the colour has an alpha."""
+    (x0, y0), (x1, y1) = low, high
+    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+    gpu.state.blend_set("ALPHA")
+    shader.uniform_float("color", tuple(colour))
+    batch_for_shader(shader, "TRI_FAN", {"pos": [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]}).draw(shader)
+    gpu.state.blend_set("NONE")
+
+
+def line(points: FloatArray, colour: Colour, width: float, kind: str = "LINE_STRIP") -> None:
+    """Draw a line through points, (k, 2), or a line for every pair of them (``LINES``); ``width`` in pixels."""
+    if len(points) < 2:
+        return
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    gpu.state.blend_set("ALPHA")
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    shader.uniform_float("lineWidth", width)
+    shader.uniform_float("color", (*colour[:3], 1.0))
+    corners = np.pad(np.asarray(points, dtype=np.float32), ((0, 0), (0, 1)))
+    batch_for_shader(shader, kind, {"pos": corners}).draw(shader)
+    gpu.state.blend_set("NONE")
+
+
+def text(words: str, place: tuple[float, float], colour: Colour, size: float, share: float = 0.0) -> None:
+    """Write words; ``share`` of their width lies left of the place."""
+    blf.size(_FONT, size)
+    blf.color(_FONT, *colour[:3], 1.0)
+    blf.position(_FONT, place[0] - share * blf.dimensions(_FONT, words)[0], place[1], 0.0)
+    blf.draw(_FONT, words)

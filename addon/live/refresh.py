@@ -1,4 +1,4 @@
-"""When a run's curves are shown: drawing must leave the computer to the computation most of the time."""
+"""How often the shape reached so far is shown: the computation comes first."""
 
 import time
 from collections.abc import Callable

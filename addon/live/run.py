@@ -1,30 +1,26 @@
 """One live relaxation: takes in the worker's iterates, shows them in the curves, and ends cleanly whatever happens.
 
-That there is one is known here, in Python, and never in the file. The curves themselves move, so that the window
-shows them as they are; what they were is kept and put back unless the run is to be kept.
+The curves themselves move; what they were is put back unless the run is to be kept.
 """
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from ...core import CurveError, Iterate, MobiusFlowError, Outcome, RelaxOptions, Status
+from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.errors import Place
 from ...core.messages import Message
 from ..curves.group import Group
-from ..curves.pins import FREE, Held
 from ..curves.session import Report, Session
 from ..curves.splines import digest
-from ..curves.surroundings import NOTHING, Surroundings
-from ..engine.key_options import KeyOptions
 from ..engine.placement import Spot
 from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
-from .history import History
+from ..pictures.rendering import is_rendering
 from .key_writer import KeyWriter
 from .refresh import Refresh
 
@@ -36,8 +32,6 @@ _SLICE = 0.02  # seconds of taking in iterates at a time
 
 
 class State(Enum):
-    """Where a run stands."""
-
     RUNNING = "running"
     PAUSED = "paused"
     FINISHING = "finishing"
@@ -47,30 +41,11 @@ class State(Enum):
 
     @property
     def over(self) -> bool:
-        """Whether nothing happens any more."""
         return self in (State.DONE, State.CANCELLED, State.LOST)
 
 
 class Run:
-    """A live relaxation of curve objects as one link.
-
-    Parameters
-    ----------
-    objects
-        Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
-    options, key_options
-        The requested options.
-    continues
-        Whether baked curves are relaxed on from the ends of their animations.
-    refresh
-        When the curves are shown.
-    surroundings
-        What they avoid.
-
-    Raises
-    ------
-    MobiusFlowError
-        If the curves cannot be relaxed; the message says why.
+    """A session that is fed by a worker, while its curves are shown.
 
     Attributes
     ----------
@@ -82,16 +57,7 @@ class Run:
         Where on the objects the reason is why it failed or got stuck, if it is somewhere.
     """
 
-    def __init__(
-        self,
-        objects: Sequence["bpy.types.Object"],
-        options: RelaxOptions,
-        key_options: KeyOptions,
-        continues: bool,
-        refresh: Refresh,
-        surroundings: Surroundings = NOTHING,
-        held: Held = FREE,
-    ) -> None:
+    def __init__(self, session: Session, refresh: Refresh) -> None:
         self.state = State.RUNNING
         self.message = ""
         self.failed = False
@@ -102,9 +68,7 @@ class Run:
         self.energies: list[float] = []
         self.trouble: list[Spot] = []
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
-        self.history = History()
-        self._refresh = refresh
-        self._session = Session(objects, options, key_options, continues, surroundings, held)
+        self._session, self._refresh = session, refresh
         try:
             self._worker = Worker(self._session.task, self._session.options, self.group.link)
         except BaseException:
@@ -114,7 +78,6 @@ class Run:
 
     @property
     def group(self) -> Group:
-        """What is relaxed."""
         return self._session.group
 
     @property
@@ -147,16 +110,12 @@ class Run:
     @property
     def waits(self) -> bool:
         """Whether Blender renders the curve, which must not move then."""
-        import bpy
-
-        return not self.state.over and bool(bpy.app.is_job_running("RENDER"))
+        return not self.state.over and is_rendering()
 
     @property
     def endures(self) -> bool:
         """Whether it can go on from wherever undo puts the curves."""
         return self.state in (State.RUNNING, State.PAUSED)
-
-    # -- what the buttons do ------------------------------------------------------------------------------------
 
     def toggle_pause(self) -> None:
         """Show no more iterates, or go on; meanwhile the worker fills its queue and then waits too."""
@@ -191,20 +150,12 @@ class Run:
         return self.state in (State.CANCELLED, State.LOST) and self.last is not None
 
     def recover(self) -> None:
-        """Keep after all what the run had reached when it was cancelled.
-
-        Raises
-        ------
-        MobiusFlowError
-            If the curves are no longer what they were when the run began.
-        """
+        """Keep what a cancelled run had reached; raises MobiusFlowError if the curves have changed since."""
         self._session.reopen()
         self._keys = KeyWriter(self._session, self._worker.is_free)
         self.state, self.message, self.failed, self.shown = State.RUNNING, "", False, None
         self.trouble, self._left = [], None
         self.keep()
-
-    # -- what the timer does ------------------------------------------------------------------------------------
 
     def tick(self) -> None:
         """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
@@ -274,7 +225,6 @@ class Run:
             return None
 
     def _show(self) -> None:
-        """Show the last iterate, unless it is shown."""
         if self.last is not None and self.last is not self.shown:
             self.group.show(self._session.start, self._session.frame)
             self.shown = self.last
@@ -288,8 +238,6 @@ class Run:
             self.trouble = self.group.spots(report.outcome.place, self.last.curve)
             self._close(State.DONE, report.sentence)
             self._leave()
-
-    # -- ends ---------------------------------------------------------------------------------------------------
 
     def _fail(self, message: str, place: Place | None = None) -> None:
         self.failed = True

@@ -1,49 +1,64 @@
-"""A scene rendered to a film by Blender's own loop over frames, in a window with its progress and its Esc.
-
-What is rendered is a copy of the scene that has the film's settings and the same objects, so that the scene itself is
-never touched, whatever ends the render. The film appears whole or not at all.
-"""
+"""Films of what an artist's scene plays, as it is rendered or in one of two looks that need no settings."""
 
 import os
-import secrets
-from contextlib import suppress
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core import MobiusFlowError
 from ...core.errors import OutputError, choice
 from ...core.messages import Message
-from .looks import LOOKS
-from .movie import length_of, use_h264
-from .rendering import quiet
+from . import rendering, stage, staging
+from .movie import Reel, copied, sweep
+from .rendering import is_rendering
 
 if TYPE_CHECKING:
     import bpy
 
 SUFFIX = ".mp4"
-_MARK = "mobius_flow_copy"  # custom property of the copies; before Blender 5 settings of scenes are such, too
+_SAMPLES = 32
 
 
-class Filming:
-    """One film of a scene.
+def _quick(scene: "bpy.types.Scene") -> None:
+    rendering.look_plain(scene)
+    if direction := staging.key_direction(scene):
+        stage.light_workbench(scene, direction)
+
+
+@dataclass(frozen=True)
+class Look:
+    """What the frames of a film look like: its name and description, and what sets a scene up for it."""
+
+    label: str
+    description: str
+    set_up: "Callable[[bpy.types.Scene], None]"
+
+
+LOOKS = {
+    "SCENE": Look("As the Scene", "With the render engine and the settings that the scene has", lambda _scene: None),
+    "QUICK": Look("Quick", "Plain shading by Workbench: many frames in little time", _quick),
+    "FINE": Look(
+        "Fine",
+        "Soft light and shadows by Cycles: seconds or minutes for each frame",
+        lambda scene: rendering.look_fine(scene, _SAMPLES),
+    ),
+}
+
+
+class Filming(Reel):
+    """One film of the frames that a scene plays, in the size of its renders, through its camera.
 
     Parameters
     ----------
     scene
-        What is filmed: the frames that it plays, in the size of its renders, through its camera.
+        What is filmed; it stays as it is.
     path
         The file, with Blender's ``//`` for the directory of the open file; ``.mp4`` is added to a name without suffix.
     look
         One of `LOOKS`.
     overwrite
         Whether a file that is there may be replaced.
-
-    Attributes
-    ----------
-    path
-        The file.
-    frames
-        Number of the film's frames.
 
     Raises
     ------
@@ -54,74 +69,33 @@ class Filming:
     def __init__(self, scene: "bpy.types.Scene", path: str, look: str = "SCENE", overwrite: bool = False) -> None:
         if look not in LOOKS:
             raise MobiusFlowError(f"{look!r} is no look of films; {choice(look, LOOKS)}")
-        self.path = target(path)
-        _check(scene, self.path, overwrite)
-        _sweep()
-        self.frames = len(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
-        self._part = self.path.with_name(f".{secrets.token_hex(8)}{SUFFIX}")
-        self._copy = self._copied(scene, look)
-
-    def _copied(self, scene: "bpy.types.Scene", look: str) -> str:
-        made = scene.copy()
-        made.name, made[_MARK] = "Film", True
-        LOOKS[look].set_up(made)
-        use_h264(made)
-        made.render.filepath, made.render.use_file_extension = str(self._part), False
-        return str(made.name)
+        place = target(path)
+        _check(scene, place, overwrite)
+        sweep()
+        copy = copied(scene)
+        LOOKS[look].set_up(copy)
+        super().__init__(copy, place)
 
     def render(self) -> None:
         """Render the film in this call; raises MobiusFlowError if it does not come to its end."""
-        import bpy
-
         try:
-            with quiet():
-                bpy.ops.render.render(animation=True, scene=self._copy)
+            super().render()
         except RuntimeError as error:
             raise OutputError(self.path, error) from error
-        finally:
-            whole = self.finish()
-        if not whole:
-            raise MobiusFlowError(
-                Message("{path}: Blender did not render the film to its end; is the disk full?", path=self.path)
-            )
+        except OSError as error:
+            sentence = "{path}: Blender did not render the film to its end; is the disk full?"
+            raise MobiusFlowError(Message(sentence, path=self.path)) from error
 
     def start(self) -> None:
-        """Begin to render in Blender's own window, and return at once; `finish` is to be called when `over`."""
-        import bpy
-
+        """Begin to render in Blender's own window; raises MobiusFlowError."""
         try:
-            bpy.ops.render.render("INVOKE_DEFAULT", animation=True, scene=self._copy)
+            super().start()
         except RuntimeError as error:
-            self.finish()
             raise OutputError(self.path, error) from error
-
-    @property
-    def over(self) -> bool:
-        """Whether nothing is rendered any more."""
-        return not is_rendering()
-
-    def finish(self) -> bool:
-        """Put the film in its place if it is whole, and return whether it is; leave nothing else behind."""
-        try:
-            whole = self._part.exists() and length_of(self._part) == self.frames
-            if whole:
-                self._part.replace(self.path)
-        finally:
-            with suppress(OSError):
-                self._part.unlink(missing_ok=True)
-            if not is_rendering():
-                _sweep()
-        return whole
 
 
 def target(path: str) -> Path:
-    """Where a film goes that is called so.
-
-    Raises
-    ------
-    MobiusFlowError
-        If that is no film's name, or beside a file that was never saved.
-    """
+    """Where a film of that name goes; raises MobiusFlowError if it is no film's, or beside a file never saved."""
     import bpy
 
     if not path.strip():
@@ -136,13 +110,6 @@ def target(path: str) -> Path:
         sentence = "{name} does not end in {suffix}, as films do here; give it another name"
         raise MobiusFlowError(Message(sentence, name=found.name, suffix=SUFFIX))
     return found if found.suffix else found.with_suffix(SUFFIX)
-
-
-def is_rendering() -> bool:
-    """Whether Blender renders something in the background of a window."""
-    import bpy
-
-    return bool(bpy.app.is_job_running("RENDER"))
 
 
 def _check(scene: "bpy.types.Scene", path: Path, overwrite: bool) -> None:
@@ -163,11 +130,3 @@ def _check(scene: "bpy.types.Scene", path: Path, overwrite: bool) -> None:
         raise MobiusFlowError(Message("{path} is no directory; choose another place for the film", path=path.parent))
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise MobiusFlowError(Message("{path} cannot be written; choose another place for the film", path=path))
-
-
-def _sweep() -> None:
-    """Remove copies of scenes: the one just rendered, and any that was saved while it was being rendered."""
-    import bpy
-
-    for scene in [each for each in bpy.data.scenes if _MARK in each]:
-        bpy.data.scenes.remove(scene)

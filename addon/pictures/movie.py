@@ -1,8 +1,13 @@
-"""Films: every frame a picture, then the pictures in one file. Blender's own loop over frames cannot be interrupted."""
+"""Films of scenes, whole or not at all: by Blender's own loop over frames, or frame by frame.
 
+Blender's own loop shows a window with progress and an Esc, and otherwise cannot be interrupted. Frame by frame every
+picture is a file, and then they are put together.
+"""
+
+import secrets
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,21 +19,77 @@ if TYPE_CHECKING:
 
 Progress = Callable[[int, int], None]
 
-_KEPT = ("media_type", "file_format", "color_mode", "color_depth", "compression")  # each depends on those before
+_MARK = "mobius_flow_copy"  # custom property of scenes made here; before Blender 5 settings of scenes are such, too
 _COMPRESSION = 5  # percent: the pictures live for a minute
+
+
+class Reel:
+    """A scene made for one film, which is rendered beside its place and moved there if it is whole.
+
+    Attributes
+    ----------
+    path
+        The film's file.
+    frames
+        Number of its frames.
+    """
+
+    def __init__(self, scene: "bpy.types.Scene", path: Path) -> None:
+        self.path = path
+        self.frames = len(frames_of(scene))
+        self._part = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
+        self._scene = str(scene.name)
+        _use_h264(scene)
+        scene.render.filepath, scene.render.use_file_extension = str(self._part), False
+
+    def render(self) -> None:
+        """Render the film in this call; raises OSError or RuntimeError if it does not come to its end."""
+        import bpy
+
+        try:
+            with rendering.quiet():
+                bpy.ops.render.render(animation=True, scene=self._scene)
+        finally:
+            whole = self.finish()
+        if not whole:
+            raise OSError(rendering.NOT_WHOLE)
+
+    def start(self) -> None:
+        """Begin to render in Blender's own window, and return at once; `finish` is to be called when that is over."""
+        import bpy
+
+        try:
+            bpy.ops.render.render("INVOKE_DEFAULT", animation=True, scene=self._scene)
+        except RuntimeError:
+            self.finish()
+            raise
+
+    def finish(self) -> bool:
+        """Put the film in its place if it is whole, and return whether it is; leave nothing else behind."""
+        try:
+            whole = self._part.exists() and length_of(self._part) == self.frames
+            if whole:
+                self._part.replace(self.path)
+        finally:
+            with suppress(OSError):
+                self._part.unlink(missing_ok=True)
+            if not rendering.is_rendering():
+                sweep()
+        return whole
 
 
 def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None = None, oversampling: int = 1) -> None:
     """Render all frames to an MP4 that plays everywhere.
 
     Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand, or after the seconds in which
-    the frames are put together. Then too nothing is left behind and the scene is as before. A frame in which nothing
-    has moved is the frame before again.
+    the frames are put together; nothing is left behind then. A frame in which nothing has moved is the frame before
+    again.
 
     Parameters
     ----------
     scene
-        What to render; all that moves is moved by F-curves.
+        What to render, made for that: its frame and its settings for pictures change. All that moves is moved by
+        F-curves.
     path
         The file; it appears whole or not at all.
     progress
@@ -41,66 +102,33 @@ def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None
     OSError, RuntimeError
         If the film cannot be written.
     """
-    with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room, _kept(scene):
-        made = Path(room) / path.name
-        size = scene.render.resolution_percentage
-        scene.render.resolution_percentage = size * oversampling
-        pictures = list(_pictures(scene, Path(room), progress or (lambda *_: None)))
-        scene.render.resolution_percentage = size
-        _encode(scene, pictures, made)
-        made.replace(path)
-
-
-def _pictures(scene: "bpy.types.Scene", room: Path, progress: Progress) -> Iterator[Path]:
-    """Render a scene's frames; the same picture may come more than once."""
-    frames = range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
-    curves = list(all_fcurves())
-    shown, picture = None, room
-    for k, frame in enumerate(frames, 1):
-        pose = [curve.evaluate(frame) for curve in curves]
-        if pose != shown:
-            shown, picture = pose, room / f"{frame:06}.png"
-            scene.frame_set(frame)
-            rendering.render_still(scene, picture, _COMPRESSION)
-        yield picture
-        progress(k, len(frames))
-
-
-@contextmanager
-def _kept(scene: "bpy.types.Scene") -> Iterator[None]:
-    """Put a scene's frame and the settings for pictures back at the end."""
-    render, settings = scene.render, scene.render.image_settings
-    frame = scene.frame_current, scene.frame_subframe
-    kept = [(settings, name) for name in _KEPT if hasattr(settings, name)]
-    kept += [(render, name) for name in ("filepath", "use_file_extension", "resolution_percentage")]
-    values = [getattr(owner, name) for owner, name in kept]
     try:
-        yield
+        with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room:
+            scene.render.resolution_percentage *= oversampling
+            pictures = list(_pictures(scene, Path(room), progress or (lambda *_: None)))
+            scene.render.resolution_percentage //= oversampling
+            Reel(_spliced(scene, pictures), path).render()
     finally:
-        for (owner, name), value in zip(kept, values, strict=True):
-            setattr(owner, name, value)
-        scene.frame_set(frame[0], subframe=frame[1])
+        sweep()
 
 
-def _encode(scene: "bpy.types.Scene", pictures: Sequence[Path], path: Path) -> None:
-    """Put pictures into one file, in the size and at the speed of a scene's film."""
+def copied(scene: "bpy.types.Scene") -> "bpy.types.Scene":
+    """A copy of a scene with the same objects, to be rendered with other settings, until `sweep`."""
+    copy = scene.copy()
+    copy.name, copy[_MARK] = "Film", True
+    return copy
+
+
+def sweep() -> None:
+    """Remove scenes made here: those just rendered, and any that was saved while it was being rendered."""
     import bpy
 
-    reel = bpy.data.scenes.new("Film")
-    try:
-        for name in ("resolution_x", "resolution_y", "resolution_percentage", "fps", "fps_base"):
-            setattr(reel.render, name, getattr(scene.render, name))
-        reel.view_settings.view_transform = "Standard"  # the pictures have their colours
-        reel.frame_start, reel.frame_end = 1, len(pictures)
-        _splice(reel, pictures)
-        use_h264(reel)
-        reel.render.filepath, reel.render.use_file_extension = str(path), False
-        with rendering.quiet():
-            bpy.ops.render.render(animation=True, scene=reel.name)
-    finally:
-        bpy.data.scenes.remove(reel)
-    if length_of(path) != len(pictures):
-        raise OSError(rendering.NOT_WHOLE)
+    for scene in [each for each in bpy.data.scenes if _MARK in each]:
+        bpy.data.scenes.remove(scene)
+
+
+def frames_of(scene: "bpy.types.Scene") -> range:
+    return range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
 
 
 def length_of(path: Path) -> int:
@@ -116,19 +144,43 @@ def length_of(path: Path) -> int:
     return length
 
 
-def _splice(reel: "bpy.types.Scene", pictures: Sequence[Path]) -> None:
-    """Fill a scene's sequencer with pictures from one directory, each for one frame."""
+def _pictures(scene: "bpy.types.Scene", room: Path, progress: Progress) -> Iterator[Path]:
+    """Render a scene's frames; the same picture may come more than once."""
+    frames = frames_of(scene)
+    curves = list(all_fcurves())
+    shown, picture = None, room
+    for k, frame in enumerate(frames, 1):
+        pose = [curve.evaluate(frame) for curve in curves]
+        if pose != shown:
+            shown, picture = pose, room / f"{frame:06}.png"
+            scene.frame_set(frame)
+            rendering.render_still(scene, picture, _COMPRESSION)
+        yield picture
+        progress(k, len(frames))
+
+
+def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path]) -> "bpy.types.Scene":
+    """A new scene that shows pictures from one directory for a frame each, in the size and speed of another's film."""
+    import bpy
+
+    reel = bpy.data.scenes.new("Film")
+    reel[_MARK] = True
+    for name in ("resolution_x", "resolution_y", "resolution_percentage", "fps", "fps_base"):
+        setattr(reel.render, name, getattr(scene.render, name))
+    reel.view_settings.view_transform = "Standard"  # the pictures have their colours
+    reel.frame_start, reel.frame_end = 1, len(pictures)
     editor = reel.sequence_editor_create()
     strips = editor.strips if hasattr(editor, "strips") else editor.sequences  # Blender 4.3 and before
     strip = strips.new_image("Film", str(pictures[0]), channel=1, frame_start=1, fit_method="FIT")
     for picture in pictures[1:]:
         strip.elements.append(picture.name)
     strip.transform.filter = "BOX"
+    return reel
 
 
-def use_h264(reel: "bpy.types.Scene") -> None:
+def _use_h264(scene: "bpy.types.Scene") -> None:
     """Let a scene's animation be written as an MP4 that plays everywhere, without sound."""
-    settings, video = reel.render.image_settings, reel.render.ffmpeg
+    settings, video = scene.render.image_settings, scene.render.ffmpeg
     if hasattr(settings, "media_type"):  # Blender 5.0 and later
         settings.media_type = "VIDEO"
     settings.file_format = "FFMPEG"

@@ -125,6 +125,13 @@ def render_still(scene: "bpy.types.Scene", path: Path, compression: int = 15) ->
         raise OSError(NOT_WHOLE)
 
 
+def is_rendering() -> bool:
+    """Whether Blender renders something in the background of a window."""
+    import bpy
+
+    return bool(bpy.app.is_job_running("RENDER"))
+
+
 @contextmanager
 def quiet() -> Iterator[None]:
     """Keep the lines that Blender and graphics drivers print, past Python, out of standard output and error."""

@@ -1,8 +1,17 @@
-"""What panels of the sidebar are made of."""
+"""What panels of the sidebar are made of: rows that draw themselves, and sentences, which Blender does not wrap."""
 
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import blf
 import bpy
 
+from ..live.requirements import Refusal
 from ..translations import iface_
+
+Draw = Callable[[bpy.types.UILayout, bpy.types.Context], object]
+_FONT = 0  # Blender's own
+_MARGIN = 100  # pixels beside the text at the usual scale: tabs, padding, the frame of a box and the icon
 
 
 class InSidebar:
@@ -13,16 +22,46 @@ class InSidebar:
     bl_region_type = "UI"
 
     layout: bpy.types.UILayout
+    rows: Sequence[Draw] = ()
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Lay the panel out."""
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        self.fill(self.layout, context, context.scene.mobius_flow)
+        for draw in self.rows:
+            draw(self.layout, context)
 
-    def fill(self, layout: bpy.types.UILayout, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> None:
-        """Put in what the panel is for."""
-        raise NotImplementedError
+
+class SubPanel(InSidebar):
+    bl_parent_id = "VIEW3D_PT_mobius_flow"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+def operator(layout: bpy.types.UILayout, name: str, **look: Any) -> Any:
+    """Show the button of one of our operators, and return what sets its properties."""
+    return layout.operator(f"curve.mobius_flow_{name}", **look)
+
+
+def button(name: str, icon: str) -> Draw:
+    return lambda layout, _context: operator(layout, name, icon=icon)
+
+
+def row(*parts: Draw) -> Draw:
+    return lambda layout, context: [draw(within, context) for within in [layout.row(align=True)] for draw in parts]
+
+
+def column(*parts: Draw) -> Draw:
+    return lambda layout, context: [draw(within, context) for within in [layout.column(align=True)] for draw in parts]
+
+
+def settings(*names: str, of: str = "mobius_flow") -> Draw:
+    """A column of settings of the scene."""
+
+    def draw(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+        within = layout.column(align=True)
+        for name in names:
+            within.prop(getattr(context.scene, of), name)
+
+    return draw
 
 
 def value(layout: bpy.types.UILayout, name: str, text: str) -> None:
@@ -34,8 +73,30 @@ def value(layout: bpy.types.UILayout, name: str, text: str) -> None:
     split.label(text=iface_(text), translate=False)
 
 
-def settings_column(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, *names: str) -> None:
-    """Show settings one below the other."""
-    column = layout.column(align=True)
-    for name in names:
-        column.prop(settings, name)
+def refused(layout: bpy.types.UILayout, context: bpy.types.Context, refusal: Refusal) -> None:
+    """Show why something is refused, and below it the button that mends it."""
+    sentence(layout, context, refusal.sentence)
+    if refusal.remedy is not None:
+        layout.operator(refusal.remedy.value, icon="TOOL_SETTINGS")
+
+
+def sentence(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "INFO") -> None:
+    """Write a sentence in the user's language, as wide as the sidebar is, with an icon before it."""
+    scale = context.preferences.system.ui_scale
+    blf.size(_FONT, context.preferences.ui_styles[0].widget.points * scale)
+    room = context.region.width - _MARGIN * scale
+    lines = layout.column(align=True)
+    for k, line in enumerate(wrapped(iface_(text), lambda line: blf.dimensions(_FONT, line)[0] <= room)):
+        lines.label(text=line, icon="BLANK1" if k else icon, translate=False)
+
+
+def wrapped(text: str, fits: Callable[[str], bool]) -> list[str]:
+    """Break a text between words into lines that fit; a word that is too long gets a line of its own."""
+    lines: list[str] = []
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and fits(longer):
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines

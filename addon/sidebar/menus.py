@@ -4,12 +4,23 @@ from collections.abc import Callable
 
 import bpy
 
-from ..buttons import baking, closing, mending, pinning, resting, shape, tube
-from ..buttons.relaxing import CURVE_OT_mobius_flow_relax
-from .knots import VIEW3D_MT_mobius_flow_knots
+from ..engine.knot_list import COMMON, labels
+from ..pictures import icons
+from .layout import operator
+
+_FAMILIES = ("TORUS", "BRAID", "LISSAJOUS", "CABLE", "DOUBLE")
+_OPERATORS = (
+    ("bake_again", "continue", "clear", "scene_range"),
+    ("keep_size", "lay_flat", "face_camera"),
+    ("balance", "check", "leave_saddle"),
+    ("fit_tube", "color_components"),
+    ("pin", "pin_ends", "unpin"),
+    ("close",),
+    ("object_mode", "make_local", "single_user", "make_3d", "to_poly", "copy", "to_curve"),
+)
 
 
-class VIEW3D_MT_mobius_flow(bpy.types.Menu):  # noqa: N801 - Blender's naming scheme
+class VIEW3D_MT_mobius_flow(bpy.types.Menu):
     """All that can be done with curves that are there"""
 
     bl_idname = "VIEW3D_MT_mobius_flow"
@@ -18,39 +29,65 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):  # noqa: N801 - Blender's naming sc
     def draw(self, _context: bpy.types.Context) -> None:
         """Offer it all; what does not apply is grey, and its tooltip says why."""
         # Operator Search lists this first for who types no ö
-        self.layout.operator(CURVE_OT_mobius_flow_relax.bl_idname, text="Relax by Mobius Energy", icon="PLAY")
-        for group in (baking, shape, resting, tube, pinning, closing, mending):
+        operator(self.layout, "relax", text="Relax by Mobius Energy", icon="PLAY")
+        for group in _OPERATORS:
             self.layout.separator()
-            for cls in group.CLASSES:
-                self.layout.operator(cls.bl_idname)
+            for name in group:
+                operator(self.layout, name)
 
 
-def add_knot(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):
+    """Knots to add: common ones, the whole table, and families."""
+
+    bl_label = "Knot"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Show common ones with their pictures, then the rest."""
+        layout = self.layout
+        layout.operator_context = "INVOKE_REGION_WIN"
+        for name in COMMON:
+            label = labels()[name]
+            operator(layout, "pick_knot", text=label, icon_value=icons.icon(name)).knot = label
+        layout.separator()
+        search(layout, context)
+        layout.separator()
+        for family in _FAMILIES:
+            operator(layout, "add_family", text=family.title()).family = family
+        layout.separator()
+        operator(layout, "add_knot", text="By Name, as Woven")
+        operator(layout, "draw_knot", text="From Drawing")
+
+
+def search(layout: bpy.types.UILayout, _context: bpy.types.Context) -> None:
+    """Offer the list of the whole table."""
+    column = layout.column()
+    column.operator_context = "INVOKE_DEFAULT"
+    operator(column, "pick_knot", text="Search...", icon="VIEWZOOM")
+
+
+def _add_knot(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """Offer knots in Add > Curve."""
     menu.layout.menu(VIEW3D_MT_mobius_flow_knots.__name__, icon="CURVE_NCIRCLE")
 
 
-def flow(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+def _flow(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """Offer the rest in Object, and in Edit Mode in Curve."""
     menu.layout.separator()
     menu.layout.menu(VIEW3D_MT_mobius_flow.bl_idname)
 
 
 _ENTRIES: dict[str, Callable[[bpy.types.Menu, bpy.types.Context], None]] = {
-    "VIEW3D_MT_curve_add": add_knot,
-    "VIEW3D_MT_object": flow,
-    "VIEW3D_MT_edit_curve": flow,
+    "VIEW3D_MT_curve_add": _add_knot,
+    "VIEW3D_MT_object": _flow,
+    "VIEW3D_MT_edit_curve": _flow,
 }
-CLASSES = (VIEW3D_MT_mobius_flow,)
 
 
 def register() -> None:
-    """Put the entries into the menus."""
     for menu, entry in _ENTRIES.items():
         getattr(bpy.types, menu).append(entry)
 
 
 def unregister() -> None:
-    """Take them out again."""
     for menu, entry in _ENTRIES.items():
         getattr(bpy.types, menu).remove(entry)

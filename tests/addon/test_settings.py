@@ -2,6 +2,7 @@
 
 from dataclasses import asdict, dataclass
 from io import BytesIO
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from blender_scenes import add_trefoil, relax, sentence, stored  # noqa: E402
 from mobius_flow.addon import properties  # noqa: E402
 from mobius_flow.addon.engine import wire  # noqa: E402
 from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
-from mobius_flow.addon.sidebar.expert import VIEW3D_PT_mobius_flow_expert  # noqa: E402
+from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow_expert  # noqa: E402
 from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow  # noqa: E402
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Task, minimize  # noqa: E402
 from mobius_flow.core.option import declared, option  # noqa: E402
@@ -117,7 +118,7 @@ def drawn(cls):
         def prop(self, _owner, name):
             names.append(name)
 
-    cls.fill(None, Layout(), bpy.context, bpy.context.scene.mobius_flow)
+    cls.draw(SimpleNamespace(layout=Layout(), rows=cls.rows), bpy.context)
     return names
 
 

@@ -139,7 +139,7 @@ def test_names_have_our_context_and_blenders_own_properties_do_not():
     pick = bpy.ops.curve.mobius_flow_pick_knot.get_rna_type()
     assert pick.translation_context == pick.properties["knot"].translation_context == translations.CONTEXT
     assert pick.properties["align"].translation_context == bpy.app.translations.contexts.default
-    for cls in registration._CLASSES:
+    for cls in registration.CLASSES:
         if not issubclass(cls, bpy.types.PropertyGroup):
             assert getattr(bpy.types, cls.__name__).bl_rna.translation_context == translations.CONTEXT
 
@@ -172,9 +172,9 @@ def test_a_refusal_in_german():
     curve.name, curve.data.dimensions = "{Knot}", "2D"
     with pytest.raises(RuntimeError, match=r"'\{Knot\}' is a 2D curve"):
         bpy.ops.curve.mobius_flow_relax()
-    from mobius_flow.addon.live.checks import refusal
+    from mobius_flow.addon.live.checks import RELAXABLE
 
-    said = refusal(bpy.context).sentence.said(german)
+    said = RELAXABLE(bpy.context).sentence.said(german)
     assert said.startswith("'{Knot}' ist eine 2D-Kurve")
 
 

@@ -8,7 +8,7 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, linked, sentence  # noqa: E402
 from mobius_flow.addon.curves.neighbours import warning  # noqa: E402
-from mobius_flow.addon.live.avoided import avoided  # noqa: E402
+from mobius_flow.addon.live.requirements import avoided  # noqa: E402
 from shapes import regular_polygon  # noqa: E402
 
 

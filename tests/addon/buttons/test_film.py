@@ -90,6 +90,7 @@ class Waiting:
     modal = CURVE_OT_mobius_flow_render_film.modal
     cancel = CURVE_OT_mobius_flow_render_film.cancel
     _end = CURVE_OT_mobius_flow_render_film._end
+    _report_film = CURVE_OT_mobius_flow_render_film._report_film
 
     def __init__(self, scene, path):
         self.filming, self.timer, self.reports = Filming(scene, str(path)), object(), []
@@ -104,7 +105,7 @@ class Waiting:
 
     def render(self):
         """What Blender does meanwhile."""
-        bpy.ops.render.render(animation=True, scene=self.filming._copy)
+        bpy.ops.render.render(animation=True, scene=self.filming._scene)
 
 
 def test_in_a_window_it_waits_for_the_end(scene, tmp_path, monkeypatch):
@@ -126,7 +127,7 @@ def test_in_a_window_it_waits_for_the_end(scene, tmp_path, monkeypatch):
 def test_a_render_that_was_stopped_leaves_no_file(scene, tmp_path, how):
     OPS.mobius_flow_set_up_stage()
     waiting = Waiting(scene, tmp_path / "film.mp4")
-    bpy.data.scenes[waiting.filming._copy].frame_end = 1  # the first frame was done
+    bpy.data.scenes[waiting.filming._scene].frame_end = 1  # the first frame was done
     waiting.render()
     if how == "event":
         assert waiting.event() == {"CANCELLED"}

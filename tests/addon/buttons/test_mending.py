@@ -7,18 +7,18 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, linked, show, stored  # noqa: E402
 from mended_curves import SHAPE, call, may_be_relaxed, mend, relax_once, two, with_material  # noqa: E402
+from mobius_flow.addon import registration  # noqa: E402
 from mobius_flow.addon.buttons import mending  # noqa: E402
 from mobius_flow.addon.live import registry  # noqa: E402
-from mobius_flow.addon.live.checks import refusal, unsampled  # noqa: E402
-from mobius_flow.addon.live.refusal import Remedy  # noqa: E402
+from mobius_flow.addon.live.checks import POLYGONS, RELAXABLE  # noqa: E402
+from mobius_flow.addon.live.requirements import Remedy  # noqa: E402
 from modal_operator import keys  # noqa: E402
 
 
 def test_every_remedy_has_its_button():
-    classes = {cls.bl_idname: cls for cls in mending.CLASSES}
-    assert set(classes) == {remedy.value for remedy in Remedy}
+    classes = registration.declared(mending)
+    assert {cls.bl_idname for cls in classes} == {remedy.value for remedy in Remedy}
     for remedy in Remedy:
-        assert classes[remedy.value].remedy is remedy
         rna = call(remedy).get_rna_type()
         assert rna.name.istitle() or rna.name in (
             "Back to Object Mode",
@@ -28,7 +28,7 @@ def test_every_remedy_has_its_button():
         )
         assert 20 < len(rna.description) < 120
         assert not rna.description.endswith(".")
-    assert all({"UNDO", "REGISTER"} <= cls.bl_options for cls in classes.values())
+    assert all({"UNDO", "REGISTER"} <= cls.bl_options for cls in classes)
 
 
 @pytest.mark.parametrize("remedy", list(Remedy), ids=lambda remedy: remedy.name)
@@ -120,14 +120,14 @@ def test_smooth_splines_become_what_is_drawn(kind):
     poly.use_cyclic_u = True
     obj.data.splines[1].material_index = 1
     drawn = evaluated(obj)
-    assert refusal(bpy.context) is None, "relaxing asks by itself"
-    assert unsampled([obj]).remedy is Remedy.TO_POLY
+    assert RELAXABLE(bpy.context) is None, "relaxing asks by itself"
+    assert POLYGONS.of([obj]).remedy is Remedy.TO_POLY
     assert bpy.ops.curve.mobius_flow_to_poly() == {"FINISHED"}
     assert {spline.type for spline in obj.data.splines} == {"POLY"}
     assert obj.data.splines[1].material_index == 1
     np.testing.assert_array_equal(stored(obj.data), drawn)
     np.testing.assert_array_equal(evaluated(obj), drawn)
-    assert unsampled([obj]) is None
+    assert POLYGONS.of([obj]) is None
 
 
 def test_what_cannot_become_a_polygon_is_said_and_the_rest_does():
@@ -176,17 +176,17 @@ def test_texts_become_curves_step_by_step():
 def test_no_button_for_meshes_of_other_files(tmp_path):
     wire("Theirs")
     show(linked(tmp_path / "library.blend", "objects", "Theirs"))
-    assert refusal(bpy.context).remedy is None
+    assert RELAXABLE(bpy.context).remedy is None
 
 
 def test_no_button_for_what_has_no_lines():
     wire("Dots", edges=False)
-    assert refusal(bpy.context).remedy is None
+    assert RELAXABLE(bpy.context).remedy is None
     bpy.ops.mesh.primitive_cube_add()
     bpy.context.selected_objects[0].select_set(True)
-    assert refusal(bpy.context).remedy is None
+    assert RELAXABLE(bpy.context).remedy is None
     show(bpy.data.objects.new("Axes", None))
-    assert refusal(bpy.context).remedy is None
+    assert RELAXABLE(bpy.context).remedy is None
 
 
 def test_linked_curves_become_local(tmp_path):

@@ -6,7 +6,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import contents, sentence, stored  # noqa: E402
-from mobius_flow.addon.buttons import gallery  # noqa: E402
+from mobius_flow.addon import settings as gallery  # noqa: E402
 from mobius_flow.addon.engine.knot_list import GROUPS, labels  # noqa: E402
 from mobius_flow.addon.pictures import icons  # noqa: E402
 from mobius_flow.core.knots import KNOTS, smooth_knot  # noqa: E402

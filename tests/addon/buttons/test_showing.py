@@ -65,7 +65,7 @@ def test_two_objects(operator):
 def test_smooth_splines_have_their_nearest_points_selected(operator, kind):
     points = 3 * torus_trefoil(9).vertices
     obj = add_curve([points, points], kind=kind)
-    operator.values["sample_splines"] = True
+    operator.given["sample_splines"] = True
     assert "touch or cross" in fails(operator) or "same point" in operator.run.message
     assert bpy.ops.curve.mobius_flow_show() == {"FINISHED"}
     assert any(selected(obj))

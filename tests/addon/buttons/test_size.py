@@ -91,7 +91,7 @@ def test_scaled_keys_are_proved_as_they_are_stored(keyframes):
 def test_motions_that_cannot_be_proved_are_told_of(monkeypatch):
     obj, told = baked(), []
     monkeypatch.setattr(baked_keys, "is_free", lambda *_: False)
-    monkeypatch.setattr(shape, "_tell", lambda _, what, unproved: told.append((what, unproved)))
+    monkeypatch.setattr(shape, "_report", lambda _, what, unproved: told.append((what, unproved)))
     assert OPS.mobius_flow_keep_size(measure="BOX") == {"FINISHED"}
     count = len(obj.data.shape_keys.key_blocks)
     assert told == [(f"The bounding box of 'Knot' stays at all {count} keys", count - 1)]
@@ -104,11 +104,11 @@ class Teller:
 
 def test_words_about_proofs():
     teller = Teller()
-    shape._tell(teller, "It stays", 0)
+    shape._report(teller, "It stays", 0)
     assert teller.words == ({"INFO"}, "It stays, proved free of contact")
-    shape._tell(teller, "It stays", 1)
+    shape._report(teller, "It stays", 1)
     assert teller.words == ({"WARNING"}, "It stays; 1 motion between keys is NOT proved free of contact")
-    shape._tell(teller, "It stays", 2)
+    shape._report(teller, "It stays", 2)
     assert teller.words == ({"WARNING"}, "It stays; 2 motions between keys are NOT proved free of contact")
 
 

@@ -7,8 +7,8 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil, contents, evaluated, stored  # noqa: E402
 from mended_curves import may_be_relaxed, mend, relax_once, two, with_material  # noqa: E402
-from mobius_flow.addon.live.checks import edited, refusal  # noqa: E402
-from mobius_flow.addon.live.refusal import Remedy  # noqa: E402
+from mobius_flow.addon.live.checks import RELAXABLE, UNEDITED  # noqa: E402
+from mobius_flow.addon.live.requirements import Remedy  # noqa: E402
 
 
 def copied():
@@ -32,7 +32,7 @@ def test_a_copy_has_the_shape_of_the_keys_without_them():
     key.data[3].co.z += 0.5
     key.value = 0.5
     bpy.context.view_layer.update()
-    assert refusal(bpy.context).remedy is Remedy.COPY
+    assert RELAXABLE(bpy.context).remedy is Remedy.COPY
     shown = evaluated(obj)
     copy = copied()
     assert copy.data.shape_keys is None
@@ -54,7 +54,7 @@ def test_a_copy_has_no_animation():
     obj = add_trefoil()
     obj.data.bevel_depth = 0.1
     obj.data.keyframe_insert("bevel_depth", frame=1)
-    assert refusal(bpy.context).remedy is Remedy.COPY
+    assert RELAXABLE(bpy.context).remedy is Remedy.COPY
     copy = bpy.ops.curve.mobius_flow_copy() and bpy.context.object
     assert copy.data.animation_data is None
     assert copy.data.bevel_depth == pytest.approx(0.1)
@@ -65,7 +65,7 @@ def test_a_copy_has_no_animation():
 def test_a_copy_has_no_drivers():
     obj = add_trefoil()
     obj.data.driver_add("splines[0].points[3].co", 1)
-    assert refusal(bpy.context).remedy is Remedy.COPY
+    assert RELAXABLE(bpy.context).remedy is Remedy.COPY
     assert copied().data.animation_data is None
     may_be_relaxed()
 
@@ -75,11 +75,11 @@ def test_keys_that_were_edited_are_copied_as_they_are():
     obj.data.shape_keys.key_blocks[0].data[7].co.x += 0.125
     bpy.context.scene.frame_set(1)
     bpy.context.view_layer.update()
-    assert edited(bpy.context).remedy is Remedy.COPY
+    assert UNEDITED(bpy.context).remedy is Remedy.COPY
     shown = evaluated(obj)
     copy = copied()
     np.testing.assert_array_equal(stored(copy.data), shown)
-    assert edited(bpy.context) is None
+    assert UNEDITED(bpy.context) is None
     may_be_relaxed()
 
 

@@ -10,8 +10,8 @@ from mobius_flow.addon.curves import member  # noqa: E402
 from mobius_flow.addon.curves.deforming import deforms, what_deforms  # noqa: E402
 from mobius_flow.addon.curves.session import Session  # noqa: E402
 from mobius_flow.addon.engine.key_options import KeyOptions  # noqa: E402
-from mobius_flow.addon.live.checks import refusal  # noqa: E402
-from mobius_flow.addon.live.refusal import Remedy  # noqa: E402
+from mobius_flow.addon.live.checks import RELAXABLE  # noqa: E402
+from mobius_flow.addon.live.requirements import Remedy  # noqa: E402
 from mobius_flow.core import Curve, CurveError, RelaxOptions  # noqa: E402
 from mobius_flow.core.collision import check_embedded  # noqa: E402
 
@@ -150,7 +150,7 @@ def refused():
     with pytest.raises(RuntimeError) as error:
         bpy.ops.curve.mobius_flow_relax(max_iterations=1)
     assert contents() == before
-    assert refusal(bpy.context).remedy is Remedy.COPY
+    assert RELAXABLE(bpy.context).remedy is Remedy.COPY
     return sentence(error.value)
 
 

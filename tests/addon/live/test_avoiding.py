@@ -24,7 +24,7 @@ def torus():
 @pytest.fixture
 def ring(torus, operator):
     """A stretched ring around the torus, selected."""
-    operator.values["avoid"] = [torus]
+    operator.given["avoid"] = [torus]
     return add_curve([hopf_link(24).vertices[24:] * [1.0, 1.0, 4.0]], "Ring")
 
 

@@ -41,7 +41,7 @@ def test_the_same_curve_as_the_headless_job(operator):
 def test_points_that_are_added_in_the_end_are_in_every_key(operator):
     obj = add_curve([lattice_knot("5_1").vertices])
     start = stored(obj.data).astype(np.float64)
-    operator.values["vertices"] = 0
+    operator.given["vertices"] = 0
     operator.start()
     operator.reach(1)
     given = len(obj.data.splines[0].points)
@@ -56,7 +56,7 @@ def test_points_that_are_added_in_the_end_are_in_every_key(operator):
 def test_esc_restores_what_has_got_more_points_meanwhile(operator):
     obj = add_curve([lattice_knot("5_1").vertices])
     before = Splines.of(obj.data)
-    operator.values |= {"vertices": 0, "tolerance": 1e-3}
+    operator.given |= {"vertices": 0, "tolerance": 1e-3}
     operator.start()
     operator.reach(1)
     given = len(obj.data.splines[0].points)
@@ -74,7 +74,7 @@ def test_esc_restores_bit_for_bit(operator, kind):
             point.radius, point.tilt = rng.random(2)
     obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
     before = Splines.of(obj.data)
-    operator.values["vertices"] = 0
+    operator.given["vertices"] = 0
     operator.start()
     operator.reach(2)
     assert obj.data.splines[0].type == "POLY"
@@ -276,7 +276,7 @@ def test_disabling_ends_the_run(operator, addon):
 
 def test_a_worker_that_dies_loses_nothing(operator):
     obj = add_trefoil()
-    operator.values["vertices"] = 400
+    operator.given["vertices"] = 400
     operator.start()
     operator.reach(1)
     operator.run._worker.process.kill()

@@ -44,7 +44,7 @@ def view(width=900, height=700, sidebar=None):
 def run(operator):
     """A run of a curve that may be unknotted."""
     add_curve([knot("culprit").vertices])
-    operator.values |= {"max_iterations": 8, "vertices": 0}
+    operator.given |= {"max_iterations": 8, "vertices": 0}
     operator.start()
     operator.until(lambda: False)
     return operator.run
@@ -88,7 +88,7 @@ def test_the_curve_can_be_seen_in_any_theme(run, drawn, ground):
 
 def test_without_a_target_there_is_no_line_for_it(operator, drawn):
     add_trefoil()
-    operator.values["max_iterations"] = 3
+    operator.given["max_iterations"] = 3
     operator.start()
     operator.until(lambda: False)
     overlay._plot(view(), operator.run)

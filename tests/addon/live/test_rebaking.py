@@ -33,7 +33,7 @@ def everything():
 def test_esc_gives_the_baked_curve_back(operator, baked, continues, key):
     before, data, shown = everything(), baked.data, evaluated(baked, 3)
     bpy.context.scene.frame_set(1)
-    operator.continues, operator.values["vertices"] = continues, 0
+    operator.continues, operator.given["vertices"] = continues, 0
     operator.start()
     assert baked.data != data
     operator.reach(2)
@@ -47,8 +47,8 @@ def test_esc_gives_the_baked_curve_back(operator, baked, continues, key):
 def test_to_the_end(operator, baked, continues):
     names = everything()[1:]
     count = len(baked.data.splines[0].points)
-    operator.continues, operator.values["vertices"] = continues, 0
-    operator.values["keyframes"] = "SHAPE_KEYS" if baked.data.shape_keys else "FCURVES"
+    operator.continues, operator.given["vertices"] = continues, 0
+    operator.given["keyframes"] = "SHAPE_KEYS" if baked.data.shape_keys else "FCURVES"
     operator.start()
     assert operator.until(lambda: False) == {"FINISHED"}
     assert everything()[1:] == names
@@ -60,7 +60,7 @@ def test_to_the_end(operator, baked, continues):
 def test_it_begins_from_the_original_or_from_the_end(operator, baked):
     end = evaluated(baked, 4)
     bpy.context.scene.frame_set(2)
-    operator.values["vertices"], operator.continues = 0, True
+    operator.given["vertices"], operator.continues = 0, True
     operator.start()
     np.testing.assert_array_equal(stored(baked.data), end)
     operator.run.cancel()
@@ -71,7 +71,7 @@ def test_it_begins_from_the_original_or_from_the_end(operator, baked):
 
 def test_what_is_set_aside_is_not_purged(operator, baked):
     data = baked.data
-    operator.values["vertices"] = 0
+    operator.given["vertices"] = 0
     operator.start()
     operator.reach(1)
     bpy.ops.outliner.orphans_purge(do_recursive=True)
@@ -82,7 +82,7 @@ def test_what_is_set_aside_is_not_purged(operator, baked):
 
 def test_a_saved_file_has_the_baked_curve(operator, baked, tmp_path):
     data, before = baked.data, everything()
-    operator.values["vertices"] = 0
+    operator.given["vertices"] = 0
     operator.start()
     operator.reach(1)
     preview, shown = baked.data, stored(baked.data)
@@ -96,7 +96,7 @@ def test_a_saved_file_has_the_baked_curve(operator, baked, tmp_path):
 
 
 def test_deletion_during_the_run(operator, baked):
-    operator.values["vertices"] = 0
+    operator.given["vertices"] = 0
     operator.start()
     operator.reach(1)
     bpy.data.objects.remove(baked)
@@ -105,7 +105,7 @@ def test_deletion_during_the_run(operator, baked):
 
 def test_edit_mode_gives_the_baked_curve_back(operator, baked):
     data = baked.data
-    operator.values["vertices"] = 0
+    operator.given["vertices"] = 0
     operator.start()
     operator.reach(1)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -122,7 +122,7 @@ def recover():
 def test_a_cancelled_run_is_recovered(operator, add):
     obj = add_trefoil()
     add()
-    operator.values |= {"vertices": 0, "fit_bevel": False}
+    operator.given |= {"vertices": 0, "fit_bevel": False}
     operator.start()
     operator.reach(3)
     last = operator.run.last.curve.vertices.astype(np.float32)
@@ -158,7 +158,7 @@ def test_undo_of_something_else_does_not_end_a_run(operator):
     before = Splines.of(obj.data)
     operator.start()
     operator.reach(2)
-    operator.run.history.others = 2
+    registry.history.others = 2
     assert operator.event("Z", ctrl=True) == {"PASS_THROUGH"}
     handlers._undo_pre()
     restored(obj, before)
@@ -169,8 +169,8 @@ def test_undo_of_something_else_does_not_end_a_run(operator):
     for before_it, after_it in ((handlers._redo_pre, handlers._redo_post), (handlers._undo_pre, handlers._undo_post)):
         before_it()
         after_it()
-    assert (operator.run.history.others, operator.run.history.undone) == (1, 1)
-    operator.run.history.others = 0
+    assert (registry.history.others, registry.history.undone) == (1, 1)
+    registry.history.others = 0
     handlers._undo_pre()
     assert registry.current() is None
     restored(obj, before)
@@ -179,7 +179,7 @@ def test_undo_of_something_else_does_not_end_a_run(operator):
 def test_iterates_are_taken_together_and_the_last_is_shown(operator, monkeypatch):
     obj = add_trefoil()
     monkeypatch.setattr(run, "_SLICE", 60.0)
-    operator.values["view_every"] = 0
+    operator.given["view_every"] = 0
     operator.start()
     operator.until(lambda: operator.run._worker._queue.qsize() > 3 or operator.run.shown is not None)
     operator.until(lambda: operator.run.last is not None and operator.run.last.index > 2)

@@ -114,7 +114,7 @@ def test_a_failure_while_saving_puts_everything_back(operator, tmp_path, monkeyp
 
 def test_the_saved_animation_plays(operator, tmp_path):
     obj = add_trefoil()
-    operator.values["fit_bevel"] = False
+    operator.given["fit_bevel"] = False
     operator.start()
     operator.until(lambda: obj.data.shape_keys is not None)
     save(tmp_path)

@@ -21,7 +21,7 @@ def activate(obj):
 def done(operator):
     """A trefoil that has just been relaxed."""
     obj = add_trefoil()
-    operator.values["max_iterations"] = 5
+    operator.given["max_iterations"] = 5
     operator.start()
     operator.until(lambda: False)
     assert shown() is operator.run
@@ -57,7 +57,7 @@ def test_clear(done):
 @pytest.mark.parametrize("output", ["SHAPE_KEYS", "FCURVES", "RESULT"])
 def test_points_that_are_moved(operator, output):
     obj = add_trefoil()
-    operator.values |= {"max_iterations": 5, "keyframes": output}
+    operator.given |= {"max_iterations": 5, "keyframes": output}
     operator.start()
     operator.until(lambda: False)
     assert shown() is operator.run
@@ -92,7 +92,7 @@ def test_a_cancelled_run_is_shown_while_the_curve_is_as_it_was(operator):
 def test_another_file(operator, tmp_path, going_on):
     add_trefoil()
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
-    operator.values["max_iterations"] = 5
+    operator.given["max_iterations"] = 5
     operator.start()
     if not going_on:
         operator.until(lambda: False)

@@ -4,9 +4,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
-from mobius_flow.addon.pictures import filming, rendering  # noqa: E402
-from mobius_flow.addon.pictures.filming import Filming  # noqa: E402
-from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
+from mobius_flow.addon.pictures import filming, movie, rendering  # noqa: E402
+from mobius_flow.addon.pictures.filming import LOOKS, Filming  # noqa: E402
 from mobius_flow.addon.pictures.movie import length_of  # noqa: E402
 from mobius_flow.core import MobiusFlowError  # noqa: E402
 
@@ -65,7 +64,7 @@ def test_looks_are_of_the_copy(scene, tmp_path, look):
 
 
 def test_half_a_film_is_none(scene, tmp_path, monkeypatch):
-    monkeypatch.setattr(filming, "length_of", lambda _path: 2)
+    monkeypatch.setattr(movie, "length_of", lambda _path: 2)
     (tmp_path / "film.mp4").write_bytes(b"old")
     with pytest.raises(MobiusFlowError, match="to its end"):
         Filming(scene, str(tmp_path / "film.mp4"), overwrite=True).render()
@@ -113,7 +112,7 @@ def test_what_would_go_wrong_is_said_first(scene, tmp_path, change, name, said):
 
 def test_no_setting_of_a_scene_is_taken_for_the_mark(scene):
     """Before Blender 5 custom properties and those of extensions have one and the same place."""
-    assert not hasattr(bpy.types.Scene, filming._MARK)
+    assert not hasattr(bpy.types.Scene, movie._MARK)
 
 
 def test_beside_a_file_that_was_never_saved(scene):

@@ -64,7 +64,7 @@ def gallery() -> Steps:
 
 def alone() -> None:
     """Leave the gallery alone in the sidebar, and open it, so that it is found at once."""
-    knots = addon("sidebar.knots").VIEW3D_PT_mobius_flow_knots
+    knots = addon("sidebar.panels").VIEW3D_PT_mobius_flow_knots
     for cls in reversed(panels()):
         bpy.utils.unregister_class(cls)
     knots.bl_options = set()
@@ -73,14 +73,14 @@ def alone() -> None:
 
 def together() -> None:
     """Bring the others back: Blender unregisters all of them when it quits."""
-    bpy.utils.unregister_class(addon("sidebar.knots").VIEW3D_PT_mobius_flow_knots)
+    bpy.utils.unregister_class(addon("sidebar.panels").VIEW3D_PT_mobius_flow_knots)
     for cls in panels():
         bpy.utils.register_class(cls)
 
 
 def panels() -> list[type]:
     """The panels of the sidebar."""
-    return [cls for cls in addon("sidebar").CLASSES if issubclass(cls, bpy.types.Panel)]
+    return [cls for cls in addon("registration").CLASSES if issubclass(cls, bpy.types.Panel)]
 
 
 def search() -> Steps:

@@ -9,26 +9,39 @@ and with the Python package beside `bpy`::
     from mobius_flow import Relaxation
 """
 
+import numbers
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...core import Curve, MobiusFlowError
-from ..curves import bake
-from ..curves.baked_keys import BakedKeys
-from ..curves.pins import Held
-from ..curves.session import Report, Session
-from ..curves.surroundings import Surroundings
-from ..live import checks
-from ..live.refusal import Refusal
-from ..pictures import staging
-from ..pictures.filming import Filming
-from ..properties import key_options, relax_options
-from .settings import complete
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+
+from ..core import Curve, MobiusFlowError, OptionError
+from ..core.errors import choice, likeliest
+from .curves import bake
+from .curves.baked_keys import BakedKeys
+from .curves.pins import Held
+from .curves.session import Report, Session
+from .curves.surroundings import Surroundings
+from .engine.timing import Pace
+from .live.checks import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, UNEDITED
+from .live.requirements import idle, require
+from .pictures import staging
+from .pictures.filming import Filming
+from .properties import key_options, relax_options, settings
 
 if TYPE_CHECKING:
     import bpy
+
+_DECLARED = {name: (each.function, each.keywords) for name, each in settings(set()).items()}
+_DEFAULTS = {name: keywords["default"] for name, (_, keywords) in _DECLARED.items()}
+_KINDS: dict[Any, tuple[type, str]] = {
+    BoolProperty: (bool, "True or False"),
+    IntProperty: (numbers.Integral, "a whole number"),
+    FloatProperty: (numbers.Real, "a number"),
+    EnumProperty: (str, "a name"),
+}
 
 
 class Relaxation:
@@ -94,31 +107,25 @@ class Relaxation:
         MobiusFlowError
             If the curves cannot be relaxed or a setting is wrong; the message says why and what helps.
         """
-        return self._run(avoid, settings, continues=False)
+        return begin(self.objects, complete(settings) | {"avoid": avoid}, False, self.sample_splines).run()
 
     def relax_further(self, avoid: Iterable["bpy.types.Object"] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
 
         With ``balance=True`` or ``escape_saddles=True`` this is what the buttons *Balance* and *Leave Saddle* do.
         """
-        return self._run(avoid, settings, continues=True)
+        return begin(self.objects, complete(settings) | {"avoid": avoid}, True, self.sample_splines).run()
 
     def clear(self) -> None:
         """Take the keys away, and give the curves back as they were before; raises MobiusFlowError as `relax`."""
-        self._allow(checks.locked(self.objects) or checks.edited_by_hand(self.objects))
+        require(idle() or CLEARABLE.of(self.objects) or UNEDITED.of(self.objects))
         for obj in self.objects:
             bake.clear(obj)
 
     @property
     def curves(self) -> list[Curve]:
-        """The link in the world at each key, the last of them being the result.
-
-        Raises
-        ------
-        MobiusFlowError
-            If a curve has no keys of a relaxation, or not as many as the others.
-        """
-        self._allow(checks.bare(self.objects))
+        """The link in the world at each key, the last of them being the result; raises MobiusFlowError without keys."""
+        require(BAKED.of(self.objects))
         return BakedKeys(self.objects).curves
 
     def set_up_stage(self, use_camera: bool = True, use_world: bool = True) -> "bpy.types.Collection":
@@ -128,44 +135,45 @@ class Relaxation:
         """
         import bpy
 
-        self._evaluate()
-        self._allow(checks.undrawn(self.objects))
+        _update()
+        require(idle() or READABLE.of(self.objects))
         return staging.set_up(bpy.context.scene, self.objects, use_camera, use_world)
 
     def film(self, path: str | os.PathLike[str], look: str = "SCENE", overwrite: bool = False) -> Path:
-        """Render the frames that the open scene plays to an MP4, whole or not at all, and return where it is.
+        """Render the frames that the open scene plays to an MP4, and return where it is.
 
-        Raises MobiusFlowError if it cannot be made or is there already; see `Filming`.
+        Raises MobiusFlowError if it cannot be made, or is there already and may not be overwritten.
         """
         import bpy
 
-        self._allow(checks.running())
+        require(idle())
         filming = Filming(bpy.context.scene, os.fspath(path), look, overwrite)
         filming.render()
         return filming.path
 
-    def _run(self, avoid: Iterable["bpy.types.Object"], settings: Mapping[str, Any], continues: bool) -> Report:
-        values = complete(settings)
-        self._evaluate()
-        unbaked = checks.bare(self.objects) if continues else None
-        smooth = None if self.sample_splines else checks.unsampled(self.objects)
-        hindered = checks.running() or checks.hindrance(self.objects) or unbaked
-        self._allow(hindered or checks.edited_by_hand(self.objects) or smooth)
-        options = key_options(values)
-        options = bake.continued(self.objects, options) if continues else options
-        surroundings = Surroundings.of(_objects(avoid), self.objects)
-        return Session(self.objects, relax_options(values), options, continues, surroundings, Held.of(values)).run()
 
-    @staticmethod
-    def _evaluate() -> None:
-        """Let Blender know where objects are that a script has just moved."""
-        import bpy
+def begin(
+    objects: Sequence["bpy.types.Object"], values: Mapping[str, Any], continues: bool, sample_splines: bool
+) -> Session:
+    """A session with the values of all settings; raises MobiusFlowError."""
+    _update()
+    require(
+        idle() or RELAXABLE.of(objects),
+        BAKED.of(objects) if continues else None,
+        UNEDITED.of(objects),
+        None if sample_splines else POLYGONS.of(objects),
+    )
+    options = key_options(values)
+    options = bake.continued(objects, options) if continues else options
+    surroundings = Surroundings.of(_objects(values["avoid"]), objects)
+    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values))
 
-        bpy.context.view_layer.update()
 
-    def _allow(self, refused: Refusal | None) -> None:
-        if refused is not None:
-            raise MobiusFlowError(refused.sentence)
+def _update() -> None:
+    """Let Blender know where objects are that a script has just moved."""
+    import bpy
+
+    bpy.context.view_layer.update()
 
 
 def _objects(avoid: Iterable["bpy.types.Object"]) -> list["bpy.types.Object"]:
@@ -179,3 +187,30 @@ def _objects(avoid: Iterable["bpy.types.Object"]) -> list["bpy.types.Object"]:
     if wrong:
         raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is no object")
     return found
+
+
+def implied(given: Collection[str]) -> dict[str, Any]:
+    """What follows from which settings are given: frames for an iterate mean that, and a fit is one of any tube."""
+    by_iterate = "frames_per_iterate" in given and "timing" not in given
+    return ({"timing": Pace.ITERATE.name} if by_iterate else {}) | {"any_bevel": "fit_bevel" in given}
+
+
+def complete(given: Mapping[str, Any]) -> dict[str, Any]:
+    """All settings, with defaults for those that are not given; raises OptionError for what is no setting or value."""
+    for name, value in given.items():
+        if name not in ("any_bevel", "pins"):
+            _check(name, value)
+    return {**_DEFAULTS, **implied(given), **given}
+
+
+def _check(name: str, value: Any) -> None:
+    if name not in _DECLARED:
+        raise OptionError(f"there is no setting {name!r}; {likeliest(name, _DECLARED)}see curve.mobius_flow_relax")
+    function, keywords = _DECLARED[name]
+    kind, words = _KINDS[function]
+    if not isinstance(value, kind):
+        raise OptionError(f"{name} is {value!r}; it must be {words}")
+    if function is EnumProperty:
+        names = [item[0] for item in keywords["items"] if item[0]]
+        if value not in names:
+            raise OptionError(f"{name} is {value!r}; {choice(str(value), names)}")

@@ -5,9 +5,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 from ...core import Curve
 from ..engine.knot_list import labels, name_of
-from .add_knot import check_numbers
-from .adding import AddsKnot
-from .pick_knot import found
+from .adding import AddsKnot, check_numbers, found
 
 _SHOWN = {
     "TORUS": ("p", "q"),
@@ -18,10 +16,9 @@ _SHOWN = {
 }
 
 
-class CURVE_OT_mobius_flow_add_family(AddsKnot, bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_add_family(AddsKnot, bpy.types.Operator):
     """Add a knot or link made by a few numbers: a torus knot, braid, Lissajous curve, or two strands along a knot"""
 
-    bl_idname = "curve.mobius_flow_add_family"
     bl_label = "Knot Family"
 
     family: EnumProperty(
@@ -69,7 +66,6 @@ class CURVE_OT_mobius_flow_add_family(AddsKnot, bpy.types.Operator):  # noqa: N8
     )
 
     def make(self) -> tuple[str, Curve]:
-        """Make the curve of the chosen family."""
         return getattr(self, f"_{self.family.lower()}")()
 
     def _torus(self) -> tuple[str, Curve]:
@@ -97,7 +93,6 @@ class CURVE_OT_mobius_flow_add_family(AddsKnot, bpy.types.Operator):  # noqa: N8
         return f"Double of {name}", double(smooth_knot(name), self.twists, clasp=-1 if self.left_clasp else 1)
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
-        """Show the family and its numbers."""
         layout.prop(self, "family")
         column = layout.column(align=True)
         for name in _SHOWN[self.family]:
@@ -109,6 +104,3 @@ def _named(name: str) -> tuple[str, Curve]:
 
     check_numbers(name)
     return name, knot(name)
-
-
-CLASSES = (CURVE_OT_mobius_flow_add_family,)

@@ -7,26 +7,27 @@ import numpy as np
 from bpy.props import BoolProperty, BoolVectorProperty, FloatProperty, IntProperty
 from bpy_extras.object_utils import object_data_add
 
-from ...core import Curve, MobiusFlowError
+from ...core import Curve, CurveError
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_link
 from ..engine.drawing_plane import DrawingPlane
-from ..live.checks import selected_curves
-from ..translations import iface_, rpt_, tip_
-from .adding import AddsKnot
+from ..live.requirements import Condition, selected_curves
+from ..translations import iface_, rpt_
+from .adding import OBJECT_MODE, AddsKnot
 
 if TYPE_CHECKING:
     from ...core.knots import Drawing
 
+_DRAWN = Condition("Draw a flat closed curve and select it first", lambda context: not selected_curves(context))
 _SWITCHES = 32  # Blender's longest array of switches
 
 
-class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N801
+class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):
     """Make a knot of the selected flat drawing: where strands cross, one goes over the other; the drawing stays"""
 
-    bl_idname = "curve.mobius_flow_draw_knot"
     bl_label = "Knot from Drawing"
+    needs = (OBJECT_MODE, _DRAWN)
 
     change: BoolVectorProperty(
         name="Change Crossings",
@@ -52,38 +53,23 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
     )
     count: IntProperty(name="Crossings", description="Number of crossings found", options={"HIDDEN", "SKIP_SAVE"})
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether a drawing is selected."""
-        reason = None if context.mode == "OBJECT" else Message("Go back to Object Mode first")
-        if reason is None and not selected_curves(context):
-            reason = Message("Draw a flat closed curve and select it first")
-        if reason:
-            cls.poll_message_set(tip_(reason))
-        return reason is None
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def act(self, context: bpy.types.Context) -> None:
         """Lift the drawing and add it as a new object."""
         from ...core.knots import Drawing
 
         drawn = selected_curves(context)
-        try:
-            self._check()
-            curve = _read(drawn)
-            plane = DrawingPlane.of(curve)
-            drawing = Drawing.of(plane.flattened(curve))
-            lifted = self._lifted(drawing)
-        except MobiusFlowError as error:
-            self.report({"ERROR"}, rpt_(str(error)))
-            return {"CANCELLED"}
+        self.check_lengths()
+        curve = _read(drawn)
+        plane = DrawingPlane.of(curve)
+        drawing = Drawing.of(plane.flattened(curve))
+        lifted = self._lifted(drawing)
         self.count = len(drawing.crossings)
-        name, told = _words(lifted, self.count)
+        name, said = _description(lifted, self.count)
         self._add(context, name, plane, drawing, lifted)
         for obj in drawn if self.hide_drawing else ():
             obj.hide_set(True)
             obj.hide_render = True
-        self.report({"INFO"}, rpt_(told))
-        return {"FINISHED"}
+        self.report({"INFO"}, rpt_(said))
 
     def _lifted(self, drawing: "Drawing") -> Curve:
         count = min(len(drawing.crossings), _SWITCHES)
@@ -103,7 +89,6 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
             _mark(context.collection, obj, plane.raised(places) - middle, 0.03 * float(np.ptp(vertices)))
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Show the crossings as switches, and how the knot is drawn."""
         layout = self.layout
         layout.label(text=iface_("Change Crossings (1 to {count})", count=min(self.count, _SWITCHES)))
         grid = layout.grid_flow(row_major=True, columns=8, even_columns=True, align=True)
@@ -117,8 +102,6 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):  # noqa: N80
 
 def _read(objects: list[bpy.types.Object]) -> Curve:
     """The drawing in world space; raises a CurveError if a spline is open or too short."""
-    from ...core import CurveError
-
     for obj in objects:
         for spline in obj.data.splines:
             if not spline.use_cyclic_u:
@@ -127,7 +110,7 @@ def _read(objects: list[bpy.types.Object]) -> Curve:
     return read_link(objects)[0]
 
 
-def _words(curve: Curve, crossings: int) -> tuple[str, Message]:
+def _description(curve: Curve, crossings: int) -> tuple[str, Message]:
     """A name for a drawn knot, and what can be said of it."""
     from ...core.knots import knot_type
 
@@ -149,6 +132,3 @@ def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: Fl
         empty.empty_display_size, empty.show_name, empty.show_in_front = size, True, True
         empty.parent, empty.location = parent, place
         collection.objects.link(empty)
-
-
-CLASSES = (CURVE_OT_mobius_flow_draw_knot,)

@@ -11,7 +11,7 @@ from mobius_flow import Relaxation  # noqa: E402
 from mobius_flow.addon.curves import bake  # noqa: E402
 from mobius_flow.addon.pictures import staging  # noqa: E402
 from mobius_flow.addon.properties import SETTINGS  # noqa: E402
-from mobius_flow.addon.scripting.settings import complete  # noqa: E402
+from mobius_flow.addon.scripting import complete  # noqa: E402
 from mobius_flow.core import MobiusFlowError, OptionError  # noqa: E402
 
 SHORT = {"max_iterations": 5, "vertices": 100, "length": 10}

@@ -4,19 +4,20 @@ import pytest
 
 pytest.importorskip("bpy")
 
-from mobius_flow.addon.live import history
+from mobius_flow.addon.live import registry
 
 
 @pytest.fixture
 def done(monkeypatch):
     """The operations that Blender lists, by their addresses."""
     listed = [7]
-    monkeypatch.setattr(history, "_latest", lambda: listed[-1] if listed else 0)
+    monkeypatch.setattr(registry, "_last_operation", lambda: listed[-1] if listed else 0)
     return listed
 
 
 def test_undo_is_about_what_was_done_since(done):
-    past = history.History()
+    past = registry.History()
+    past.begin()
     past.look()
     assert (past.others, past.undone) == (0, 0)
     for address in (8, 9):
@@ -30,13 +31,14 @@ def test_undo_is_about_what_was_done_since(done):
         past.look()
         assert (past.others, past.undone) == (left, 2 - left)
     done.append(8)
-    past.redo()
+    past.undo(-1)
     past.look()
     assert (past.others, past.undone) == (1, 1)
 
 
 def test_what_is_done_anew_cannot_be_done_again(done):
-    past = history.History()
+    past = registry.History()
+    past.begin()
     done.append(8)
     past.look()
     done.clear()

@@ -1,0 +1,68 @@
+"""What operators have in common: the tooltip and scripts are told why one cannot be used, and nothing has happened."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import bpy
+
+from ...core import MobiusFlowError
+from ..live.modal import redraw_views
+from ..live.requirements import Refusal, Requirement, first, require
+from ..translations import rpt_, tip_
+
+_PREFIX = "CURVE_OT_"
+
+
+class Button:
+    """An operator that acts if nothing that it needs is missing, and says otherwise what is."""
+
+    bl_options = {"REGISTER", "UNDO"}
+    needs: Sequence[Requirement] = ()
+    needs_at_last: Sequence[Requirement] = ()  # what takes too long for every redraw
+    poll_message_set: Callable[[str], None]
+    report: Callable[[set[str], str], None]
+
+    def __init_subclass__(cls, **more: Any) -> None:
+        super().__init_subclass__(**more)
+        if cls.__name__.startswith(_PREFIX):
+            cls.bl_idname = f"curve.{cls.__name__.removeprefix(_PREFIX)}"
+
+    @classmethod
+    def refusal(cls, context: bpy.types.Context) -> Refusal | None:
+        return first(context, cls.needs)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        refused = cls.refusal(context)
+        if refused:
+            cls.poll_message_set(tip_(refused.sentence))
+        return refused is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        context.view_layer.update()  # a script may have moved an object just before
+        try:
+            require(self.refusal(context) or first(context, self.needs_at_last))
+            self.act(context)
+        except MobiusFlowError as error:
+            return self.fail(error)
+        redraw_views(context.window_manager)  # which they are not by themselves where keys were changed
+        return {"FINISHED"}
+
+    def fail(self, error: MobiusFlowError) -> set[str]:
+        """Say what went wrong, without an undo step."""
+        self.report({"ERROR"}, rpt_(str(error)))
+        return {"CANCELLED"}
+
+    def act(self, context: bpy.types.Context) -> None:
+        """Do what it is for; raises MobiusFlowError before anything has changed."""
+        raise NotImplementedError
+
+
+def button(label: str, *needs: Requirement, **more: Any) -> Callable[[Callable[[Any, bpy.types.Context], Any]], type]:
+    """Make an operator without settings of a function: its name is the identifier, its docstring the tooltip."""
+
+    def operator(act: Callable[[Any, bpy.types.Context], Any]) -> type:
+        body = {"__doc__": act.__doc__, "__module__": act.__module__, "bl_label": label, "needs": needs, "act": act}
+        return type(f"{_PREFIX}mobius_flow_{act.__name__}", (Button, bpy.types.Operator), body | more)
+
+    return operator

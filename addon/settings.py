@@ -1,0 +1,134 @@
+"""What scenes keep beside options: what the panel shows, what the film is, what is avoided, which knot is picked."""
+
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringProperty
+
+from .engine.knot_list import GROUPS, group, labels
+from .engine.quality import QUALITIES, quality_of
+from .live.modal import redraw_views
+from .pictures import icons
+from .pictures.filming import LOOKS
+from .properties import MobiusFlowSettings
+
+# since 5.0 Blender marks relative paths as wrong where a property does not say that it knows them
+_RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
+_LEVELS = [*QUALITIES, "CUSTOM"]
+_TREFOIL = list(labels()).index("3_1")  # where items are made by a function, the default is a number
+_knot_items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender needs the strings to stay alive
+
+
+def _quality_items() -> list[tuple[str, str, str, str, int]]:
+    items = [(name, each.label, each.description, "NONE", k) for k, (name, each) in enumerate(QUALITIES.items())]
+    return [*items, ("CUSTOM", "Custom", "Options as they are set in Expert", "NONE", len(items))]
+
+
+def _quality(panel: Any) -> int:
+    """The level follows from the options: whatever sets them, it is never out of date."""
+    return _LEVELS.index(quality_of(panel.id_data.mobius_flow) or "CUSTOM")
+
+
+def _set_quality(panel: Any, number: int) -> None:
+    quality = QUALITIES.get(_LEVELS[number])
+    for name, value in quality.values.items() if quality is not None else ():
+        setattr(panel.id_data.mobius_flow, name, value)
+
+
+class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
+    """What the panel shows."""
+
+    quality: EnumProperty(
+        name="Quality",
+        description="How near to the least energy the shape comes; sets some of the options in Expert",
+        items=_quality_items(),
+        get=_quality,
+        set=_set_quality,
+    )
+    show_plot: BoolProperty(
+        name="Energy Plot",
+        description="Draw the energy against the iterations in the 3D view",
+        default=True,
+        update=lambda _panel, context: redraw_views(context.window_manager),
+    )
+
+
+class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
+    """Where the film goes, and what it looks like."""
+
+    filepath: StringProperty(
+        name="File",
+        description="Where the film goes, an MP4; // is the directory of the open file",
+        default="//film.mp4",
+        subtype="FILE_PATH",
+        options=_RELATIVE,
+    )
+    look: EnumProperty(
+        name="Look",
+        description="How the frames are rendered",
+        items=[(name, look.label, look.description) for name, look in LOOKS.items()],
+    )
+
+
+class MobiusFlowSurroundings(bpy.types.PropertyGroup):
+    """What curves avoid."""
+
+    avoid: PointerProperty(
+        name="Avoid",
+        description="Collection whose visible objects are never touched by curves that are relaxed",
+        type=bpy.types.Collection,
+    )
+
+
+def _knots(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> list[tuple[str, str, str, int, int]]:
+    """The knots of the chosen group, with icons; each keeps its number in files."""
+    chosen = settings.group
+    if chosen not in _knot_items:
+        _knot_items[chosen] = [
+            (name, label, f"Knot {label}" if chosen != "LINKS" else f"Link {label}", icons.icon(name), number)
+            for number, (name, label) in enumerate(labels().items())
+            if group(name) == chosen
+        ]
+    return _knot_items[chosen]
+
+
+def _show_first(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Pick the first knot of another group: the one that was picked is not shown there."""
+    settings.knot = next(name for name in labels() if group(name) == settings.group)
+
+
+class MobiusFlowKnots(bpy.types.PropertyGroup):
+    """Which knot is picked."""
+
+    group: EnumProperty(
+        name="Group",
+        description="Which knots are shown",
+        items=[(key, title, description) for key, (title, description) in GROUPS.items()],
+        default="FEW",
+        update=_show_first,
+    )
+    knot: EnumProperty(name="Knot", description="Knot to add", items=_knots, default=_TREFOIL)
+    mirror: BoolProperty(name="Mirror", description="Add the mirror image", default=False)
+
+
+GROUPS_OF_SCENE = {
+    "mobius_flow": MobiusFlowSettings,
+    "mobius_flow_panel": MobiusFlowPanelSettings,
+    "mobius_flow_film": MobiusFlowFilmSettings,
+    "mobius_flow_surroundings": MobiusFlowSurroundings,
+    "mobius_flow_knots": MobiusFlowKnots,
+}
+
+
+def register() -> None:
+    """Give scenes the settings, whose classes are registered."""
+    for name, cls in GROUPS_OF_SCENE.items():
+        setattr(bpy.types.Scene, name, PointerProperty(type=cls))
+
+
+def unregister() -> None:
+    """Take them away, and forget icons and what refers to them."""
+    for name in GROUPS_OF_SCENE:
+        delattr(bpy.types.Scene, name)
+    _knot_items.clear()
+    icons.forget()

@@ -1,0 +1,174 @@
+"""The gallery of knots, and the sub-panels: each is a table of rows."""
+
+import bpy
+
+from ...core.messages import Message
+from ..curves import bake, bevel, pins
+from ..curves.exchange import stretch
+from ..curves.standing import unsteady
+from ..curves.units import length
+from ..engine.key_options import Output
+from ..engine.knot_list import labels
+from ..engine.size import Measure
+from ..engine.timing import Pace
+from ..engine.words import named
+from ..live.modal import unseen
+from ..live.requirements import avoided, curves_at_hand, selected_curves
+from ..pictures import staging
+from ..properties import shown
+from ..translations import iface_
+from .layout import Draw, InSidebar, SubPanel, button, column, operator, row, sentence, settings, value
+from .menus import search
+
+
+def _gallery(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    picked = context.scene.mobius_flow_knots
+    layout.prop(picked, "group")
+    layout.template_icon_view(picked, "knot", show_labels=True, scale=7.0, scale_popup=4.0)
+    within = layout.row(align=True)
+    label = labels().get(picked.knot, "")
+    add = operator(within, "pick_knot", text=iface_("Add {knot}", knot=Message(label)), icon="ADD")
+    add.knot, add.mirror = label, picked.mirror
+    within.prop(picked, "mirror", text="", icon="MOD_MIRROR")
+
+
+class VIEW3D_PT_mobius_flow_knots(InSidebar, bpy.types.Panel):
+    bl_label = "Knots"
+    bl_options = {"DEFAULT_CLOSED"}
+    rows = (_gallery, search, button("draw_knot", "GREASEPENCIL"))
+
+
+def _pin_count(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    if count := sum(pins.count(obj.data) for obj in curves_at_hand(context)):
+        layout.label(text=iface_("{count} points pinned", count=count), icon="INFO", translate=False)
+
+
+class VIEW3D_PT_mobius_flow_pins(SubPanel, bpy.types.Panel):
+    bl_label = "Pins"
+    rows = (
+        column(button("pin", "PINNED"), row(button("pin_ends", "PINNED"), button("unpin", "UNPINNED"))),
+        _pin_count,
+        settings("pin_tangents"),
+        button("close", "CURVE_BEZCIRCLE"),
+    )
+
+
+def _avoided(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    if context.scene.mobius_flow_surroundings.avoid is None:
+        return
+    found = avoided(context)
+    if not found:
+        sentence(layout, context, Message("Nothing in it is visible"))
+    elif not unsteady(found, selected_curves(context)):
+        names = named([obj.name for obj in found])
+        sentence(layout, context, Message("Curves never touch {names}", names=names))
+
+
+class VIEW3D_PT_mobius_flow_surroundings(SubPanel, bpy.types.Panel):
+    bl_label = "Surroundings"
+    rows = (settings("avoid", of="mobius_flow_surroundings"), _avoided)
+
+
+def _unseen_frames(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
+        sentence(layout, context, hidden)
+
+
+def _key_settings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    chosen = context.scene.mobius_flow
+    if chosen.keyframes == Output.RESULT.name:
+        settings("keyframes")(layout, context)
+        return
+    lasting = "frames_per_iterate" if chosen.timing == Pace.ITERATE.name else "length"
+    settings("timing", lasting, "start_frame", "hold_start", "hold_end")(layout, context)
+    settings("keyframes", "max_keys")(layout, context)
+
+
+class VIEW3D_PT_mobius_flow_animation(SubPanel, bpy.types.Panel):
+    bl_label = "Animation"
+    bl_options = set()
+    rows = (
+        column(
+            row(button("bake_again", "FILE_REFRESH"), button("continue", "FF")),
+            button("clear", "TRASH"),
+            button("scene_range", "PREVIEW_RANGE"),
+        ),
+        _unseen_frames,
+        _key_settings,
+    )
+
+
+def _keep_size(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    measure = context.scene.mobius_flow.keep_size
+    text = iface_("Keep {measure}", measure=Message(Measure[measure].value))
+    operator(layout, "keep_size", text=text, icon="FULLSCREEN_EXIT").measure = measure
+
+
+class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
+    bl_label = "Shape"
+    rows = (
+        settings("keep_size"),
+        column(_keep_size, row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA"))),
+        column(button("balance", "MOD_CURVE"), row(button("check", "VIEWZOOM"), button("leave_saddle", "SORT_ASC"))),
+    )
+
+
+def _radius(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Show how thick the first curve is drawn, and whose choice that is."""
+    for obj in selected_curves(context)[:1]:
+        text = Message("None")
+        if depth := obj.data.bevel_depth:
+            radius = length(context.scene, depth * stretch(obj))
+            fitted = bevel.is_fitted(obj.data)
+            text = Message("{radius} (fitted)" if fitted else "{radius} (your own)", radius=radius)
+        value(layout, "Radius", text)
+
+
+class VIEW3D_PT_mobius_flow_tube(SubPanel, bpy.types.Panel):
+    bl_label = "Tube"
+    rows = (
+        _radius,
+        column(button("fit_tube", "MESH_CYLINDER"), button("color_components", "COLOR")),
+        settings("fit_bevel"),
+        column(button("tube_mesh", "OUTLINER_OB_MESH"), button("smooth_curve", "CURVE_BEZCURVE")),
+    )
+
+
+def _stage(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    within = layout.row(align=True)
+    operator(within, "set_up_stage", icon="OUTLINER_OB_LIGHT")
+    if staging.own_stage(context.scene):
+        operator(within, "remove_stage", text="", icon="X")
+    if not staging.fits(context.scene):
+        sentence(layout, context, "The picture has another shape than the stage's camera; press Set Up Stage again")
+
+
+def _frames(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Show Blender's own settings of size and frames, by names that fit here."""
+    scene = context.scene
+    within = layout.column(align=True)
+    within.prop(scene.render, "resolution_x", text=iface_("Resolution X"))
+    within.prop(scene.render, "resolution_y", text="Y")
+    within.prop(scene.render, "resolution_percentage", text="%")
+    within = layout.column(align=True)
+    within.prop(scene, "frame_start", text=iface_("Frame Start"))
+    within.prop(scene, "frame_end", text=iface_("End"))
+    operator(within, "scene_range", icon="PREVIEW_RANGE")
+
+
+class VIEW3D_PT_mobius_flow_film(SubPanel, bpy.types.Panel):
+    bl_label = "Film"
+    rows = (
+        *(_stage, _frames),
+        settings("look", "filepath", of="mobius_flow_film"),
+        button("render_film", "RENDER_ANIMATION"),
+    )
+
+
+def _options(group: str) -> Draw:
+    return lambda layout, context: settings(*(option.name for option in shown(group)))(layout, context)
+
+
+class VIEW3D_PT_mobius_flow_expert(SubPanel, bpy.types.Panel):
+    bl_label = "Expert"
+    rows = (_options("basic"), _options("advanced"), settings("view_every"))
