@@ -15,9 +15,24 @@ from mobius_flow.core.knots import knot
 LENGTHS = [pace for pace in Pace if pace is not Pace.ITERATE]
 
 
-@pytest.fixture(
-    scope="module",
-    params=family(["7_4", "6_1", "5_2"]))
+@pytest.fixture(scope="module", params=family(["7_4", "6_1", "5_2"]))
+def motion(request):
+    """A relaxation whose iterates move much at first and hardly at last."""
+    motion = Motion(Link((Placement(np.eye(3), np.zeros(3)),), (1,)))
+    for iterate in relax(knot(request.param, 100), RelaxOptions(mesh="fixed", vertices=100)):
+        motion.add(iterate)
+    return motion
+
+
+def half_way(keys, frames):
+    """The share of the frames in which half of the vertices' way is travelled, as it is seen frame by frame."""
+    points = np.array([key.points for key in keys.keys], dtype=np.float64)
+    seen = np.arange(np.ceil(frames[0]), np.floor(frames[-1]) + 1)
+    places = np.interp(seen, frames, np.arange(len(frames)))
+    below = np.minimum(places.astype(int), len(points) - 2)
+    part = (places - below)[:, None, None]
+    shown = (1 - part) * points[below] + part * points[below + 1]
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shown, axis=0), axis=2).mean(axis=1))])
     return np.interp(0.5, way / way[-1], np.linspace(0, 1, len(way)))
 
 
