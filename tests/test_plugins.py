@@ -117,7 +117,9 @@ PLUGINS = {
             ),
         ),
     ),
-    "subcommand": Plugin("cli", "length.py", "cli/parser.py", (Line('    "verify": ', '    "length": "print it",'),)),
+    "subcommand": Plugin(
+        "cli", "length.py", "cli/parser.py", (Line('    "verify": ', '    "length": ("length", "print it"),'),)
+    ),
 }
 
 
@@ -145,14 +147,18 @@ def copy(tmp_path_factory):
 
 SERVER = """
 import contextlib, io, json, os, runpy, sys
+from mobius_flow.cli import main
 for line in sys.stdin:
-    module, words, place = json.loads(line)
+    script, words, place = json.loads(line)
     os.chdir(place)
     sys.argv[1:] = words
     out, status = io.TextIOWrapper(io.BytesIO(), encoding="utf-8"), 0
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
         try:
-            (runpy.run_path if os.sep in module else runpy.run_module)(module, run_name="__main__")
+            if script:
+                runpy.run_path(script, run_name="__main__")
+            else:
+                status = main(words)
         except SystemExit as end:
             status = end.code or 0
     out.seek(0)
@@ -167,17 +173,17 @@ def environment(copy):
 
 @pytest.fixture(scope="module")
 def server(copy):
-    """A process that runs modules of the copy one after the other: it imports NumPy and SciPy once."""
+    """A process that runs one after the other in the copy: it imports NumPy and SciPy once."""
     with running([sys.executable, "-c", SERVER], stdin=subprocess.PIPE, env=environment(copy)) as process:
         yield process
 
 
 @pytest.fixture
 def python(server, tmp_path):
-    """Run a module, or a script, on the copy, and give its output."""
+    """Run a script on the copy, or the command line where none is named, and give its output."""
 
-    def run(module, *words, status=0):
-        server.stdin.write(json.dumps([str(module), [*map(str, words)], str(tmp_path)]) + "\n")
+    def run(script, *words, status=0):
+        server.stdin.write(json.dumps([str(script), [*map(str, words)], str(tmp_path)]) + "\n")
         server.stdin.flush()
         found, said = json.loads(server.stdout.readline())
         assert found == status, said
@@ -189,7 +195,7 @@ def python(server, tmp_path):
 @pytest.fixture
 def command(python):
     """Run the copy's command line."""
-    return lambda *words, **more: python("mobius_flow", *words, **more)
+    return lambda *words, **more: python("", *words, **more)
 
 
 @pytest.fixture
