@@ -36,7 +36,7 @@ def test_energy_spent_on_edge_lengths_is_told_of():
     result = minimize(uneven_circle(), RelaxOptions(method="flow-l2", max_iterations=10, vertices=60), iterates.append)
     rises = [b.energy - a.energy for a, b in itertools.pairwise(iterates) if b.energy > a.energy * (1 + 1e-9)]
     assert len(rises) > 3
-    told = f"the energy rose in {len(rises)} of {iterates[-1].index} steps, by {sum(rises):.3g} in all"
+    told = f"the energy rose in {len(rises)} of {iterates[-1].index} steps, by {sum(rises):.3g} in total"
     assert told in result.message
     assert iterates[-1].edge_length_error < iterates[0].edge_length_error
     assert "rose" not in minimize(torus_trefoil(60), RelaxOptions(max_iterations=5)).message

@@ -43,6 +43,7 @@ def test_a_live_run_is_the_headless_job(operator, ring, torus):
     np.testing.assert_array_equal(keys(ring), keys(copy))
 
 
+@pytest.mark.parametrize("operator", ["process"], indirect=True)
 def test_the_worker_proves_what_is_stored(operator, ring, monkeypatch):
     """Motions beside the torus come proved from the worker."""
     again = []

@@ -46,6 +46,7 @@ def test_two_objects_are_the_headless_job_too(operator, rings):
         assert live.data.bevel_depth == headless.data.bevel_depth > 0
 
 
+@pytest.mark.parametrize("operator", ["process"], indirect=True)
 def test_the_worker_proves_what_is_stored(operator, rings, monkeypatch):
     """Nothing is proved twice: the motions of rounded points of all objects come proved from the worker."""
     again = []
