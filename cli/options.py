@@ -2,7 +2,7 @@
 
 import argparse
 import platform
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy
@@ -23,7 +23,7 @@ def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) ->
     group = parser.add_argument_group("relaxation")
     offered = [option for option in declared(RelaxOptions) if option.name not in without]
     for option in offered:
-        group.add_argument(flag(option), help=_help(option), **_values(option))
+        group.add_argument(flag(option), **_declaration(option))
         for word, value in option.shorthands.items():
             text = f"the same as {flag(option)} {value}"
             group.add_argument(f"--{word}", dest=_SHORT, action="append_const", const=word, help=text)
@@ -53,12 +53,9 @@ def add_task(parser: argparse.ArgumentParser) -> None:
 
 def task(arguments: argparse.Namespace, file: CurveFile) -> Task:
     """The curve of a file with its obstacles and pins, which a file's own numbers stand for."""
-    return Task(
-        curve=file.curve,
-        obstacles=tuple(map(read_obstacle, arguments.avoid)),
-        pins=tuple(file.index_of(pin) for text in arguments.pins for pin in pinned(text)),
-        pin_tangents=arguments.pin_tangents,
-    )
+    pins = tuple(file.index_of(pin) for text in arguments.pins for pin in pinned(text))
+    obstacles = tuple(map(read_obstacle, arguments.avoid))
+    return Task(curve=file.curve, obstacles=obstacles, pins=pins, pin_tangents=arguments.pin_tangents)
 
 
 def pinned(text: str) -> tuple[int, ...]:
@@ -81,17 +78,15 @@ def inputs(arguments: argparse.Namespace) -> dict[str, str]:
 
 
 def _value(option: Option, given: Mapping[str, Any]) -> Any:
-    """What is given, with words turned into the items of a tuple, and shorthands into what they stand for."""
+    """What is given, with words turned into the items of a tuple, and shorthands into what they stand for.
+
+    Of several shorthands the one whose choice comes last in the list of choices holds.
+    """
     value = given[option.name]
     if option.repeated:
         return tuple(item for word in value for item in option.read(word))
-    return _spelt_out(option, value, given[_SHORT]) if option.shorthands else value
-
-
-def _spelt_out(option: Option, value: str | None, words: Sequence[str]) -> str:
-    """A choice by its name, or by shorthands: of several the one that comes last in the list of choices holds."""
-    meant = {word: option.shorthands[word] for word in words if word in option.shorthands}
-    if value is None:
+    meant = {word: option.shorthands[word] for word in given[_SHORT] if word in option.shorthands}
+    if value is None and option.shorthands:
         return max(meant.values(), key=list(option.choices or ()).index, default=option.default)
     other = next((word for word in meant if meant[word] != value), None)
     if other is not None:
@@ -104,21 +99,17 @@ def flag(option: Option) -> str:
     return f"--{option.flag or option.name.replace('_', '-')}"
 
 
-def _values(option: Option) -> dict[str, Any]:
-    default = None if option.shorthands else option.default
-    common: dict[str, Any] = {"dest": option.name, "default": [] if option.repeated else default}
+def _declaration(option: Option) -> dict[str, Any]:
+    """What argparse is told of an option."""
+    common = {"dest": option.name, "help": option.help, "default": None if option.shorthands else option.default}
     if option.kind is bool:
         return common | {"action": "store_true"}
-    return common | {"metavar": option.metavar} | ({"action": "append"} if option.repeated else {"type": option.kind})
-
-
-def _help(option: Option) -> str:
-    if option.kind is bool:
-        return option.help
+    common |= {"metavar": option.metavar}
     if option.repeated:
-        return f"{option.help}; may be given several times"
+        return common | {"help": f"{option.help}; may be given several times", "action": "append", "default": []}
     choices = f"; one of {', '.join(option.choices)}" if option.choices else ""
-    return f"{option.help}{choices} (default: {option.automatic or option.default})"
+    default = f" (default: {option.automatic or option.default})"
+    return common | {"help": f"{option.help}{choices}{default}", "type": option.kind}
 
 
 def provenance(options: Mapping[str, object], name: str, sha256: str | None) -> dict[str, object]:

@@ -1,7 +1,6 @@
 """Where results go, checked before hours of work are put into them; what cannot be written there is kept elsewhere."""
 
 import os
-import secrets
 import shutil
 import stat
 import sys
@@ -43,35 +42,21 @@ def check_place(path: str) -> None:
     if path == STREAM:
         return
     try:
-        _check_file(Path(path))
+        found, directory = status_of(path), Path(os.path.realpath(path)).parent
+        if found is not None and stat.S_ISDIR(found.st_mode):
+            raise MobiusFlowError(f"{path}: is a directory; name a file")
+        if found is None and not directory.is_dir():
+            raise MobiusFlowError(f"{path}: cannot be written: the directory {Path(path).parent} does not exist")
+        if not os.access(directory if found is None else path, os.W_OK):
+            raise MobiusFlowError(f"{path}: is write-protected")
+        if found is None:
+            tempfile.NamedTemporaryFile(prefix=".", dir=directory).close()  # the only way to know
+        elif stat.S_ISREG(found.st_mode):
+            open(path, "r+b").close()
     except MobiusFlowError:
         raise
     except (OSError, ValueError) as error:  # a ValueError for a null character
         raise OutputError(path, error) from error
-
-
-def _check_file(path: Path) -> None:
-    found = status_of(path)
-    if found is None:
-        _check_directory(path, Path(os.path.realpath(path)).parent)
-    elif stat.S_ISDIR(found.st_mode):
-        raise MobiusFlowError(f"{path}: is a directory; name a file")
-    elif not os.access(path, os.W_OK):
-        raise MobiusFlowError(f"{path}: is write-protected")
-    elif stat.S_ISREG(found.st_mode):
-        path.open("r+b").close()
-
-
-def _check_directory(path: Path, directory: Path) -> None:
-    if not directory.is_dir():
-        raise MobiusFlowError(f"{path}: cannot be written: the directory {path.parent} does not exist")
-    if not os.access(directory, os.W_OK):
-        raise MobiusFlowError(f"{path}: is write-protected")
-    trial = directory / f".{secrets.token_hex(8)}"
-    try:
-        trial.touch(exist_ok=False)  # the only way to know
-    finally:
-        trial.unlink(missing_ok=True)
 
 
 def is_file(path: str) -> bool:

@@ -16,7 +16,7 @@ from ..streams import emit
 from . import cluster
 from .folder import check_replaceable, finished, sweep
 from .job import CSV, PARQUET, Job, inputs, jobs
-from .table import Row, Table, check_tables
+from .table import Row, check_tables, save, summary
 
 
 def campaign(options: argparse.Namespace) -> None:
@@ -37,11 +37,11 @@ def campaign(options: argparse.Namespace) -> None:
     if left:
         _run(left, rows, directory, options)
     else:
-        Table(rows.values()).save(directory)
+        save(rows.values(), directory)
     if not options.quiet:
         failed = any(row.failed for row in rows.values())
         why = f"; {os.path.join(options.output, CSV)} says why" if failed else ""
-        emit(Table(rows.values()).summary() + why)
+        emit(summary(rows.values()) + why)
 
 
 def _found(planned: Iterable[Job]) -> dict[Job, Row]:
@@ -76,7 +76,7 @@ def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argpar
         finally:
             signals.hold()  # the table is neither lost nor halved
             rows |= _found(job for job in left if job not in rows)  # whose rows were still on their way
-            Table(rows.values()).save(directory)
+            save(rows.values(), directory)
     sweep(directory)
 
 

@@ -42,10 +42,7 @@ def require(address: str | None) -> None:
 
 
 def submitting(address: str | None) -> AbstractContextManager[Submit]:
-    """What submits to the scheduler at an address, or to all cores of this machine.
-
-    A MobiusFlowError says if there is no scheduler, or no worker.
-    """
+    """What submits to a scheduler, or to all cores of this machine; raises MobiusFlowError where nobody answers."""
     return _own_cores() if address is None else _joined(address)
 
 
@@ -101,35 +98,24 @@ def rows(submit: Submit, jobs: Iterable[Job]) -> Iterator[tuple[Job, Row]]:
     for job in islice(waiting, WINDOW):
         begin(job)
     while under_way:
-        future = _next(ended)
+        try:
+            future = ended.get(timeout=_TICK)
+        except queue.Empty:
+            continue
         job, tries = under_way.pop(future)
         try:
-            row = _row(job, future)
+            row = future.result()
+        except (CancelledError, OSError) as lost:  # an OSError where a row cannot be fetched
+            raise MobiusFlowError("the Dask scheduler is lost; give the same command again to go on") from lost
+        except MobiusFlowError:
+            raise
         except sandbox.ChildDiedError as error:
             if tries < TRIES:
                 begin(job, tries + 1)
                 continue
             row = Row.failure(job, f"{TRIES} tries failed: {error}")
+        except Exception as error:  # of the cluster: workers that die, or lack the program
+            row = Row.failure(job, str(error))
         yield job, row
         for another in islice(waiting, 1):
             begin(another)
-
-
-def _next(ended: "queue.SimpleQueue[Any]") -> Any:
-    while True:
-        try:
-            return ended.get(timeout=_TICK)
-        except queue.Empty:
-            continue
-
-
-def _row(job: Job, future: Any) -> Row:
-    try:
-        row: Row = future.result()
-    except (CancelledError, OSError) as lost:  # an OSError where a row cannot be fetched
-        raise MobiusFlowError("the Dask scheduler is lost; give the same command again to go on") from lost
-    except (MobiusFlowError, sandbox.ChildDiedError):
-        raise
-    except Exception as error:  # of the cluster: workers that die, or lack the program
-        return Row.failure(job, str(error))
-    return row

@@ -80,21 +80,13 @@ def check_replaceable(path: Path) -> None:
         return
     except OSError as error:  # such as a name too long: each file system has its own limit
         raise MobiusFlowError(f"{path}: cannot be a folder of results: {reason_of(error)}; rename the input") from error
-    written = _written(path)
-    if path.is_symlink() or not written:
+    report = _report(path)
+    written = report.pop(_FILES, None)
+    if path.is_symlink() or not isinstance(written, dict) or written.pop(REPORT, None) != _sha256_of(report):
         raise foreign(path)
     for each in sorted(path.iterdir()):
-        if each.is_symlink() or written.get(each.name, "") != sha256_of(each):
+        if each.is_symlink() or (each.name != REPORT and written.get(each.name, "") != sha256_of(each)):
             raise foreign(each)
-
-
-def _written(folder: Path) -> dict[str, str | None]:
-    """The SHA-256 of the files that a batch wrote into a folder, by its mark in the report; empty without one."""
-    report = _report(folder)
-    files = report.pop(_FILES, None)
-    if not isinstance(files, dict) or files.pop(REPORT, None) != _sha256_of(report):
-        return {}
-    return files | {REPORT: sha256_of(folder / REPORT)}
 
 
 def _report(folder: Path) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """One run of a batch, from its start to its folder of results."""
 
 import time
-from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -31,7 +30,7 @@ GAP = 0.5  # of the mean edge length that scrambled strands keep: nearer ones wo
 
 
 def relaxed(job: Job) -> Row:
-    """Do a run; its row tells what goes wrong, but for an OutputError, which is about the place of all results."""
+    """Do a run; its row says what goes wrong, but for an OutputError, which is about the place of all results."""
     try:
         if job.version != __version__:
             raise MobiusFlowError(f"a worker has version {__version__} of mobius-flow, and {job.version} is wanted")
@@ -46,9 +45,10 @@ def _relaxed(job: Job) -> Row:
     clocks = time.perf_counter, time.process_time
     began = [clock() for clock in clocks]
     values: dict[str, Any] = {name: value for name, value in job.options.items() if name not in STILL}
-    options = RelaxOptions(**values)
-    file = None if job.file is None else _load(job.file)
-    if file is not None:
+    options, file = RelaxOptions(**values), None
+    if job.file is not None:
+        curves.check_regular(job.file)
+        file = load_curve(job.file)
         job = replace(job, sha256=file.source.sha256)  # of what is really relaxed
     origin = provenance(job.options, job.file or job.name, job.sha256)
     with nullcontext() if file is None else curves.refusals(file):
@@ -56,31 +56,23 @@ def _relaxed(job: Job) -> Row:
         trajectory = Trajectory(origin, task.obstacles)
         result = minimize(task, options, trajectory.add)
     found = _findings(job, options, task.curve, result)
+    name = one_line(job.name) + ("" if job.seed is None else f", scrambled with seed {job.seed}")
+    head = (
+        f"# {name}: {found['type_after']}, Möbius energy {found['energy']:.9g}, {found['status']}\n"
+        f"# mobius-flow {job.version} batch, options {given(job)}\n"
+    )
     try:
         with new_folder(Path(job.folder)) as room:
-            write_text(room / CURVE, _head(job, found) + FORMATS[".txt"].text(result.curve))
+            write_text(room / CURVE, head + FORMATS[".txt"].text(result.curve))
             trajectory.save(room / TRAJECTORY)
             verified = verify(room / TRAJECTORY).accepted
             seconds, processor = (clock() - start for clock, start in zip(clocks, began, strict=True))
             row = Row.of(job, **found, verified=verified, seconds=seconds, processor_seconds=processor)
             write_report(room, job, row, result.report() | origin)
     except (OSError, OutputError) as error:
-        raise OutputError(job.folder, _cause(error)) from error
+        cause = error.__cause__ if isinstance(error.__cause__, OSError) else error  # others name files that are gone
+        raise OutputError(job.folder, cause) from error
     return row
-
-
-def _cause(error: Exception) -> Exception:
-    """What the system says: other errors name files that have vanished."""
-    return error.__cause__ if isinstance(error.__cause__, OSError) else error
-
-
-def _head(job: Job, found: Mapping[str, object]) -> str:
-    """The comment above a curve."""
-    name = one_line(job.name) + ("" if job.seed is None else f", scrambled with seed {job.seed}")
-    return (
-        f"# {name}: {found['type_after']}, Möbius energy {found['energy']:.9g}, {found['status']}\n"
-        f"# mobius-flow {job.version} batch, options {given(job)}\n"
-    )
 
 
 def _task(job: Job, file: CurveFile | None) -> Task:
@@ -90,12 +82,6 @@ def _task(job: Job, file: CurveFile | None) -> Task:
     start = _start(knot(job.name) if file is None else file.curve, job.seed)
     obstacles = tuple(map(read_obstacle, still["avoid"]))
     return Task(curve=start, obstacles=obstacles, pins=pins, pin_tangents=still["pin_tangents"])
-
-
-def _load(path: str) -> CurveFile:
-    """Read a curve file; a CurveFileError tells why it cannot be read."""
-    curves.check_regular(path)
-    return load_curve(path)
 
 
 def _start(curve: Curve, seed: int | None) -> Curve:
@@ -113,7 +99,7 @@ def _start(curve: Curve, seed: int | None) -> Curve:
 
 
 def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> dict[str, object]:
-    """What the row tells of a result."""
+    """What the row says of a result."""
     smooth = None
     if job.extrapolate and result.outcome.converged:
         end = replace(result.task, curve=result.curve, pins=result.last.pins, pin_tangents=False)

@@ -76,29 +76,29 @@ def given(job: Job) -> str:
     return json.dumps({name: value for name, value in options.items() if value != defaults[name]})
 
 
-class Table:
-    """Rows in order of name and start."""
+def in_order(rows: Iterable[Row]) -> list[Row]:
+    """By name and start."""
+    return sorted(rows, key=lambda row: (row.name, row.start))
 
-    def __init__(self, rows: Iterable[Row]) -> None:
-        self.rows = sorted(rows, key=lambda row: (row.name, row.start))
 
-    def summary(self) -> str:
-        """How many runs ended in which way."""
-        ends = Counter(row.status.replace("_", " ") for row in self.rows)
-        return f"{counted(len(self.rows), 'run')}: " + ", ".join(f"{count} {end}" for end, count in ends.most_common())
+def summary(rows: Iterable[Row]) -> str:
+    """How many runs ended in which way."""
+    ends = Counter(row.status.replace("_", " ") for row in in_order(rows))
+    return f"{counted(ends.total(), 'run')}: " + ", ".join(f"{count} {end}" for end, count in ends.most_common())
 
-    def save(self, directory: Path) -> None:
-        """Write both files, each whole or not at all; an OutputError says why they cannot be."""
-        check_tables(directory)
-        columns, cells = [field.name for field in fields(Row)], list(map(asdict, self.rows))
-        text = _as_csv(columns, cells)
-        marks = _sha256(text), sha256_of(directory / CSV) or ""
-        try:
-            with atomic_write(directory / CSV) as table, atomic_write(directory / PARQUET) as parquet:
-                table.write_bytes(text)
-                parquet.write_bytes(_as_parquet(cells, " ".join(marks)))
-        except OSError as error:
-            raise OutputError(directory / CSV, error) from error
+
+def save(rows: Iterable[Row], directory: Path) -> None:
+    """Write both tables, each whole or not at all; an OutputError says why they cannot be written."""
+    check_tables(directory)
+    cells = list(map(asdict, in_order(rows)))
+    text = _as_csv([field.name for field in fields(Row)], cells)
+    marks = _sha256(text), sha256_of(directory / CSV) or ""
+    try:
+        with atomic_write(directory / CSV) as table, atomic_write(directory / PARQUET) as parquet:
+            table.write_bytes(text)
+            parquet.write_bytes(_as_parquet(cells, " ".join(marks)))
+    except OSError as error:
+        raise OutputError(directory / CSV, error) from error
 
 
 def check_tables(directory: Path) -> None:
