@@ -5,8 +5,7 @@ from typing import Any
 
 # parts of curves, numbered from 1, and what is around them: facts of other messages, for which Blender has other words
 COMPONENT, OBSTACLE = "component {number}", "obstacle {name}"
-EDGE, EDGES = "edge {number}", "edges {first} and {second}"
-VERTEX, VERTICES, VERTEX_COUNT = "vertex {number}", "vertices {first} and {second}", "{count} vertices"
+EDGE, VERTEX, VERTEX_COUNT = "edge {number}", "vertex {number}", "{count} vertices"
 
 
 class Message(str):

@@ -2,16 +2,14 @@
 
 from collections.abc import Sequence
 
-from ...core.messages import COMPONENT, EDGE, EDGES, OBSTACLE, VERTEX, VERTEX_COUNT, VERTICES, Message
+from ...core.messages import COMPONENT, EDGE, OBSTACLE, VERTEX, VERTEX_COUNT, Message
 
 _MAX_NAMES = 3
 _WORDS = {
     EDGE: Message("segment {number}"),
-    EDGES: Message("segments {first} and {second}"),
     OBSTACLE: Message("'{name}'"),
     VERTEX: Message("point {number}"),
     VERTEX_COUNT: Message("{count} points"),
-    VERTICES: Message("points {first} and {second}"),
 }
 
 

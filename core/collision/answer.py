@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from ..messages import EDGE, EDGES, Message
+from ..messages import EDGE, Message
 
 
 class Limit(Enum):
@@ -26,10 +26,8 @@ class Contact:
     @property
     def message(self) -> Message:
         """The two, as sentences call them."""
-        first, *second = (edge + 1 for edge in self.edges)
-        if self.obstacle is None:
-            return Message(EDGES, first=first, second=second[0])
-        return Message("{edge} and {obstacle}", edge=Message(EDGE, number=first), obstacle=self.obstacle)
+        edge, *other = (Message(EDGE, number=edge + 1) for edge in self.edges)
+        return Message("{edge} and {other}", edge=edge, other=self.obstacle or other[0])
 
 
 @dataclass(frozen=True)

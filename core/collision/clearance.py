@@ -7,11 +7,11 @@ import numpy as np
 from ..curve import Curve
 from ..curve.places import at_edges
 from ..errors import CurveError
-from ..messages import EDGE, Message
+from ..messages import Message
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, still_triangles
-from .embedded import meeting_point, numbered, written
+from .embedded import edge_name, meeting_point, written
 from .exact import first_contact
 from .exact_triangle import EDGES, crossing
 from .gap import MIN_GAP, folds, minimal_gap, scaled_points, squared_gaps, squared_segment_distances
@@ -22,9 +22,9 @@ from .planes import Separation, closest_chord, relative_motion
 # moves the vertex along its edge.
 UNITS = 2.5
 
-PIERCES = Message("{component}: {edge} pierces {obstacle} at {place}; move one of them away")
-TOUCHES = Message("{component}: {edge} touches {obstacle} at {place}; move one of them away")
-TOO_NEAR = Message("{component}: {edge} comes too near to {obstacle} at {place}; move one of them away")
+PIERCES = Message("{edge} pierces {obstacle} at {place}; move one of them away")
+TOUCHES = Message("{edge} touches {obstacle} at {place}; move one of them away")
+TOO_NEAR = Message("{edge} comes too near to {obstacle} at {place}; move one of them away")
 
 
 def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
@@ -45,10 +45,7 @@ def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
         )
     for edge, corners, obstacle in _near(curve, obstacles, MIN_GAP * curve.length):
         what, where = _meeting(corners)
-        component, k = numbered(curve.mesh, edge)
-        reason = Message(
-            what, component=component, edge=Message(EDGE, number=k), obstacle=obstacle.title, place=written(where)
-        )
+        reason = Message(what, edge=edge_name(curve.mesh, edge), obstacle=obstacle.title, place=written(where))
         raise CurveError(reason, at_edges(curve, (edge,), where))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..curve import Curve, Mesh
 from ..curve.places import at_edges, at_vertices
 from ..errors import CurveError
-from ..messages import COMPONENT, EDGE, EDGES, VERTEX, VERTICES, Message
+from ..messages import COMPONENT, EDGE, VERTEX, Message
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, corners
 from .exact import first_contact
@@ -16,9 +16,9 @@ from .planes import ROUNDING, Separation, closest_chord, relative_motion
 
 MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
 
-TOUCHING = Message("{edges} touch or cross near {place}; move the strands apart")
+TOUCHING = Message("{edge} and {other} touch or cross near {place}; move the strands apart")
 DOUBTFUL = Message(
-    "{edges}, near {place}, and thousands of others are so close that rounding hides whether they touch; "
+    "{edge} and {other}, near {place}, and thousands of others are so close that rounding hides whether they touch; "
     "move the strands apart"
 )
 _DECISIONS = 2000  # exact ones, about a second: strands that need more are refused by `check_gap`, if not here
@@ -49,14 +49,11 @@ def _check_repeated(curve: Curve) -> None:
     same = np.flatnonzero((np.abs(points[heads] - points[tails]) <= nearest).all(axis=1))
     if same.size:
         tail, head = int(tails[same[0]]), int(heads[same[0]])
-        (component, j), (_, k) = numbered_vertex(curve.mesh, tail), numbered_vertex(curve.mesh, head)
-        reason = Message(
-            "{component}: {vertices} are the same point {place}; remove one of them",
-            component=component,
-            vertices=Message(VERTICES, first=j, second=k),
-            place=written(curve.vertices[tail]),
+        same_point = "{vertex} and {other} are the same point {place}; remove one of them"
+        ends, place = (vertex_name(curve.mesh, tail), vertex_name(curve.mesh, head)), written(curve.vertices[tail])
+        raise CurveError(
+            Message(same_point, vertex=ends[0], other=ends[1], place=place), at_vertices(curve, tail, head)
         )
-        raise CurveError(reason, at_vertices(curve, tail, head))
 
 
 def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
@@ -71,18 +68,10 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
     parallel = (np.abs(left - right) <= ROUNDING * (np.abs(left) + np.abs(right))).all(axis=0)
     bad = np.flatnonzero(parallel & (np.einsum("mn,mn->n", first, second) < 0))
     if bad.size:
-        i, j = int(after[bad[0]]), int(before[bad[0]])
-        vertex = int(mesh.tails[i])
-        (component, k), (_, previous), (_, place) = numbered(mesh, i), numbered(mesh, j), numbered_vertex(mesh, vertex)
-        reason = Message(
-            "{component}: {edge} doubles back on {previous} at {vertex}, {place}; move or remove it",
-            component=component,
-            edge=Message(EDGE, number=k),
-            previous=Message(EDGE, number=previous),
-            vertex=Message(VERTEX, number=place),
-            place=written(curve.vertices[vertex]),
-        )
-        raise CurveError(reason, at_vertices(curve, vertex))
+        vertex = int(mesh.tails[after[bad[0]]])
+        back = "the curve doubles back at {vertex}, {place}; move or remove it"
+        message = Message(back, vertex=vertex_name(mesh, vertex), place=written(curve.vertices[vertex]))
+        raise CurveError(message, at_vertices(curve, vertex))
 
 
 def _check_crossings(curve: Curve, points: FloatArray) -> None:
@@ -136,28 +125,27 @@ def meeting_point(ends: FloatArray) -> FloatArray:
     return np.asarray(x[np.linalg.norm(x - y0 - r[:, None] * f, axis=1).argmin()])
 
 
-def numbered(mesh: Mesh, edge: int) -> tuple[Message, int]:
-    """Component of an edge, as messages name it, and its number there, from 1."""
+def edge_name(mesh: Mesh, edge: int) -> Message:
+    """What messages call an edge."""
     c = int(mesh.edge_component[edge])
-    return Message(COMPONENT, number=c + 1), edge - int(mesh.edge_offsets[c]) + 1
+    return _part(Message(EDGE, number=edge - int(mesh.edge_offsets[c]) + 1), c)
 
 
-def numbered_vertex(mesh: Mesh, vertex: int) -> tuple[Message, int]:
-    """The same of a vertex."""
+def vertex_name(mesh: Mesh, vertex: int) -> Message:
+    """What messages call a vertex."""
     c = int(mesh.component[vertex])
-    return Message(COMPONENT, number=c + 1), vertex - int(mesh.offsets[c]) + 1
+    return _part(Message(VERTEX, number=vertex - int(mesh.offsets[c]) + 1), c)
+
+
+def _part(part: Message, component: int) -> Message:
+    return Message("{part} of {component}", part=part, component=Message(COMPONENT, number=component + 1))
 
 
 def _refusal(template: str, curve: Curve, i: int, j: int) -> CurveError:
     """The sentence about two edges and the place where they meet."""
-    (c, p), (d, q) = numbered(curve.mesh, i), numbered(curve.mesh, j)
-    if c == d:
-        edges = Message("{component}: {edges}", component=c, edges=Message(EDGES, first=p, second=q))
-    else:
-        one, other = Message(EDGE, number=p), Message(EDGE, number=q)
-        edges = Message("{edge} of {component} and {other} of {another}", edge=one, component=c, other=other, another=d)
     where = meeting_point(curve.vertices[corners(curve.mesh, i, j)])
-    return CurveError(Message(template, edges=edges, place=written(where)), at_edges(curve, (i, j), where))
+    edges = {"edge": edge_name(curve.mesh, i), "other": edge_name(curve.mesh, j)}
+    return CurveError(Message(template, **edges, place=written(where)), at_edges(curve, (i, j), where))
 
 
 def written(position: FloatArray) -> str:

@@ -117,7 +117,7 @@ def test_what_no_step_gets_past_is_named():
 
 
 def test_a_start_that_pierces_is_refused():
-    with pytest.raises(CurveError, match=r"component 1: edge \d+ pierces obstacle wall at \(.*\); move one"):
+    with pytest.raises(CurveError, match=r"edge \d+ of component 1 pierces obstacle wall at \(.*\); move one"):
         relax(*wanted(torus_trefoil(30), avoid=(plate(0.3, name="wall"),)))
     with pytest.raises(CurveError, match="the curve has dimension 2, but obstacles are in space"):
         relax(*wanted(regular_polygon(30, dimension=2), avoid=(plate(0.3),)))

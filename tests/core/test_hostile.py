@@ -76,9 +76,15 @@ REFUSED: dict[str, tuple[Array, str]] = {
     "denormal": (np.ldexp(np.round(4 * TREFOIL), -1074), "use a smaller unit"),
     "too far away": (TREFOIL + 1e15, "too far from the origin, .* move it closer"),
     "much too far away": (TREFOIL + 1e18, "the same point"),
-    "one point": (np.zeros((5, 3)), "vertices 1 and 2 are the same point"),
-    "closed up to rounding": (np.stack([np.cos(CLOSED_TWICE), np.sin(CLOSED_TWICE)], axis=1), "41 and 1 are the same"),
-    "repeated": (TREFOIL[[*range(20), 19, *range(20, 40)]], "vertices 20 and 21 are the same point"),
+    "one point": (np.zeros((5, 3)), "vertex 1 of component 1 and vertex 2 of component 1 are the same point"),
+    "closed up to rounding": (
+        np.stack([np.cos(CLOSED_TWICE), np.sin(CLOSED_TWICE)], axis=1),
+        "vertex 41 .* and vertex 1 .* are the same",
+    ),
+    "repeated": (
+        TREFOIL[[*range(20), 19, *range(20, 40)]],
+        "vertex 20 .* and vertex 21 .* are the same point",
+    ),
     "met again": (TREFOIL[[*range(20), 0, *range(20, 40)]], "touch or cross"),
     "a spike": (np.insert(SQUARE, 1, [[2, 0, 0], [2, 1, 0], [2, 0.5, 0]], axis=0), "doubles back"),
     "a line": (np.linspace([0, 0, 0], [1, 2, 3], 5), "doubles back"),

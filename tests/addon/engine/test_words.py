@@ -6,6 +6,7 @@ import pytest
 from mobius_flow.addon.engine import wire
 from mobius_flow.addon.engine.words import in_blenders_words, spline_names
 from mobius_flow.core import Curve, CurveError, Obstacle, OptionError, Outcome, Status, Task, relax
+from mobius_flow.core.collision import Contact
 from mobius_flow.core.driver.outcome import converged, stalled
 from mobius_flow.core.errors import Place
 from mobius_flow.core.messages import Message
@@ -40,9 +41,12 @@ def test_splines_are_counted_in_each_object():
 @pytest.mark.parametrize(
     ("components", "wanted"),
     [
-        ([ABOVE, BAD["repeated"][0]], "spline 1 of 'Knot': points 4 and 5 are the same point (0, 2, 0)"),
+        (
+            [ABOVE, BAD["repeated"][0]],
+            "point 4 of spline 1 of 'Knot' and point 5 of spline 1 of 'Knot' are the same",
+        ),
         (BAD["crossing another"], "segment 3 of spline 1 of 'Ring' and segment 1 of spline 1 of 'Knot' touch"),
-        (BAD["doubled back"], "spline 1 of 'Ring': segment 5 doubles back on segment 4 at point 5, (0, -1, 0)"),
+        (BAD["doubled back"], "the curve doubles back at point 5 of spline 1 of 'Ring', (0, -1, 0)"),
     ],
 )
 def test_refusals(components, wanted):
@@ -55,7 +59,7 @@ def test_what_is_avoided_keeps_its_name():
     wall = Obstacle([[-1.0, 1.0, -1.0], [1.0, 1.0, -1.0], [0.0, 1.0, 1.0]], [[0, 1, 2]], name)
     error = refusal(Task(curve=Curve.from_components([SQUARE]), obstacles=(wall,)))
     assert in_blenders_words(str(error), NAMES).startswith(
-        f"spline 1 of 'Ring': segment 4 pierces '{name}' at (0, 1, 0)"
+        f"segment 4 of spline 1 of 'Ring' pierces '{name}' at (0, 1, 0)"
     )
 
 
@@ -65,17 +69,17 @@ def test_what_the_core_refuses_is_told_without_its_terms(components):
 
 
 def test_messages_survive_the_way_from_the_worker():
-    edges = Message("edges {first} and {second}", first=3, second=8)
+    edges = Contact((2, 7)).message
     outcome = stalled(Message("{contact} are so close", contact=edges), Place((1,), (0.0, 1.0))).adding(
         "{x:.2g}", x=0.5
     )
     arrived = wire.unpack_outcome(wire.pack_outcome(outcome))
     assert arrived == outcome
-    assert in_blenders_words(arrived.message, NAMES) == "stalled: segments 3 and 8 are so close; 0.5"
+    assert in_blenders_words(arrived.message, NAMES) == "stalled: segment 3 and segment 8 are so close; 0.5"
     for kind in (CurveError, OptionError):
         error = wire.unpack_error(wire.pack_error(kind(edges)))
         assert type(error) is kind
-        assert in_blenders_words(str(error), NAMES) == "segments 3 and 8"
+        assert in_blenders_words(str(error), NAMES) == "segment 3 and segment 8"
 
 
 def test_clauses_are_kept_where_an_outcome_stalls():

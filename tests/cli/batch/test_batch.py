@@ -158,7 +158,7 @@ def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path, caps
     for name, reason in {
         "pipe": "not a regular file",
         "broken": "missing",
-        "cross": "edges 1 and 3 touch",
+        "cross": "edge 1 of component 1 and edge 3 of component 1 touch",
         "empty": "empty",
         "huge": "3000000000 coordinates announced",
         "nan": "line 2",

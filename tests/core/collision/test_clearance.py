@@ -29,7 +29,7 @@ def test_without_obstacles_everything_is_clear() -> None:
 
 def test_an_edge_that_pierces_is_named_with_the_place() -> None:
     error = refusal(SQUARE, box(5, 6), plate(0.25, name="tile"))
-    assert str(error) == "component 1: edge 1 pierces obstacle tile at (1, 1, 0.25); move one of them away"
+    assert str(error) == "edge 1 of component 1 pierces obstacle tile at (1, 1, 0.25); move one of them away"
     assert error.place is not None
     assert error.place.vertices == (0, 1)
     assert error.place.position == pytest.approx((1.0, 1.0, 0.25))
@@ -38,18 +38,21 @@ def test_an_edge_that_pierces_is_named_with_the_place() -> None:
 def test_components_count_their_own_edges() -> None:
     link = Curve.from_components([regular_polygon(7).vertices, np.array([5.0, 0.0, 0.0]) + SQUARE.vertices])
     assert str(refusal(link, Obstacle(np.array([104.0, 0, 0]) + plate(0.25).vertices, plate(0).faces))).startswith(
-        "component 2: edge 1 pierces obstacle at (6, 1, 0.25)"
+        "edge 1 of component 2 pierces obstacle at (6, 1, 0.25)"
     )
 
 
 @pytest.mark.parametrize(
     ("obstacle", "said"),
     [
-        (plate(1.0), r"edge 1 touches obstacle plate at \(1, 1, 1\)"),
-        (Obstacle([[1.0, 0.0, 1.0], [5.0, 0, 1], [5.0, 1, 1]], [[0, 1, 2]]), r"edge 2 touches obstacle at \(1, 0, 1\)"),
-        (rod(1.0, 1.0), r"edge 1 touches obstacle rod at \(1, 1, -1\)"),
-        (Obstacle([[1.0, 0.0, 1.0]], [[0, 0]]), r"edge 2 touches obstacle at \(1, 0, 1\)"),
-        (plate(1.0 + 1e-12), "edge 1 comes too near to obstacle plate"),
+        (plate(1.0), r"edge 1 of component 1 touches obstacle plate at \(1, 1, 1\)"),
+        (
+            Obstacle([[1.0, 0.0, 1.0], [5.0, 0, 1], [5.0, 1, 1]], [[0, 1, 2]]),
+            r"edge 2 of component 1 touches obstacle at \(1, 0, 1\)",
+        ),
+        (rod(1.0, 1.0), r"edge 1 of component 1 touches obstacle rod at \(1, 1, -1\)"),
+        (Obstacle([[1.0, 0.0, 1.0]], [[0, 0]]), r"edge 2 of component 1 touches obstacle at \(1, 0, 1\)"),
+        (plate(1.0 + 1e-12), "edge 1 of component 1 comes too near to obstacle plate"),
     ],
 )
 def test_touching_and_nearly_touching(obstacle: Obstacle, said: str) -> None:

@@ -30,10 +30,13 @@ def refusal(curve: Curve) -> str:
 
 def test_repeated_point() -> None:
     points = SQUARE[:2] + SQUARE[1:]
-    expected = "component 1: vertices 2 and 3 are the same point (1, 0, 0); remove one of them"
+    expected = "vertex 2 of component 1 and vertex 3 of component 1 are the same point (1, 0, 0); remove one of them"
     assert refusal(Curve(points)) == expected
     closing = Curve.from_components([FAR_SQUARE, [*SQUARE, SQUARE[0]]])
-    assert refusal(closing) == "component 2: vertices 5 and 1 are the same point (0, 0, 0); remove one of them"
+    assert (
+        refusal(closing)
+        == "vertex 5 of component 2 and vertex 1 of component 2 are the same point (0, 0, 0); remove one of them"
+    )
 
 
 @pytest.mark.parametrize("m", [2, 3, 4])
@@ -41,7 +44,7 @@ def test_doubled_back(m: int) -> None:
     spike = np.zeros((5, m))
     spike[:, :2] = [[0, 0], [1, 0], [3, 3], [2, 2], [0, 1]]
     spike[1, :2] = [1, 1]
-    expected = f"component 1: edge 3 doubles back on edge 2 at vertex 3, (3, 3{', 0' * (m - 2)}); move or remove it"
+    expected = f"the curve doubles back at vertex 3 of component 1, (3, 3{', 0' * (m - 2)}); move or remove it"
     assert refusal(Curve(spike)) == expected
 
 
@@ -52,13 +55,16 @@ def test_flat_triangle_is_doubled_back() -> None:
 
 def test_crossing_in_the_plane() -> None:
     eight = Curve([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])
-    assert refusal(eight) == "component 1: edges 1 and 3 touch or cross near (1, 1); move the strands apart"
+    assert (
+        refusal(eight)
+        == "edge 1 of component 1 and edge 3 of component 1 touch or cross near (1, 1); move the strands apart"
+    )
 
 
 def test_touching_in_space() -> None:
     pentagon = Curve([*SQUARE, [0.5, 0.0, 0.0], [-1.0, 0.5, 0.5]])
     message = refusal(pentagon)
-    assert message.startswith("component 1: edges 1 and ")
+    assert message.startswith("edge 1 of component 1 and ")
     assert message.endswith("touch or cross near (0.5, 0, 0); move the strands apart")
 
 
@@ -72,7 +78,7 @@ def test_two_components() -> None:
 @pytest.mark.parametrize("m", [3, 4])
 def test_curve_run_through_twice(m: int) -> None:
     once = regular_polygon(40, dimension=m).vertices
-    assert "edges 1 and 40 touch" in refusal(Curve(np.concatenate([once, once])))
+    assert "edge 1 of component 1 and edge 40 of component 1 touch" in refusal(Curve(np.concatenate([once, once])))
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-9, 1e-14])
@@ -107,7 +113,7 @@ def test_crossings_in_more_dimensions(m: int, scale: float) -> None:
     eight = np.zeros((4, m))
     eight[:, :2] = [[0, 0], [2, 2], [2, 0], [0, 2]]
     message = refusal(Curve(scale * eight @ turn + scale))
-    assert message.startswith("component 1: edges 1 and 3 touch or cross near (")
+    assert message.startswith("edge 1 of component 1 and edge 3 of component 1 touch or cross near (")
     eight[2:, m - 1] = 1e-9  # one strand passes the other in the last dimension
     check_embedded(Curve(scale * eight @ turn + scale))
 

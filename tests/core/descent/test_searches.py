@@ -81,7 +81,7 @@ def test_what_can_not_be_proved_is_said(name: str) -> None:
     step, _ = rule.step(narrow(start(geometry), 0.0), State())
     assert isinstance(step, NoStep)
     assert step.limited_by == Contact((0, 2))
-    assert "edges 1 and 3 are so close" in step.reason
+    assert "edge 1 and edge 3 are so close" in step.reason
 
 
 def test_a_chord_through_a_strand_is_rejected() -> None:
