@@ -1,8 +1,10 @@
-"""Arguments held against their annotations, so that a wrong one is one clear sentence wherever it is given."""
+"""Arguments and fields held against annotations and bounds: a wrong one is one clear sentence wherever it is given."""
 
+import math
 import os
 import types
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Collection, Generator, Mapping, Sequence
+from dataclasses import MISSING, field, fields, is_dataclass
 from functools import cache, wraps
 from inspect import signature
 from numbers import Integral, Real
@@ -10,11 +12,12 @@ from typing import Any, ParamSpec, TypeVar, Union, get_args, get_origin, get_typ
 
 import numpy as np
 
-from .errors import MobiusFlowError, shown
+from .errors import MobiusFlowError, OptionError, choice, shown
 
 _Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
 _Class = TypeVar("_Class", bound=type)
+_Entry = TypeVar("_Entry")
 _NUMBERS: dict[Any, tuple[type, ...]] = {float: (Real,), int: (Integral,), bool: (bool, np.bool_)}  # NumPy's count too
 _BELOW = {float: 2**1023, int: 2**63, bool: 2}  # whole numbers that fit
 _WORDS: dict[Any, str] = {
@@ -56,9 +59,43 @@ def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Re
 
 
 def checked_fields(owner: _Class) -> _Class:
-    """Let a class do so when it is made."""
-    owner.__init__ = checked(owner.__init__)  # type: ignore[misc]
+    """Let a class do so when it is made; its fields that are a `number` are held against their bounds too."""
+    given = checked(owner.__init__)  # type: ignore[misc]
+
+    @wraps(given)
+    def made(self: Any, *args: Any, **keywords: Any) -> None:
+        given(self, *args, **keywords)
+        for each in fields(self) if is_dataclass(self) else ():
+            if "bounds" in each.metadata:
+                check_number(each.name, getattr(self, each.name), *each.metadata["bounds"])
+
+    owner.__init__ = made  # type: ignore[misc]
     return owner
+
+
+def number(default: Any = MISSING, above: float = 0.0, most: float = math.inf) -> Any:
+    """A field for a finite number in an interval, whose lower end is left out: an OptionError names what is not."""
+    return field(default=default, metadata={"bounds": (above, most)})
+
+
+def check_number(name: str, value: float, low: float, high: float) -> None:
+    """Raise unless a number is finite and in an interval, whose lower end is left out."""
+    if not (math.isfinite(value) and low < value <= high):
+        allowed = f"above {low:g}" if math.isinf(high) else f"above {low:g} and at most {high:g}"
+        raise OptionError(f"{name} is {value}; it must be a finite number {allowed}")
+
+
+def check_known(name: str, value: str, known: Collection[str]) -> None:
+    """Raise unless a value is a name in a registry, or one of a few words."""
+    if value not in known:
+        found = f"{name} {value!r:.60} is unknown" if isinstance(known, Mapping) else f"{name} is {value!r:.60}"
+        raise OptionError(f"{found}; {choice(value, known)}")
+
+
+def named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
+    """Look an entry of a registry up; an OptionError lists the known ones."""
+    check_known(kind, name, table)
+    return table[name]
 
 
 def is_list(value: object) -> bool:

@@ -1,7 +1,6 @@
 """The energy of a curve as it stands: what ``mobius-flow energy`` prints and a report's ``final_energy`` is."""
 
-from .arguments import checked
-from .checks import named
+from .arguments import checked, named
 from .collision import check_embedded, check_gap
 from .curve import Curve
 from .energies import ENERGIES, MoebiusEnergy

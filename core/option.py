@@ -13,8 +13,7 @@ from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from .arguments import is_list
-from .checks import check_known, check_number
+from .arguments import check_known, check_number, is_list
 from .errors import OptionError, shown
 
 _Class = TypeVar("_Class", bound=type)

@@ -78,24 +78,12 @@ BLOCKS: tuple[Callable[[Curve, Pins], Block], ...] = (Barycenters.of,)
 
 @dataclass(frozen=True, eq=False)
 class Constraints:
-    """Targets of the constraints.
+    """Targets of the constraints."""
 
-    Parameters
-    ----------
-    lengths
-        Target lengths ℓ⁰, positive, shape (edges,).
-    blocks
-        The rows after those of the lengths.
-    pins
-        Vertices that stay where they are.
-    grown
-        How many times as long the targets are as they were at first, but for edges between two pins.
-    """
-
-    lengths: FloatArray
-    blocks: tuple[Block, ...]
-    pins: Pins = NO_PINS
-    grown: float = 1.0
+    lengths: FloatArray  # target lengths ℓ⁰, positive, shape (edges,)
+    blocks: tuple[Block, ...]  # the rows after those of the lengths
+    pins: Pins = NO_PINS  # vertices that stay where they are
+    grown: float = 1.0  # how many times as long the targets are as they were at first, but for edges between two pins
 
     @classmethod
     def of(cls, curve: Curve, pins: Pins = NO_PINS, blocks: Sequence[Block] | None = None) -> "Constraints":
@@ -146,27 +134,13 @@ class Constraints:
 
 @dataclass(frozen=True, eq=False)
 class ConstraintDerivative:
-    """DΦ(P) as an operator.
+    """DΦ(P) as an operator."""
 
-    Attributes
-    ----------
-    mesh
-        Connectivity.
-    tangents
-        τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (edges, m).
-    edges
-        Those whose lengths are rows, ascending; shape (r,).
-    pins
-        Vertices at which u is 0; shape (k,).
-    blocks
-        The derivatives of the blocks.
-    """
-
-    mesh: Mesh
-    tangents: FloatArray
-    edges: IntArray
-    pins: IntArray
-    blocks: tuple[BlockDerivative, ...] = ()
+    mesh: Mesh  # connectivity
+    tangents: FloatArray  # τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (edges, m)
+    edges: IntArray  # those whose lengths are rows, ascending; shape (r,)
+    pins: IntArray  # vertices at which u is 0; shape (k,)
+    blocks: tuple[BlockDerivative, ...] = ()  # the derivatives of the blocks
 
     @classmethod
     def of(

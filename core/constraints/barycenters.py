@@ -16,21 +16,11 @@ Parts = tuple[int, ...]
 
 @dataclass(frozen=True, eq=False)
 class Barycenters:
-    """Σ ℓ_I m_I = target, part by part; parts of a link that are far from each other have one each.
+    """Σ ℓ_I m_I = target, part by part; parts of a link that are far from each other have one each."""
 
-    Attributes
-    ----------
-    parts
-        For each component the number of its part, from 0.
-    loose
-        The p parts without pins, ascending.
-    target
-        In the order of ``loose``, coordinate by coordinate; shape (p·m,).
-    """
-
-    parts: Parts
-    loose: Parts
-    target: FloatArray
+    parts: Parts  # for each component the number of its part, from 0
+    loose: Parts  # the p parts without pins, ascending
+    target: FloatArray  # in the order of ``loose``, coordinate by coordinate; shape (p·m,)
 
     @classmethod
     def of(cls, curve: Curve, pins: Pins = NO_PINS, parts: Parts | None = None) -> "Barycenters":
@@ -100,22 +90,12 @@ class Barycenters:
 
 @dataclass(frozen=True, eq=False)
 class BarycenterDerivative:
-    """Barycenters move with vertices, and as edges become longer.
-
-    Attributes
-    ----------
-    masses
-        (ℓ_I + ℓ_{I−1})/2 at each vertex; shape (n,).
-    moments
-        ℓ_I m_I; shape (edges, m).
-    membership
-        Which vertices are in which of p parts, as 0 and 1; sparse, shape (p, n).
-    """
+    """Barycenters move with vertices, and as edges become longer."""
 
     mesh: Mesh
-    masses: FloatArray
-    moments: FloatArray
-    membership: sp.csr_array
+    masses: FloatArray  # (ℓ_I + ℓ_{I−1})/2 at each vertex; shape (n,)
+    moments: FloatArray  # ℓ_I m_I; shape (edges, m)
+    membership: sp.csr_array  # which vertices are in which of p parts, as 0 and 1; sparse, shape (p, n)
 
     @property
     def rows(self) -> int:

@@ -47,28 +47,16 @@ class Solver(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """One minimisation: the objective, the metric, the constraints and the units it is solved in.
-
-    Attributes
-    ----------
-    constraints
-        Targets of lengths and barycenter, and pins.
-    geometry
-        Whether the targets are prescribed, or missing them costs energy.
-    solver
-        Where objective and metric come from, on this mesh and on others.
-    obstacles
-        What no motion may touch, in the user's units.
-    """
+    """One minimisation: the objective, the metric, the constraints and the units it is solved in."""
 
     mesh: Mesh
     objective: Objective
     metric: Metric
-    constraints: Constraints
+    constraints: Constraints  # targets of lengths and barycenter, and pins
     units: Units
-    geometry: "Geometry"
-    solver: Solver
-    obstacles: tuple[Obstacle, ...] = ()
+    geometry: "Geometry"  # whether the targets are prescribed, or missing them costs energy
+    solver: Solver  # where objective and metric come from, on this mesh and on others
+    obstacles: tuple[Obstacle, ...] = ()  # what no motion may touch, in the user's units
 
     @classmethod
     def of(

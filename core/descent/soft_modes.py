@@ -24,21 +24,12 @@ DEPENDENT = 1e-10  # of squared lengths: vectors that add so little to the other
 
 @dataclass(frozen=True, eq=False)
 class SoftModes:
-    """All Ritz pairs of J⁻¹(D²E − Σ λ_I D²Φ_I) on ker DΦ that a search leaves, in ascending order; the lowest are good.
+    """All Ritz pairs of J⁻¹(D²E − Σ λ_I D²Φ_I) on ker DΦ that a search leaves, in ascending order; the lowest are good."""
 
-    Attributes
-    ----------
-    values
-        Ritz values θ, each at least the eigenvalue in its place; shape (k,).
-    vectors
-        Ritz vectors w, tangent and orthonormal in the metric; shape (k, n, m).
-    residuals
-        Norms of the projected J⁻¹ D²L w − θ w in the metric, within which of θ there is an eigenvalue, for those of the
-        lowest pairs that were looked at; shape (j,), j ≤ k.
-    """
-
-    values: FloatArray
-    vectors: FloatArray
+    values: FloatArray  # Ritz values θ, each at least the eigenvalue in its place; shape (k,)
+    vectors: FloatArray  # Ritz vectors w, tangent and orthonormal in the metric; shape (k, n, m)
+    # norms of the projected J⁻¹ D²L w − θ w in the metric, within which of θ there is an eigenvalue, for those of the
+    # lowest pairs that were looked at; shape (j,), j ≤ k
     residuals: FloatArray
 
 

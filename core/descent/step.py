@@ -35,18 +35,10 @@ class Leg(NamedTuple):
 
 
 class Rejected(NamedTuple):
-    """A trial that is no step.
+    """A trial that is no step."""
 
-    Attributes
-    ----------
-    trial
-        Where it would have ended; None if it cannot be brought back to the constraints.
-    proof
-        What was proved of the way there, if only contact is against it.
-    """
-
-    trial: Point | None = None
-    proof: FreeMotion | None = None
+    trial: Point | None = None  # where it would have ended; None if it cannot be brought back to the constraints
+    proof: FreeMotion | None = None  # what was proved of the way there, if only contact is against it
 
     @property
     def in_the_way(self) -> Contact | None:
@@ -96,21 +88,11 @@ def judged(base: Point, trial: Point | None, acceptable: Callable[[Point], bool]
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """An accepted step.
+    """An accepted step."""
 
-    Attributes
-    ----------
-    legs
-        The straight motions that lead to its end, one after the other, at least one.
-    size
-        Its τ.
-    limited_by
-        The contact that limited τ, if any.
-    """
-
-    legs: tuple[Leg, ...]
-    size: float
-    limited_by: Contact | None
+    legs: tuple[Leg, ...]  # the straight motions that lead to its end, one after the other, at least one
+    size: float  # its τ
+    limited_by: Contact | None  # the contact that limited τ, if any
 
     @property
     def point(self) -> Point:

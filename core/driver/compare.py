@@ -4,8 +4,7 @@ import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from ..arguments import checked
-from ..checks import check_number
+from ..arguments import check_number, checked
 from ..curve import Curve
 from ..deadline import TimeLimit
 from ..descent import METHODS, Problem

@@ -6,7 +6,7 @@ from itertools import islice
 
 import numpy as np
 
-from ..checks import check_fields
+from ..arguments import checked_fields, number
 from ..curve import Curve
 from ..energies.components import energy_scale
 from ..errors import CurveError
@@ -43,24 +43,17 @@ def hopping(run: Run) -> Relaxation:
     return hops.summarised(summarised(outcome, run))
 
 
+@checked_fields
 @dataclass(eq=False)
 class Hops:
-    """The hops of one run.
-
-    Parameters
-    ----------
-    motions
-        That they begin with, by turns.
-    gain
-        Relative decrease of the objective that counts: vertices sliding along a curve change it by about as much.
-    """
+    """The hops of one run."""
 
     run: Run
-    motions: Sequence[Motion] = MOTIONS
-    gain: float = 1e-3
+    motions: Sequence[Motion] = MOTIONS  # that they begin with, by turns
+    # relative decrease of the objective that counts: vertices sliding along a curve change it by about as much
+    gain: float = number(1e-3, most=1)
 
     def __post_init__(self) -> None:
-        check_fields(self, gain=(0.0, 1.0))
         self._rng = np.random.default_rng(self.run.options.seed)
         self._tried = self._taken = 0
 
@@ -111,24 +104,12 @@ class Hops:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A motion out of a minimum, and the relaxation from where it ends.
+    """A motion out of a minimum, and the relaxation from where it ends."""
 
-    Attributes
-    ----------
-    run
-        The relaxation at its end, on the mesh and in the problem of the minimum that was left.
-    path
-        Ends of the straight legs of both, each (n, m), in the user's units.
-    certified
-        Whether all of them were proved.
-    iterations
-        Steps of both.
-    """
-
-    run: Run
-    path: tuple[FloatArray, ...]
-    certified: bool
-    iterations: int
+    run: Run  # the relaxation at its end, on the mesh and in the problem of the minimum that was left
+    path: tuple[FloatArray, ...]  # ends of the straight legs of both, each (n, m), in the user's units
+    certified: bool  # whether all of them were proved
+    iterations: int  # steps of both
 
 
 def trial(run: Run, motion: Motion, rng: np.random.Generator, below: float) -> Trial:

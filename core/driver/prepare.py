@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..checks import named
+from ..arguments import named
 from ..collision import minimal_gap
 from ..curve import Curve, Mesh, check_closed
 from ..curve.pins import TAUT, arcs, free_edges, spans

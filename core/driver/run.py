@@ -28,24 +28,12 @@ Event = Start | Step | NoStep | Outcome
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """Steps, if any, and then another view of the same curve.
+    """Steps, if any, and then another view of the same curve."""
 
-    Attributes
-    ----------
-    steps
-        Motions that come first.
-    point
-        The curve reached, in another problem: with other constraints, or on another mesh.
-    method
-        The one that takes over.
-    resolution
-        New bounds of edge lengths.
-    """
-
-    steps: tuple[Step, ...] = ()
-    point: Point | None = None
-    method: Method | None = None
-    resolution: Resolution | None = None
+    steps: tuple[Step, ...] = ()  # motions that come first
+    point: Point | None = None  # the curve reached, in another problem: with other constraints, or on another mesh
+    method: Method | None = None  # the one that takes over
+    resolution: Resolution | None = None  # new bounds of edge lengths
 
 
 class Run:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
-from ..checks import named
+from ..arguments import named
 from ..curve import Curve
 from ..descent import METHODS, Method
 from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Term, Weighted
@@ -29,21 +29,14 @@ PAIRS_PER_BLOCK = 1700  # that take as long as one of them, by `benchmarks/speed
 class Solver:
     """The energy and the metrics of a relaxation.
 
-    Parameters
-    ----------
-    options
-        What is asked for.
-    hierarchical
-        Whether distant pairs of edges count cluster by cluster.
-
     Raises
     ------
     OptionError
         If an option names something unknown, or does not go together with the solver that is asked for.
     """
 
-    options: RelaxOptions
-    hierarchical: bool = False
+    options: RelaxOptions  # what is asked for
+    hierarchical: bool = False  # whether distant pairs of edges count cluster by cluster
 
     def on(self, curve: Curve) -> "Solver":
         """The solver for a curve: the one asked for, or the faster one; a CurveError if it has too many vertices."""

@@ -21,21 +21,11 @@ Boxes = tuple[FloatArray, FloatArray]  # least and largest coordinates, each (k,
 
 @dataclass(frozen=True, eq=False)
 class Obstacles:
-    """All obstacles of a trajectory, together.
+    """All obstacles of a trajectory, together."""
 
-    Attributes
-    ----------
-    vertices
-        Of all of them, shape (k, 3).
-    triangles
-        Indices of the triangles' vertices, shape (f, 3).
-    ends
-        Number of vertices up to the end of each obstacle.
-    """
-
-    vertices: FloatArray
-    triangles: IntArray
-    ends: tuple[int, ...]
+    vertices: FloatArray  # of all of them, shape (k, 3)
+    triangles: IntArray  # indices of the triangles' vertices, shape (f, 3)
+    ends: tuple[int, ...]  # number of vertices up to the end of each obstacle
 
     @classmethod
     def of(cls, parts: Sequence[tuple[FloatArray, IntArray]]) -> "Obstacles":

@@ -13,18 +13,10 @@ class LostPinError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class HeldVertices:
-    """The vertices of one stage that must not move.
+    """The vertices of one stage that must not move."""
 
-    Attributes
-    ----------
-    vertices
-        Their indices, in the order of the pins; shape (k,).
-    points
-        The places of the pins, shape (k, m).
-    """
-
-    vertices: IntArray
-    points: FloatArray
+    vertices: IntArray  # their indices, in the order of the pins; shape (k,)
+    points: FloatArray  # the places of the pins, shape (k, m)
 
     @classmethod
     def among(cls, frame: FloatArray, points: FloatArray) -> "HeldVertices":

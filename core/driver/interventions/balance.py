@@ -1,6 +1,5 @@
 """Among the Möbius images of a curve, which have the same energy, the one that bends least, and a proved way there."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
@@ -8,7 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...constraints import weighted_barycenter
 from ...curve import Curve
 from ...curve.bending import bending, bending_and_derivative
@@ -74,25 +73,16 @@ def _barycenter(curve: Curve) -> FloatArray:
     return weighted_barycenter(curve) / curve.length
 
 
+@checked_fields
 @dataclass(eq=False)
 class Balance(Intervention):
-    """Go from a converged curve to its balanced image, once.
+    """Go from a converged curve to its balanced image, once."""
 
-    Parameters
-    ----------
-    gain
-        Relative decrease of the bending that is worth the way.
-    longest, shortest
-        Steps, in radians of half the sphere's angle of rotation.
-    """
-
-    gain: float = 0.01
-    longest: float = 0.02
-    shortest: float = 1e-5
+    gain: float = number(0.01, most=1)  # relative decrease of the bending that is worth the way
+    # longest, shortest: steps, in radians of half the sphere's angle of rotation
+    longest: float = number(0.02)
+    shortest: float = number(1e-5)
     _before: float | None = field(default=None, init=False)  # bending that the balanced curve had
-
-    def __post_init__(self) -> None:
-        check_fields(self, gain=(0.0, 1.0), longest=(0.0, math.inf), shortest=(0.0, self.longest))
 
     def ended(self, outcome: Outcome) -> Outcome | Change | None:
         """Look at converged curves, and at ends of the run on the way from one."""

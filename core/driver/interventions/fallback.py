@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...curve import Mesh
 from ...descent import METHODS, Method, NoStep
 from ...energies.barrier import replaced_pairs
@@ -17,28 +17,19 @@ INACCURATE = (
 )
 
 
+@checked_fields
 @dataclass(eq=False)
 class Fallback(Intervention):
-    """Hand over to another method where no step is found, and back after some steps.
+    """Hand over to another method where no step is found, and back after some steps."""
 
-    Parameters
-    ----------
-    method
-        Its metric does not see how near strands are, and so does not hold them together.
-    steps
-        Number of steps it takes.
-    progress
-        Relative decrease of the energy without which another attempt is no use.
-    """
-
+    # its metric does not see how near strands are, and so does not hold them together
     method: Method = METHODS["flow-h3-2"]
-    steps: int = 10
-    progress: float = 1e-6
+    steps: int = number(10)  # number of steps it takes
+    progress: float = number(1e-6, most=1)  # relative decrease of the energy without which another attempt is no use
     _until: int = field(default=0, init=False)  # iterate at which the fallback hands back
     _tried_at: float = field(default=math.inf, init=False)  # energy at the last attempt on the present mesh
 
     def __post_init__(self) -> None:
-        check_fields(self, steps=(0, math.inf), progress=(0.0, 1.0))
         self._asked_for, self._mesh = self.run.method, self.run.problem.mesh
 
     def __call__(self, event: Event) -> Event | Change:

@@ -1,6 +1,5 @@
 """Links of several parts: unlinked ones would drift apart, and composite ones have no shape of least energy."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -9,7 +8,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...constraints import Barycenters, Parts
 from ...curve import Curve
 from ...descent import Step
@@ -34,26 +33,14 @@ COMPOSITE_KNOT = 140.0  # two trefoils (74.4 each) less a circle make 144.8,
 COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
 
 
+@checked_fields
 @dataclass(eq=False)
 class SplitLinks(Intervention):
-    """Give every part that is far from the others a barycenter of its own among the constraints.
+    """Give every part that is far from the others a barycenter of its own among the constraints."""
 
-    Parameters
-    ----------
-    interval
-        Accepted steps between two looks.
-    gap
-        Least one between the balls around two parts, in radii of the larger one.
-    most
-        Parts: each has rows of its own in the linear systems.
-    """
-
-    interval: int = 5
-    gap: float = 1.0
-    most: int = 50
-
-    def __post_init__(self) -> None:
-        check_fields(self, interval=(0, math.inf), gap=(0.0, math.inf), most=(0, math.inf))
+    interval: int = number(5)  # accepted steps between two looks
+    gap: float = number(1.0)  # least one between the balls around two parts, in radii of the larger one
+    most: int = number(50)  # parts: each has rows of its own in the linear systems
 
     def stepped(self, step: Step) -> Change | None:
         """Look for parts now and then."""
