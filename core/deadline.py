@@ -1,8 +1,15 @@
-"""Time limits, which are looked at wherever a step may take long, so that a long step cannot outlast them by much."""
+"""Work that ends early: at a time limit, which is checked wherever a step may take long, or at a signal."""
 
+import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from contextvars import ContextVar, Token
+from types import FrameType
+from typing import NoReturn
+
+_SIGNALS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 class TimeIsUp(Exception):  # noqa: N818 (no error: what was reached is kept)
@@ -56,3 +63,24 @@ def check_time() -> None:
     for limit in _LIMITS.get():
         if limit.is_reached:
             raise TimeIsUp(limit)
+
+
+@contextmanager
+def termination_raises(error: BaseException) -> Iterator[None]:
+    """Let SIGTERM and SIGHUP, which by default end the process, raise an exception in a block, so that it can tidy up.
+
+    Someone else's handlers are left alone, and so are threads other than the main one: they get no signals.
+    """
+    here = threading.current_thread() is threading.main_thread()
+    ours = [number for number in _SIGNALS if here and signal.getsignal(number) is signal.SIG_DFL]
+
+    def leave(_number: int, _frame: FrameType | None) -> NoReturn:
+        raise error
+
+    for number in ours:
+        signal.signal(number, leave)
+    try:
+        yield
+    finally:
+        for number in ours:
+            signal.signal(number, signal.SIG_DFL)

@@ -1,9 +1,9 @@
-"""What there is to say about a curve as it stands: what ``mobius-flow info`` prints."""
+"""What there is to say about a curve as it stands: what ``mobius-flow energy`` and ``mobius-flow info`` print."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from .arguments import checked
+from .arguments import checked, named
 from .collision import check_embedded, check_gap, minimal_gap
 from .collision.gap import thickness
 from .curve import Curve
@@ -13,14 +13,41 @@ from .driver import RelaxOptions
 from .driver.interventions.saddle import stability
 from .driver.prepare import start_problem
 from .driver.run import gradient_bound
+from .energies import ENERGIES as KNOWN
+from .energies import MoebiusEnergy
+from .errors import CurveError
+from .hierarchy import moebius_energy
 from .knots import KnotType, knot_type
-from .measure import MAX_VERTICES as PAIRS_UP_TO
-from .measure import measure
-from .system.threads import BLAS
-from .units import check_units
+from .threads import BLAS
+from .units import centred, check_units
 
 ENERGIES = ("moebius", "edge", "vertex")
+PAIRS_UP_TO = 50_000  # vertices, where all pairs of edges are summed: a minute or so, growing with the square
 REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
+
+
+@BLAS.bounded()
+@checked
+def measure(curve: Curve, energy: str = "moebius") -> float:
+    """The energy of a curve, in the user's units.
+
+    Raises
+    ------
+    CurveError
+        If the curve has too many vertices, touches itself, or has strands too near, or units too large or small, to
+        compute with.
+    OptionError
+        If the energy is unknown.
+    """
+    wanted = named(KNOWN, "energy", energy)
+    check_units(curve)
+    check_embedded(curve)
+    check_gap(curve)
+    if isinstance(wanted, MoebiusEnergy):
+        return moebius_energy(centred(curve))[0]
+    if len(curve) > PAIRS_UP_TO:
+        raise CurveError(f"the curve has {len(curve)} vertices; {wanted.name} is for at most {PAIRS_UP_TO}")
+    return wanted.value(centred(curve))
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ DEPENDENT = 1e-10  # of squared lengths: vectors that add so little to the other
 
 @dataclass(frozen=True, eq=False)
 class SoftModes:
-    """All Ritz pairs of J⁻¹(D²E − Σ λ_I D²Φ_I) on ker DΦ that a search leaves, in ascending order; the lowest are good."""
+    """All Ritz pairs of J⁻¹(D²E − Σ λ_I D²Φ_I) on ker DΦ after a search, ascending; the lowest are good."""
 
     values: FloatArray  # Ritz values θ, each at least the eigenvalue in its place; shape (k,)
     vectors: FloatArray  # Ritz vectors w, tangent and orthonormal in the metric; shape (k, n, m)

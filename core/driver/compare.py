@@ -9,8 +9,8 @@ from ..curve import Curve
 from ..deadline import TimeLimit
 from ..descent import METHODS, Problem
 from ..errors import OptionError, choice
-from ..system.threads import BLAS
 from ..task import Task
+from ..threads import BLAS
 from .loop import WithOutcome, within
 from .options import RelaxOptions
 from .prepare import start_problem

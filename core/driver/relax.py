@@ -13,8 +13,8 @@ from ..deadline import TimeLimit
 from ..errors import CurveError, counted
 from ..hierarchy import moebius_energy
 from ..messages import COMPONENT, VERTEX_COUNT, Message
-from ..system.threads import BLAS
 from ..task import Task
+from ..threads import BLAS
 from ..units import centred
 from .hopping import hopping
 from .loop import Relaxation, WithOutcome, within

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ..arguments import checked, checked_fields
 from ..curve import Curve, Mesh
 from ..errors import MobiusFlowError, OutputError, counted
+from ..files import atomic_write
 from ..obstacle import Obstacle
-from ..system.files import atomic_write
 from ..types import BoolArray, FloatArray, IntArray
 
 
