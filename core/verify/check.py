@@ -26,11 +26,9 @@ from ..errors import MobiusFlowError
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .obstacles import Obstacles
-from .pins import HeldVertices, LostPinError
-from .segments import Point, meet
+from .segments import Point, meet, meet_triangle
 from .trajectory import Components, TrajectoryError, count_legs, held_points, stages, still_parts
-from .transition import DifferentCurveError, common_vertices, straightened
-from .triangles import meet_triangle
+from .transition import DifferentCurveError, HeldVertices, LostPinError, common_vertices, straightened
 from .verdict import ContactError, UndecidedError, Verdict
 
 _DECISIONS = 1500.0  # exact ones of a file, about two seconds, before its length counts,
