@@ -17,7 +17,6 @@ from .errors import MobiusFlowError, OptionError, choice, shown
 _Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
 _Class = TypeVar("_Class", bound=type)
-_Entry = TypeVar("_Entry")
 _NUMBERS: dict[Any, tuple[type, ...]] = {float: (Real,), int: (Integral,), bool: (bool, np.bool_)}  # NumPy's count too
 _BELOW = {float: 2**1023, int: 2**63, bool: 2}  # whole numbers that fit
 _WORDS: dict[Any, str] = {
@@ -92,12 +91,6 @@ def check_known(name: str, value: str, known: Collection[str]) -> None:
         raise OptionError(f"{found}; {choice(value, known)}")
 
 
-def named(table: Mapping[str, _Entry], kind: str, name: str) -> _Entry:
-    """Look an entry of a registry up; an OptionError lists the known ones."""
-    check_known(kind, name, table)
-    return table[name]
-
-
 def is_list(value: object) -> bool:
     """Whether a value has items in a row: a sequence, but no string, or an array."""
     if isinstance(value, np.ndarray):
@@ -139,7 +132,6 @@ def _is_of_fixed_length(hint: Any) -> bool:
 
 
 def _at_run_time(kind: Any) -> bool:
-    """Whether it is a protocol whose members can be looked for."""
     return bool(getattr(kind, "_is_runtime_protocol", False))
 
 

@@ -21,18 +21,11 @@ class TimeIsUp(Exception):  # noqa: N818 (no error: what was reached is kept)
 
 
 class TimeLimit:
-    """A stopwatch that runs in ``with`` blocks, and whose limit `check_time` observes there.
+    """A stopwatch that runs in ``with`` blocks, and whose limit in seconds `check_time` observes there.
 
-    Like NumPy's error state it belongs to the context: those who look at it need not be handed it.
-
-    Parameters
-    ----------
-    seconds
-        What may be used up.
-    clock
-        What measures them: `time.perf_counter`, or `time.process_time` where a busy machine is not to decide.
-    used
-        Seconds that are used up to begin with; as an attribute, those of all blocks that were left too.
+    Like NumPy's error state it belongs to the context: those who look at it need not be handed it.  The clock is
+    `time.perf_counter`, or `time.process_time` where a busy machine is not to decide; ``used`` are the seconds used so
+    far.
     """
 
     def __init__(self, seconds: float, clock: Callable[[], float] = time.perf_counter, used: float = 0.0) -> None:
@@ -42,7 +35,6 @@ class TimeLimit:
 
     @property
     def is_reached(self) -> bool:
-        """Whether, within a block, the time is up."""
         return self.used + self._clock() - self._entered > self.seconds
 
     def __enter__(self) -> "TimeLimit":

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from .arguments import checked, named
+from .arguments import check_known, checked
 from .collision import check_embedded, check_gap, minimal_gap
 from .collision.gap import thickness
 from .curve import Curve
@@ -31,15 +31,11 @@ REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
 def measure(curve: Curve, energy: str = "moebius") -> float:
     """The energy of a curve, in the user's units.
 
-    Raises
-    ------
-    CurveError
-        If the curve has too many vertices, touches itself, or has strands too near, or units too large or small, to
-        compute with.
-    OptionError
-        If the energy is unknown.
+    A CurveError if the curve has too many vertices, touches itself, or has strands too near, or units too large or
+    small, to compute with; an OptionError if the energy is unknown.
     """
-    wanted = named(KNOWN, "energy", energy)
+    check_known("energy", energy, KNOWN)
+    wanted = KNOWN[energy]
     check_units(curve)
     check_embedded(curve)
     check_gap(curve)
@@ -127,12 +123,9 @@ class Info:
 @BLAS.bounded()
 @checked
 def info(curve: Curve) -> Info:
-    """Measure a curve and tell its type.
+    """Measure a curve and identify its type.
 
-    Raises
-    ------
-    CurveError
-        If the curve touches itself, or has strands too near, or units too large or small, to compute with.
+    A CurveError if the curve touches itself, or has strands too near, or units too large or small, to compute with.
     """
     check_units(curve)
     check_embedded(curve)

@@ -92,7 +92,6 @@ class Constraints:
         return cls(curve.edge_lengths, tuple(own), pins)
 
     def block(self, kind: type[_Block]) -> _Block:
-        """The block of a kind."""
         return next(block for block in self.blocks if isinstance(block, kind))
 
     def replacing(self, block: Block) -> "Constraints":
@@ -107,7 +106,6 @@ class Constraints:
         return replace(self, lengths=lengths, blocks=blocks, grown=factor * self.grown)
 
     def derivative(self, curve: Curve) -> "ConstraintDerivative":
-        """DΦ at a curve."""
         blocks = tuple(block.derivative(curve) for block in self.blocks)
         return ConstraintDerivative.of(curve, self.pins.vertices, free_edges(curve.mesh, self.pins.vertices), blocks)
 
@@ -128,7 +126,6 @@ class Constraints:
         return zip(self.blocks, _split(rows, self.blocks), strict=True)
 
     def length_error(self, curve: Curve) -> float:
-        """max |log ℓ/ℓ⁰| over the edges."""
         return float(np.max(np.abs(np.log(curve.edge_lengths / self.lengths))))
 
 
@@ -156,12 +153,10 @@ class ConstraintDerivative:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(n, m), the shape of u."""
         return self.mesh.size, self.tangents.shape[1]
 
     @property
     def count(self) -> int:
-        """Number of rows, r + k."""
         return len(self.edges) + sum(block.rows for block in self.blocks)
 
     def border(self) -> Iterator[FloatArray]:
@@ -208,7 +203,6 @@ class ConstraintDerivative:
         return tension
 
     def of_blocks(self, multipliers: FloatArray) -> Iterator[tuple[BlockDerivative, FloatArray]]:
-        """The blocks, each with its own of all multipliers."""
         return zip(self.blocks, _split(multipliers[len(self.edges) :], self.blocks), strict=True)
 
 

@@ -31,11 +31,9 @@ class Barycenters:
 
     @property
     def rows(self) -> int:
-        """p·m."""
         return len(self.target)
 
     def on(self, curve: Curve) -> "Barycenters":
-        """The same parts, held where they are in a curve."""
         moments = _moments(curve)
         each = [np.sum(moments * own, axis=1) for own in self.memberships(curve.mesh)]
         return replace(self, target=np.concatenate([np.empty(0), *each]))
@@ -48,7 +46,6 @@ class Barycenters:
         return replace(self, target=factor * self.target)
 
     def residual(self, curve: Curve) -> FloatArray:
-        """Σ ℓ_I m_I less the target."""
         return self.on(curve).target - self.target
 
     def error(self, lengths: FloatArray, mesh: Mesh, residual: FloatArray) -> float:
@@ -72,7 +69,6 @@ class Barycenters:
         return u
 
     def derivative(self, curve: Curve) -> "BarycenterDerivative":
-        """The rows' derivative at a curve."""
         ell, mesh, part = curve.edge_lengths, curve.mesh, np.asarray(self.parts)
         places = (part[mesh.component], np.arange(mesh.size))
         membership = sp.csr_array((np.ones(mesh.size), places), shape=(part.max() + 1, mesh.size))
@@ -99,7 +95,6 @@ class BarycenterDerivative:
 
     @property
     def rows(self) -> int:
-        """p·m."""
         return int(self.membership.shape[0]) * self.moments.shape[1]
 
     def apply(self, u: FloatArray, stretch: FloatArray) -> FloatArray:
@@ -113,7 +108,6 @@ class BarycenterDerivative:
         return np.einsum("ij,ij->i", self.moments, pull[self.mesh.tails]), self.masses[:, None] * pull
 
     def curvature(self, multipliers: FloatArray, v: FloatArray) -> FloatArray:
-        """At fixed lengths barycenters are linear: 0."""
         return np.zeros_like(v)
 
     @cached_property

@@ -64,15 +64,12 @@ class Constrained:
     prescribes = True
 
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
-        """The objective alone."""
         return problem.objective.value_and_derivative(curve)
 
     def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
-        """ker DΦ."""
         return inner.tangent_space(problem.constraints.derivative(curve))
 
     def residual(self, problem: Problem, curve: Curve) -> FloatArray:
-        """Φ."""
         return problem.constraints.residual(curve)
 
     def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
@@ -102,11 +99,9 @@ class Constrained:
         return None
 
     def transport(self, point: Point, u: FloatArray) -> FloatArray:
-        """By orthogonal projection."""
         return point.tangent_space.project(u)
 
     def weighted(self, penalty: float) -> "Constrained":
-        """There is no penalty."""
         raise OptionError(f"penalty is {penalty}; the method keeps lengths and has no penalty")
 
 
@@ -122,18 +117,12 @@ class Penalised:
     """All polygons that are where their pins are; lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)², as in Section 6.4 of [RS21].
 
     The metric is J + α DΦᵀ I_{L²} DΦ, or J alone where footnote 8 leaves the extension out.
-
-    Raises
-    ------
-    OptionError
-        If α is not a finite positive number.
     """
 
     penalty: float = number(1000.0)  # α
     prescribes = False
 
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
-        """E_α and its derivative."""
         energy, derivative = problem.objective.value_and_derivative(curve)
         targets = problem.constraints.lengths
         stretch = np.log(curve.edge_lengths / targets)
@@ -161,5 +150,4 @@ class Penalised:
         return u
 
     def weighted(self, penalty: float) -> "Penalised":
-        """The same with another α."""
         return replace(self, penalty=penalty)

@@ -36,19 +36,12 @@ class SoftModes:
 def soft_modes(
     point: Point, starts: FloatArray, tolerance: float = 1e-6, below: float = BULK, most: int = 400
 ) -> SoftModes:
-    """Look for the lowest eigenvalues.
+    """Look for the lowest eigenvalues at a point, in the metric J_C or one as strong.
 
-    Parameters
-    ----------
-    point
-        Where, in the metric J_C or one as strong.
-    starts
-        Tangent vectors, such as `smooth_starts`; shape (b, n, m).  Of multiple eigenvalues b copies can be found, and b
-        pairs are improved at a time, or more if more are below.
-    tolerance
-        Residual at which the pairs with values less than ``below``, and the lowest one, are near enough to eigenvalues.
-    most
-        Number of products with the Hessian and of projections, after which pairs are left as they are.
+    Starts are tangent vectors, such as `smooth_starts`; shape (b, n, m).  Of multiple eigenvalues b copies can be
+    found, and b pairs are improved at a time, or more if more are ``below`` a bound.  Those, and the lowest one, are
+    near enough to eigenvalues where their residuals are within the tolerance.  After ``most`` products with the Hessian
+    and as many projections pairs are left as they are.
     """
     basis = _Basis(point)
     most = min(most, basis.dimension)
@@ -84,7 +77,6 @@ class _Basis:
 
     @property
     def dimension(self) -> int:
-        """That of the tangent space."""
         (n, m), constraints = self._shape, self.space.constraints
         return m * (n - len(constraints.pins)) - constraints.count
 
@@ -117,5 +109,4 @@ class _Basis:
         return np.asarray(turns @ self._images - values[:count, None] * (turns @ self._duals))
 
     def combined(self, turns: FloatArray) -> FloatArray:
-        """The vectors with some coefficients; shape (k, n, m)."""
         return np.reshape(turns @ self._vectors, (-1, *self._shape))

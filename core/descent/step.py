@@ -42,7 +42,6 @@ class Rejected(NamedTuple):
 
     @property
     def in_the_way(self) -> Contact | None:
-        """What meets on the way, if that is the reason."""
         return None if self.proof is None else self.proof.contact
 
 
@@ -58,20 +57,10 @@ def attempt(
     acceptable: Callable[[Point], bool],
     space: TangentSpace | None = None,
 ) -> Leg | Rejected:
-    """Try to go straight to the point that vertices are led back to.
+    """Try to go straight from a base to the point that vertices near it, shape (n, m), are led back to.
 
-    Parameters
-    ----------
-    base
-        Where the motion begins.
-    vertices
-        Where it is aimed at, shape (n, m).
-    level
-        Of the constraints' residual, which the end is to have.
-    acceptable
-        Whether the end, at which the energy is finite, is good enough.
-    space
-        The metric of the way back; by default that of the base point.
+    The end has a level of the constraints' residual, and is ``acceptable``, which is asked where the energy is finite.
+    The metric of the way back, ``space``, is that of the base by default.
     """
     return judged(base, base.retract(vertices, level, space), acceptable)
 
@@ -96,12 +85,10 @@ class Step:
 
     @property
     def point(self) -> Point:
-        """Where it ends."""
         return self.legs[-1].end
 
     @property
     def certified(self) -> bool:
-        """Whether all of it is proved free of contact."""
         return all(leg.proof.proved for leg in self.legs)
 
     def within(self, problem: Problem) -> "Step":

@@ -15,7 +15,7 @@ from .loop import WithOutcome, within
 from .options import RelaxOptions
 from .prepare import start_problem
 from .relax import relax
-from .solver import check_size
+from .solver import Solver
 from .trajectory import Iterate
 
 
@@ -54,7 +54,6 @@ class History:
 
     @property
     def iterations(self) -> int:
-        """How many iterations there were."""
         return len(self.energy) - 1
 
 
@@ -82,7 +81,7 @@ def compare(
         raise OptionError(f"methods are {','.join(methods):.60}; give each of them once")
     each = [replace(options, method=method) for method in methods]
     for wanted in each:
-        check_size(Task.of(curve).curve, wanted)
+        Solver(wanted).check_size(Task.of(curve).curve)
     task = Task.of(curve).refined(options.vertices)
     each = [replace(wanted, vertices=len(task.curve)) for wanted in each]
     problems = [start_problem(task, wanted) for wanted in each]

@@ -33,7 +33,6 @@ class WithOutcome:
         self.outcome: Outcome | None = None
 
     def __iter__(self) -> Iterator[Iterate]:
-        """Yield the iterates that are left."""
         self.outcome = yield from self._relaxation
 
 

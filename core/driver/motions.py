@@ -29,7 +29,7 @@ class Motion(ABC):
     Lengths are root mean squares over the vertices, in radii of gyration.
     """
 
-    fields: int = number()  # their number
+    fields: int = number()
     distance: float = number()  # that the curve moves along each of them
     stride: float = number()  # of a step, at most; where steps are not accepted they are halved
     shortest: float = number()  # step at which a field is given up
@@ -41,7 +41,6 @@ class Motion(ABC):
             raise OptionError(f"ceilings are {self.ceilings}; they must ascend from 1 or more")
 
     def fits(self, point: Point) -> bool:
-        """Whether lengths are prescribed: else the curve would be stretched without end."""
         return point.problem.geometry.prescribes
 
     @abstractmethod
@@ -96,7 +95,6 @@ class Push(Motion):
         return super().fits(point) and point.problem.objective.has_hessian
 
     def field(self, point: Point, rng: np.random.Generator) -> Field:
-        """A constant one."""
         start = point.tangent_space.project(rng.normal(size=point.vertices.shape))
         modes = soft_modes(point, start[None], 0.0, -math.inf, self.products).vectors[: self.modes]
         u = np.tensordot(rng.normal(size=len(modes)), modes, 1)

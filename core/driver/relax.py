@@ -22,7 +22,7 @@ from .options import RelaxOptions
 from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import start_problem
 from .run import Run
-from .solver import check_size
+from .solver import Solver
 from .trajectory import Iterate
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
@@ -148,7 +148,7 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     began = time.perf_counter()
     options = RelaxOptions() if options is None else options
     task = Task.of(curve)
-    check_size(task.curve, options)
+    Solver(options).check_size(task.curve)
     start = task.refined(options.vertices)
     try:
         run = Run(start_problem(start, options), start.curve, options)

@@ -19,7 +19,6 @@ class Rises:
         self._changes: list[list[Iterate]] = []
 
     def step(self, before: Iterate, after: Iterate) -> None:
-        """Note a method's step."""
         if after.edge_length_error < before.edge_length_error:
             self._steps.append(_rise(before, after))
 
@@ -53,7 +52,6 @@ class Rises:
 
 
 def _rise(before: Iterate, after: Iterate) -> float:
-    """By how much the energy went up; 0 if it did not."""
     rise = after.energy - before.energy
     return rise if rise > RISE * energy_scale(before.curve.mesh, before.energy) else 0.0
 

@@ -37,31 +37,11 @@ class Change:
 
 
 class Run:
-    """A relaxation under way: the point reached, and what its method remembers.
+    """A relaxation under way from a refined curve: the point reached, and what its method remembers.
 
-    Parameters
-    ----------
-    problem
-        On the mesh of the start.
-    start
-        The refined curve, in the user's units.
-    options
-        As the user gave them.
-    max_iterations
-        Limit of iterations, if not that of the options.
-
-    Attributes
-    ----------
-    iterate
-        The point as users see it.
-    method
-        The one that takes the next step.
-    resolution
-        Bounds of edge lengths, where the mesh may change.
-    sampled_errors
-        Of the hierarchical solver, when last checked.
-    rises
-        Where the energy went up.
+    ``iterate`` is the point as users see it, ``method`` takes the next step, ``resolution`` bounds edge lengths where
+    the mesh may change, ``sampled_errors`` are those of the hierarchical solver when last checked, ``rises`` those of
+    the energy.  The limit of iterations is that of the options unless another is given.
     """
 
     def __init__(
@@ -86,12 +66,10 @@ class Run:
 
     @property
     def frozen(self) -> bool:
-        """Whether all vertices are held."""
         return len(self.iterate.pins) == self.problem.mesh.size
 
     @property
     def iterations_left(self) -> int:
-        """The budget that is left."""
         return self.max_iterations - self.iterations
 
     @property
@@ -118,7 +96,6 @@ class Run:
         return step
 
     def accept(self, step: Step) -> Iterate:
-        """Go to the end of a method's step."""
         before = self.iterate
         self._go(step)
         if self.problem.geometry.prescribes:
@@ -223,7 +200,6 @@ class Intervention:
     run: Run
 
     def __call__(self, event: Event) -> Event | Change:
-        """Answer with the event, or with a change."""
         answer: Event | Change | None
         match event:
             case Start():

@@ -122,7 +122,6 @@ class Trajectory:
         self._last, self._last_index = iterate.curve, iterate.index
 
     def _follows(self, iterate: Iterate) -> bool:
-        """Whether it may be the run's next iterate."""
         fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
         return iterate.index == self._last_index + 1 and fits
 

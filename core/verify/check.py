@@ -58,7 +58,6 @@ class _Progress:
             )
 
     def verdict(self, **values: Any) -> Verdict:
-        """The verdict, with what has been counted."""
         return Verdict(stages=self.stages, legs=self.legs, obstacles=len(self.obstacles), pins=self.pins, **values)
 
 

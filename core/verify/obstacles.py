@@ -48,7 +48,6 @@ class Obstacles:
 
     @cached_property
     def boxes(self) -> Boxes:
-        """Those of the triangles."""
         corners = self.vertices[self.triangles]
         return corners.min(axis=1), corners.max(axis=1)
 
@@ -103,7 +102,6 @@ def overlapping(first: Boxes, second: Boxes) -> Iterator[tuple[IntArray, IntArra
 
 
 def _kept(first: Boxes, second: Boxes, i: IntArray, j: IntArray) -> tuple[IntArray, IntArray]:
-    """Those of the pairs that overlap."""
     for axis in range(3):
         keep = (first[0][i, axis] <= second[1][j, axis]) & (second[0][j, axis] <= first[1][i, axis])
         i, j = i[keep], j[keep]

@@ -93,7 +93,6 @@ def _sturm_chain(p: Polynomial) -> tuple[Polynomial, ...]:
 
 
 def sign_at(p: Polynomial, t: Fraction) -> int:
-    """Sign of p(t)."""
     value, power = 0, 1
     for c in reversed(p):  # Horner's rule for p(a/b) b^degree, b > 0
         value = value * t.numerator + c * power
@@ -109,24 +108,20 @@ def gcd(p: Polynomial, q: Polynomial) -> Polynomial:
 
 
 def derivative(p: Polynomial) -> Polynomial:
-    """p′."""
     return tuple(k * c for k, c in enumerate(p) if k)
 
 
 def add(p: Polynomial, q: Polynomial) -> Polynomial:
-    """p + q."""
     if len(p) < len(q):
         p, q = q, p
     return _trimmed([c + (q[k] if k < len(q) else 0) for k, c in enumerate(p)])
 
 
 def subtract(p: Polynomial, q: Polynomial) -> Polynomial:
-    """p − q."""
     return add(p, tuple(-c for c in q))
 
 
 def multiply(p: Polynomial, q: Polynomial) -> Polynomial:
-    """Product p q."""
     product = [0] * (len(p) + len(q) - 1) if p and q else []
     for i, a in enumerate(p):
         for j, b in enumerate(q):

@@ -47,10 +47,7 @@ def meet(start: Sequence[Point], end: Sequence[Point]) -> bool:
 def meetings(start: Sequence[Point], end: Sequence[Point]) -> Iterator[Root]:
     """Yield times at which two moving segments meet, among them the first; none if they never do.
 
-    Parameters
-    ----------
-    start, end
-        The points x₀, x₁, y₀, y₁ at times 0 and 1, in the plane or in space.
+    Start and end are the points x₀, x₁, y₀, y₁ at times 0 and 1, in the plane or in space.
     """
     x0, x1, y0, y1 = _moving_points(start, end)
     corners = (_minus(x0, y0), _minus(x0, y1), _minus(x1, y0), _minus(x1, y1))
@@ -91,7 +88,6 @@ def _ends(corners: Corners, e: Vector, f: Vector) -> tuple[tuple[Vector, Vector]
 
 
 def _touch(time: Root, corners: Corners, e: Vector, f: Vector) -> bool:
-    """Whether the closed segments have a common point at an exact time."""
     if time.sign_of(_dot(_cross(e, f), _cross(e, f))):
         return _lines_meet_inside(time, corners[0], e, f)
     # Parallel, or of no length: they meet if an end of one lies on the other.
@@ -148,10 +144,7 @@ def _cross(u: Vector, v: Vector) -> Vector:
 def meet_triangle(start: Sequence[Point], end: Sequence[Point]) -> bool:
     """Whether a segment that moves and a triangle that does not meet at any time in [0, 1].
 
-    Parameters
-    ----------
-    start, end
-        The points x₀, x₁, y₀, y₁, y₂ at times 0 and 1; the last three are the same at both.
+    Start and end are the points x₀, x₁, y₀, y₁, y₂ at times 0 and 1; the last three are the same at both.
     """
     x, triangle = list(start[:2]), list(start[2:])
     if any(pierced_at(p, q, triangle) is not None for p, q in [x, (start[0], end[0]), (start[1], end[1])]):

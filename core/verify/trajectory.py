@@ -62,10 +62,7 @@ class Stage:
 def stages(path: Path | str) -> Iterator[Stage]:
     """Yield the stages of a file, in order; frames of a stage can be read until the next one is asked for.
 
-    Raises
-    ------
-    TrajectoryError
-        If the file is none or is damaged, also while frames are read.
+    A TrajectoryError if the file is none or is damaged, also while frames are read.
     """
     with _opened(path) as archive:
         for number in range(_count(archive)):
@@ -75,13 +72,7 @@ def stages(path: Path | str) -> Iterator[Stage]:
 
 
 def still_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
-    """The obstacles of a file: vertices, shape (k, 3), and indices of simplices, shape (f, 2 or 3), of each.
-
-    Raises
-    ------
-    TrajectoryError
-        If the file cannot be read, or an index has no vertex.
-    """
+    """The obstacles of a file: vertices, shape (k, 3), and indices of simplices, shape (f, 2 or 3), of each."""
     with _opened(path) as archive:
         found = sorted(name for name in archive.namelist() if name.startswith("obstacle_"))
         names = [f"obstacle_{k:03d}" for k in range(len(found) // 2)]
@@ -124,7 +115,6 @@ def _opened(path: Path | str) -> Iterator[zipfile.ZipFile]:
 
 
 def _count(archive: zipfile.ZipFile) -> int:
-    """The number of stages."""
     names = archive.namelist()
     if len(set(names)) < len(names):
         raise TrajectoryError("the file has two arrays of one name")
@@ -189,7 +179,6 @@ def _obstacle(archive: zipfile.ZipFile, name: str) -> tuple[FloatArray, IntArray
 
 
 def _list(archive: zipfile.ZipFile, name: str, kinds: str, what: str) -> list[int]:
-    """An array with one index, of some kinds of numbers."""
     with _member(archive, name) as array:
         if array.dtype.kind not in kinds or len(array.shape) != 1 or not 0 < array.size <= _MAX_SIZES:
             raise TrajectoryError(f"{name} is an array {array.shape} of {array.dtype}; it must be a list of {what}")
@@ -197,7 +186,6 @@ def _list(archive: zipfile.ZipFile, name: str, kinds: str, what: str) -> list[in
 
 
 def _table(archive: zipfile.ZipFile, name: str, kinds: str) -> NDArray[Any]:
-    """An array with two indices."""
     with _member(archive, name) as array:
         if array.dtype.kind not in kinds or len(array.shape) != 2:
             raise TrajectoryError(f"{name} is an array {array.shape} of {array.dtype}; it must be a table of numbers")
@@ -239,7 +227,6 @@ class _Array:
 
     @property
     def size(self) -> int:
-        """In bytes."""
         return math.prod(self.shape) * self.dtype.itemsize
 
     def whole(self) -> NDArray[Any]:
@@ -248,7 +235,6 @@ class _Array:
         return np.frombuffer(data, self.dtype).reshape(self.shape, order="F" if self.fortran else "C")
 
     def one_by_one(self) -> Iterator[NDArray[Any]]:
-        """What the first index counts."""
         count, *shape = self.shape
         for _ in range(count):
             yield np.frombuffer(self._read(self.size // count), self.dtype).reshape(shape)

@@ -31,15 +31,7 @@ class DifferentCurveError(Exception):
 def common_vertices(first: FloatArray, second: FloatArray, closed: bool) -> tuple[list[int], list[int]]:
     """Return the indices, in the first and in the second polygon, both closed or both open, of the vertices they share.
 
-    Parameters
-    ----------
-    first, second
-        Vertices of one component at the end of a stage and the start of the next, shapes (n, m) and (n', m).
-
-    Raises
-    ------
-    DifferentCurveError
-        If there are too few, or not in the same order.
+    Shapes (n, m) and (n', m); a DifferentCurveError if there are too few, or not in the same order.
     """
     places = {tuple(p): k for k, p in enumerate(second.tolist())}
     here = [k for k, p in enumerate(first.tolist()) if tuple(p) in places]
@@ -56,25 +48,11 @@ def common_vertices(first: FloatArray, second: FloatArray, closed: bool) -> tupl
 
 
 def straightened(polygon: FloatArray, kept: Sequence[int], closed: bool = True) -> tuple[dict[int, Point], float]:
-    """Move the vertices of a polygon that are not kept onto the edges between those that are.
+    """Move the vertices of a polygon, shape (n, m), that are not kept onto the edges between those that are.
 
-    Parameters
-    ----------
-    polygon
-        Vertices, shape (n, m).
-    kept
-        Indices of the vertices that stay, in ascending order; the ends of an open polygon are among them.
-    closed
-        Whether an edge leads from the last vertex to the first.
-
-    Returns
-    -------
-    The new places of the vertices that move, exact, and an upper bound for the change of any coordinate.
-
-    Raises
-    ------
-    DifferentCurveError
-        If one of them is further away than rounding, or they are not in order.
+    Those kept are given by their indices, in ascending order; the ends of an open polygon are among them.  Returns the
+    new places of the vertices that move, exact, and an upper bound for the change of any coordinate.  A
+    DifferentCurveError if one of them is further away than rounding, or they are not in order.
     """
     moved: dict[int, Point] = {}
     largest = Fraction(0)
@@ -131,10 +109,7 @@ class HeldVertices:
     def among(cls, frame: FloatArray, points: FloatArray) -> "HeldVertices":
         """The vertices of a stage's first frame, shape (n, m), at points, shape (k, m).
 
-        Raises
-        ------
-        LostPinError
-            If there is no vertex at one of them.
+        A LostPinError if there is none at one of them.
         """
         places = {tuple(vertex): k for k, vertex in enumerate(frame.tolist())}
         found = [places.get(tuple(point), -1) for point in points.tolist()]

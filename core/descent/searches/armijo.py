@@ -57,25 +57,17 @@ class Armijo:
     """Shrink the first trial until the energy goes down enough and the motion is proved."""
 
     decrease: float = number(0.5, most=1)  # required fraction of the predicted decrease: the paper's ½
-    first: FirstTrial = field(default_factory=FirstTrial)  # the first trial
+    first: FirstTrial = field(default_factory=FirstTrial)
     lengths: TowardsTargets = field(default_factory=TowardsTargets)  # how fast lengths go to their targets
-    max_trials: int = number(40)  # number of trials
+    max_trials: int = number(40)
 
     def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
-        """Find a step along a descent direction.
+        """Find a step along a tangent direction with DE·direction < 0; shape (n, m).
 
         The motion is the straight one from P to Q, where Q = P + τ·direction, moved towards the target lengths if they
-        are not reached yet, and back onto that level of the constraints by (42).  It is accepted if
-        E(Q) ≤ E(P) + ½ DE·(Q₀ − P) and the motion from P to Q is proved free of contact.
-
-        Parameters
-        ----------
-        direction
-            Tangent vector with DE·direction < 0; shape (n, m).
-        natural
-            The direction's own step size.
-        last
-            The last accepted one.
+        are not reached yet, and back onto that level of the constraints by (42).  It is accepted if E(Q) ≤ E(P) + ½
+        DE·(Q₀ − P) and the motion from P to Q is proved free of contact.  τ is at most the direction's own step size,
+        ``natural``, and a multiple of the last accepted one.
         """
         tau, limited_by = self.first(point, direction, min(natural, self._longest(point, direction, last)))
         normal = self.lengths.at(point, point.tangent_space)
@@ -117,7 +109,6 @@ class Armijo:
         return LEAST / speed if crawls and not on_target(point) else longest
 
     def _shorter(self, point: Point, rejected: Rejected, slope: float) -> float:
-        """Factor for the next trial."""
         if rejected.proof is not None:
             return max(0.1, self.first.collision_fraction * rejected.proof.time)
         if rejected.trial is None or not slope < 0.0:

@@ -46,11 +46,9 @@ class BackwardEuler:
 
     @property
     def other_metrics(self) -> tuple[Metric, ...]:
-        """The preconditioner."""
         return (self.preconditioner,)
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
-        """Take one step."""
         tau = self.first_step if state.memory is None else self.growth * state.memory
         own, constraints = point.inner_product, point.tangent_space.constraints
         preconditioner = self.preconditioner.at(point.curve)

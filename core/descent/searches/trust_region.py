@@ -47,10 +47,10 @@ class TrustRegion:
     accept: float = 0.05
     good: float = 0.7
     poor: float = 0.25
-    first: FirstTrial = field(default_factory=FirstTrial)  # bounds of a step
+    first: FirstTrial = field(default_factory=FirstTrial)
     # the search on the way to target lengths, where there is no Lagrangian to model
     underway: Armijo = field(default_factory=Armijo)
-    max_trials: int = number(40)  # number of trials
+    max_trials: int = number(40)
     second_order: ClassVar[bool] = True
     other_metrics: ClassVar[tuple[Metric, ...]] = ()
 
@@ -61,7 +61,6 @@ class TrustRegion:
             )
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
-        """Take one step."""
         if not on_target(point):
             step = self.underway.along(point, -point.gradient, math.inf, state.last_step)
             return step, (State(None, step.size) if isinstance(step, Step) else state)
@@ -94,19 +93,16 @@ class TrustRegion:
         )
 
     def _radius(self, radius: float, length: float, ratio: float) -> float:
-        """The radius after a step of this length in the metric."""
         grown = radius * (2.0 if ratio > self.good and length > 0.8 * radius else 1.0)
         return 0.5 * grown if ratio < self.poor else grown
 
     def _shorter(self, rejected: Rejected, shortest: float, length: float) -> float:
-        """The radius after a trial that was rejected."""
         if rejected.proof is None:
             return 0.4 * shortest
         return self.first.collision_fraction * max(rejected.proof.time, 0.1) * length
 
 
 def _ratio(point: Point, trial: Point, predicted: float) -> float:
-    """Actual to predicted reduction."""
     rounding = ROUNDING * abs(point.energy)
     return (point.energy - trial.energy + rounding) / (predicted + rounding)
 
@@ -123,7 +119,6 @@ class _Model:
 
     @classmethod
     def at(cls, point: Point, last_gradient: FloatArray | None, newton_threshold: float) -> "_Model":
-        """The model at a point."""
         hessian = lagrangian_hessian(point)
         vectors = [-point.gradient]
         threshold = newton_threshold * math.sqrt(energy_scale(point.problem.mesh, point.energy))
@@ -145,7 +140,6 @@ class _Model:
         return s, -float(self.linear @ c + 0.5 * c @ self.quadratic @ c)
 
     def reduction(self, s: FloatArray) -> float:
-        """Predicted reduction of a vector of the span."""
         return -float(np.sum(self.point.derivative * s) + 0.5 * np.sum(s * self.hessian(s)))
 
 
@@ -196,18 +190,14 @@ class Escape:
 
     decrease: float = number(0.1, most=1)  # required fraction of the predicted decrease
     longest: float = number(0.5)  # first step, in the metric's norm
-    first: FirstTrial = field(default_factory=FirstTrial)  # the first trial
-    max_trials: int = number(20)  # number of trials each way
+    first: FirstTrial = field(default_factory=FirstTrial)
+    max_trials: int = number(20)
 
     def step(self, point: Point, direction: FloatArray, curvature: float) -> Step | NoStep:
         """Find a step with E(Q) < E(P) + ½ c τ² curvature, c the required decrease.
 
-        Parameters
-        ----------
-        direction
-            Tangent vector of length 1 in the metric; shape (n, m).
-        curvature
-            ⟨direction, D²L direction⟩ < 0.
+        The direction, shape (n, m), is tangent and of length 1 in the metric, the curvature ⟨direction, D²L direction⟩
+        < 0.
         """
         limited_by = None
         for sign in (1.0, -1.0):

@@ -29,10 +29,10 @@ class WeakWolfe:
     # decrease, curvature: c₁ < c₂ of the two conditions
     decrease: float = number(1e-4, most=1)
     curvature: float = number(0.9, most=1)
-    first: FirstTrial = field(default_factory=FirstTrial)  # the first trial
-    # the search on the way to target lengths, where these are prescribed
+    first: FirstTrial = field(default_factory=FirstTrial)
+    # on the way to target lengths, where these are prescribed
     underway: Armijo = field(default_factory=Armijo)
-    max_trials: int = number(40)  # number of trials
+    max_trials: int = number(40)
 
     def __post_init__(self) -> None:
         if self.decrease >= self.curvature:
@@ -70,7 +70,6 @@ class WeakWolfe:
         return trial.energy <= point.energy + self.decrease * slope + ROUNDING * abs(point.energy)
 
     def flat(self, trial: Point, direction: FloatArray, slope: float) -> bool:
-        """The condition on the slope at the end."""
         return float(np.sum(trial.derivative * trial.transport(direction))) >= self.curvature * slope
 
 

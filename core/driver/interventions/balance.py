@@ -26,15 +26,8 @@ IS_BALANCED = "no Möbius image within reach bends less"
 class MoebiusImages:
     """The Möbius images of the smooth curve through a polygon's vertices, as polygons of as many.
 
-    Vertices slide along the curve, so that the edges of every component keep the ratios of their lengths however
-    strongly a map stretches them; length and barycenter stay.
-
-    Parameters
-    ----------
-    curve
-        The polygon.
-    lengths
-        Target lengths of its edges, shape (n,): of those of one component only the ratios count.
+    Vertices slide along the curve, so that the edges of every component keep the ratios of their target lengths, shape
+    (n,), however strongly a map stretches them; length and barycenter stay.
     """
 
     def __init__(self, curve: Curve, lengths: FloatArray) -> None:
@@ -51,7 +44,6 @@ class MoebiusImages:
         return float(np.log(value)), moebius_pullback(points, q, derivative / value)
 
     def at(self, q: FloatArray) -> Curve:
-        """The image under the map of q, shape (m + 1,)."""
         pieces = [_image(*each, q) for each in zip(self._splines, self._fractions, strict=True)]
         image = self._curve.with_vertices(np.concatenate(pieces))
         scale = self._curve.length / image.length
@@ -85,7 +77,6 @@ class Balance(Intervention):
     _before: float | None = field(default=None, init=False)  # bending that the balanced curve had
 
     def ended(self, outcome: Outcome) -> Outcome | Change | None:
-        """Look at converged curves, and at ends of the run on the way from one."""
         run = self.run
         if not run.options.balance:
             return None

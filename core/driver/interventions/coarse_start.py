@@ -43,19 +43,15 @@ class CoarseStart(Intervention):
         self._wanted = self._is_wanted()
 
     def started(self) -> Change | None:
-        """Leave out vertices at first, and smooth the curve once they are back."""
         return self._coarser() if self._wanted else self._smoother()
 
     def stepped(self, step: Step) -> Change | None:
-        """Bring the vertices back where iterations are about to run out."""
         return self._back(self.run.iterations_left <= WAY_BACK)
 
     def stuck(self, found: NoStep) -> Change | None:
-        """Bring the vertices back."""
         return self._back()
 
     def ended(self, outcome: Outcome) -> Change | None:
-        """Bring the vertices back."""
         return self._back()
 
     def _back(self, due: bool = True) -> Change | None:

@@ -33,7 +33,6 @@ class Fallback(Intervention):
         self._asked_for, self._mesh = self.run.method, self.run.problem.mesh
 
     def __call__(self, event: Event) -> Event | Change:
-        """Change the method."""
         run = self.run
         if run.problem.mesh is not self._mesh:
             self._mesh, self._tried_at = run.problem.mesh, math.inf
@@ -62,7 +61,6 @@ class CheckAccuracy(Intervention):
     _seen: Mesh | None = field(default=None, init=False)
 
     def __call__(self, event: Event) -> Event | Change:
-        """Look at every new mesh, and wherever the run may end."""
         problem = self.run.problem
         energy = problem.objective.energy
         ends = isinstance(event, NoStep | Outcome)

@@ -75,7 +75,6 @@ class Grow(Intervention):
         return on_target(self.run.point) and gained <= self._enough * self._energy_scale
 
     def _grown(self, left: float, event: Event) -> Event | Change:
-        """A motion; where there is none the event, which is no convergence."""
         step = self._step(left)
         if step is not None:
             self._energy = step.point.energy

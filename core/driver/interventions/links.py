@@ -43,7 +43,6 @@ class SplitLinks(Intervention):
     most: int = number(50)  # parts: each has rows of its own in the linear systems
 
     def stepped(self, step: Step) -> Change | None:
-        """Look for parts now and then."""
         run, constraints = self.run, self.run.problem.constraints
         if not run.problem.geometry.prescribes or run.iterate.index % self.interval:
             return None
@@ -131,7 +130,6 @@ class Composite(Intervention):
     """Report composite curves: unless the energy sees size, only the mesh keeps a part from shrinking to a point."""
 
     def converged(self, outcome: Outcome) -> Outcome | None:
-        """Look for a ball with a knot in it."""
         problem = self.run.problem
         if problem.objective.sees_size or len(problem.constraints.pins):  # between pins no part shrinks without limit
             return None

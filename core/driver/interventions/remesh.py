@@ -32,13 +32,11 @@ class Remesh(Intervention):
     _just_refined: bool = field(default=False, init=False)  # around edges that were stuck: once is enough
 
     def stepped(self, step: Step) -> Change | None:
-        """Look at the mesh now and then."""
         self._just_refined = False
         due = self._adapts and self.run.iterate.index % self.interval == 0
         return self._change(None) if due else None
 
     def stuck(self, found: NoStep) -> NoStep | Change | None:
-        """Refine around what is in the way."""
         if not self._adapts:
             return replace(found, reason=joined((found.reason, ADVICE), "; "))
         if found.limited_by is None or self._just_refined:
@@ -52,13 +50,7 @@ class Remesh(Intervention):
         return self.run.options.mesh == "adaptive"
 
     def _change(self, stuck: Contact | None) -> Change | None:
-        """Another mesh; None if this one is good or must stay.
-
-        Parameters
-        ----------
-        stuck
-            What keeps edges from moving: the mesh around them is refined whether it needs it or not.
-        """
+        """Another mesh; None if this one is good or must stay. Around edges that are stuck it is finer in any case."""
         problem, curve, resolution = self.run.problem, self.run.iterate.curve, self.run.resolution
         pins = problem.constraints.pins.vertices
         spacing = graded_spacing(curve, resolution)
@@ -115,7 +107,6 @@ class FinerMesh(Intervention):
         self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
-        """Look at converged curves."""
         curve = self.run.iterate.curve
         if not _unresolved(curve) or self.run.frozen:
             return None

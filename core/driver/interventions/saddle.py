@@ -56,7 +56,6 @@ class EscapeSaddle(Intervention):
     search: Escape = field(default_factory=Escape)
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
-        """Count negative eigenvalues, if that is asked for."""
         options = self.run.options
         if not (options.stability or options.escape_saddles):
             return None
