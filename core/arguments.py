@@ -38,7 +38,7 @@ _WORDS: dict[Any, str] = {
 def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
     """Let a function raise a MobiusFlowError that names the argument where one is not of its annotated type.
 
-    What arrays hold, and protocols that are not for run time, are not looked at.
+    Contents of arrays, and protocols that are not for run time, are not checked.
     """
     parameters = signature(function)
 
@@ -104,7 +104,7 @@ def _hints(function: Callable[..., object]) -> dict[str, Any]:
 
 
 def _spelt_out(hint: Any) -> Any:
-    """What an alias stands for, such as NDArray from NumPy 2.5 on."""
+    """Resolve an alias, such as NDArray from NumPy 2.5 on."""
     return getattr(get_origin(hint) or hint, "__value__", hint)
 
 

@@ -84,7 +84,7 @@ class Rest:
 
 @dataclass(frozen=True)
 class Info:
-    """Measures of a curve, in its own units; None stands for what the number of vertices or the dimension forbids.
+    """Measures of a curve, in its own units; None where the number of vertices or the dimension forbids it.
 
     Attributes
     ----------

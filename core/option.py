@@ -44,15 +44,15 @@ class Option:
     choices: Collection[str] | None = field(default=None, repr=False)  # the names it takes: a registry, or a few words
     # what else than a name a script may give: what it is called, and whether a value is one
     objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
-    # which items of a tuple a word of the command line stands for, where it may be given several times
+    # the items of a tuple that a word of the command line gives, where it may be repeated
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
-    metavar: str = "NAME"  # what stands for its value in the command line's help
+    metavar: str = "NAME"  # placeholder of its value in the command line's help
     # whom it is for: everybody, those who know the mathematics, or scripts, in which case no panel shows it
     group: Literal["basic", "advanced", "scripts"] = "basic"
     # whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
     # leave out vertices on the way is among Blender's settings
     keyframes: bool = True
-    # words of the command line, each with the choice that it stands for
+    # words of the command line, each with the choice it selects
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
     repeated: bool = False  # whether its value is a tuple, whose items are checked
     flag: str = ""  # what it is called on the command line, if not by its name

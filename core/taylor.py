@@ -16,7 +16,7 @@ from .errors import OptionError
 from .types import FloatArray
 
 WINDOW = 5  # consecutive steps that make one fit
-ROUNDING = 1e-15  # remainders below this part of the function are not looked at
+ROUNDING = 1e-15  # remainders below this part of the function are ignored
 
 
 def taylor_slope(

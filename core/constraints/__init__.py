@@ -52,7 +52,7 @@ class Block(Protocol):
         """The same for a curve of another place, shape, mesh or units, with the targets that it has there."""
 
     def scaled(self, factor: float) -> "Block":
-        """With the targets of a curve that is so many times as large."""
+        """With the targets of the curve scaled by a factor."""
 
 
 class BlockDerivative(Protocol):

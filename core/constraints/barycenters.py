@@ -39,7 +39,7 @@ class Barycenters:
         return replace(self, target=np.concatenate([np.empty(0), *each]))
 
     def scaled(self, factor: float) -> "Barycenters":
-        """Barycenters stay in their places relative to a curve that is so many times as large.
+        """Barycenters stay in place relative to the curve scaled by a factor.
 
         Σ ℓ_I m_I is a length times a place.
         """

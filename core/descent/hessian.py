@@ -10,7 +10,7 @@ from ..types import FloatArray
 from .problem import Point
 
 LinearMap = Callable[[FloatArray], FloatArray]
-ASSEMBLED_SIZE = 3000  # up to so many unknowns one assembled matrix beats products that go through all pairs
+ASSEMBLED_SIZE = 3000  # unknowns up to which one assembled matrix beats products that go through all pairs
 
 
 def energy_hessian(point: Point) -> LinearMap:

@@ -170,7 +170,7 @@ class Point:
         return self if same else self.changing(objective=objective)
 
     def with_metric_of(self, other: "Point", steps: int = 1) -> "Point":
-        """The same point in the metric of another one, if that is built, so many steps ago, and its own is not."""
+        """The same point in the metric of another one, some steps earlier, if that is built and its own is not."""
         if "inner_product" in vars(self) or "inner_product" not in vars(other):
             return self
         point = copy(self)

@@ -29,7 +29,7 @@ class SoftModes:
     values: FloatArray  # Ritz values θ, each at least the eigenvalue in its place; shape (k,)
     vectors: FloatArray  # Ritz vectors w, tangent and orthonormal in the metric; shape (k, n, m)
     # norms of the projected J⁻¹ D²L w − θ w in the metric, within which of θ there is an eigenvalue, for those of the
-    # lowest pairs that were looked at; shape (j,), j ≤ k
+    # lowest pairs that were examined; shape (j,), j ≤ k
     residuals: FloatArray
 
 

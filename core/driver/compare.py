@@ -66,10 +66,10 @@ def compare(
     time_limit: float,
     stages: Collection[int] = (),
 ) -> Iterator[History]:
-    """Give one run per method, all from the same refined curve, each ended after so many seconds of processor time.
+    """Run each method from the same refined curve for a limited number of seconds of processor time.
 
-    Whether every method can be run is looked at before the first one is. The mesh ``auto`` is a fixed one here, so that
-    steps are compared on one mesh. Of the iterates of indices ``stages`` curves are kept, of the last one in place of
+    All methods are checked before the first one runs. The mesh ``auto`` is a fixed one here, so that steps are compared
+    on one mesh. Of the iterates of indices ``stages`` curves are kept, of the last one in place of
     those that were not reached. Raises as `relax` does.
     """
     check_number("time_limit", time_limit, 0.0, float("inf"))

@@ -25,14 +25,14 @@ MAY_BE_UNKNOT = Message(
     "the curve may be an unknot, for its Alexander polynomial is trivial, and a circle has less energy"
 )
 ROUND = 0.9  # of the area of the circle of the same length: coarse and uneven ones have that
-MOST_VERTICES = 10_000  # of a curve whose type is looked at: a few seconds
+MOST_VERTICES = 10_000  # for which the knot type is computed: a few seconds
 
 
 def hopping(run: Run) -> Relaxation:
     """Yield the iterates of a relaxation and of its hops; return how it ended.
 
     A hop is one iterate: its path is the motion, and the relaxation to where there is less energy than at the minimum
-    before.  So whoever stops between two iterates has the lowest curve so far.
+    before.  So a run stopped between two iterates has the lowest curve so far.
     """
     hops = Hops(run)
     yield run.iterate
@@ -95,7 +95,7 @@ class Hops:
                 "hops that lowered the energy: {taken} of {tried}", taken=self._taken, tried=self._tried
             )
         run = self.run
-        unknot = told_of_unknot(run.iterate.curve) if outcome.may_be_left and run.problem.unconfined else None
+        unknot = unknot_message(run.iterate.curve) if outcome.may_be_left and run.problem.unconfined else None
         if unknot is None:
             return outcome
         more = "{unknot}: more hops may reach it" if run.options.hops else "{unknot}: hops may reach it"
@@ -143,7 +143,7 @@ def is_circle(curve: Curve) -> bool:
     return bool(4.0 * np.pi * area > ROUND * curve.length**2)
 
 
-def told_of_unknot(curve: Curve) -> Message | None:
+def unknot_message(curve: Curve) -> Message | None:
     """Say that a curve is or may be an unknot, though it is no circle; None if it is one, or is knotted or a link."""
     alone = len(curve.mesh.component_sizes) == 1
     if not alone or curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):
@@ -152,7 +152,7 @@ def told_of_unknot(curve: Curve) -> Message | None:
         return None
     try:
         names = knot_type(curve).names
-    except CurveError:  # a stuck curve may be so near to itself that no view tells which strand is in front
+    except CurveError:  # a stuck curve may be so near to itself that no projection resolves which strand is in front
         names = ()
     if not names:
         return MAY_BE_UNKNOT

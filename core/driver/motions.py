@@ -106,8 +106,8 @@ class Push(Motion):
 class Stir(Motion):
     """Stir space by random flows, which fold the curve and turn it over.
 
-    A flow alone is an isotopy that leaves strands beside each other which were so before; one after the other they
-    mix, and a higher ceiling lets the curve forget more of the minimum.
+    A single flow is an isotopy that keeps neighbouring strands together; a sequence of flows mixes them, and a higher
+    ceiling lets the curve forget more of the minimum.
     """
 
     fields: int = number(10)

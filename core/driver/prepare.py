@@ -85,7 +85,7 @@ def equal_lengths(mesh: Mesh, lengths: FloatArray, pins: IntArray) -> FloatArray
 
 
 def _check_growth(start: Curve, problem: Problem, options: RelaxOptions, method: Method) -> None:
-    """Refuse to change lengths that are not prescribed, or cannot change by the factor that is asked for."""
+    """Refuse to change lengths that are not prescribed, or cannot change by the requested factor."""
     pins = problem.constraints.pins.vertices
     if not method.geometry.prescribes:
         raise OptionError(f"grow prescribes lengths, but method {method.name} penalises them; choose another method")

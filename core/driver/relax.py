@@ -42,11 +42,11 @@ class Result:
     energies
         The objective at every iterate, the start first.
     fallback_steps
-        Iterates to which another method than the one asked for led.
+        Iterates reached by the fallback method.
     seconds
         Wall-clock time.
     method
-        Name of the method that was asked for.
+        Name of the requested method.
     task
         What was to be relaxed.
     """
@@ -136,7 +136,7 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     curve
         An embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.
     options
-        How to relax; None stands for the defaults.
+        How to relax; None means the defaults.
 
     Raises
     ------

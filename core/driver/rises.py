@@ -1,4 +1,4 @@
-"""Where the energy went up, as it may where edge lengths are evened out or the mesh changes: told of in the end."""
+"""Increases of the energy, which evening out edge lengths or changing the mesh may cause; reported at the end."""
 
 from itertools import pairwise
 
@@ -7,8 +7,8 @@ from ..messages import Message, joined
 from .outcome import Outcome
 from .trajectory import Iterate
 
-RISE = 1e-9  # increase of the energy, by its scale, that is told of; less is rounding
-NAMED = 3  # changes of mesh whose energies are told one by one
+RISE = 1e-9  # relative to the energy's scale, the least increase reported; less is rounding
+NAMED = 3  # changes of mesh whose energies are listed individually
 
 
 class Rises:
@@ -33,8 +33,8 @@ class Rises:
             self._changes.append([before])
         self._changes[-1].append(after)
 
-    def told(self, outcome: Outcome, steps: int) -> Outcome:
-        """The outcome after so many steps, with a clause for each kind of rise."""
+    def summarised(self, outcome: Outcome, steps: int) -> Outcome:
+        """The outcome with a clause for each kind of increase, out of a number of steps."""
         rises = [rise for rise in self._steps if rise]
         if rises:
             rose = "the energy rose in {count} of {steps} steps, by {total:.3g} in total, while lengths were equalized"

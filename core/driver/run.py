@@ -61,7 +61,7 @@ class Run:
 
     @property
     def problem(self) -> Problem:
-        """The problem on the present mesh, in the metric of the method that was asked for."""
+        """The problem on the present mesh, in the metric of the requested method."""
         return self.point.problem
 
     @property
@@ -90,7 +90,7 @@ class Run:
             step, self._memory = self.method.rule.step(point, self._memory)
             if isinstance(step, Step):
                 step = step.within(self.problem)
-                step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
+                step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be reported)
         except np.linalg.LinAlgError as error:
             return NoStep(degenerate(error))
         return step
@@ -134,7 +134,7 @@ class Run:
             yield self.iterate
 
     def termination(self) -> Outcome | None:
-        """How the run ends here of itself; None if it goes on."""
+        """How the run ends here; None if it continues."""
         bound = gradient_bound(self.options, self.problem.mesh, self.point.energy)
         if self.point.gradient_norm <= bound and self._feasible:
             norm = self.point.with_own_metric().gradient_norm
@@ -145,7 +145,7 @@ class Run:
         return self.at_limit() if self.iterations_left <= 0 else None
 
     def at_limit(self) -> Outcome:
-        """How the run ends for want of iterations."""
+        """How the run ends at the iteration limit."""
         outcome = out_of_iterations(self.iterations)
         if self._feasible:
             return outcome

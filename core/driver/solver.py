@@ -32,7 +32,7 @@ class Solver:
     hierarchical: bool = False  # whether distant pairs of edges count cluster by cluster
 
     def on(self, curve: Curve) -> "Solver":
-        """The solver for a curve: the one asked for, or the faster one; a CurveError if it has too many vertices."""
+        """The solver for a curve: the requested one, or the faster one; a CurveError if it has too many vertices."""
         self.check_size(curve)
         wanted = self.options.solver == "hierarchical"
         return Solver(self.options, self._may_be_hierarchical and (wanted or _pays(curve)))
@@ -44,7 +44,7 @@ class Solver:
 
     @property
     def metric(self) -> Metric:
-        """The metric of the method, or the one that is asked for in its place."""
+        """The requested metric, by default that of the method."""
         method, metric, points = self._method, self._metric, self.options.quadrature_points
         kind, dash, own = method.name.rpartition(f"-{method.metric.name}")
         if isinstance(self.options.metric, str) and dash and not own and metric is not method.metric:
@@ -59,7 +59,7 @@ class Solver:
     def of_metric(self, metric: Metric) -> Metric:
         """A metric in the form that is solved with, and by the quadrature rule if it has any."""
         points = self.options.quadrature_points
-        # the energy's own rule, as Section 6.1.2 of [RS21] has it, unless another one is asked for
+        # the energy's own rule, as Section 6.1.2 of [RS21] has it, unless another one is requested
         metric = metric.with_rule(self._energy.rule if points is None else Rule.gauss(points))
         return compressed(metric, Tolerances.of_norms(self.options.accuracy)) if self.hierarchical else metric
 
@@ -77,7 +77,7 @@ class Solver:
             raise CurveError(Message(large, vertices=Message(VERTEX_COUNT, count=len(curve)), method=name, most=most))
 
     def _max_vertices(self, wanted: int) -> int:
-        """Number of vertices for which there is room and time, if so many are wanted."""
+        """The largest feasible number of vertices, if a certain number is wanted."""
         metric, solver = self._metric, self.options.solver
         if self._may_be_hierarchical and (solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
             given = isinstance(self.options.metric, Metric)

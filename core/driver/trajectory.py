@@ -44,11 +44,11 @@ class Iterate:
     edge_length_error
         max |log ℓ/ℓ⁰| over the edges.
     method
-        Name of the method that took the step; another one than was asked for where that one was stuck.
+        Name of the method that took the step: the fallback method where the requested one was stuck.
     grown
         How many times the lengths of the start, as they were to be there, those of this curve are to be.
     pins
-        Vertices of this curve that are held, counted from 0: those asked for, and those that cannot move between them.
+        Pinned vertices of this curve, counted from 0, and those that cannot move between them.
     """
 
     index: int

@@ -27,7 +27,7 @@ from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .obstacles import Obstacles
 from .segments import Point, meet, meet_triangle
-from .trajectory import Components, TrajectoryError, count_legs, held_points, stages, still_parts
+from .trajectory import Components, TrajectoryError, count_legs, obstacle_parts, pinned_points, stages
 from .transition import DifferentCurveError, HeldVertices, LostPinError, common_vertices, straightened
 from .verdict import ContactError, UndecidedError, Verdict
 
@@ -89,8 +89,8 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
 def _check_file(path: Path | str, progress: _Progress) -> None:
     last: FloatArray | None = None
     before: Components = ()
-    progress.obstacles = Obstacles.of(still_parts(path))
-    pins = held_points(path)
+    progress.obstacles = Obstacles.of(obstacle_parts(path))
+    pins = pinned_points(path)
     progress.pins = len(pins)
     for stage in stages(path):
         progress.stages, progress.frame = progress.stages + 1, None

@@ -15,7 +15,7 @@ from ..types import FloatArray, IntArray
 from .filter import Leg, scaled
 
 _PAIRS_AT_ONCE = 1 << 12
-_RUN = 16  # edges whose common box is looked at first
+_RUN = 16  # edges whose common box is tested first
 Boxes = tuple[FloatArray, FloatArray]  # least and largest coordinates, each (k, 3)
 
 

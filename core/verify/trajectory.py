@@ -2,7 +2,7 @@
 
 A file is a zip archive of .npy arrays, as numpy.savez writes it: ``stage_000``, ``stage_001``, … each (k, n, m) and
 float64, and ``component_sizes_000``, … with the numbers of vertices of the components. Where some of them are open
-polygons, ``component_closed_000``, … tells which are closed; without it all are. There may be obstacles,
+polygons, ``component_closed_000``, … says which are closed; without it all are. There may be obstacles,
 ``obstacle_000_vertices``, … each (k, 3) and float64, and ``obstacle_000_faces``, … each (f, 3) or (f, 2), of whole
 numbers, at least one; and ``pins``, (k, m) and float64, the points at which a vertex stays. Of the stages only one
 frame is in memory at a time (in Fortran order, one stage of bounded size), and memory is taken only for data that the
@@ -60,7 +60,7 @@ class Stage:
 
 
 def stages(path: Path | str) -> Iterator[Stage]:
-    """Yield the stages of a file, in order; frames of a stage can be read until the next one is asked for.
+    """Yield the stages of a file, in order; frames of a stage can be read until the next one is requested.
 
     A TrajectoryError if the file is none or is damaged, also while frames are read.
     """
@@ -71,7 +71,7 @@ def stages(path: Path | str) -> Iterator[Stage]:
                 yield Stage(array.name, components, _frames(array, sum(each.size for each in components)))
 
 
-def still_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
+def obstacle_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
     """The obstacles of a file: vertices, shape (k, 3), and indices of simplices, shape (f, 2 or 3), of each."""
     with _opened(path) as archive:
         found = sorted(name for name in archive.namelist() if name.startswith("obstacle_"))
@@ -81,7 +81,7 @@ def still_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
         return [_obstacle(archive, name) for name in names]
 
 
-def held_points(path: Path | str) -> FloatArray:
+def pinned_points(path: Path | str) -> FloatArray:
     """The places of the pins of a file, shape (k, m); (0, 0) if it has none. Raises as `stages` does."""
     with _opened(path) as archive:
         if "pins.npy" not in archive.namelist():
@@ -140,7 +140,7 @@ def _components(archive: zipfile.ZipFile, number: int) -> Components:
 
 
 def _frames(array: "_Array", vertices: int) -> Iterator[FloatArray]:
-    """The frames of a stage with so many vertices, read as long as its file is open."""
+    """The frames of a stage with a number of vertices, read while its file is open."""
     name, shape = array.name, array.shape
     if array.dtype != np.dtype("<f8") or len(shape) != 3:
         raise TrajectoryError(f"{name} is an array {shape} of {array.dtype}; it must be (k, n, m) of float64")

@@ -32,7 +32,7 @@ class MoebiusImages:
 
     def __init__(self, curve: Curve, lengths: FloatArray) -> None:
         self._curve, self._center = curve, _barycenter(curve)
-        # the unit sphere passes amidst the curve: poles far away and near the middle are about as far from (1, 0)
+        # the unit sphere passes through the curve: poles far away and in its middle are about as far from (1, 0)
         self._radius = float(np.sqrt(np.square(curve.vertices - self._center).sum(axis=1).mean()))
         self._splines = [periodic_spline(self._unit(points)) for points in curve.components]
         self._fractions = [np.cumsum(lengths[s]) / lengths[s].sum() for s in curve.mesh.slices]
@@ -159,7 +159,7 @@ def _least(images: MoebiusImages, dimension: int) -> list[FloatArray]:
 
 
 def _starts(dimension: int) -> Iterator[FloatArray]:
-    """The pole at infinity, amidst the curve, and on the unit sphere along the axes on both sides."""
+    """The pole at infinity, in the middle of the curve, and on the unit sphere along the axes on both sides."""
     units = np.eye(dimension + 1)
     yield from units[:2]
     for unit in units[1:]:

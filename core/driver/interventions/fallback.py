@@ -85,7 +85,7 @@ class CheckAccuracy(Intervention):
             energy = tighter
 
     def _errors(self, energy: HierarchicalMoebiusEnergy) -> SampledErrors:
-        """At the present curve; near pairs that the barrier stands for are exact."""
+        """At the present curve; near pairs, which the barrier replaces, are exact."""
         point = self.run.point
         energy = energy.leaving_out(replaced_pairs(point.curve))
         return SampledErrors.at(energy, point.curve, point.energy, point.gradient, point.gradient_norm)
