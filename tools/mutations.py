@@ -273,15 +273,15 @@ MUTANTS = (
     Mutant(
         "a verifier that forgets obstacles",
         "core/verify/check.py",
-        "_check_obstacles(heads, progress, progress.obstacles.doubtful(start, end, heads), first, last)",
-        "pass",
+        "progress.obstacles.doubtful(*way, heads, clearance)",
+        "()",
         f"{VERIFY}/test_obstacles.py::test_refuses_a_leg_through_an_obstacle",
     ),
     Mutant(
         "a verifier that forgets obstacles where the mesh changes",
         "core/verify/check.py",
-        "_check_obstacles(heads, progress, triangles, here, there)",
-        "pass",
+        "progress.obstacles.doubtful(*way, heads, clearance)",
+        "progress.obstacles.doubtful(*way, heads)",
         f"{VERIFY}/test_obstacles.py::test_rounding_of_inserted_vertices_is_checked_for_obstacles",
     ),
     Mutant(

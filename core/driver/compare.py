@@ -1,7 +1,7 @@
 """Run several methods from the same start and keep what each did: the data behind Figure 3 of [RS21]."""
 
 import time
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from ..arguments import check_number, checked
@@ -65,7 +65,7 @@ def compare(
     options: RelaxOptions,
     time_limit: float,
     stages: Collection[int] = (),
-) -> Iterator[History]:
+) -> Generator[History, None, None]:
     """Run each method from the same refined curve for a limited number of seconds of processor time.
 
     All methods are checked before the first one runs. The mesh ``auto`` is a fixed one here, so that steps are compared
