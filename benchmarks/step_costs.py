@@ -20,7 +20,7 @@ from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
-from mobius_flow.core.system.threads import BLAS
+from mobius_flow.core.threads import BLAS
 
 MAX_COMPARED = 3000  # vertices up to which the hierarchical solver is compared with the dense one
 ASYMPTOTIC = 2000  # vertices from which times are expected to follow a power law

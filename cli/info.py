@@ -5,12 +5,11 @@ import json
 from collections.abc import Iterator, Mapping
 
 from ..core import CurveError
-from ..core.checks import check_known
+from ..core.arguments import check_known
 from ..core.energies import ENERGIES
 from ..core.errors import counted
-from ..core.info import Info, info
+from ..core.info import Info, info, measure
 from ..core.knots import KnotType
-from ..core.measure import measure
 from . import curves
 from .streams import emit
 

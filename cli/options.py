@@ -13,7 +13,7 @@ from ..core import RelaxOptions, Task, read_obstacle
 from ..core.curve.io import CurveFile
 from ..core.errors import OptionError
 from ..core.option import Option, declared
-from ..core.system.threads import THREADS
+from ..core.threads import THREADS
 
 _OFFERED, _SHORT = "offered", "shorthands"  # names of the options, and the shorthands that are given, in a namespace
 

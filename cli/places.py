@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ..core import MobiusFlowError
 from ..core.errors import OutputError
-from ..core.system.files import atomic_write, status_of
+from ..core.files import atomic_write, status_of
 from .curves import DEVICE, OUTPUT, STREAM
 
 Identity = tuple[int | str, ...]

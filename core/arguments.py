@@ -1,8 +1,10 @@
-"""Arguments held against their annotations, so that a wrong one is one clear sentence wherever it is given."""
+"""Arguments and fields held against annotations and bounds: a wrong one is one clear sentence wherever it is given."""
 
+import math
 import os
 import types
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Collection, Generator, Mapping, Sequence
+from dataclasses import MISSING, field, fields, is_dataclass
 from functools import cache, wraps
 from inspect import signature
 from numbers import Integral, Real
@@ -10,7 +12,7 @@ from typing import Any, ParamSpec, TypeVar, Union, get_args, get_origin, get_typ
 
 import numpy as np
 
-from .errors import MobiusFlowError, shown
+from .errors import MobiusFlowError, OptionError, choice, shown
 
 _Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
@@ -36,7 +38,7 @@ _WORDS: dict[Any, str] = {
 def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
     """Let a function raise a MobiusFlowError that names the argument where one is not of its annotated type.
 
-    What arrays hold, and protocols that are not for run time, are not looked at.
+    Contents of arrays, and protocols that are not for run time, are not checked.
     """
     parameters = signature(function)
 
@@ -56,9 +58,37 @@ def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Re
 
 
 def checked_fields(owner: _Class) -> _Class:
-    """Let a class do so when it is made."""
-    owner.__init__ = checked(owner.__init__)  # type: ignore[misc]
+    """Let a class do so when it is made; its fields that are a `number` are held against their bounds too."""
+    given = checked(owner.__init__)  # type: ignore[misc]
+
+    @wraps(given)
+    def made(self: Any, *args: Any, **keywords: Any) -> None:
+        given(self, *args, **keywords)
+        for each in fields(self) if is_dataclass(self) else ():
+            if "bounds" in each.metadata:
+                check_number(each.name, getattr(self, each.name), *each.metadata["bounds"])
+
+    owner.__init__ = made  # type: ignore[misc]
     return owner
+
+
+def number(default: Any = MISSING, above: float = 0.0, most: float = math.inf) -> Any:
+    """A field for a finite number in an interval, whose lower end is left out: an OptionError names what is not."""
+    return field(default=default, metadata={"bounds": (above, most)})
+
+
+def check_number(name: str, value: float, low: float, high: float) -> None:
+    """Raise unless a number is finite and in an interval, whose lower end is left out."""
+    if not (math.isfinite(value) and low < value <= high):
+        allowed = f"above {low:g}" if math.isinf(high) else f"above {low:g} and at most {high:g}"
+        raise OptionError(f"{name} is {value}; it must be a finite number {allowed}")
+
+
+def check_known(name: str, value: str, known: Collection[str]) -> None:
+    """Raise unless a value is a name in a registry, or one of a few words."""
+    if value not in known:
+        found = f"{name} {value!r:.60} is unknown" if isinstance(known, Mapping) else f"{name} is {value!r:.60}"
+        raise OptionError(f"{found}; {choice(value, known)}")
 
 
 def is_list(value: object) -> bool:
@@ -74,7 +104,7 @@ def _hints(function: Callable[..., object]) -> dict[str, Any]:
 
 
 def _spelt_out(hint: Any) -> Any:
-    """What an alias stands for, such as NDArray from NumPy 2.5 on."""
+    """Resolve an alias, such as NDArray from NumPy 2.5 on."""
     return getattr(get_origin(hint) or hint, "__value__", hint)
 
 
@@ -102,7 +132,6 @@ def _is_of_fixed_length(hint: Any) -> bool:
 
 
 def _at_run_time(kind: Any) -> bool:
-    """Whether it is a protocol whose members can be looked for."""
     return bool(getattr(kind, "_is_runtime_protocol", False))
 
 

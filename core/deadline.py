@@ -1,8 +1,15 @@
-"""Time limits, which are looked at wherever a step may take long, so that a long step cannot outlast them by much."""
+"""Work that ends early: at a time limit, which is checked wherever a step may take long, or at a signal."""
 
+import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from contextvars import ContextVar, Token
+from types import FrameType
+from typing import NoReturn
+
+_SIGNALS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 class TimeIsUp(Exception):  # noqa: N818 (no error: what was reached is kept)
@@ -14,18 +21,11 @@ class TimeIsUp(Exception):  # noqa: N818 (no error: what was reached is kept)
 
 
 class TimeLimit:
-    """A stopwatch that runs in ``with`` blocks, and whose limit `check_time` observes there.
+    """A stopwatch that runs in ``with`` blocks, and whose limit in seconds `check_time` observes there.
 
-    Like NumPy's error state it belongs to the context: those who look at it need not be handed it.
-
-    Parameters
-    ----------
-    seconds
-        What may be used up.
-    clock
-        What measures them: `time.perf_counter`, or `time.process_time` where a busy machine is not to decide.
-    used
-        Seconds that are used up to begin with; as an attribute, those of all blocks that were left too.
+    Like NumPy's error state it belongs to the context: those who look at it need not be handed it.  The clock is
+    `time.perf_counter`, or `time.process_time` where a busy machine is not to decide; ``used`` are the seconds used so
+    far.
     """
 
     def __init__(self, seconds: float, clock: Callable[[], float] = time.perf_counter, used: float = 0.0) -> None:
@@ -35,7 +35,6 @@ class TimeLimit:
 
     @property
     def is_reached(self) -> bool:
-        """Whether, within a block, the time is up."""
         return self.used + self._clock() - self._entered > self.seconds
 
     def __enter__(self) -> "TimeLimit":
@@ -56,3 +55,24 @@ def check_time() -> None:
     for limit in _LIMITS.get():
         if limit.is_reached:
             raise TimeIsUp(limit)
+
+
+@contextmanager
+def termination_raises(error: BaseException) -> Iterator[None]:
+    """Let SIGTERM and SIGHUP, which by default end the process, raise an exception in a block, so that it can tidy up.
+
+    Someone else's handlers are left alone, and so are threads other than the main one: they get no signals.
+    """
+    here = threading.current_thread() is threading.main_thread()
+    ours = [number for number in _SIGNALS if here and signal.getsignal(number) is signal.SIG_DFL]
+
+    def leave(_number: int, _frame: FrameType | None) -> NoReturn:
+        raise error
+
+    for number in ours:
+        signal.signal(number, leave)
+    try:
+        yield
+    finally:
+        for number in ours:
+            signal.signal(number, signal.SIG_DFL)

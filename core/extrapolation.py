@@ -19,13 +19,7 @@ TOLERANCE = 1e-4  # of the runs at most: what they leave open must be small agai
 @checked_fields
 @dataclass(frozen=True)
 class Extrapolation:
-    """The Möbius energy's limit for shorter and shorter edges, from polygons of edge lengths h, h/2 and h/4.
-
-    Attributes
-    ----------
-    energies
-        E(h), E(h/2) and E(h/4).
-    """
+    """The Möbius energy's limit for shorter and shorter edges, from E(h), E(h/2) and E(h/4) for edge lengths h."""
 
     energies: tuple[float, float, float]
 
@@ -69,16 +63,10 @@ class Extrapolation:
 
 @checked
 def extrapolated(curve: Curve | Task, options: RelaxOptions) -> Extrapolation | None:
-    """Relax a relaxed curve on with every edge halved, and halved again; None if one of the runs does not converge.
+    """Relax a relaxed curve, in the user's units, on with every edge halved, and halved again; None if a run stalls.
 
-    There are twice and four times as many vertices, and few iterations.
-
-    Parameters
-    ----------
-    curve
-        A converged curve, in the user's units, or a task with its pins and obstacles.
-    options
-        How it was relaxed; tolerances above `TOLERANCE` are taken for that.
+    There are twice and four times as many vertices, and few iterations. The options are those it was relaxed with;
+    tolerances above `TOLERANCE` are taken for that.
     """
     task, energies = Task.of(curve), []
     for pieces in (1, 2, 2):

@@ -1,9 +1,9 @@
-"""What there is to say about a curve as it stands: what ``mobius-flow info`` prints."""
+"""What there is to say about a curve as it stands: what ``mobius-flow energy`` and ``mobius-flow info`` print."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from .arguments import checked
+from .arguments import check_known, checked
 from .collision import check_embedded, check_gap, minimal_gap
 from .collision.gap import thickness
 from .curve import Curve
@@ -13,14 +13,37 @@ from .driver import RelaxOptions
 from .driver.interventions.saddle import stability
 from .driver.prepare import start_problem
 from .driver.run import gradient_bound
+from .energies import ENERGIES as KNOWN
+from .energies import MoebiusEnergy
+from .errors import CurveError
+from .hierarchy import moebius_energy
 from .knots import KnotType, knot_type
-from .measure import MAX_VERTICES as PAIRS_UP_TO
-from .measure import measure
-from .system.threads import BLAS
-from .units import check_units
+from .threads import BLAS
+from .units import centred, check_units
 
 ENERGIES = ("moebius", "edge", "vertex")
+PAIRS_UP_TO = 50_000  # vertices, where all pairs of edges are summed: a minute or so, growing with the square
 REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
+
+
+@BLAS.bounded()
+@checked
+def measure(curve: Curve, energy: str = "moebius") -> float:
+    """The energy of a curve, in the user's units.
+
+    A CurveError if the curve has too many vertices, touches itself, or has strands too near, or units too large or
+    small, to compute with; an OptionError if the energy is unknown.
+    """
+    check_known("energy", energy, KNOWN)
+    wanted = KNOWN[energy]
+    check_units(curve)
+    check_embedded(curve)
+    check_gap(curve)
+    if isinstance(wanted, MoebiusEnergy):
+        return moebius_energy(centred(curve))[0]
+    if len(curve) > PAIRS_UP_TO:
+        raise CurveError(f"the curve has {len(curve)} vertices; {wanted.name} is for at most {PAIRS_UP_TO}")
+    return wanted.value(centred(curve))
 
 
 @dataclass(frozen=True)
@@ -61,7 +84,7 @@ class Rest:
 
 @dataclass(frozen=True)
 class Info:
-    """Measures of a curve, in its own units; None stands for what the number of vertices or the dimension forbids.
+    """Measures of a curve, in its own units; None where the number of vertices or the dimension forbids it.
 
     Attributes
     ----------
@@ -100,12 +123,9 @@ class Info:
 @BLAS.bounded()
 @checked
 def info(curve: Curve) -> Info:
-    """Measure a curve and tell its type.
+    """Measure a curve and identify its type.
 
-    Raises
-    ------
-    CurveError
-        If the curve touches itself, or has strands too near, or units too large or small, to compute with.
+    A CurveError if the curve touches itself, or has strands too near, or units too large or small, to compute with.
     """
     check_units(curve)
     check_embedded(curve)

@@ -94,7 +94,6 @@ class Obstacle:
 
     @property
     def _are_segments(self) -> BoolArray:
-        """Whether each simplex has fewer than three vertices."""
         i, j, k = self.faces[:, [0, 1, -1]].T
         return np.asarray((i == j) | (j == k) | (k == i))
 

@@ -20,21 +20,10 @@ _MAX_CUTTING = 1 << 24  # squares of the faces' numbers of corners, together: se
 
 @checked
 def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
-    """Read an obstacle, which gets the file's name.
+    """Read an obstacle, which gets the file's name; coordinates are in the user's units.
 
     In an ``.obj`` file faces ``f`` count, polygons cut into triangles, and polylines ``l``, open ones too; in any other
-    curve file its polygons.
-
-    Parameters
-    ----------
-    path
-        The file; coordinates are in the user's units.
-
-    Raises
-    ------
-    CurveFileError
-        If the file cannot be read, or no obstacle can be made of it; the message names the file, the line where there
-        is one, and the reason.
+    curve file its polygons. A CurveFileError names the file, the line where there is one, and the reason.
     """
     path = Path(path)
     if path.exists() and not (path.is_file() or path.is_dir()):
@@ -73,7 +62,6 @@ def _check_corners(source: Source, faces: Sequence[Face]) -> None:
 
 
 def _triangles(source: Source, content: Content, face: Face) -> list[Triangle]:
-    """The triangles of a face as indices into the file's vertices."""
     if len(face.words) < 3:
         raise source.error("a face (f) needs at least three vertices", face.line)
     corners = [index_of(source, word, face.line, face.known) for word in face.words]

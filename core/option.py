@@ -13,8 +13,7 @@ from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from .arguments import is_list
-from .checks import check_known, check_number
+from .arguments import check_known, check_number, is_list
 from .errors import OptionError, shown
 
 _Class = TypeVar("_Class", bound=type)
@@ -30,61 +29,34 @@ _KINDS: Mapping[type, tuple[tuple[type, ...], str]] = MappingProxyType(  # what 
 
 @dataclass(frozen=True, kw_only=True)
 class Option:
-    """What there is to say of an option.
+    """What there is to say of an option."""
 
-    Attributes
-    ----------
-    name, kind, default
-        Name, type and default of the field; where the default is None, None is allowed.
-    label
-        Its title in a window.
-    help
-        What it does: a phrase with neither a capital at its start nor a full stop.
-    automatic
-        What None means, where it is allowed.
-    low, high
-        Bounds of a number; a float is to be finite, and above its lower one.
-    choices
-        The names it takes: a registry, or a few words.
-    objects
-        What else than a name a script may give: what it is called, and whether a value is one.
-    read
-        Which items of a tuple a word of the command line stands for, where it may be given several times.
-    metavar
-        What stands for its value in the command line's help.
-    group
-        Whom it is for: everybody, those who know the mathematics, or scripts, in which case no panel shows it.
-    keyframes
-        Whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
-        leave out vertices on the way is among Blender's settings.
-    shorthands
-        Words of the command line, each with the choice that it stands for.
-    repeated
-        Whether its value is a tuple, whose items are checked.
-    flag
-        What it is called on the command line, if not by its name.
-    example
-        A tuple that is allowed, for messages.
-    """
-
+    # name, kind, default: name, type and default of the field; where the default is None, None is allowed
     name: str
     kind: type
     default: Any
-    label: str
-    help: str
-    automatic: str = ""
+    label: str  # its title in a window
+    help: str  # what it does: a phrase with neither a capital at its start nor a full stop
+    automatic: str = ""  # what None means, where it is allowed
+    # low, high: bounds of a number; a float is to be finite, and above its lower one
     low: float = -math.inf
     high: float = math.inf
-    choices: Collection[str] | None = field(default=None, repr=False)
+    choices: Collection[str] | None = field(default=None, repr=False)  # the names it takes: a registry, or a few words
+    # what else than a name a script may give: what it is called, and whether a value is one
     objects: tuple[str, Callable[[object], bool]] | None = field(default=None, repr=False)
+    # the items of a tuple that a word of the command line gives, where it may be repeated
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
-    metavar: str = "NAME"
+    metavar: str = "NAME"  # placeholder of its value in the command line's help
+    # whom it is for: everybody, those who know the mathematics, or scripts, in which case no panel shows it
     group: Literal["basic", "advanced", "scripts"] = "basic"
+    # whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
+    # leave out vertices on the way is among Blender's settings
     keyframes: bool = True
+    # words of the command line, each with the choice it selects
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
-    repeated: bool = False
-    flag: str = ""
-    example: str = ""
+    repeated: bool = False  # whether its value is a tuple, whose items are checked
+    flag: str = ""  # what it is called on the command line, if not by its name
+    example: str = ""  # A tuple that is allowed, for messages
 
     @property
     def is_setting(self) -> bool:
@@ -136,7 +108,6 @@ def option(default: Any, label: str, help: str, **more: Any) -> Any:
 
 
 def declared(owner: type) -> list[Option]:
-    """The options that are the fields of a dataclass, in order."""
     hints = get_type_hints(owner)
     return [Option(name=f.name, default=f.default, **_type(hints[f.name]), **f.metadata) for f in fields(owner)]
 

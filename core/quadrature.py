@@ -24,17 +24,13 @@ def gauss_legendre(points: int) -> tuple[FloatArray, FloatArray]:
 class Rule:
     """A quadrature rule on [0, 1].
 
-    Parameters
-    ----------
-    points, weights
-        t_i in [0, 1] and ω_i, as many of one as of the other; the weights add up to 1.
-
     Raises
     ------
     OptionError
         If they are anything else.
     """
 
+    # points, weights: t_i in [0, 1] and ω_i, as many of one as of the other; the weights add up to 1
     points: tuple[float, ...]
     weights: tuple[float, ...]
 

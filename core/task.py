@@ -79,10 +79,7 @@ class Task:
     def refined(self, vertices: int | None = None) -> "Task":
         """The same task with vertices inserted on the edges, as `refine` does, and all that is held among its pins.
 
-        Raises
-        ------
-        CurveError
-            If the curve touches itself or an obstacle, is degenerate or has strands too near to compute with.
+        A CurveError if the curve touches itself or an obstacle, is degenerate or has strands too near to compute with.
         """
         check_units(self.curve)
         check_embedded(self.curve)
@@ -101,11 +98,8 @@ class Task:
 def check_refined(curve: Curve, refined: Curve, obstacles: Sequence[Obstacle]) -> None:
     """Refuse a refined curve that is not what the curve was, or that cannot be computed with.
 
-    Raises
-    ------
-    CurveError
-        If strands are too near to compute with, or the new vertices, rounded to doubles, might not be on their edges
-        for all that matters.
+    A CurveError if strands are too near to compute with, or the new vertices, rounded to doubles, might not be on their
+    edges for all that matters.
     """
     if len(refined) > len(curve) and not survives_rounding(refined, obstacles):
         digits = (

@@ -16,7 +16,7 @@ from .errors import OptionError
 from .types import FloatArray
 
 WINDOW = 5  # consecutive steps that make one fit
-ROUNDING = 1e-15  # remainders below this part of the function are not looked at
+ROUNDING = 1e-15  # remainders below this part of the function are ignored
 
 
 def taylor_slope(
@@ -25,32 +25,14 @@ def taylor_slope(
     largest: float = 0.1,
     halvings: int = 20,
 ) -> float:
-    """Fit the order at which the Taylor remainder of a function of one real variable vanishes at 0.
+    """Fit the order at which the Taylor remainder of a function f of a real variable, scalar or array, vanishes at 0.
 
-    The remainder |f(t) − Σ terms[k] tᵏ/k!| is taken at t = largest/2ᵏ; of all windows of five consecutive steps
-    the straightest (on logarithmic axes) gives the slope, which leaves out steps that are too large for the
-    asymptotics and those where rounding rules.
+    The remainder |f(t) − Σ terms[k] tᵏ/k!| is taken at t = largest/2ᵏ, with ``terms`` f(0), f'(0), f''(0), ... as far
+    as they are to be checked; of all windows of five consecutive steps the straightest (on logarithmic axes) gives the
+    slope, which leaves out steps that are too large for the asymptotics and those where rounding rules.
 
-    Parameters
-    ----------
-    function
-        f, scalar or array valued.
-    terms
-        f(0), f'(0), f''(0), ... as far as they are to be checked, each of the shape of f's values.
-    largest
-        The largest step.
-    halvings
-        How often it is halved; at least 4.
-
-    Returns
-    -------
-    float
-        The slope; ``len(terms)`` if the terms are right, inf if the remainder vanishes.
-
-    Raises
-    ------
-    OptionError
-        If there are too few steps for a fit, or the largest is not positive.
+    Returns ``len(terms)``, within the error of the fit, if the terms are right, and inf if the remainder vanishes. An
+    OptionError if there are fewer than 4 halvings, or the largest step is not positive.
     """
     if halvings < WINDOW - 1:
         raise OptionError(f"halvings is {halvings}; it must be {WINDOW - 1} or more")
@@ -99,7 +81,6 @@ def _remainder(function: Callable[[float], npt.ArrayLike], terms: Sequence[npt.A
 
 
 def _line(x: FloatArray, y: FloatArray) -> tuple[float, float]:
-    """Residual and slope of the least-squares line."""
     x, y = x - x.mean(), y - y.mean()
     slope = float(x @ y / (x @ x))
     return float(np.linalg.norm(y - slope * x)), slope

@@ -13,8 +13,7 @@ import numpy.typing as npt
 from mobius_flow.core import Mesh, Obstacle
 from mobius_flow.core.collision import Limit, free_motion
 from mobius_flow.core.verify.polynomials import Root
-from mobius_flow.core.verify.segments import meetings
-from mobius_flow.core.verify.triangles import pierced_at
+from mobius_flow.core.verify.segments import meetings, pierced_at
 
 Array = npt.NDArray[np.float64]
 Motion = tuple[Array, Array]

@@ -17,7 +17,7 @@ CLUSTER = {"dask", "distributed", "pyarrow"}
 # from the ground up; a room reaches none of a higher floor, nor of its own, by any chain of imports
 FLOORS = (
     {"core.types", "core.errors"},
-    {"core.verify", "core.system", "core.quadrature"},
+    {"core.verify", "core.files", "core.threads", "core.quadrature"},
     {"core.curve"},
     {"core.energies", "core.collision", "core.constraints", "core.diagrams"},
     {"core.saddle", "core.knots"},

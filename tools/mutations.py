@@ -84,22 +84,22 @@ MUTANTS = (
     Mutant(
         "the first trial is the whole way to contact",
         "core/descent/searches/trials.py",
-        "collision_fraction: float = 2.0 / 3.0",
-        "collision_fraction: float = 1.0",
+        "collision_fraction: float = number(2.0 / 3.0",
+        "collision_fraction: float = number(1.0",
         f"{FIRST_TRIAL}::test_the_first_trial_is_two_thirds_of_the_first_contact",
     ),
     Mutant(
         "the first trial is a tenth of the way",
         "core/descent/searches/trials.py",
-        "collision_fraction: float = 2.0 / 3.0",
-        "collision_fraction: float = 0.1",
+        "collision_fraction: float = number(2.0 / 3.0",
+        "collision_fraction: float = number(0.1",
         f"{FIRST_TRIAL}::test_the_first_trial_is_two_thirds_of_the_first_contact",
     ),
     Mutant(
         "Armijo asks for next to nothing",
         "core/descent/searches/armijo.py",
-        "decrease: float = 0.5",
-        "decrease: float = 1e-4",
+        "decrease: float = number(0.5",
+        "decrease: float = number(1e-4",
         f"{CONDITIONS}::test_armijo_asks_for_half_of_the_predicted_decrease",
     ),
     Mutant(
@@ -273,15 +273,15 @@ MUTANTS = (
     Mutant(
         "a verifier that forgets obstacles",
         "core/verify/check.py",
-        "_check_obstacles(heads, progress, progress.obstacles.doubtful(start, end, heads), first, last)",
-        "pass",
+        "progress.obstacles.doubtful(*way, heads, clearance)",
+        "()",
         f"{VERIFY}/test_obstacles.py::test_refuses_a_leg_through_an_obstacle",
     ),
     Mutant(
         "a verifier that forgets obstacles where the mesh changes",
         "core/verify/check.py",
-        "_check_obstacles(heads, progress, triangles, here, there)",
-        "pass",
+        "progress.obstacles.doubtful(*way, heads, clearance)",
+        "progress.obstacles.doubtful(*way, heads)",
         f"{VERIFY}/test_obstacles.py::test_rounding_of_inserted_vertices_is_checked_for_obstacles",
     ),
     Mutant(

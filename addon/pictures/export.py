@@ -15,9 +15,9 @@ import numpy as np
 
 from ...core import Curve, Iterate, Mesh, MobiusFlowError
 from ...core.collision import is_free
+from ...core.deadline import termination_raises
 from ...core.errors import OutputError
-from ...core.system.files import atomic_write
-from ...core.system.signals import termination_raises
+from ...core.files import atomic_write
 from ..engine.motion import Key, Keys
 from . import film, rendering
 from .movie import Progress, render_movie

@@ -14,8 +14,8 @@ from ...core.curve.io import FORMATS, CurveFile, load_curve
 from ...core.curve.writhe import writhe_and_crossings
 from ...core.errors import OutputError
 from ...core.extrapolation import extrapolated
+from ...core.info import PAIRS_UP_TO
 from ...core.knots import knot, knot_type, scramble
-from ...core.measure import MAX_VERTICES as PAIRS_UP_TO
 from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves

@@ -13,7 +13,7 @@ from typing import get_args, get_type_hints
 from ... import __version__
 from ...core import MobiusFlowError, RelaxOptions
 from ...core.errors import OutputError, counted
-from ...core.system.files import atomic_write
+from ...core.files import atomic_write
 from ..streams import one_line
 from .job import CSV, PARQUET, Job, as_text, sha256_of
 

@@ -52,7 +52,7 @@ class Block(Protocol):
         """The same for a curve of another place, shape, mesh or units, with the targets that it has there."""
 
     def scaled(self, factor: float) -> "Block":
-        """With the targets of a curve that is so many times as large."""
+        """With the targets of the curve scaled by a factor."""
 
 
 class BlockDerivative(Protocol):
@@ -78,24 +78,12 @@ BLOCKS: tuple[Callable[[Curve, Pins], Block], ...] = (Barycenters.of,)
 
 @dataclass(frozen=True, eq=False)
 class Constraints:
-    """Targets of the constraints.
+    """Targets of the constraints."""
 
-    Parameters
-    ----------
-    lengths
-        Target lengths ℓ⁰, positive, shape (edges,).
-    blocks
-        The rows after those of the lengths.
-    pins
-        Vertices that stay where they are.
-    grown
-        How many times as long the targets are as they were at first, but for edges between two pins.
-    """
-
-    lengths: FloatArray
-    blocks: tuple[Block, ...]
-    pins: Pins = NO_PINS
-    grown: float = 1.0
+    lengths: FloatArray  # target lengths ℓ⁰, positive, shape (edges,)
+    blocks: tuple[Block, ...]  # the rows after those of the lengths
+    pins: Pins = NO_PINS  # vertices that stay where they are
+    grown: float = 1.0  # how many times as long the targets are as they were at first, but for edges between two pins
 
     @classmethod
     def of(cls, curve: Curve, pins: Pins = NO_PINS, blocks: Sequence[Block] | None = None) -> "Constraints":
@@ -104,7 +92,6 @@ class Constraints:
         return cls(curve.edge_lengths, tuple(own), pins)
 
     def block(self, kind: type[_Block]) -> _Block:
-        """The block of a kind."""
         return next(block for block in self.blocks if isinstance(block, kind))
 
     def replacing(self, block: Block) -> "Constraints":
@@ -119,7 +106,6 @@ class Constraints:
         return replace(self, lengths=lengths, blocks=blocks, grown=factor * self.grown)
 
     def derivative(self, curve: Curve) -> "ConstraintDerivative":
-        """DΦ at a curve."""
         blocks = tuple(block.derivative(curve) for block in self.blocks)
         return ConstraintDerivative.of(curve, self.pins.vertices, free_edges(curve.mesh, self.pins.vertices), blocks)
 
@@ -140,33 +126,18 @@ class Constraints:
         return zip(self.blocks, _split(rows, self.blocks), strict=True)
 
     def length_error(self, curve: Curve) -> float:
-        """max |log ℓ/ℓ⁰| over the edges."""
         return float(np.max(np.abs(np.log(curve.edge_lengths / self.lengths))))
 
 
 @dataclass(frozen=True, eq=False)
 class ConstraintDerivative:
-    """DΦ(P) as an operator.
+    """DΦ(P) as an operator."""
 
-    Attributes
-    ----------
-    mesh
-        Connectivity.
-    tangents
-        τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (edges, m).
-    edges
-        Those whose lengths are rows, ascending; shape (r,).
-    pins
-        Vertices at which u is 0; shape (k,).
-    blocks
-        The derivatives of the blocks.
-    """
-
-    mesh: Mesh
-    tangents: FloatArray
-    edges: IntArray
-    pins: IntArray
-    blocks: tuple[BlockDerivative, ...] = ()
+    mesh: Mesh  # connectivity
+    tangents: FloatArray  # τ_I/ℓ_I, so that the length rows are ⟨τ_I/ℓ_I, ΔU_I⟩; shape (edges, m)
+    edges: IntArray  # those whose lengths are rows, ascending; shape (r,)
+    pins: IntArray  # vertices at which u is 0; shape (k,)
+    blocks: tuple[BlockDerivative, ...] = ()  # the derivatives of the blocks
 
     @classmethod
     def of(
@@ -182,12 +153,10 @@ class ConstraintDerivative:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(n, m), the shape of u."""
         return self.mesh.size, self.tangents.shape[1]
 
     @property
     def count(self) -> int:
-        """Number of rows, r + k."""
         return len(self.edges) + sum(block.rows for block in self.blocks)
 
     def border(self) -> Iterator[FloatArray]:
@@ -234,7 +203,6 @@ class ConstraintDerivative:
         return tension
 
     def of_blocks(self, multipliers: FloatArray) -> Iterator[tuple[BlockDerivative, FloatArray]]:
-        """The blocks, each with its own of all multipliers."""
         return zip(self.blocks, _split(multipliers[len(self.edges) :], self.blocks), strict=True)
 
 

@@ -16,21 +16,11 @@ Parts = tuple[int, ...]
 
 @dataclass(frozen=True, eq=False)
 class Barycenters:
-    """Σ ℓ_I m_I = target, part by part; parts of a link that are far from each other have one each.
+    """Σ ℓ_I m_I = target, part by part; parts of a link that are far from each other have one each."""
 
-    Attributes
-    ----------
-    parts
-        For each component the number of its part, from 0.
-    loose
-        The p parts without pins, ascending.
-    target
-        In the order of ``loose``, coordinate by coordinate; shape (p·m,).
-    """
-
-    parts: Parts
-    loose: Parts
-    target: FloatArray
+    parts: Parts  # for each component the number of its part, from 0
+    loose: Parts  # the p parts without pins, ascending
+    target: FloatArray  # in the order of ``loose``, coordinate by coordinate; shape (p·m,)
 
     @classmethod
     def of(cls, curve: Curve, pins: Pins = NO_PINS, parts: Parts | None = None) -> "Barycenters":
@@ -41,24 +31,21 @@ class Barycenters:
 
     @property
     def rows(self) -> int:
-        """p·m."""
         return len(self.target)
 
     def on(self, curve: Curve) -> "Barycenters":
-        """The same parts, held where they are in a curve."""
         moments = _moments(curve)
         each = [np.sum(moments * own, axis=1) for own in self.memberships(curve.mesh)]
         return replace(self, target=np.concatenate([np.empty(0), *each]))
 
     def scaled(self, factor: float) -> "Barycenters":
-        """Barycenters stay in their places relative to a curve that is so many times as large.
+        """Barycenters stay in place relative to the curve scaled by a factor.
 
         Σ ℓ_I m_I is a length times a place.
         """
         return replace(self, target=factor * self.target)
 
     def residual(self, curve: Curve) -> FloatArray:
-        """Σ ℓ_I m_I less the target."""
         return self.on(curve).target - self.target
 
     def error(self, lengths: FloatArray, mesh: Mesh, residual: FloatArray) -> float:
@@ -82,7 +69,6 @@ class Barycenters:
         return u
 
     def derivative(self, curve: Curve) -> "BarycenterDerivative":
-        """The rows' derivative at a curve."""
         ell, mesh, part = curve.edge_lengths, curve.mesh, np.asarray(self.parts)
         places = (part[mesh.component], np.arange(mesh.size))
         membership = sp.csr_array((np.ones(mesh.size), places), shape=(part.max() + 1, mesh.size))
@@ -100,26 +86,15 @@ class Barycenters:
 
 @dataclass(frozen=True, eq=False)
 class BarycenterDerivative:
-    """Barycenters move with vertices, and as edges become longer.
-
-    Attributes
-    ----------
-    masses
-        (ℓ_I + ℓ_{I−1})/2 at each vertex; shape (n,).
-    moments
-        ℓ_I m_I; shape (edges, m).
-    membership
-        Which vertices are in which of p parts, as 0 and 1; sparse, shape (p, n).
-    """
+    """Barycenters move with vertices, and as edges become longer."""
 
     mesh: Mesh
-    masses: FloatArray
-    moments: FloatArray
-    membership: sp.csr_array
+    masses: FloatArray  # (ℓ_I + ℓ_{I−1})/2 at each vertex; shape (n,)
+    moments: FloatArray  # ℓ_I m_I; shape (edges, m)
+    membership: sp.csr_array  # which vertices are in which of p parts, as 0 and 1; sparse, shape (p, n)
 
     @property
     def rows(self) -> int:
-        """p·m."""
         return int(self.membership.shape[0]) * self.moments.shape[1]
 
     def apply(self, u: FloatArray, stretch: FloatArray) -> FloatArray:
@@ -133,7 +108,6 @@ class BarycenterDerivative:
         return np.einsum("ij,ij->i", self.moments, pull[self.mesh.tails]), self.masses[:, None] * pull
 
     def curvature(self, multipliers: FloatArray, v: FloatArray) -> FloatArray:
-        """At fixed lengths barycenters are linear: 0."""
         return np.zeros_like(v)
 
     @cached_property

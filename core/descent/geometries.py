@@ -5,7 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..checks import check_fields
+from ..arguments import checked_fields, number
 from ..constraints import ConstraintDerivative
 from ..curve import Curve
 from ..curve.pins import free_edges
@@ -45,45 +45,31 @@ class Geometry(Protocol):
         """The same with another weight α of length errors; an OptionError if there is none."""
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Constrained:
-    """The manifold {Φ = 0}, to which (42) of [RS21] leads back after a step.
+    """The manifold {Φ = 0}, to which (42) of [RS21] leads back after a step."""
 
-    Parameters
-    ----------
-    tolerance
-        Of lengths, a relative error, and of barycenters: far below any gap that can be proved.
-    max_iterations
-        Of the modified Newton method (42), and of Newton's for what it leaves over.
-    small
-        Change of an edge vector, relative to its length, up to which `TangentSpace.restoration` is as good as the
-        shortest way back in the metric, and far cheaper.  Larger corrections should know where other strands are, not
-        turn edges that are much shorter than others, and not cost the energy the step has gained.
-    contraction
-        Least rate of both; where it is slower, a shorter step is cheaper than more iterations.
-    """
-
-    tolerance: float = 1e-11
-    max_iterations: int = 15
-    small: float = 1e-3
-    contraction: float = 0.6
+    tolerance: float = number(
+        1e-11, most=1
+    )  # of lengths, a relative error, and of barycenters: far below any gap that can be proved
+    max_iterations: int = number(15)  # of the modified Newton method (42), and of Newton's for what it leaves over
+    # change of an edge vector, relative to its length, up to which `TangentSpace.restoration` is as good as the
+    # shortest way back in the metric, and far cheaper. Larger corrections should know where other strands are, not
+    # turn edges that are much shorter than others, and not cost the energy the step has gained
+    small: float = number(1e-3)
+    contraction: float = number(
+        0.6, most=1
+    )  # least rate of both; where it is slower, a shorter step is cheaper than more iterations
     prescribes = True
 
-    def __post_init__(self) -> None:
-        check_fields(
-            self, tolerance=(0.0, 1.0), max_iterations=(0, np.inf), small=(0.0, np.inf), contraction=(0.0, 1.0)
-        )
-
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
-        """The objective alone."""
         return problem.objective.value_and_derivative(curve)
 
     def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
-        """ker DΦ."""
         return inner.tangent_space(problem.constraints.derivative(curve))
 
     def residual(self, problem: Problem, curve: Curve) -> FloatArray:
-        """Φ."""
         return problem.constraints.residual(curve)
 
     def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
@@ -113,11 +99,9 @@ class Constrained:
         return None
 
     def transport(self, point: Point, u: FloatArray) -> FloatArray:
-        """By orthogonal projection."""
         return point.tangent_space.project(u)
 
     def weighted(self, penalty: float) -> "Constrained":
-        """There is no penalty."""
         raise OptionError(f"penalty is {penalty}; the method keeps lengths and has no penalty")
 
 
@@ -127,31 +111,18 @@ def _relative_change(curve: Curve, u: FloatArray) -> float:
     return float(np.max(np.linalg.norm(change, axis=1) / curve.edge_lengths))
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Penalised:
     """All polygons that are where their pins are; lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)², as in Section 6.4 of [RS21].
 
     The metric is J + α DΦᵀ I_{L²} DΦ, or J alone where footnote 8 leaves the extension out.
-
-    Parameters
-    ----------
-    penalty
-        α.
-
-    Raises
-    ------
-    OptionError
-        If α is not a finite positive number.
     """
 
-    penalty: float = 1000.0
+    penalty: float = number(1000.0)  # α
     prescribes = False
 
-    def __post_init__(self) -> None:
-        check_fields(self, penalty=(0.0, np.inf))
-
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
-        """E_α and its derivative."""
         energy, derivative = problem.objective.value_and_derivative(curve)
         targets = problem.constraints.lengths
         stretch = np.log(curve.edge_lengths / targets)
@@ -179,5 +150,4 @@ class Penalised:
         return u
 
     def weighted(self, penalty: float) -> "Penalised":
-        """The same with another α."""
         return replace(self, penalty=penalty)

@@ -10,11 +10,10 @@ from ..types import FloatArray
 from .problem import Point
 
 LinearMap = Callable[[FloatArray], FloatArray]
-ASSEMBLED_SIZE = 3000  # up to so many unknowns one assembled matrix beats products that go through all pairs
+ASSEMBLED_SIZE = 3000  # unknowns up to which one assembled matrix beats products that go through all pairs
 
 
 def energy_hessian(point: Point) -> LinearMap:
-    """v ↦ D²E v, (n, m) to (n, m)."""
     objective, curve = point.problem.objective, point.curve
     if curve.vertices.size > ASSEMBLED_SIZE:
         return lambda v: objective.hessian_product(curve, v)
@@ -48,21 +47,11 @@ def lagrangian_hessian(point: Point) -> LinearMap:
 def projected_conjugate_gradient(
     operator: LinearMap, right: FloatArray, space: TangentSpace, tolerance: float, max_iterations: int
 ) -> FloatArray:
-    """Solve ⟨operator w − right, v⟩ = 0 for all tangent v, for tangent w, preconditioned by the metric.
+    """Solve ⟨operator w − right, v⟩ = 0 for all tangent v, for tangent w, preconditioned by the metric of ``space``.
 
-    Steihaug's rule: on a direction of negative curvature the iteration ends with what it has (the first time with
-    that direction's steepest-descent step), so the result is a direction of descent of the quadratic model.
-
-    Parameters
-    ----------
-    operator
-        Symmetric, (n, m) to (n, m).
-    right
-        Covector, shape (n, m).
-    space
-        Projects and preconditions; its norm measures the residual.
-    tolerance
-        Relative residual at which to stop.
+    The operator is symmetric, (n, m) to (n, m), the right side a covector, shape (n, m), and the tolerance relative to
+    its norm. Steihaug's rule: on a direction of negative curvature the iteration ends with what it has (the first time
+    with that direction's steepest-descent step), so the result is a direction of descent of the quadratic model.
     """
     w = np.zeros_like(right)
     residual = right.copy()

@@ -34,38 +34,22 @@ class StepRule(Protocol):
 
 @dataclass(frozen=True)
 class Method:
-    """A descent method.
+    """A descent method."""
 
-    Attributes
-    ----------
-    name, description
-        Name in the registry, and one line for those who know the mathematics.
-    rule
-        How steps are found.
-    metric
-        The inner product that gradients are taken in.
-    geometry
-        Whether lengths are prescribed or penalised.
-    label
-        What people call it, as a title; its name if nothing else is given.
-    comparison
-        Whether it is there to be compared with, rather than to be used.
-    """
-
+    # name, description: name in the registry, and one line for those who know the mathematics
     name: str
     description: str
-    rule: StepRule = field(repr=False)
-    metric: Metric = field(default=METRICS["moebius"], repr=False)
-    geometry: Geometry = field(default=_CONSTRAINED, repr=False)
-    label: str = ""
-    comparison: bool = False
+    rule: StepRule = field(repr=False)  # how steps are found
+    metric: Metric = field(default=METRICS["moebius"], repr=False)  # the inner product that gradients are taken in
+    geometry: Geometry = field(default=_CONSTRAINED, repr=False)  # whether lengths are prescribed or penalised
+    label: str = ""  # what people call it, as a title; its name if nothing else is given
+    comparison: bool = False  # whether it is there to be compared with, rather than to be used
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "label", self.label or self.name)
 
     @property
     def sentence(self) -> str:
-        """Its label and its description."""
         return self.description if self.label == self.name else f"{self.label}: {self.description}"
 
 

@@ -47,28 +47,16 @@ class Solver(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """One minimisation: the objective, the metric, the constraints and the units it is solved in.
-
-    Attributes
-    ----------
-    constraints
-        Targets of lengths and barycenter, and pins.
-    geometry
-        Whether the targets are prescribed, or missing them costs energy.
-    solver
-        Where objective and metric come from, on this mesh and on others.
-    obstacles
-        What no motion may touch, in the user's units.
-    """
+    """One minimisation: the objective, the metric, the constraints and the units it is solved in."""
 
     mesh: Mesh
     objective: Objective
     metric: Metric
-    constraints: Constraints
+    constraints: Constraints  # targets of lengths and barycenter, and pins
     units: Units
-    geometry: "Geometry"
-    solver: Solver
-    obstacles: tuple[Obstacle, ...] = ()
+    geometry: "Geometry"  # whether the targets are prescribed, or missing them costs energy
+    solver: Solver  # where objective and metric come from, on this mesh and on others
+    obstacles: tuple[Obstacle, ...] = ()  # what no motion may touch, in the user's units
 
     @classmethod
     def of(
@@ -83,10 +71,7 @@ class Problem:
     ) -> "Problem":
         """The problem that begins with a curve, whose lengths are to become some others, all in the user's units.
 
-        Raises
-        ------
-        CurveError
-            If the curve has too many vertices for the solver, or an obstacle is too far away.
+        A CurveError if the curve has too many vertices for the solver, or an obstacle is too far away.
         """
         units, solver = Units.of(curve), solver.on(curve)
         own = curve.with_vertices(units.from_user(curve.vertices))
@@ -95,21 +80,10 @@ class Problem:
         return cls(curve.mesh, objective, solver.metric, constraints, units, geometry, solver, obstacles)
 
     def on(self, curve: Curve, lengths: FloatArray | None = None) -> "Point":
-        """The point of a curve on another mesh, in the same problem there.
+        """The point of a curve on another mesh, in the same problem there; all in the user's units.
 
-        Pins, the parts held in place and the growth so far stay; the barycenter is that of the curve.
-
-        Parameters
-        ----------
-        curve
-            In the user's units.
-        lengths
-            Target lengths in the user's units, shape (edges,); by default those that the curve has.
-
-        Raises
-        ------
-        CurveError
-            If the curve has too many vertices for the solver.
+        Pins, blocks and the growth so far stay; targets are what the curve has, but for lengths that are given, shape
+        (edges,). A CurveError if the curve has too many vertices for the solver.
         """
         pins, held = self.constraints.pins.on(curve), self.constraints
         lengths = curve.edge_lengths if lengths is None else lengths
@@ -167,19 +141,8 @@ class Problem:
 class Point:
     """A polygon with the values that methods ask for, each computed at most once.
 
-    Parameters
-    ----------
-    problem
-        What is solved.
-    vertices
-        In the program's units; shape (n, m).
-    placed
-        The same in the user's, rounded: the doubles that proofs are about and that are written; shape (n, m).
-
-    Attributes
-    ----------
-    metric_age
-        How many steps ago the metric was that of the curve.
+    ``vertices``, shape (n, m), are in the program's units, ``placed`` in the user's, rounded: the doubles that proofs
+    are about and that are written. ``metric_age`` is how many steps ago the metric was that of the curve.
     """
 
     def __init__(self, problem: Problem, vertices: FloatArray, placed: FloatArray) -> None:
@@ -207,7 +170,7 @@ class Point:
         return self if same else self.changing(objective=objective)
 
     def with_metric_of(self, other: "Point", steps: int = 1) -> "Point":
-        """The same point in the metric of another one, if that is built, so many steps ago, and its own is not."""
+        """The same point in the metric of another one, some steps earlier, if that is built and its own is not."""
         if "inner_product" in vars(self) or "inner_product" not in vars(other):
             return self
         point = copy(self)
@@ -220,12 +183,10 @@ class Point:
 
     @cached_property
     def curve(self) -> Curve:
-        """The polygon in the program's units."""
         return Curve(self.vertices, self.problem.mesh)
 
     @property
     def nondegenerate(self) -> bool:
-        """Whether all vertices are finite and all edges have a length."""
         return bool(np.isfinite(self.vertices).all() and self.curve.edge_lengths.min() > 0.0)
 
     def retract(self, vertices: FloatArray, level: FloatArray, space: TangentSpace | None = None) -> "Point | None":
@@ -243,12 +204,10 @@ class Point:
 
     @property
     def energy(self) -> float:
-        """The objective E."""
         return self._energy_and_derivative[0]
 
     @property
     def derivative(self) -> FloatArray:
-        """DE, shape (n, m)."""
         return self._energy_and_derivative[1]
 
     @property

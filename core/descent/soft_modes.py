@@ -24,40 +24,24 @@ DEPENDENT = 1e-10  # of squared lengths: vectors that add so little to the other
 
 @dataclass(frozen=True, eq=False)
 class SoftModes:
-    """All Ritz pairs of J⁻¹(D²E − Σ λ_I D²Φ_I) on ker DΦ that a search leaves, in ascending order; the lowest are good.
+    """All Ritz pairs of J⁻¹(D²E − Σ λ_I D²Φ_I) on ker DΦ after a search, ascending; the lowest are good."""
 
-    Attributes
-    ----------
-    values
-        Ritz values θ, each at least the eigenvalue in its place; shape (k,).
-    vectors
-        Ritz vectors w, tangent and orthonormal in the metric; shape (k, n, m).
-    residuals
-        Norms of the projected J⁻¹ D²L w − θ w in the metric, within which of θ there is an eigenvalue, for those of the
-        lowest pairs that were looked at; shape (j,), j ≤ k.
-    """
-
-    values: FloatArray
-    vectors: FloatArray
+    values: FloatArray  # Ritz values θ, each at least the eigenvalue in its place; shape (k,)
+    vectors: FloatArray  # Ritz vectors w, tangent and orthonormal in the metric; shape (k, n, m)
+    # norms of the projected J⁻¹ D²L w − θ w in the metric, within which of θ there is an eigenvalue, for those of the
+    # lowest pairs that were examined; shape (j,), j ≤ k
     residuals: FloatArray
 
 
 def soft_modes(
     point: Point, starts: FloatArray, tolerance: float = 1e-6, below: float = BULK, most: int = 400
 ) -> SoftModes:
-    """Look for the lowest eigenvalues.
+    """Look for the lowest eigenvalues at a point, in the metric J_C or one as strong.
 
-    Parameters
-    ----------
-    point
-        Where, in the metric J_C or one as strong.
-    starts
-        Tangent vectors, such as `smooth_starts`; shape (b, n, m).  Of multiple eigenvalues b copies can be found, and b
-        pairs are improved at a time, or more if more are below.
-    tolerance
-        Residual at which the pairs with values less than ``below``, and the lowest one, are near enough to eigenvalues.
-    most
-        Number of products with the Hessian and of projections, after which pairs are left as they are.
+    Starts are tangent vectors, such as `smooth_starts`; shape (b, n, m).  Of multiple eigenvalues b copies can be
+    found, and b pairs are improved at a time, or more if more are ``below`` a bound.  Those, and the lowest one, are
+    near enough to eigenvalues where their residuals are within the tolerance.  After ``most`` products with the Hessian
+    and as many projections pairs are left as they are.
     """
     basis = _Basis(point)
     most = min(most, basis.dimension)
@@ -93,7 +77,6 @@ class _Basis:
 
     @property
     def dimension(self) -> int:
-        """That of the tangent space."""
         (n, m), constraints = self._shape, self.space.constraints
         return m * (n - len(constraints.pins)) - constraints.count
 
@@ -126,5 +109,4 @@ class _Basis:
         return np.asarray(turns @ self._images - values[:count, None] * (turns @ self._duals))
 
     def combined(self, turns: FloatArray) -> FloatArray:
-        """The vectors with some coefficients; shape (k, n, m)."""
         return np.reshape(turns @ self._vectors, (-1, *self._shape))

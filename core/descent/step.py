@@ -35,22 +35,13 @@ class Leg(NamedTuple):
 
 
 class Rejected(NamedTuple):
-    """A trial that is no step.
+    """A trial that is no step."""
 
-    Attributes
-    ----------
-    trial
-        Where it would have ended; None if it cannot be brought back to the constraints.
-    proof
-        What was proved of the way there, if only contact is against it.
-    """
-
-    trial: Point | None = None
-    proof: FreeMotion | None = None
+    trial: Point | None = None  # where it would have ended; None if it cannot be brought back to the constraints
+    proof: FreeMotion | None = None  # what was proved of the way there, if only contact is against it
 
     @property
     def in_the_way(self) -> Contact | None:
-        """What meets on the way, if that is the reason."""
         return None if self.proof is None else self.proof.contact
 
 
@@ -66,20 +57,10 @@ def attempt(
     acceptable: Callable[[Point], bool],
     space: TangentSpace | None = None,
 ) -> Leg | Rejected:
-    """Try to go straight to the point that vertices are led back to.
+    """Try to go straight from a base to the point that vertices near it, shape (n, m), are led back to.
 
-    Parameters
-    ----------
-    base
-        Where the motion begins.
-    vertices
-        Where it is aimed at, shape (n, m).
-    level
-        Of the constraints' residual, which the end is to have.
-    acceptable
-        Whether the end, at which the energy is finite, is good enough.
-    space
-        The metric of the way back; by default that of the base point.
+    The end has a level of the constraints' residual, and is ``acceptable``, which is asked where the energy is finite.
+    The metric of the way back, ``space``, is that of the base by default.
     """
     return judged(base, base.retract(vertices, level, space), acceptable)
 
@@ -96,30 +77,18 @@ def judged(base: Point, trial: Point | None, acceptable: Callable[[Point], bool]
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """An accepted step.
+    """An accepted step."""
 
-    Attributes
-    ----------
-    legs
-        The straight motions that lead to its end, one after the other, at least one.
-    size
-        Its τ.
-    limited_by
-        The contact that limited τ, if any.
-    """
-
-    legs: tuple[Leg, ...]
-    size: float
-    limited_by: Contact | None
+    legs: tuple[Leg, ...]  # the straight motions that lead to its end, one after the other, at least one
+    size: float  # its τ
+    limited_by: Contact | None  # the contact that limited τ, if any
 
     @property
     def point(self) -> Point:
-        """Where it ends."""
         return self.legs[-1].end
 
     @property
     def certified(self) -> bool:
-        """Whether all of it is proved free of contact."""
         return all(leg.proof.proved for leg in self.legs)
 
     def within(self, problem: Problem) -> "Step":

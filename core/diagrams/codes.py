@@ -19,7 +19,7 @@ from itertools import islice
 from types import MappingProxyType
 from typing import NamedTuple
 
-from ..checks import check_known
+from ..arguments import check_known
 from ..errors import CurveError
 from .diagram import Diagram, Pass
 from .faces import Faces

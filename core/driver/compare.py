@@ -1,22 +1,21 @@
 """Run several methods from the same start and keep what each did: the data behind Figure 3 of [RS21]."""
 
 import time
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from ..arguments import checked
-from ..checks import check_number
+from ..arguments import check_number, checked
 from ..curve import Curve
 from ..deadline import TimeLimit
 from ..descent import METHODS, Problem
 from ..errors import OptionError, choice
-from ..system.threads import BLAS
 from ..task import Task
+from ..threads import BLAS
 from .loop import WithOutcome, within
 from .options import RelaxOptions
 from .prepare import start_problem
 from .relax import relax
-from .solver import check_size
+from .solver import Solver
 from .trajectory import Iterate
 
 
@@ -55,7 +54,6 @@ class History:
 
     @property
     def iterations(self) -> int:
-        """How many iterations there were."""
         return len(self.energy) - 1
 
 
@@ -67,11 +65,11 @@ def compare(
     options: RelaxOptions,
     time_limit: float,
     stages: Collection[int] = (),
-) -> Iterator[History]:
-    """Give one run per method, all from the same refined curve, each ended after so many seconds of processor time.
+) -> Generator[History, None, None]:
+    """Run each method from the same refined curve for a limited number of seconds of processor time.
 
-    Whether every method can be run is looked at before the first one is. The mesh ``auto`` is a fixed one here, so that
-    steps are compared on one mesh. Of the iterates of indices ``stages`` curves are kept, of the last one in place of
+    All methods are checked before the first one runs. The mesh ``auto`` is a fixed one here, so that steps are compared
+    on one mesh. Of the iterates of indices ``stages`` curves are kept, of the last one in place of
     those that were not reached. Raises as `relax` does.
     """
     check_number("time_limit", time_limit, 0.0, float("inf"))
@@ -83,7 +81,7 @@ def compare(
         raise OptionError(f"methods are {','.join(methods):.60}; give each of them once")
     each = [replace(options, method=method) for method in methods]
     for wanted in each:
-        check_size(Task.of(curve).curve, wanted)
+        Solver(wanted).check_size(Task.of(curve).curve)
     task = Task.of(curve).refined(options.vertices)
     each = [replace(wanted, vertices=len(task.curve)) for wanted in each]
     problems = [start_problem(task, wanted) for wanted in each]

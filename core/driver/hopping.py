@@ -6,7 +6,7 @@ from itertools import islice
 
 import numpy as np
 
-from ..checks import check_fields
+from ..arguments import checked_fields, number
 from ..curve import Curve
 from ..energies.components import energy_scale
 from ..errors import CurveError
@@ -25,14 +25,14 @@ MAY_BE_UNKNOT = Message(
     "the curve may be an unknot, for its Alexander polynomial is trivial, and a circle has less energy"
 )
 ROUND = 0.9  # of the area of the circle of the same length: coarse and uneven ones have that
-MOST_VERTICES = 10_000  # of a curve whose type is looked at: a few seconds
+MOST_VERTICES = 10_000  # for which the knot type is computed: a few seconds
 
 
 def hopping(run: Run) -> Relaxation:
     """Yield the iterates of a relaxation and of its hops; return how it ended.
 
     A hop is one iterate: its path is the motion, and the relaxation to where there is less energy than at the minimum
-    before.  So whoever stops between two iterates has the lowest curve so far.
+    before.  So a run stopped between two iterates has the lowest curve so far.
     """
     hops = Hops(run)
     yield run.iterate
@@ -43,24 +43,17 @@ def hopping(run: Run) -> Relaxation:
     return hops.summarised(summarised(outcome, run))
 
 
+@checked_fields
 @dataclass(eq=False)
 class Hops:
-    """The hops of one run.
-
-    Parameters
-    ----------
-    motions
-        That they begin with, by turns.
-    gain
-        Relative decrease of the objective that counts: vertices sliding along a curve change it by about as much.
-    """
+    """The hops of one run."""
 
     run: Run
-    motions: Sequence[Motion] = MOTIONS
-    gain: float = 1e-3
+    motions: Sequence[Motion] = MOTIONS  # that they begin with, by turns
+    # relative decrease of the objective that counts: vertices sliding along a curve change it by about as much
+    gain: float = number(1e-3, most=1)
 
     def __post_init__(self) -> None:
-        check_fields(self, gain=(0.0, 1.0))
         self._rng = np.random.default_rng(self.run.options.seed)
         self._tried = self._taken = 0
 
@@ -102,7 +95,7 @@ class Hops:
                 "hops that lowered the energy: {taken} of {tried}", taken=self._taken, tried=self._tried
             )
         run = self.run
-        unknot = told_of_unknot(run.iterate.curve) if outcome.may_be_left and run.problem.unconfined else None
+        unknot = unknot_message(run.iterate.curve) if outcome.may_be_left and run.problem.unconfined else None
         if unknot is None:
             return outcome
         more = "{unknot}: more hops may reach it" if run.options.hops else "{unknot}: hops may reach it"
@@ -111,24 +104,12 @@ class Hops:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A motion out of a minimum, and the relaxation from where it ends.
+    """A motion out of a minimum, and the relaxation from where it ends."""
 
-    Attributes
-    ----------
-    run
-        The relaxation at its end, on the mesh and in the problem of the minimum that was left.
-    path
-        Ends of the straight legs of both, each (n, m), in the user's units.
-    certified
-        Whether all of them were proved.
-    iterations
-        Steps of both.
-    """
-
-    run: Run
-    path: tuple[FloatArray, ...]
-    certified: bool
-    iterations: int
+    run: Run  # the relaxation at its end, on the mesh and in the problem of the minimum that was left
+    path: tuple[FloatArray, ...]  # ends of the straight legs of both, each (n, m), in the user's units
+    certified: bool  # whether all of them were proved
+    iterations: int  # steps of both
 
 
 def trial(run: Run, motion: Motion, rng: np.random.Generator, below: float) -> Trial:
@@ -162,7 +143,7 @@ def is_circle(curve: Curve) -> bool:
     return bool(4.0 * np.pi * area > ROUND * curve.length**2)
 
 
-def told_of_unknot(curve: Curve) -> Message | None:
+def unknot_message(curve: Curve) -> Message | None:
     """Say that a curve is or may be an unknot, though it is no circle; None if it is one, or is knotted or a link."""
     alone = len(curve.mesh.component_sizes) == 1
     if not alone or curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):
@@ -171,7 +152,7 @@ def told_of_unknot(curve: Curve) -> Message | None:
         return None
     try:
         names = knot_type(curve).names
-    except CurveError:  # a stuck curve may be so near to itself that no view tells which strand is in front
+    except CurveError:  # a stuck curve may be so near to itself that no projection resolves which strand is in front
         names = ()
     if not names:
         return MAY_BE_UNKNOT

@@ -33,7 +33,6 @@ class WithOutcome:
         self.outcome: Outcome | None = None
 
     def __iter__(self) -> Iterator[Iterate]:
-        """Yield the iterates that are left."""
         self.outcome = yield from self._relaxation
 
 
@@ -71,7 +70,7 @@ def descent(run: Run, interventions: Sequence[Callable[[Run], Intervention]] | N
 
 def summarised(outcome: Outcome, run: Run) -> Outcome:
     """The outcome with what there is to say of the whole run."""
-    return with_errors(with_growth(run.rises.told(outcome, run.iterate.index), run), run)
+    return with_errors(with_growth(run.rises.summarised(outcome, run.iterate.index), run), run)
 
 
 def _descent(run: Run, interventions: Sequence[Intervention]) -> Relaxation:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..checks import check_fields
+from ..arguments import checked_fields, number
 from ..descent import Leg, Point, Step
 from ..descent.soft_modes import soft_modes
 from ..descent.step import attempt
@@ -21,40 +21,26 @@ Field = Callable[[FloatArray], FloatArray]
 """Velocities at vertices; shapes (n, m) -> (n, m)."""
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Motion(ABC):
     """Move along one random field after another, up to a random level of energy, as nearly as the constraints allow.
 
     Lengths are root mean squares over the vertices, in radii of gyration.
-
-    Parameters
-    ----------
-    fields
-        Their number.
-    distance
-        That the curve moves along each of them.
-    stride
-        Of a step, at most; where steps are not accepted they are halved.
-    shortest
-        Step at which a field is given up.
-    ceilings
-        Least and greatest multiple of the energy, by its scale, up to which the curve may be led.
     """
 
-    fields: int
-    distance: float
-    stride: float
-    shortest: float
+    fields: int = number()
+    distance: float = number()  # that the curve moves along each of them
+    stride: float = number()  # of a step, at most; where steps are not accepted they are halved
+    shortest: float = number()  # step at which a field is given up
+    # least and greatest multiple of the energy, by its scale, up to which the curve may be led
     ceilings: tuple[float, float] = (2.0, 16.0)
 
     def __post_init__(self) -> None:
-        positive = (0.0, math.inf)
-        check_fields(self, fields=positive, distance=positive, stride=positive, shortest=(0.0, self.stride))
         if not 1.0 <= self.ceilings[0] <= self.ceilings[1] < math.inf:
             raise OptionError(f"ceilings are {self.ceilings}; they must ascend from 1 or more")
 
     def fits(self, point: Point) -> bool:
-        """Whether lengths are prescribed: else the curve would be stretched without end."""
         return point.problem.geometry.prescribes
 
     @abstractmethod
@@ -87,61 +73,50 @@ class Motion(ABC):
             point, left, stride = leg.end.anchored, left - stride, min(2.0 * stride, self.stride)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Push(Motion):
     """Push the curve where it resists least: along random combinations of soft modes.
 
     Where strands are about to touch, random flows press them together; a soft mode slides them along each other.
-
-    Parameters
-    ----------
-    modes
-        Number of modes in a combination.
-    products
-        With the Hessian, by which they are looked for: near enough then to be soft, they need be no nearer.  From a
-        single start, of all rotations and other flat directions only one can be among them.
     """
 
-    fields: int = 3
-    distance: float = 1.0
-    stride: float = 0.05  # where strands touch, only short steps are free
-    shortest: float = 1e-3
-    modes: int = 6
-    products: int = 30
+    fields: int = number(3)
+    distance: float = number(1.0)
+    stride: float = number(0.05)  # where strands touch, only short steps are free
+    shortest: float = number(1e-3)
+    modes: int = number(6)  # number of modes in a combination
+    # with the Hessian, by which they are looked for: near enough then to be soft, they need be no nearer. From a
+    # single start, of all rotations and other flat directions only one can be among them
+    products: int = number(30)
 
     def fits(self, point: Point) -> bool:
         """Whether, besides, the energy has a second derivative."""
         return super().fits(point) and point.problem.objective.has_hessian
 
     def field(self, point: Point, rng: np.random.Generator) -> Field:
-        """A constant one."""
         start = point.tangent_space.project(rng.normal(size=point.vertices.shape))
         modes = soft_modes(point, start[None], 0.0, -math.inf, self.products).vectors[: self.modes]
         u = np.tensordot(rng.normal(size=len(modes)), modes, 1)
         return lambda _: u
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Stir(Motion):
     """Stir space by random flows, which fold the curve and turn it over.
 
-    A flow alone is an isotopy that leaves strands beside each other which were so before; one after the other they
-    mix, and a higher ceiling lets the curve forget more of the minimum.
-
-    Parameters
-    ----------
-    waves
-        Number of plane waves that a flow is the sum of.
-    frequency
-        Standard deviation of each component of their wave vectors, in radians per radius of gyration.
+    A single flow is an isotopy that keeps neighbouring strands together; a sequence of flows mixes them, and a higher
+    ceiling lets the curve forget more of the minimum.
     """
 
-    fields: int = 10
-    distance: float = 1.0
-    stride: float = 0.1
-    shortest: float = 5e-3
-    waves: int = 4
-    frequency: float = 2.0
+    fields: int = number(10)
+    distance: float = number(1.0)
+    stride: float = number(0.1)
+    shortest: float = number(5e-3)
+    waves: int = number(4)  # number of plane waves that a flow is the sum of
+    # standard deviation of each component of their wave vectors, in radians per radius of gyration
+    frequency: float = number(2.0)
 
     def field(self, point: Point, rng: np.random.Generator) -> Field:
         """A sum of plane waves, each without divergence, most of them shorter than the curve is wide."""

@@ -7,8 +7,7 @@ from reprlib import repr as short
 
 import numpy as np
 
-from ..arguments import is_list
-from ..checks import check_known
+from ..arguments import check_known, is_list
 from ..curve import Curve
 from ..descent import METHODS
 from ..energies import ENERGIES, TERMS, Energy, Term

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ..checks import named
 from ..collision import minimal_gap
 from ..curve import Curve, Mesh, check_closed
 from ..curve.pins import TAUT, arcs, free_edges, spans
@@ -22,14 +21,10 @@ EVEN_RATIO = 10.0  # of the longest edge to the shortest, and to the gap between
 def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
     """The problem of relaxing a refined task: target lengths, and its barycenter or pins, are prescribed.
 
-    Raises
-    ------
-    CurveError
-        If the curve has more vertices than the method has room and time for.
-    OptionError
-        If an option names something unknown, or a method and an energy do not go together.
+    A CurveError if the curve has more vertices than the method has room and time for; an OptionError if options do not
+    go together.
     """
-    task, method = Task.of(given), named(METHODS, "method", options.method)
+    task, method = Task.of(given), METHODS[options.method]
     pins = task.held
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
     lengths = _target_lengths(task, pins.vertices, options)
@@ -90,7 +85,7 @@ def equal_lengths(mesh: Mesh, lengths: FloatArray, pins: IntArray) -> FloatArray
 
 
 def _check_growth(start: Curve, problem: Problem, options: RelaxOptions, method: Method) -> None:
-    """Refuse to change lengths that are not prescribed, or cannot change by the factor that is asked for."""
+    """Refuse to change lengths that are not prescribed, or cannot change by the requested factor."""
     pins = problem.constraints.pins.vertices
     if not method.geometry.prescribes:
         raise OptionError(f"grow prescribes lengths, but method {method.name} penalises them; choose another method")

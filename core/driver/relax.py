@@ -13,8 +13,8 @@ from ..deadline import TimeLimit
 from ..errors import CurveError, counted
 from ..hierarchy import moebius_energy
 from ..messages import COMPONENT, VERTEX_COUNT, Message
-from ..system.threads import BLAS
 from ..task import Task
+from ..threads import BLAS
 from ..units import centred
 from .hopping import hopping
 from .loop import Relaxation, WithOutcome, within
@@ -22,7 +22,7 @@ from .options import RelaxOptions
 from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import start_problem
 from .run import Run
-from .solver import check_size
+from .solver import Solver
 from .trajectory import Iterate
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
@@ -42,11 +42,11 @@ class Result:
     energies
         The objective at every iterate, the start first.
     fallback_steps
-        Iterates to which another method than the one asked for led.
+        Iterates reached by the fallback method.
     seconds
         Wall-clock time.
     method
-        Name of the method that was asked for.
+        Name of the requested method.
     task
         What was to be relaxed.
     """
@@ -136,7 +136,7 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     curve
         An embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.
     options
-        How to relax; None stands for the defaults.
+        How to relax; None means the defaults.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     began = time.perf_counter()
     options = RelaxOptions() if options is None else options
     task = Task.of(curve)
-    check_size(task.curve, options)
+    Solver(options).check_size(task.curve)
     start = task.refined(options.vertices)
     try:
         run = Run(start_problem(start, options), start.curve, options)

@@ -1,4 +1,4 @@
-"""Where the energy went up, as it may where edge lengths are evened out or the mesh changes: told of in the end."""
+"""Increases of the energy, which evening out edge lengths or changing the mesh may cause; reported at the end."""
 
 from itertools import pairwise
 
@@ -7,8 +7,8 @@ from ..messages import Message, joined
 from .outcome import Outcome
 from .trajectory import Iterate
 
-RISE = 1e-9  # increase of the energy, by its scale, that is told of; less is rounding
-NAMED = 3  # changes of mesh whose energies are told one by one
+RISE = 1e-9  # relative to the energy's scale, the least increase reported; less is rounding
+NAMED = 3  # changes of mesh whose energies are listed individually
 
 
 class Rises:
@@ -19,7 +19,6 @@ class Rises:
         self._changes: list[list[Iterate]] = []
 
     def step(self, before: Iterate, after: Iterate) -> None:
-        """Note a method's step."""
         if after.edge_length_error < before.edge_length_error:
             self._steps.append(_rise(before, after))
 
@@ -34,8 +33,8 @@ class Rises:
             self._changes.append([before])
         self._changes[-1].append(after)
 
-    def told(self, outcome: Outcome, steps: int) -> Outcome:
-        """The outcome after so many steps, with a clause for each kind of rise."""
+    def summarised(self, outcome: Outcome, steps: int) -> Outcome:
+        """The outcome with a clause for each kind of increase, out of a number of steps."""
         rises = [rise for rise in self._steps if rise]
         if rises:
             rose = "the energy rose in {count} of {steps} steps, by {total:.3g} in total, while lengths were equalized"
@@ -53,7 +52,6 @@ class Rises:
 
 
 def _rise(before: Iterate, after: Iterate) -> float:
-    """By how much the energy went up; 0 if it did not."""
     rise = after.energy - before.energy
     return rise if rise > RISE * energy_scale(before.curve.mesh, before.energy) else 0.0
 

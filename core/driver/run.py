@@ -28,52 +28,20 @@ Event = Start | Step | NoStep | Outcome
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """Steps, if any, and then another view of the same curve.
+    """Steps, if any, and then another view of the same curve."""
 
-    Attributes
-    ----------
-    steps
-        Motions that come first.
-    point
-        The curve reached, in another problem: with other constraints, or on another mesh.
-    method
-        The one that takes over.
-    resolution
-        New bounds of edge lengths.
-    """
-
-    steps: tuple[Step, ...] = ()
-    point: Point | None = None
-    method: Method | None = None
-    resolution: Resolution | None = None
+    steps: tuple[Step, ...] = ()  # motions that come first
+    point: Point | None = None  # the curve reached, in another problem: with other constraints, or on another mesh
+    method: Method | None = None  # the one that takes over
+    resolution: Resolution | None = None  # new bounds of edge lengths
 
 
 class Run:
-    """A relaxation under way: the point reached, and what its method remembers.
+    """A relaxation under way from a refined curve: the point reached, and what its method remembers.
 
-    Parameters
-    ----------
-    problem
-        On the mesh of the start.
-    start
-        The refined curve, in the user's units.
-    options
-        As the user gave them.
-    max_iterations
-        Limit of iterations, if not that of the options.
-
-    Attributes
-    ----------
-    iterate
-        The point as users see it.
-    method
-        The one that takes the next step.
-    resolution
-        Bounds of edge lengths, where the mesh may change.
-    sampled_errors
-        Of the hierarchical solver, when last checked.
-    rises
-        Where the energy went up.
+    ``iterate`` is the point as users see it, ``method`` takes the next step, ``resolution`` bounds edge lengths where
+    the mesh may change, ``sampled_errors`` are those of the hierarchical solver when last checked, ``rises`` those of
+    the energy.  The limit of iterations is that of the options unless another is given.
     """
 
     def __init__(
@@ -93,17 +61,15 @@ class Run:
 
     @property
     def problem(self) -> Problem:
-        """The problem on the present mesh, in the metric of the method that was asked for."""
+        """The problem on the present mesh, in the metric of the requested method."""
         return self.point.problem
 
     @property
     def frozen(self) -> bool:
-        """Whether all vertices are held."""
         return len(self.iterate.pins) == self.problem.mesh.size
 
     @property
     def iterations_left(self) -> int:
-        """The budget that is left."""
         return self.max_iterations - self.iterations
 
     @property
@@ -124,13 +90,12 @@ class Run:
             step, self._memory = self.method.rule.step(point, self._memory)
             if isinstance(step, Step):
                 step = step.within(self.problem)
-                step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
+                step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be reported)
         except np.linalg.LinAlgError as error:
             return NoStep(degenerate(error))
         return step
 
     def accept(self, step: Step) -> Iterate:
-        """Go to the end of a method's step."""
         before = self.iterate
         self._go(step)
         if self.problem.geometry.prescribes:
@@ -169,7 +134,7 @@ class Run:
             yield self.iterate
 
     def termination(self) -> Outcome | None:
-        """How the run ends here of itself; None if it goes on."""
+        """How the run ends here; None if it continues."""
         bound = gradient_bound(self.options, self.problem.mesh, self.point.energy)
         if self.point.gradient_norm <= bound and self._feasible:
             norm = self.point.with_own_metric().gradient_norm
@@ -180,7 +145,7 @@ class Run:
         return self.at_limit() if self.iterations_left <= 0 else None
 
     def at_limit(self) -> Outcome:
-        """How the run ends for want of iterations."""
+        """How the run ends at the iteration limit."""
         outcome = out_of_iterations(self.iterations)
         if self._feasible:
             return outcome
@@ -235,7 +200,6 @@ class Intervention:
     run: Run
 
     def __call__(self, event: Event) -> Event | Change:
-        """Answer with the event, or with a change."""
         answer: Event | Change | None
         match event:
             case Start():

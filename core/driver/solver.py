@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
-from ..checks import named
 from ..curve import Curve
 from ..descent import METHODS, Method
 from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Term, Weighted
@@ -27,48 +26,26 @@ PAIRS_PER_BLOCK = 1700  # that take as long as one of them, by `benchmarks/speed
 
 @dataclass(frozen=True)
 class Solver:
-    """The energy and the metrics of a relaxation.
-
-    Parameters
-    ----------
-    options
-        What is asked for.
-    hierarchical
-        Whether distant pairs of edges count cluster by cluster.
-
-    Raises
-    ------
-    OptionError
-        If an option names something unknown, or does not go together with the solver that is asked for.
-    """
+    """The energy and the metrics of a relaxation; an OptionError says which of its options do not go together."""
 
     options: RelaxOptions
-    hierarchical: bool = False
+    hierarchical: bool = False  # whether distant pairs of edges count cluster by cluster
 
     def on(self, curve: Curve) -> "Solver":
-        """The solver for a curve: the one asked for, or the faster one; a CurveError if it has too many vertices."""
-        check_size(curve, self.options)
+        """The solver for a curve: the requested one, or the faster one; a CurveError if it has too many vertices."""
+        self.check_size(curve)
         wanted = self.options.solver == "hierarchical"
-        return Solver(self.options, _may_be_hierarchical(self.options) and (wanted or _pays(curve)))
+        return Solver(self.options, self._may_be_hierarchical and (wanted or _pays(curve)))
 
     def objective(self, obstacles: Iterable[Obstacle] = ()) -> Objective:
         """What is minimised among obstacles, which are in the units of curves."""
-        energy = _energy(self.options)
-        further = (_weighted(_term(term), weight) for term, weight in self.options.terms)
-        energy = HierarchicalMoebiusEnergy.instead_of(energy) if self.hierarchical else energy
-        return Objective.of(energy, obstacles, further)
+        energy = HierarchicalMoebiusEnergy.instead_of(self._energy) if self.hierarchical else self._energy
+        return Objective.of(energy, obstacles, (_weighted(*term) for term in self.options.terms))
 
     @property
     def metric(self) -> Metric:
-        """The metric of the method, or the one that is asked for in its place.
-
-        Raises
-        ------
-        OptionError
-            If a quadrature rule is asked for, and it has none, or a metric, and the method has another in its name.
-        """
-        method, points = _method(self.options), self.options.quadrature_points
-        metric = _metric(method, self.options)
+        """The requested metric, by default that of the method."""
+        method, metric, points = self._method, self._metric, self.options.quadrature_points
         kind, dash, own = method.name.rpartition(f"-{method.metric.name}")
         if isinstance(self.options.metric, str) and dash and not own and metric is not method.metric:
             raise OptionError(
@@ -82,45 +59,63 @@ class Solver:
     def of_metric(self, metric: Metric) -> Metric:
         """A metric in the form that is solved with, and by the quadrature rule if it has any."""
         points = self.options.quadrature_points
-        # the energy's own rule, as Section 6.1.2 of [RS21] has it, unless another one is asked for
-        metric = metric.with_rule(_energy(self.options).rule if points is None else Rule.gauss(points))
+        # the energy's own rule, as Section 6.1.2 of [RS21] has it, unless another one is requested
+        metric = metric.with_rule(self._energy.rule if points is None else Rule.gauss(points))
         return compressed(metric, Tolerances.of_norms(self.options.accuracy)) if self.hierarchical else metric
 
+    def check_size(self, curve: Curve) -> None:
+        """Refuse more vertices than the method's inner products have room for, before anything is made of them."""
+        wanted, name = self.options.vertices, self._method.name
+        most = self._max_vertices(max(len(curve), wanted or 0))
+        if wanted is not None and wanted > most:
+            raise OptionError(f"vertices is {wanted!s:.40}; {name} has room and time for {most}")
+        if len(curve) > most:
+            large = (
+                "the curve has {vertices}; {method} has room and time for {most}; thin it out or relax its parts "
+                "separately"
+            )
+            raise CurveError(Message(large, vertices=Message(VERTEX_COUNT, count=len(curve)), method=name, most=most))
 
-def check_size(curve: Curve, options: RelaxOptions) -> None:
-    """Refuse more vertices than the method's inner products have room for, before anything is made of them.
+    def _max_vertices(self, wanted: int) -> int:
+        """The largest feasible number of vertices, if a certain number is wanted."""
+        metric, solver = self._metric, self.options.solver
+        if self._may_be_hierarchical and (solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
+            given = isinstance(self.options.metric, Metric)
+            return min(MAX_VERTICES, compressed(metric, Tolerances()).most_vertices if given else MAX_VERTICES)
+        return min(each.most_vertices for each in (metric, *self._method.rule.other_metrics))
 
-    Raises
-    ------
-    CurveError, OptionError
-        If the curve has too many vertices, or too many are asked for.
-    """
-    most, method = max_vertices(options, max(len(curve), options.vertices or 0)), options.method
-    if options.vertices is not None and options.vertices > most:
-        raise OptionError(f"vertices is {options.vertices!s:.40}; {method} has room and time for {most}")
-    if len(curve) > most:
-        large = (
-            "the curve has {vertices}; {method} has room and time for {most}; thin it out or relax its parts separately"
-        )
-        raise CurveError(Message(large, vertices=Message(VERTEX_COUNT, count=len(curve)), method=method, most=most))
+    @property
+    def _may_be_hierarchical(self) -> bool:
+        solver = self.options.solver
+        obstacle = None if solver == "dense" else self._needs_dense
+        if obstacle is not None and solver == "hierarchical":
+            raise OptionError(f"{obstacle}; solver={solver!r} does without: leave it out")
+        return solver != "dense" and obstacle is None
 
+    @property
+    def _needs_dense(self) -> str | None:
+        rule, name, points = self._method.rule, self._method.name, self.options.quadrature_points
+        if rule.second_order:
+            return f"{name} needs exact second derivatives"
+        if rule.other_metrics:
+            return f"{name} needs a sum of metrics"
+        if not isinstance(self._energy, MoebiusEnergy):
+            return f"energy {self._energy.name!r} needs all pairs of edges one by one"
+        return None if points in (None, 1) else f"{points} Gauss points need all pairs of edges one by one"
 
-def max_vertices(options: RelaxOptions, wanted: int) -> int:
-    """Number of vertices for which there is room and time, if so many are wanted; raises as `Solver` does."""
-    method = _method(options)
-    metric = _metric(method, options)
-    if _may_be_hierarchical(options) and (options.solver == "hierarchical" or wanted > HIERARCHICAL_FROM):
-        own = compressed(metric, Tolerances()).most_vertices if isinstance(options.metric, Metric) else MAX_VERTICES
-        return min(MAX_VERTICES, own)
-    metrics = (metric, *method.rule.other_metrics)
-    return min(metric.most_vertices for metric in metrics)
+    @property
+    def _method(self) -> Method:
+        return METHODS[self.options.method]
 
+    @property
+    def _energy(self) -> Energy:
+        energy = self.options.energy
+        return ENERGIES[energy] if isinstance(energy, str) else energy
 
-def _may_be_hierarchical(options: RelaxOptions) -> bool:
-    obstacle = None if options.solver == "dense" else _obstacle(options, _method(options))
-    if obstacle is not None and options.solver == "hierarchical":
-        raise OptionError(f"{obstacle}; solver={options.solver!r} does without: leave it out")
-    return options.solver != "dense" and obstacle is None
+    @property
+    def _metric(self) -> Metric:
+        metric = self._method.metric if self.options.metric is None else self.options.metric
+        return METRICS[metric] if isinstance(metric, str) else metric
 
 
 @lru_cache(maxsize=1)
@@ -132,41 +127,11 @@ def _pays(curve: Curve) -> bool:
     return PAIRS_PER_BLOCK * block_count(curve) < n * n
 
 
-def _obstacle(options: RelaxOptions, method: Method) -> str | None:
-    """What needs dense matrices."""
-    rule = method.rule
-    if rule.second_order:
-        return f"{method.name} needs exact second derivatives"
-    if rule.other_metrics:
-        return f"{method.name} needs a sum of metrics"
-    if not isinstance(_energy(options), MoebiusEnergy):
-        return f"energy {_energy(options).name!r} needs all pairs of edges one by one"
-    if options.quadrature_points not in (None, 1):
-        return f"{options.quadrature_points} Gauss points need all pairs of edges one by one"
-    return None
-
-
-def _method(options: RelaxOptions) -> Method:
-    return named(METHODS, "method", options.method)
-
-
-def _term(term: str | Term) -> Term:
-    return named(TERMS, "term", term) if isinstance(term, str) else term
-
-
-def _weighted(term: Term, weight: float) -> Weighted:
+def _weighted(term: str | Term, weight: float) -> Weighted:
+    term = TERMS[term] if isinstance(term, str) else term
     if weight < 0.0 and isinstance(term, Stiff):
         raise OptionError(
             f"term {term.name!r} has weight {weight:g}, with which its stiffness is no part of a metric; "
             "give a weight of 0 or more"
         )
     return Weighted(term, weight)
-
-
-def _energy(options: RelaxOptions) -> Energy:
-    return named(ENERGIES, "energy", options.energy) if isinstance(options.energy, str) else options.energy
-
-
-def _metric(method: Method, options: RelaxOptions) -> Metric:
-    wanted = method.metric if options.metric is None else options.metric
-    return named(METRICS, "metric", wanted) if isinstance(wanted, str) else wanted

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ..arguments import checked, checked_fields
 from ..curve import Curve, Mesh
 from ..errors import MobiusFlowError, OutputError, counted
+from ..files import atomic_write
 from ..obstacle import Obstacle
-from ..system.files import atomic_write
 from ..types import BoolArray, FloatArray, IntArray
 
 
@@ -44,11 +44,11 @@ class Iterate:
     edge_length_error
         max |log ℓ/ℓ⁰| over the edges.
     method
-        Name of the method that took the step; another one than was asked for where that one was stuck.
+        Name of the method that took the step: the fallback method where the requested one was stuck.
     grown
         How many times the lengths of the start, as they were to be there, those of this curve are to be.
     pins
-        Vertices of this curve that are held, counted from 0: those asked for, and those that cannot move between them.
+        Pinned vertices of this curve, counted from 0, and those that cannot move between them.
     """
 
     index: int
@@ -122,7 +122,6 @@ class Trajectory:
         self._last, self._last_index = iterate.curve, iterate.index
 
     def _follows(self, iterate: Iterate) -> bool:
-        """Whether it may be the run's next iterate."""
         fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
         return iterate.index == self._last_index + 1 and fits
 

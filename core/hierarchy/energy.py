@@ -3,13 +3,12 @@
 The value differs from the sum over all pairs by some 10⁻⁶ of it; the derivative is exactly that of the value.
 """
 
-import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
-from ..checks import check_fields
+from ..arguments import checked_fields, number
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices
 from ..energies.components import ComponentShares
@@ -28,6 +27,7 @@ OUTDATED = 1.0 / 3.0  # less separated blocks make a new list; up to 1/3 all rep
 STRETCH, SHIFT = 1e-4, 1e-2  # of each edge, and of the shortest one: how far vertices move for a difference
 
 
+@checked_fields
 @dataclass(frozen=True, eq=False)
 class HierarchicalMoebiusEnergy:
     """The midpoint sum `MoebiusEnergy` for curves of many vertices.
@@ -58,9 +58,9 @@ class HierarchicalMoebiusEnergy:
 
     blocks: BlockList | None = None
     without: EdgePairIndices | None = None
-    order: int = 4
-    theta: float = 0.19
-    leaf: int = 16
+    order: int = number(4, most=MAX_ORDER)
+    theta: float = number(0.19, most=OUTDATED)
+    leaf: int = number(16)
 
     name = "moebius"
     rule = MIDPOINT
@@ -68,9 +68,6 @@ class HierarchicalMoebiusEnergy:
     moebius_invariant = True
     contains_midpoint_pairs = True
     description = "Möbius energy without arc distances, midpoint rule, distant clusters by Taylor expansion"
-
-    def __post_init__(self) -> None:
-        check_fields(self, order=(0, MAX_ORDER), theta=(0.0, OUTDATED), leaf=(0, math.inf))
 
     @classmethod
     def instead_of(cls, energy: Energy) -> "HierarchicalMoebiusEnergy":

@@ -14,7 +14,7 @@ from types import MappingProxyType
 import numpy as np
 import scipy.sparse as sp
 
-from ..checks import check_fields
+from ..arguments import checked_fields, number
 from ..constraints import ConstraintDerivative
 from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs
@@ -141,6 +141,7 @@ _COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], Comp
 )
 
 
+@checked_fields
 @dataclass(frozen=True)
 class CompressedMetric:
     """One of the nonlocal metrics by products in O(N log N), with the midpoint rule.
@@ -164,12 +165,9 @@ class CompressedMetric:
 
     metric: Metric
     tolerances: Tolerances = field(default_factory=Tolerances)
-    theta: float = 0.5
-    leaf: int = 4
+    theta: float = number(0.5, most=1)
+    leaf: int = number(4)
     most_vertices = MAX_VERTICES
-
-    def __post_init__(self) -> None:
-        check_fields(self, theta=(0.0, 1.0), leaf=(0, np.inf))
 
     @property
     def name(self) -> str:

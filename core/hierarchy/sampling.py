@@ -13,7 +13,7 @@ import numpy as np
 from ..curve import Curve
 from ..energies.components import ComponentShares, energy_scale
 from ..energies.moebius import CONSTANT, MoebiusEnergy, energy_of_pairs
-from ..system.threads import BLAS
+from ..threads import BLAS
 from ..types import FloatArray, IntArray
 from .energy import HierarchicalMoebiusEnergy
 

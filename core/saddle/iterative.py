@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..checks import check_fields
+from ..arguments import checked_fields, number
 from ..constraints import ConstraintDerivative, Constraints
 from ..curve import Curve
 from ..types import FloatArray
@@ -28,6 +28,7 @@ MIN_FORCING = 1e-4  # relative residual of Newton's method for the constraints
 WINDOW = 2  # iterations, at least, whose decrease is the estimate of the error that is left
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Tolerances:
     """How exactly systems are solved; relative errors in the norm of the inner product.
@@ -51,16 +52,11 @@ class Tolerances:
         If a value is outside (0, 1], or an iteration number not positive.
     """
 
-    gradient: float = 1e-2
-    correction: float = 1e-1
-    preconditioner: float = 1e-2
-    feasibility: float = 1e-10
-    max_iterations: int = 500
-
-    def __post_init__(self) -> None:
-        below_one = (0.0, 1.0)
-        check_fields(self, gradient=below_one, correction=below_one, preconditioner=below_one)
-        check_fields(self, feasibility=below_one, max_iterations=(0, np.inf))
+    gradient: float = number(1e-2, most=1)
+    correction: float = number(1e-1, most=1)
+    preconditioner: float = number(1e-2, most=1)
+    feasibility: float = number(1e-10, most=1)
+    max_iterations: int = number(500)
 
     @classmethod
     def of_norms(cls, accuracy: float = 1e-4) -> "Tolerances":

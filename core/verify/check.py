@@ -13,7 +13,7 @@ This package shares no code with ``core.collision``, which the program uses to f
 """
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import chain
@@ -26,11 +26,9 @@ from ..errors import MobiusFlowError
 from ..types import FloatArray, IntArray
 from .filter import doubtful_pairs
 from .obstacles import Obstacles
-from .pins import HeldVertices, LostPinError
-from .segments import Point, meet
-from .trajectory import Components, TrajectoryError, count_legs, held_points, stages, still_parts
-from .transition import DifferentCurveError, common_vertices, straightened
-from .triangles import meet_triangle
+from .segments import Point, meet, meet_triangle
+from .trajectory import Components, TrajectoryError, count_legs, obstacle_parts, pinned_points, stages
+from .transition import DifferentCurveError, HeldVertices, LostPinError, common_vertices, straightened
 from .verdict import ContactError, UndecidedError, Verdict
 
 _DECISIONS = 1500.0  # exact ones of a file, about two seconds, before its length counts,
@@ -60,7 +58,6 @@ class _Progress:
             )
 
     def verdict(self, **values: Any) -> Verdict:
-        """The verdict, with what has been counted."""
         return Verdict(stages=self.stages, legs=self.legs, obstacles=len(self.obstacles), pins=self.pins, **values)
 
 
@@ -92,8 +89,8 @@ def verify(path: Path | str, callback: Callable[[int, int], None] | None = None)
 def _check_file(path: Path | str, progress: _Progress) -> None:
     last: FloatArray | None = None
     before: Components = ()
-    progress.obstacles = Obstacles.of(still_parts(path))
-    pins = held_points(path)
+    progress.obstacles = Obstacles.of(obstacle_parts(path))
+    pins = pinned_points(path)
     progress.pins = len(pins)
     for stage in stages(path):
         progress.stages, progress.frame = progress.stages + 1, None
@@ -125,9 +122,7 @@ def _heads(components: Components) -> IntArray:
 
 def _check_leg(start: FloatArray, end: FloatArray, heads: IntArray, progress: _Progress) -> None:
     """Raise if edges meet, or an edge an obstacle, while the vertices go from start to end."""
-    first, last = _exact_points(start), _exact_points(end)
-    _check_pairs(heads, progress, doubtful_pairs(start, end, heads), first, last)
-    _check_obstacles(heads, progress, progress.obstacles.doubtful(start, end, heads), first, last)
+    _decide(heads, progress, (start, end), _exact_points(start), _exact_points(end))
 
 
 def _check_transition(
@@ -162,36 +157,26 @@ def _check_straightening(
         def there(k: int) -> Point:
             return moved.get(k) or here(k)
 
-        triangles = progress.obstacles.doubtful(points, points, heads, clearance=change)
-        _check_pairs(heads, progress, doubtful_pairs(points, points, heads, clearance=change), here, there)
-        _check_obstacles(heads, progress, triangles, here, there)
+        _decide(heads, progress, (points, points), here, there, clearance=change)
 
 
-def _check_pairs(
+def _decide(
     heads: IntArray,
     progress: _Progress,
-    batches: Iterable[IntArray],
+    way: tuple[FloatArray, FloatArray],
     first: Callable[[int], Point],
     last: Callable[[int], Point],
+    clearance: float = 0.0,
 ) -> None:
-    """Decide pairs, given by their vertices, shapes (4, pairs), exactly; raise at the first that meets."""
-    for corners in chain.from_iterable(batch.T.tolist() for batch in batches):
+    """Decide exactly what is doubtful on a way, whose ends are wrong by the clearance; raise at the first contact."""
+    for corners in chain.from_iterable(batch.T.tolist() for batch in doubtful_pairs(*way, heads, clearance)):
         start, end = [first(k) for k in corners], [last(k) for k in corners]
         progress.decide(start + end)
         if meet(start, end):
             raise ContactError.between(heads, *corners)
-
-
-def _check_obstacles(
-    heads: IntArray,
-    progress: _Progress,
-    batches: Iterable[IntArray],
-    first: Callable[[int], Point],
-    last: Callable[[int], Point],
-) -> None:
-    """The same for edges and triangles, shapes (5, pairs)."""
     still = _exact_points(progress.obstacles.vertices)
-    for x0, x1, *triangle in chain.from_iterable(batch.T.tolist() for batch in batches):
+    doubtful = progress.obstacles.doubtful(*way, heads, clearance)
+    for x0, x1, *triangle in chain.from_iterable(batch.T.tolist() for batch in doubtful):
         corners, start, end = [still(k) for k in triangle], [first(x0), first(x1)], [last(x0), last(x1)]
         progress.decide(start + end + corners)
         if meet_triangle(start + corners, end + corners):

@@ -22,20 +22,12 @@ def doubtful_pairs(start: FloatArray, end: FloatArray, heads: IntArray, clearanc
     """Yield the pairs of edges that are not proved apart while vertices go from start to end.
 
     Edges that are no neighbours; in triangles, which have none of these, each vertex, as an edge of no length, with the
-    opposite edge; and each end of an open polygon with the edge after its neighbour.
+    opposite edge; and each end of an open polygon with the edge after its neighbour.  Start and end are vertices, shape
+    (n, m) with m = 2 or 3; ``heads``, shape (n,), is the vertex that the edge from each vertex leads to: the vertex
+    itself where an open polygon ends.  Pairs stay apart even if every coordinate of every vertex is wrong by the
+    clearance.
 
-    Parameters
-    ----------
-    start, end
-        Vertices, shape (n, m) with m = 2 or 3.
-    heads
-        The vertex that the edge from each vertex leads to, shape (n,): the vertex itself where an open polygon ends.
-    clearance
-        Stay apart even if every coordinate of every vertex is wrong by this much.
-
-    Yields
-    ------
-    The vertices x₀, x₁, y₀, y₁ of a bounded number of pairs; shape (4, pairs).
+    Yields the vertices x₀, x₁, y₀, y₁ of a bounded number of pairs; shape (4, pairs).
     """
     start, end, clearance = scaled(start, end, clearance)
     for vertices in chain([_triangles(heads), _ends(heads)], _overlapping(start, end, heads, clearance)):
@@ -106,14 +98,8 @@ def _overlapping(start: FloatArray, end: FloatArray, heads: IntArray, clearance:
 class Leg:
     """Pairs of an edge x₀x₁ and an edge y₀y₁, or a triangle y₀y₁y₂, during one leg, and ways to prove them apart.
 
-    Parameters
-    ----------
-    start, end
-        Vertices, shape (n, m), entries of at most 1 in size.
-    vertices
-        Of the pairs: x₀, x₁, y₀, y₁, and y₂ of triangles; shape (4 or 5, pairs).
-    clearance
-        As in `doubtful_pairs`.
+    Start and end, shape (n, m), have entries of at most 1 in size; ``vertices``, shape (4 or 5, pairs), are x₀, x₁, y₀,
+    y₁, and y₂ of triangles.
     """
 
     def __init__(self, start: FloatArray, end: FloatArray, vertices: IntArray, clearance: float) -> None:
@@ -126,7 +112,6 @@ class Leg:
         self._normals = SEGMENT_NORMALS if len(y) == 2 else TRIANGLE_NORMALS
 
     def drop(self, proved: Callable[[], BoolArray]) -> None:
-        """Forget the pairs that are proved apart."""
         if self.vertices.size:
             left = ~proved()
             self.vertices = self.vertices[:, left]
@@ -182,7 +167,6 @@ class Leg:
 
 
 def _permanent(u: FloatArray, v: FloatArray, w: FloatArray) -> FloatArray:
-    """det(u, v, w) with all six products taken positive."""
     following, last = [1, 2, 0], [2, 0, 1]
     products = v[:, following] * w[:, last] + v[:, last] * w[:, following]
     return np.asarray(np.einsum("pm,pm->p", u, products))

@@ -15,27 +15,17 @@ from ..types import FloatArray, IntArray
 from .filter import Leg, scaled
 
 _PAIRS_AT_ONCE = 1 << 12
-_RUN = 16  # edges whose common box is looked at first
+_RUN = 16  # edges whose common box is tested first
 Boxes = tuple[FloatArray, FloatArray]  # least and largest coordinates, each (k, 3)
 
 
 @dataclass(frozen=True, eq=False)
 class Obstacles:
-    """All obstacles of a trajectory, together.
+    """All obstacles of a trajectory, together."""
 
-    Attributes
-    ----------
-    vertices
-        Of all of them, shape (k, 3).
-    triangles
-        Indices of the triangles' vertices, shape (f, 3).
-    ends
-        Number of vertices up to the end of each obstacle.
-    """
-
-    vertices: FloatArray
-    triangles: IntArray
-    ends: tuple[int, ...]
+    vertices: FloatArray  # of all of them, shape (k, 3)
+    triangles: IntArray  # indices of the triangles' vertices, shape (f, 3)
+    ends: tuple[int, ...]  # number of vertices up to the end of each obstacle
 
     @classmethod
     def of(cls, parts: Sequence[tuple[FloatArray, IntArray]]) -> "Obstacles":
@@ -58,7 +48,6 @@ class Obstacles:
 
     @cached_property
     def boxes(self) -> Boxes:
-        """Those of the triangles."""
         corners = self.vertices[self.triangles]
         return corners.min(axis=1), corners.max(axis=1)
 
@@ -113,7 +102,6 @@ def overlapping(first: Boxes, second: Boxes) -> Iterator[tuple[IntArray, IntArra
 
 
 def _kept(first: Boxes, second: Boxes, i: IntArray, j: IntArray) -> tuple[IntArray, IntArray]:
-    """Those of the pairs that overlap."""
     for axis in range(3):
         keep = (first[0][i, axis] <= second[1][j, axis]) & (second[0][j, axis] <= first[1][i, axis])
         i, j = i[keep], j[keep]

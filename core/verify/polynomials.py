@@ -79,7 +79,7 @@ def count_roots(p: Polynomial, low: Fraction, high: Fraction) -> int:
 
 def square_free(p: Polynomial) -> Polynomial:
     """The polynomial, up to a constant factor, that has the roots of a non-zero p, each of them once."""
-    return _primitive(_quotient(p, gcd(p, derivative(p))))
+    return _primitive(_divided(p, gcd(p, derivative(p)))[0])
 
 
 @lru_cache(maxsize=256)
@@ -88,12 +88,11 @@ def _sturm_chain(p: Polynomial) -> tuple[Polynomial, ...]:
     p = square_free(p)
     chain = [p, derivative(p)]
     while chain[-1]:
-        chain.append(_primitive(tuple(-c for c in _remainder(chain[-2], chain[-1]))))
+        chain.append(_primitive(tuple(-c for c in _divided(chain[-2], chain[-1])[1])))
     return tuple(chain[:-1])
 
 
 def sign_at(p: Polynomial, t: Fraction) -> int:
-    """Sign of p(t)."""
     value, power = 0, 1
     for c in reversed(p):  # Horner's rule for p(a/b) b^degree, b > 0
         value = value * t.numerator + c * power
@@ -104,29 +103,25 @@ def sign_at(p: Polynomial, t: Fraction) -> int:
 def gcd(p: Polynomial, q: Polynomial) -> Polynomial:
     """Greatest common divisor, up to a constant factor."""
     while q:
-        p, q = q, _primitive(_remainder(p, q))
+        p, q = q, _primitive(_divided(p, q)[1])
     return p
 
 
 def derivative(p: Polynomial) -> Polynomial:
-    """p′."""
     return tuple(k * c for k, c in enumerate(p) if k)
 
 
 def add(p: Polynomial, q: Polynomial) -> Polynomial:
-    """p + q."""
     if len(p) < len(q):
         p, q = q, p
     return _trimmed([c + (q[k] if k < len(q) else 0) for k, c in enumerate(p)])
 
 
 def subtract(p: Polynomial, q: Polynomial) -> Polynomial:
-    """p − q."""
     return add(p, tuple(-c for c in q))
 
 
 def multiply(p: Polynomial, q: Polynomial) -> Polynomial:
-    """Product p q."""
     product = [0] * (len(p) + len(q) - 1) if p and q else []
     for i, a in enumerate(p):
         for j, b in enumerate(q):
@@ -147,28 +142,16 @@ def _changes(signs: list[int]) -> int:
     return sum(a != b for a, b in pairwise(signs))
 
 
-def _remainder(p: Polynomial, q: Polynomial) -> Polynomial:
-    """A positive multiple of the remainder of p by q."""
-    rest, scale = list(p), abs(q[-1])
-    while len(rest) >= len(q):
-        factor = rest[-1] if q[-1] > 0 else -rest[-1]
-        shift = len(rest) - len(q)
-        rest = [scale * c for c in rest]
+def _divided(p: Polynomial, q: Polynomial) -> tuple[Polynomial, Polynomial]:
+    """Quotient and remainder of p by q, both times the same positive number."""
+    rest, quotient, scale = list(p), [0] * max(len(p) - len(q) + 1, 0), abs(q[-1])
+    for shift in reversed(range(len(quotient))):
+        factor = rest[shift + len(q) - 1] if q[-1] > 0 else -rest[shift + len(q) - 1]
+        rest, quotient = [scale * c for c in rest], [scale * c for c in quotient]
+        quotient[shift] = factor
         for k, c in enumerate(q):
             rest[shift + k] -= factor * c
-        rest.pop()
-    return _trimmed(rest)
-
-
-def _quotient(p: Polynomial, q: Polynomial) -> Polynomial:
-    """A multiple of p / q, which has no remainder."""
-    rest = [c * q[-1] ** (len(p) - len(q) + 1) for c in p]
-    quotient = [0] * (len(p) - len(q) + 1)
-    for shift in reversed(range(len(quotient))):
-        quotient[shift] = rest[shift + len(q) - 1] // q[-1]
-        for k, c in enumerate(q):
-            rest[shift + k] -= quotient[shift] * c
-    return tuple(quotient)
+    return tuple(quotient), _trimmed(rest)
 
 
 def _primitive(p: Polynomial) -> Polynomial:

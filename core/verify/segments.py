@@ -1,5 +1,7 @@
-"""Whether two moving segments meet: decided exactly, for any rational end points.
+"""Whether a moving segment meets another one, or a triangle that stands still: decided exactly, for rational points.
 
+Two segments
+------------
 Segments x(s) = x₀ + s e and y(r) = y₀ + r f, s, r in [0, 1], with end points linear in time t in [0, 1]; D = x₀ − y₀;
 either may have no length. They are tested for a common point, by signs of polynomials at algebraic numbers, at finitely
 many times, among which is the first contact t* if there is one:
@@ -15,11 +17,20 @@ many times, among which is the first contact t* if there is one:
 
 A common point itself is found so: if e × f ≠ 0, there is at most one pair (s, r) of Cramer's rule, a common point if
 ⟨D, e × f⟩ = 0 and s and r are in [0, 1]. If e × f = 0, an end of one must lie on the other, as in 2.
+
+A segment and a triangle
+------------------------
+If they are apart at first, then at their first contact the segment meets an edge of the triangle, or one of its ends is
+in the triangle: were it to pierce the triangle with both ends outside, it would have done so shortly before. The way of
+an end is a segment too, and so it remains to see whether three segments (the one that moves, at first, and the ways of
+its ends) meet the triangle. If one of them is in its plane, it meets an edge, or begins in the triangle, or not at all.
+A triangle without area is nothing but its edges.
 """
 
 import math
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import combinations
 
 from .polynomials import ZERO, Polynomial, Root, add, multiply, roots, subtract
 
@@ -36,10 +47,7 @@ def meet(start: Sequence[Point], end: Sequence[Point]) -> bool:
 def meetings(start: Sequence[Point], end: Sequence[Point]) -> Iterator[Root]:
     """Yield times at which two moving segments meet, among them the first; none if they never do.
 
-    Parameters
-    ----------
-    start, end
-        The points x₀, x₁, y₀, y₁ at times 0 and 1, in the plane or in space.
+    Start and end are the points x₀, x₁, y₀, y₁ at times 0 and 1, in the plane or in space.
     """
     x0, x1, y0, y1 = _moving_points(start, end)
     corners = (_minus(x0, y0), _minus(x0, y1), _minus(x1, y0), _minus(x1, y1))
@@ -80,7 +88,6 @@ def _ends(corners: Corners, e: Vector, f: Vector) -> tuple[tuple[Vector, Vector]
 
 
 def _touch(time: Root, corners: Corners, e: Vector, f: Vector) -> bool:
-    """Whether the closed segments have a common point at an exact time."""
     if time.sign_of(_dot(_cross(e, f), _cross(e, f))):
         return _lines_meet_inside(time, corners[0], e, f)
     # Parallel, or of no length: they meet if an end of one lies on the other.
@@ -132,3 +139,53 @@ def _dot(u: Vector, v: Vector) -> Polynomial:
 def _cross(u: Vector, v: Vector) -> Vector:
     a, b, c = (subtract(multiply(u[i], v[j]), multiply(u[j], v[i])) for i, j in ((1, 2), (2, 0), (0, 1)))
     return a, b, c
+
+
+def meet_triangle(start: Sequence[Point], end: Sequence[Point]) -> bool:
+    """Whether a segment that moves and a triangle that does not meet at any time in [0, 1].
+
+    Start and end are the points x₀, x₁, y₀, y₁, y₂ at times 0 and 1; the last three are the same at both.
+    """
+    x, triangle = list(start[:2]), list(start[2:])
+    if any(pierced_at(p, q, triangle) is not None for p, q in [x, (start[0], end[0]), (start[1], end[1])]):
+        return True
+    return any(meet([*x, *edge], [*end[:2], *edge]) for edge in combinations(triangle, 2))
+
+
+def pierced_at(p: Point, q: Point, triangle: Sequence[Point]) -> Fraction | None:
+    """The parameter at which the segment from p to q meets a triangle; None if it does not.
+
+    By Cramer's rule for p + s (q − p) = y₀ + r f + t g. If they are in one plane it is 0, or None if p is not in the
+    triangle: that the segment meets its edges must be seen elsewhere.
+    """
+    y0, y1, y2 = triangle
+    f, g, d, D = _difference(y1, y0), _difference(y2, y0), _difference(p, q), _difference(p, y0)
+    volume = _det(d, f, g)
+    if volume == 0:
+        return Fraction(0) if _in_plane_and_inside(D, f, g) else None
+    s, r, t = (_det(*columns) / volume for columns in ((D, f, g), (d, D, g), (d, f, D)))
+    inside = 0 <= s <= 1 and r >= 0 and t >= 0 and r + t <= 1
+    return s if inside else None
+
+
+def _in_plane_and_inside(D: Point, f: Point, g: Point) -> bool:
+    """Whether D = r f + t g with r, t ≥ 0 and r + t ≤ 1, for a triangle with an area; by the normal equations."""
+    ff, fg, gg, Df, Dg = _inner(f, f), _inner(f, g), _inner(g, g), _inner(D, f), _inner(D, g)
+    whole = ff * gg - fg * fg
+    if whole == 0 or _det(D, f, g) != 0:
+        return False
+    r, t = (Df * gg - Dg * fg) / whole, (Dg * ff - Df * fg) / whole
+    return r >= 0 and t >= 0 and r + t <= 1
+
+
+def _difference(u: Point, v: Point) -> Point:
+    return [a - b for a, b in zip(u, v, strict=True)]
+
+
+def _inner(u: Point, v: Point) -> Fraction:
+    return sum((a * b for a, b in zip(u, v, strict=True)), Fraction(0))
+
+
+def _det(u: Point, v: Point, w: Point) -> Fraction:
+    products = (u[i] * (v[j] * w[k] - v[k] * w[j]) for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)))
+    return sum(products, Fraction(0))

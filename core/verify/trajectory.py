@@ -2,7 +2,7 @@
 
 A file is a zip archive of .npy arrays, as numpy.savez writes it: ``stage_000``, ``stage_001``, … each (k, n, m) and
 float64, and ``component_sizes_000``, … with the numbers of vertices of the components. Where some of them are open
-polygons, ``component_closed_000``, … tells which are closed; without it all are. There may be obstacles,
+polygons, ``component_closed_000``, … says which are closed; without it all are. There may be obstacles,
 ``obstacle_000_vertices``, … each (k, 3) and float64, and ``obstacle_000_faces``, … each (f, 3) or (f, 2), of whole
 numbers, at least one; and ``pins``, (k, m) and float64, the points at which a vertex stays. Of the stages only one
 frame is in memory at a time (in Fortran order, one stage of bounded size), and memory is taken only for data that the
@@ -10,12 +10,13 @@ file really has.
 """
 
 import ast
+import math
 import operator
 import struct
 import zipfile
 import zlib
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -29,7 +30,7 @@ _MAX_HEADER = 1000
 _MAX_FRAME = 1 << 25  # bytes: over a million vertices in space
 _MAX_FORTRAN = 1 << 28  # bytes of a whole stage in Fortran order, whose frames are scattered over it
 _MAX_SIZES = 1 << 24  # bytes
-_MAX_OBSTACLE = 1 << 28  # bytes of an array of an obstacle
+_MAX_TABLE = 1 << 28  # bytes of an array of an obstacle, or of pins
 _PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # what NumPy writes
 _DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError)
 
@@ -59,40 +60,46 @@ class Stage:
 
 
 def stages(path: Path | str) -> Iterator[Stage]:
-    """Yield the stages of a file, in order; frames of a stage can be read until the next one is asked for.
+    """Yield the stages of a file, in order; frames of a stage can be read until the next one is requested.
 
-    Raises
-    ------
-    TrajectoryError
-        If the file is none or is damaged, also while frames are read.
+    A TrajectoryError if the file is none or is damaged, also while frames are read.
     """
     with _opened(path) as archive:
         for number in range(_count(archive)):
-            with _member(archive, f"stage_{number:03d}") as file:
-                yield _stage(archive, file, number)
+            components = _components(archive, number)
+            with _member(archive, f"stage_{number:03d}") as array:
+                yield Stage(array.name, components, _frames(array, sum(each.size for each in components)))
 
 
-def still_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
-    """The obstacles of a file: vertices, shape (k, 3), and indices of simplices, shape (f, 2 or 3), of each.
-
-    Raises
-    ------
-    TrajectoryError
-        If the file cannot be read, or an index has no vertex.
-    """
+def obstacle_parts(path: Path | str) -> list[tuple[FloatArray, IntArray]]:
+    """The obstacles of a file: vertices, shape (k, 3), and indices of simplices, shape (f, 2 or 3), of each."""
     with _opened(path) as archive:
-        return [_obstacle(archive, name) for name in _obstacle_names(archive)]
+        found = sorted(name for name in archive.namelist() if name.startswith("obstacle_"))
+        names = [f"obstacle_{k:03d}" for k in range(len(found) // 2)]
+        if found != sorted(f"{name}_{part}.npy" for name in names for part in ("faces", "vertices")):
+            raise TrajectoryError("the obstacles are not numbered obstacle_000, …, each with vertices and faces")
+        return [_obstacle(archive, name) for name in names]
 
 
-def held_points(path: Path | str) -> FloatArray:
+def pinned_points(path: Path | str) -> FloatArray:
     """The places of the pins of a file, shape (k, m); (0, 0) if it has none. Raises as `stages` does."""
     with _opened(path) as archive:
         if "pins.npy" not in archive.namelist():
             return np.empty((0, 0))
-        points = _whole(archive, "pins", "f")
+        points = _table(archive, "pins", "f")
     if points.dtype != np.dtype("<f8") or not np.isfinite(points).all():
         raise TrajectoryError(f"pins is a table of {points.dtype}; it must be one of finite numbers, float64")
     return np.array(points, dtype=np.float64, order="C")
+
+
+def count_legs(path: Path | str) -> int:
+    """Number of legs in a file by the headers of its stages, as far as these can be read."""
+    legs = 0
+    with suppress(TrajectoryError), _opened(path) as archive:
+        for number in range(_count(archive)):
+            with _member(archive, f"stage_{number:03d}") as array:
+                legs += max(array.shape[0] - 1, 0) if array.shape else 0
+    return legs
 
 
 @contextmanager
@@ -107,50 +114,14 @@ def _opened(path: Path | str) -> Iterator[zipfile.ZipFile]:
         raise TrajectoryError(f"the file cannot be read: {error}") from error
 
 
-def count_legs(path: Path | str) -> int:
-    """Number of legs in a file by the headers of its stages, as far as these can be read."""
-    legs = 0
-    try:
-        with zipfile.ZipFile(path) as archive:
-            for number in range(_count(archive)):
-                with _member(archive, f"stage_{number:03d}") as file:
-                    (frames, *_), _, _ = _header(file, f"stage_{number:03d}")
-                    legs += max(frames - 1, 0)
-    except (*_DAMAGE, ValueError):
-        pass
-    return legs
-
-
 def _count(archive: zipfile.ZipFile) -> int:
     names = archive.namelist()
     if len(set(names)) < len(names):
         raise TrajectoryError("the file has two arrays of one name")
     found = sorted(name for name in names if name.startswith("stage_"))
-    wanted = [f"stage_{k:03d}.npy" for k in range(len(found))]
-    if not found or found != sorted(wanted):
+    if not found or found != sorted(f"stage_{k:03d}.npy" for k in range(len(found))):
         raise TrajectoryError("the stages are not numbered stage_000, stage_001, …, each once")
     return len(found)
-
-
-def _stage(archive: zipfile.ZipFile, file: IO[bytes], number: int) -> Stage:
-    """A stage, whose frames are read as long as its file is open."""
-    components = _components(archive, number)
-    name = f"stage_{number:03d}"
-    shape, dtype, fortran = _header(file, name)
-    if dtype != np.dtype("<f8") or len(shape) != 3:
-        raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be (k, n, m) of float64")
-    k, n, m = shape
-    count = sum(each.size for each in components)
-    if n != count:
-        raise TrajectoryError(f"{name} has {n} vertices, but its components have {count}")
-    if k < 1 or m not in (2, 3):
-        raise TrajectoryError(f"{name} has shape {shape}; frames there must be, in dimension 2 or 3")
-    if n * m * 8 > _MAX_FRAME:
-        raise TrajectoryError(f"{name} has {n} vertices, more than this program takes")
-    if fortran and k * n * m * 8 > _MAX_FORTRAN:
-        raise TrajectoryError(f"{name} is in Fortran order and large; write it with numpy.ascontiguousarray")
-    frames = _scattered_frames(file, name, (k, n, m)) if fortran else _frames(file, name, k, (n, m))
-    return Stage(name, components, frames)
 
 
 def _components(archive: zipfile.ZipFile, number: int) -> Components:
@@ -168,27 +139,31 @@ def _components(archive: zipfile.ZipFile, number: int) -> Components:
     return [Component(*each) for each in zip(sizes, closed, strict=True)]
 
 
-def _list(archive: zipfile.ZipFile, name: str, kinds: str, what: str) -> list[int]:
-    """A one-dimensional array of some kinds of numbers."""
-    with _member(archive, name) as file:
-        shape, dtype, _ = _header(file, name)
-        if dtype.kind not in kinds or len(shape) != 1 or not 0 < shape[0] * dtype.itemsize <= _MAX_SIZES:
-            raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be a list of {what}")
-        data = _exactly(file, shape[0] * dtype.itemsize, name)
-        _check_end(file, name)
-    return list(map(int, np.frombuffer(data, dtype).tolist()))
+def _frames(array: "_Array", vertices: int) -> Iterator[FloatArray]:
+    """The frames of a stage with a number of vertices, read while its file is open."""
+    name, shape = array.name, array.shape
+    if array.dtype != np.dtype("<f8") or len(shape) != 3:
+        raise TrajectoryError(f"{name} is an array {shape} of {array.dtype}; it must be (k, n, m) of float64")
+    k, n, m = shape
+    if n != vertices:
+        raise TrajectoryError(f"{name} has {n} vertices, but its components have {vertices}")
+    if k < 1 or m not in (2, 3):
+        raise TrajectoryError(f"{name} has shape {shape}; frames there must be, in dimension 2 or 3")
+    if n * m * 8 > _MAX_FRAME:
+        raise TrajectoryError(f"{name} has {n} vertices, more than this program takes")
+    if array.fortran and k * n * m * 8 > _MAX_FORTRAN:
+        raise TrajectoryError(f"{name} is in Fortran order and large; write it with numpy.ascontiguousarray")
+    return (_finite(name, k, frame) for k, frame in enumerate(array.whole() if array.fortran else array.one_by_one()))
 
 
-def _obstacle_names(archive: zipfile.ZipFile) -> list[str]:
-    found = sorted(name for name in archive.namelist() if name.startswith("obstacle_"))
-    names = [f"obstacle_{k:03d}" for k in range(len(found) // 2)]
-    if found != sorted(f"{name}_{part}.npy" for name in names for part in ("faces", "vertices")):
-        raise TrajectoryError("the obstacles are not numbered obstacle_000, …, each with vertices and faces")
-    return names
+def _finite(name: str, k: int, frame: NDArray[Any]) -> FloatArray:
+    if not np.isfinite(frame).all():
+        raise TrajectoryError(f"{name}, frame {k}: a coordinate is not finite")
+    return np.array(frame, dtype=np.float64, order="C")
 
 
 def _obstacle(archive: zipfile.ZipFile, name: str) -> tuple[FloatArray, IntArray]:
-    vertices, faces = _whole(archive, f"{name}_vertices", "f"), _whole(archive, f"{name}_faces", "iu")
+    vertices, faces = _table(archive, f"{name}_vertices", "f"), _table(archive, f"{name}_faces", "iu")
     if vertices.dtype != np.dtype("<f8") or vertices.shape[1] != 3:
         found = f"{vertices.shape} of {vertices.dtype}"
         raise TrajectoryError(f"{name}_vertices is an array {found}; it must be (k, 3) of float64")
@@ -203,80 +178,79 @@ def _obstacle(archive: zipfile.ZipFile, name: str) -> tuple[FloatArray, IntArray
     return np.array(vertices, dtype=np.float64, order="C"), faces.astype(np.intp)
 
 
-def _whole(archive: zipfile.ZipFile, name: str, kinds: str) -> NDArray[Any]:
-    """An array with two indices, of bounded size, read at once."""
-    with _member(archive, name) as file:
-        shape, dtype, fortran = _header(file, name)
-        if len(shape) != 2 or dtype.kind not in kinds:
-            raise TrajectoryError(f"{name} is an array {shape} of {dtype}; it must be a table of numbers")
-        count = shape[0] * shape[1]
-        if count * dtype.itemsize > _MAX_OBSTACLE:
-            raise TrajectoryError(f"{name} has {shape[0]} rows, more than this program takes")
-        data = _exactly(file, count * dtype.itemsize, name)
-        _check_end(file, name)
-    return np.frombuffer(data, dtype).reshape(shape, order="F" if fortran else "C")
+def _list(archive: zipfile.ZipFile, name: str, kinds: str, what: str) -> list[int]:
+    with _member(archive, name) as array:
+        if array.dtype.kind not in kinds or len(array.shape) != 1 or not 0 < array.size <= _MAX_SIZES:
+            raise TrajectoryError(f"{name} is an array {array.shape} of {array.dtype}; it must be a list of {what}")
+        return list(map(int, array.whole().tolist()))
 
 
-def _member(archive: zipfile.ZipFile, name: str) -> IO[bytes]:
+def _table(archive: zipfile.ZipFile, name: str, kinds: str) -> NDArray[Any]:
+    with _member(archive, name) as array:
+        if array.dtype.kind not in kinds or len(array.shape) != 2:
+            raise TrajectoryError(f"{name} is an array {array.shape} of {array.dtype}; it must be a table of numbers")
+        if array.size > _MAX_TABLE:
+            raise TrajectoryError(f"{name} has {array.shape[0]} rows, more than this program takes")
+        return array.whole()
+
+
+@contextmanager
+def _member(archive: zipfile.ZipFile, name: str) -> Iterator["_Array"]:
     if f"{name}.npy" not in archive.namelist():
         raise TrajectoryError(f"{name} is missing")
     if archive.getinfo(f"{name}.npy").compress_type not in _PACKED:
         raise TrajectoryError(f"{name} is packed by a method that NumPy does not use; write it with numpy.savez")
-    return archive.open(f"{name}.npy")
+    with archive.open(f"{name}.npy") as file:
+        yield _Array(name, file)
 
 
-def _header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], "np.dtype[np.generic]", bool]:
-    """Shape and type of an array, and whether it is in Fortran order, from a .npy header of bounded length."""
-    magic = _exactly(file, 8, name)
-    if magic not in (b"\x93NUMPY\x01\x00", b"\x93NUMPY\x02\x00"):
-        raise TrajectoryError(f"{name} is not an array in NumPy's format 1.0 or 2.0")
-    length = int.from_bytes(_exactly(file, 2 if magic[6] == 1 else 4, name), "little")
-    if length > _MAX_HEADER:
-        raise TrajectoryError(f"{name} has a header of {length} bytes, which is too long")
-    try:
-        header = ast.literal_eval(_exactly(file, length, name).decode("latin1"))
-        shape, fortran = tuple(map(operator.index, header["shape"])), bool(header["fortran_order"])
-        dtype = np.dtype(str(header["descr"]))
-    except (ValueError, SyntaxError, TypeError, KeyError, MemoryError, RecursionError) as error:
-        raise TrajectoryError(f"{name} has a header that cannot be read") from error
-    if min(shape, default=0) < 0:
-        raise TrajectoryError(f"{name} has a negative shape")
-    return shape, dtype, fortran
+class _Array:
+    """An array whose header has been read, and of which nothing is believed: shape, type, and order of its entries."""
 
+    def __init__(self, name: str, file: IO[bytes]) -> None:
+        self.name, self._file = name, file
+        magic = self._read(8)
+        if magic not in (b"\x93NUMPY\x01\x00", b"\x93NUMPY\x02\x00"):
+            raise TrajectoryError(f"{name} is not an array in NumPy's format 1.0 or 2.0")
+        length = int.from_bytes(self._read(2 if magic[6] == 1 else 4), "little")
+        if length > _MAX_HEADER:
+            raise TrajectoryError(f"{name} has a header of {length} bytes, which is too long")
+        text = self._read(length).decode("latin1")
+        try:
+            header = ast.literal_eval(text)
+            self.shape = tuple(map(operator.index, header["shape"]))
+            self.fortran, self.dtype = bool(header["fortran_order"]), np.dtype(str(header["descr"]))
+        except (ValueError, SyntaxError, TypeError, KeyError, MemoryError, RecursionError) as error:
+            raise TrajectoryError(f"{name} has a header that cannot be read") from error
+        if min(self.shape, default=0) < 0:
+            raise TrajectoryError(f"{name} has a negative shape")
 
-def _frames(file: IO[bytes], name: str, count: int, shape: tuple[int, int]) -> Iterator[FloatArray]:
-    for k in range(count):
-        data = _exactly(file, 8 * shape[0] * shape[1], name)
-        yield _finite(np.frombuffer(data, "<f8").reshape(shape), name, k)
-    _check_end(file, name)
+    @property
+    def size(self) -> int:
+        return math.prod(self.shape) * self.dtype.itemsize
 
+    def whole(self) -> NDArray[Any]:
+        data = self._read(self.size)
+        self._check_end()
+        return np.frombuffer(data, self.dtype).reshape(self.shape, order="F" if self.fortran else "C")
 
-def _scattered_frames(file: IO[bytes], name: str, shape: tuple[int, int, int]) -> Iterator[FloatArray]:
-    """The frames of an array in Fortran order, in which the number of the frame runs fastest."""
-    data = _exactly(file, 8 * shape[0] * shape[1] * shape[2], name)
-    _check_end(file, name)
-    for k, frame in enumerate(np.frombuffer(data, "<f8").reshape(shape, order="F")):
-        yield _finite(frame, name, k)
+    def one_by_one(self) -> Iterator[NDArray[Any]]:
+        count, *shape = self.shape
+        for _ in range(count):
+            yield np.frombuffer(self._read(self.size // count), self.dtype).reshape(shape)
+        self._check_end()
 
+    def _check_end(self) -> None:
+        if self._file.read(1):
+            raise TrajectoryError(f"{self.name} is longer than its header says")
 
-def _finite(frame: FloatArray, name: str, k: int) -> FloatArray:
-    if not np.isfinite(frame).all():
-        raise TrajectoryError(f"{name}, frame {k}: a coordinate is not finite")
-    return np.array(frame, dtype=np.float64, order="C")
-
-
-def _check_end(file: IO[bytes], name: str) -> None:
-    if file.read(1):
-        raise TrajectoryError(f"{name} is longer than its header says")
-
-
-def _exactly(file: IO[bytes], count: int, name: str) -> bytes:
-    """Read ``count`` bytes, in pieces, so that memory grows only with what is really there."""
-    pieces = []
-    while count:
-        piece = file.read(min(count, 1 << 20))
-        if not piece:
-            raise TrajectoryError(f"{name} is shorter than its header says")
-        pieces.append(piece)
-        count -= len(piece)
-    return b"".join(pieces)
+    def _read(self, count: int) -> bytes:
+        """Read ``count`` bytes, in pieces, so that memory grows only with what is really there."""
+        pieces = []
+        while count:
+            piece = self._file.read(min(count, 1 << 20))
+            if not piece:
+                raise TrajectoryError(f"{self.name} is shorter than its header says")
+            pieces.append(piece)
+            count -= len(piece)
+        return b"".join(pieces)

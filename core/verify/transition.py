@@ -1,4 +1,6 @@
-"""Whether two polygons are the same curve with vertices inserted and removed on edges.
+"""Which vertices stay: those with pins, and where stages meet those of the same curve on another mesh.
+
+A pin holds if a vertex has its very coordinates, in all frames of a stage the same vertex.
 
 Vertices that both have, with exactly the same coordinates and in the same cyclic order (in the same order, and with the
 ends among them, where the polygons are open), span a third polygon. Each
@@ -9,12 +11,13 @@ rational numbers where necessary. So each of the two is isotopic to the common p
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
 
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 
 _ROUNDING_UNITS = 16  # distance from the edge that is taken for rounding, in units of the last place
 
@@ -28,15 +31,7 @@ class DifferentCurveError(Exception):
 def common_vertices(first: FloatArray, second: FloatArray, closed: bool) -> tuple[list[int], list[int]]:
     """Return the indices, in the first and in the second polygon, both closed or both open, of the vertices they share.
 
-    Parameters
-    ----------
-    first, second
-        Vertices of one component at the end of a stage and the start of the next, shapes (n, m) and (n', m).
-
-    Raises
-    ------
-    DifferentCurveError
-        If there are too few, or not in the same order.
+    Shapes (n, m) and (n', m); a DifferentCurveError if there are too few, or not in the same order.
     """
     places = {tuple(p): k for k, p in enumerate(second.tolist())}
     here = [k for k, p in enumerate(first.tolist()) if tuple(p) in places]
@@ -53,25 +48,11 @@ def common_vertices(first: FloatArray, second: FloatArray, closed: bool) -> tupl
 
 
 def straightened(polygon: FloatArray, kept: Sequence[int], closed: bool = True) -> tuple[dict[int, Point], float]:
-    """Move the vertices of a polygon that are not kept onto the edges between those that are.
+    """Move the vertices of a polygon, shape (n, m), that are not kept onto the edges between those that are.
 
-    Parameters
-    ----------
-    polygon
-        Vertices, shape (n, m).
-    kept
-        Indices of the vertices that stay, in ascending order; the ends of an open polygon are among them.
-    closed
-        Whether an edge leads from the last vertex to the first.
-
-    Returns
-    -------
-    The new places of the vertices that move, exact, and an upper bound for the change of any coordinate.
-
-    Raises
-    ------
-    DifferentCurveError
-        If one of them is further away than rounding, or they are not in order.
+    Those kept are given by their indices, in ascending order; the ends of an open polygon are among them.  Returns the
+    new places of the vertices that move, exact, and an upper bound for the change of any coordinate.  A
+    DifferentCurveError if one of them is further away than rounding, or they are not in order.
     """
     moved: dict[int, Point] = {}
     largest = Fraction(0)
@@ -111,3 +92,34 @@ def _onto_edge(p: FloatArray, u: FloatArray, v: FloatArray) -> tuple[Point, Frac
 
 def _allowed(points: FloatArray) -> float:
     return _ROUNDING_UNITS * float(np.spacing(np.abs(points).max()))
+
+
+class LostPinError(Exception):
+    """A pin is not, or no longer, where a vertex is; the message says which."""
+
+
+@dataclass(frozen=True, eq=False)
+class HeldVertices:
+    """The vertices of one stage that must not move."""
+
+    vertices: IntArray  # their indices, in the order of the pins; shape (k,)
+    points: FloatArray  # the places of the pins, shape (k, m)
+
+    @classmethod
+    def among(cls, frame: FloatArray, points: FloatArray) -> "HeldVertices":
+        """The vertices of a stage's first frame, shape (n, m), at points, shape (k, m).
+
+        A LostPinError if there is none at one of them.
+        """
+        places = {tuple(vertex): k for k, vertex in enumerate(frame.tolist())}
+        found = [places.get(tuple(point), -1) for point in points.tolist()]
+        if -1 in found:
+            raise LostPinError(f"no vertex is at pin {found.index(-1) + 1} (counted from 1)")
+        return cls(np.array(found, dtype=np.intp), points)
+
+    def check(self, frame: FloatArray) -> None:
+        """Raise a LostPinError if one of them is elsewhere in a later frame; so it stays on the straight way there."""
+        moved = np.flatnonzero((frame[self.vertices] != self.points).any(axis=1)) if len(self.points) else self.vertices
+        if moved.size:
+            vertex = self.vertices[moved[0]] + 1
+            raise LostPinError(f"vertex {vertex} leaves pin {moved[0] + 1} (counted from 1)")

@@ -14,7 +14,7 @@ from mobius_flow.cli import relax as relax_command
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.curve.io import FORMATS
 from mobius_flow.core.errors import MobiusFlowError
-from mobius_flow.core.system.files import atomic_write
+from mobius_flow.core.files import atomic_write
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
 
@@ -207,7 +207,7 @@ def test_copying_that_fails_brings_the_old_contents_back(tmp_path: Path, monkeyp
             raise OSError(28, "No space left on device")
         return write(descriptor, data)
 
-    monkeypatch.setattr("mobius_flow.core.system.files._replace", lambda *_: False)
+    monkeypatch.setattr("mobius_flow.core.files._replace", lambda *_: False)
     monkeypatch.setattr(os, "write", full)
     with pytest.raises(OSError, match="No space"), atomic_write(target) as temporary:
         temporary.write_text("new and longer")

@@ -14,9 +14,9 @@ from mobius_flow.cli import compare as compare_command
 from mobius_flow.cli import main, outputs, signals
 from mobius_flow.cli.progress import Progress
 from mobius_flow.core import Curve, Iterate, Result, Trajectory, read_curve, relax, write_curve
+from mobius_flow.core.deadline import termination_raises
 from mobius_flow.core.driver import finish
 from mobius_flow.core.driver.compare import History, compare
-from mobius_flow.core.system.signals import termination_raises
 from mobius_flow.core.verify import verify
 from shapes import torus_trefoil
 

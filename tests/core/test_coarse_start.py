@@ -199,7 +199,7 @@ def test_many_rises_are_added_up(further: list[float], told: str) -> None:
     iterates = [Iterate(2 * k, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for k, energy in enumerate(energies)]
     for k in range(0, len(iterates), 2):
         rises.change(iterates[k], iterates[k + 1])
-    message = rises.told(Outcome(Status.CONVERGED, ("done",)), 9).message
+    message = rises.summarised(Outcome(Status.CONVERGED, ("done",)), 9).message
     assert message == (
         "done; changes of mesh or shape raised the energy: 4 → 4.5 at iteration 2, 3 → 3.5 at iteration 6, "
         f"2 → 2.25 at iteration 10, and {told}"
@@ -220,5 +220,5 @@ def test_energies_that_are_told_show_where_it_rose(energies: list[float], told: 
     iterates = [Iterate(3, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for energy in energies]
     for before, after in itertools.pairwise(iterates):
         rises.change(before, after)
-    message = rises.told(Outcome(Status.CONVERGED, ("done",)), 9).message
+    message = rises.summarised(Outcome(Status.CONVERGED, ("done",)), 9).message
     assert message == f"done; changes of mesh or shape raised the energy: {told} at iteration 3"

@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.core.curve import Curve
 from mobius_flow.core.curve.io import read_curve, write_curve
 from mobius_flow.core.errors import CurveFileError
-from mobius_flow.core.system.files import atomic_write
+from mobius_flow.core.files import atomic_write
 
 
 def _interrupted_write(path: Path) -> None:

@@ -17,8 +17,8 @@ from mobius_flow.core.driver.hopping import (
     MOST_VERTICES,
     hopping,
     is_circle,
-    told_of_unknot,
     trial,
+    unknot_message,
 )
 from mobius_flow.core.driver.loop import WithOutcome, iterates
 from mobius_flow.core.driver.motions import MOTIONS, Motion
@@ -235,24 +235,24 @@ def test_an_unknot_above_the_circle_is_never_called_done(hops: int, advice: str)
 
 def test_a_knot_that_polynomials_do_not_tell_from_the_unknot_may_be_one() -> None:
     """The untwisted double of the trefoil is knotted, with Δ = 1, and of too many crossings for the table."""
-    assert told_of_unknot(double(knot("3_1"), 0)) == MAY_BE_UNKNOT
+    assert unknot_message(double(knot("3_1"), 0)) == MAY_BE_UNKNOT
 
 
 def test_strands_that_no_view_tells_apart_leave_the_type_open() -> None:
     """A figure eight whose strands pass at 10⁻¹² of its size, as they may where a curve is stuck."""
     eight = np.array([[-1, -1, 0], [1, 1, 1e-12], [2, 0, 0], [1, -1, 0], [-1, 1, 0], [-2, 0, 0]])
-    assert told_of_unknot(Curve(eight)) == MAY_BE_UNKNOT
+    assert unknot_message(Curve(eight)) == MAY_BE_UNKNOT
 
 
 def test_the_type_of_a_curve_of_very_many_vertices_is_not_looked_at() -> None:
     culprit = knot("culprit")
-    assert told_of_unknot(refine(culprit, MOST_VERTICES)) == IS_UNKNOT
-    assert told_of_unknot(refine(culprit, MOST_VERTICES + 1)) is None
+    assert unknot_message(refine(culprit, MOST_VERTICES)) == IS_UNKNOT
+    assert unknot_message(refine(culprit, MOST_VERTICES + 1)) is None
 
 
 def test_knots_links_circles_and_what_is_not_in_space_are_no_case_for_it() -> None:
     for curve in (knot("8_19"), hopf_link(40), regular_polygon(40), Curve(regular_polygon(40).vertices[:, :2])):
-        assert told_of_unknot(curve) is None
+        assert unknot_message(curve) is None
 
 
 def test_a_circle_is_told_from_what_is_wound_like_one() -> None:

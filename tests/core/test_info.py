@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
-from mobius_flow.core.info import info
+from mobius_flow.core.info import info, measure
 from mobius_flow.core.knots import knot, torus_knot
-from mobius_flow.core.measure import measure
 from shapes import half_circle
 
 # Near a minimum some Möbius directions are so soft that only well converged curves show that they are positive.

@@ -34,8 +34,7 @@ from mobius_flow.core.curve import io
 from mobius_flow.core.driver.compare import compare
 from mobius_flow.core.energies import Objective, moebius_kpoint
 from mobius_flow.core.extrapolation import Extrapolation, extrapolated
-from mobius_flow.core.info import info
-from mobius_flow.core.measure import measure
+from mobius_flow.core.info import info, measure
 from mobius_flow.core.verify import verify
 from shapes import torus_trefoil
 

@@ -28,8 +28,8 @@ from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.compare import compare
 from mobius_flow.core.driver.interventions import CoarseStart
 from mobius_flow.core.energies import ENERGIES
+from mobius_flow.core.info import measure
 from mobius_flow.core.knots import knot
-from mobius_flow.core.measure import measure
 from mobius_flow.core.metrics import MoebiusMetric
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 from torus_energies import torus_knot_minimum

@@ -13,10 +13,9 @@ from mobius_flow.core import Iterate, RelaxOptions, minimize, relax
 from mobius_flow.core.driver.compare import compare
 from mobius_flow.core.energies.density import Partials, PointPairs
 from mobius_flow.core.energies.kpoint import KPointEnergy
-from mobius_flow.core.info import info
-from mobius_flow.core.measure import measure
+from mobius_flow.core.info import info, measure
 from mobius_flow.core.quadrature import MIDPOINT
-from mobius_flow.core.system.threads import BLAS
+from mobius_flow.core.threads import BLAS
 from mobius_flow.core.types import FloatArray
 from processes import finished
 from shapes import torus_trefoil

@@ -11,7 +11,7 @@ from typing import BinaryIO, TextIO
 
 from ...arguments import checked
 from ...errors import CurveError, CurveFileError, reason_of, wrong_suffix
-from ...system.files import atomic_write
+from ...files import atomic_write
 from ..curve import Curve
 from . import codes, json_lists, obj, pdb, vect, xyz
 from .polygons import Polygon, assemble

@@ -30,7 +30,6 @@ class SteepestDescent:
     natural_step: float = np.inf
 
     def propose(self, point: Point, memory: None) -> tuple[FloatArray, None]:
-        """The negative projected gradient; nothing is remembered."""
         return -point.gradient, None
 
 

@@ -1,13 +1,12 @@
 """Line searches: Armijo's rule along the constraints (Section 6.3 of [RS21])."""
 
-import math
 from dataclasses import dataclass, field
 from functools import partial
 from typing import ClassVar, Protocol
 
 import numpy as np
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...metrics import Metric
 from ...types import FloatArray
 from ..directions import Direction
@@ -26,25 +25,18 @@ class AlongLine(Protocol):
         """Find a step along a descent direction, with its own and the last accepted step size; see `Armijo.along`."""
 
 
+@checked_fields
 @dataclass(frozen=True)
 class LineSearch:
-    """Direction × search.
-
-    Parameters
-    ----------
-    metric_steps
-        Number of steps that a metric is made for, unless contact limits one of them: building and inverting it is most
-        of the work, and a few steps on it is a metric all the same.
-    """
+    """Direction × search."""
 
     direction: Direction
     search: AlongLine
-    metric_steps: int = 1
+    # number of steps that a metric is made for, unless contact limits one of them: building and inverting it is most
+    # of the work, and a few steps on it is a metric all the same
+    metric_steps: int = number(1)
     second_order: ClassVar[bool] = False
     other_metrics: ClassVar[tuple[Metric, ...]] = ()
-
-    def __post_init__(self) -> None:
-        check_fields(self, metric_steps=(0, math.inf))
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
         """Take one step; what fails is tried again without the direction's memory and in the metric of this curve."""
@@ -59,45 +51,23 @@ class LineSearch:
         return step, State(memory, step.size)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Armijo:
-    """Shrink the first trial until the energy goes down enough and the motion is proved.
+    """Shrink the first trial until the energy goes down enough and the motion is proved."""
 
-    Parameters
-    ----------
-    decrease
-        Required fraction of the predicted decrease: the paper's ½.
-    first
-        The first trial.
-    lengths
-        How fast lengths go to their targets.
-    max_trials
-        Number of trials.
-    """
-
-    decrease: float = 0.5
+    decrease: float = number(0.5, most=1)  # required fraction of the predicted decrease: the paper's ½
     first: FirstTrial = field(default_factory=FirstTrial)
-    lengths: TowardsTargets = field(default_factory=TowardsTargets)
-    max_trials: int = 40
-
-    def __post_init__(self) -> None:
-        check_fields(self, decrease=(0.0, 1.0), max_trials=(0, math.inf))
+    lengths: TowardsTargets = field(default_factory=TowardsTargets)  # how fast lengths go to their targets
+    max_trials: int = number(40)
 
     def along(self, point: Point, direction: FloatArray, natural: float, last: float) -> Step | NoStep:
-        """Find a step along a descent direction.
+        """Find a step along a tangent direction with DE·direction < 0; shape (n, m).
 
         The motion is the straight one from P to Q, where Q = P + τ·direction, moved towards the target lengths if they
-        are not reached yet, and back onto that level of the constraints by (42).  It is accepted if
-        E(Q) ≤ E(P) + ½ DE·(Q₀ − P) and the motion from P to Q is proved free of contact.
-
-        Parameters
-        ----------
-        direction
-            Tangent vector with DE·direction < 0; shape (n, m).
-        natural
-            The direction's own step size.
-        last
-            The last accepted one.
+        are not reached yet, and back onto that level of the constraints by (42).  It is accepted if E(Q) ≤ E(P) + ½
+        DE·(Q₀ − P) and the motion from P to Q is proved free of contact.  τ is at most the direction's own step size,
+        ``natural``, and a multiple of the last accepted one.
         """
         tau, limited_by = self.first(point, direction, min(natural, self._longest(point, direction, last)))
         normal = self.lengths.at(point, point.tangent_space)
@@ -139,7 +109,6 @@ class Armijo:
         return LEAST / speed if crawls and not on_target(point) else longest
 
     def _shorter(self, point: Point, rejected: Rejected, slope: float) -> float:
-        """Factor for the next trial."""
         if rejected.proof is not None:
             return max(0.1, self.first.collision_fraction * rejected.proof.time)
         if rejected.trial is None or not slope < 0.0:

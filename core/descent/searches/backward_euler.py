@@ -15,7 +15,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...metrics import Metric, MoebiusMetric
 from ...saddle import TangentSpace
 from ..hessian import energy_hessian, projected_conjugate_gradient
@@ -24,46 +24,31 @@ from ..step import Leg, NoStep, State, Step, judged
 from .armijo import Armijo
 
 
+@checked_fields
 @dataclass(frozen=True)
 class BackwardEuler:
-    """Halve τ until the equations are solved, Armijo's rule holds and the motion is proved.
+    """Halve τ until the equations are solved, Armijo's rule holds and the motion is proved."""
 
-    Parameters
-    ----------
-    preconditioner
-        The metric that is added to the flow's own, divided by τ, for Newton's method and the way to the constraints.
-    first_step, growth
-        τ of the first step, and how much longer than the last one a step may be.
-    newton_iterations, newton_tolerance
-        Of Newton's method, relative to the first residual: a step need not be more exact than the time discretisation.
-    krylov_iterations, krylov_tolerance
-        Of its linear systems.
-    armijo
-        Armijo's rule, and how fast lengths go to their targets.
-    """
-
+    # the metric that is added to the flow's own, divided by τ, for Newton's method and the way to the constraints
     preconditioner: Metric = field(default_factory=MoebiusMetric)
-    first_step: float = 0.1
-    growth: float = 2.0
-    newton_iterations: int = 8
-    newton_tolerance: float = 1e-3
-    krylov_iterations: int = 60
-    krylov_tolerance: float = 0.05
-    armijo: Armijo = field(default_factory=Armijo)
+    # first_step, growth: τ of the first step, and how much longer than the last one a step may be
+    first_step: float = number(0.1)
+    growth: float = number(2.0, above=1)
+    # newton_iterations, newton_tolerance: of Newton's method, relative to the first residual: a step need not be more
+    # exact than the time discretisation
+    newton_iterations: int = number(8)
+    newton_tolerance: float = number(1e-3, most=1)
+    # krylov_iterations, krylov_tolerance: of its linear systems
+    krylov_iterations: int = number(60)
+    krylov_tolerance: float = number(0.05, most=1)
+    armijo: Armijo = field(default_factory=Armijo)  # Armijo's rule, and how fast lengths go to their targets
     second_order: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        positive = (0.0, math.inf)
-        check_fields(self, first_step=positive, growth=(1.0, math.inf), newton_iterations=positive)
-        check_fields(self, newton_tolerance=(0.0, 1.0), krylov_iterations=positive, krylov_tolerance=(0.0, 1.0))
 
     @property
     def other_metrics(self) -> tuple[Metric, ...]:
-        """The preconditioner."""
         return (self.preconditioner,)
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
-        """Take one step."""
         tau = self.first_step if state.memory is None else self.growth * state.memory
         own, constraints = point.inner_product, point.tangent_space.constraints
         preconditioner = self.preconditioner.at(point.curve)

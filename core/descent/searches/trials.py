@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...collision import Contact
 from ...energies.components import energy_scale
 from ...saddle import TangentSpace
@@ -16,26 +16,14 @@ NOTHING = 1e-15  # displacement, in the program's units, that changes no coordin
 FEASIBLE = 1e-7  # error below which a curve counts as being on the constraints
 
 
+@checked_fields
 @dataclass(frozen=True)
 class FirstTrial:
-    """The first step size worth trying (Section 6.3 of [RS21]).
+    """The first step size worth trying (Section 6.3 of [RS21])."""
 
-    Parameters
-    ----------
-    collision_fraction
-        Of the first step with a contact: the paper's 2/3.
-    max_displacement
-        Of any vertex, in the program's units, in which a component is 4 to 8 long.
-    growth
-        The first trial is at most this many times the last accepted step.
-    """
-
-    collision_fraction: float = 2.0 / 3.0
-    max_displacement: float = 0.5
-    growth: float = 4.0
-
-    def __post_init__(self) -> None:
-        check_fields(self, collision_fraction=(0.0, 1.0), max_displacement=(0.0, np.inf), growth=(1.0, np.inf))
+    collision_fraction: float = number(2.0 / 3.0, most=1)  # of the first step with a contact: the paper's 2/3
+    max_displacement: float = number(0.5)  # of any vertex, in the program's units, in which a component is 4 to 8 long
+    growth: float = number(4.0, above=1)  # the first trial is at most this many times the last accepted step
 
     def __call__(self, point: Point, direction: FloatArray, longest: float) -> tuple[float, Contact | None]:
         """The first trial τ ≤ ``longest`` along a direction, and the contact that limits it, if any.
@@ -59,26 +47,13 @@ def on_target(point: Point) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class NormalStep:
-    """The way to the targets of the constraints from one point.
+    """The way to the targets of the constraints from one point."""
 
-    Attributes
-    ----------
-    full
-        −C^† Φ, the displacement that reaches them to first order; shape (n, m).
-    cost
-        DE·full, the energy that takes.
-    longest
-        The share of it that changes no length by more than a bounded factor.
-    least
-        The share taken even where it costs more energy than can be gained.
-    allowance
-        The energy that all of it may cost where there is nothing left to gain: there the first order says nothing.
-    """
-
-    full: FloatArray
-    cost: float
-    longest: float
-    least: float
+    full: FloatArray  # −C^† Φ, the displacement that reaches them to first order; shape (n, m)
+    cost: float  # DE·full, the energy that takes
+    longest: float  # the share of it that changes no length by more than a bounded factor
+    least: float  # the share taken even where it costs more energy than can be gained
+    # the energy that all of it may cost where there is nothing left to gain: there the first order says nothing
     allowance: float
 
     def share(self, gain: float) -> float:
@@ -97,26 +72,15 @@ class NormalStep:
         return share * max(0.0, self.allowance - gain)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class TowardsTargets:
-    """How fast lengths go to their targets.
+    """How fast lengths go to their targets."""
 
-    Parameters
-    ----------
-    length_change
-        Largest logarithmic change of an edge length in one step.
-    least_share
-        Of that step, taken even where it costs more energy than can be gained.
-    allowance
-        Part of the energy, by its scale, that reaching the targets may cost where there is nothing left to gain.
-    """
-
-    length_change: float = 0.25
-    least_share: float = 0.01
-    allowance: float = 1e-3
-
-    def __post_init__(self) -> None:
-        check_fields(self, length_change=(0.0, np.inf), least_share=(0.0, 1.0), allowance=(0.0, 1.0))
+    length_change: float = number(0.25)  # largest logarithmic change of an edge length in one step
+    least_share: float = number(0.01, most=1)  # of that step, taken even where it costs more energy than can be gained
+    # part of the energy, by its scale, that reaching the targets may cost where there is nothing left to gain
+    allowance: float = number(1e-3, most=1)
 
     def at(self, point: Point, space: TangentSpace) -> NormalStep:
         """The normal step at a point, none if it is on target; ``space`` gives the pseudo-inverse."""

@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.linalg import eigh
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...energies.components import energy_scale
 from ...errors import OptionError
 from ...metrics import Metric
@@ -35,48 +35,32 @@ class Region:
     gradient: FloatArray | None
 
 
+@checked_fields
 @dataclass(frozen=True)
 class TrustRegion:
-    """Shrink the radius until the step is feasible, free of contact and as good as predicted.
+    """Shrink the radius until the step is feasible, free of contact and as good as predicted."""
 
-    Parameters
-    ----------
-    newton_threshold
-        Of √E: longer gradients are not worth a Newton direction.
-    first_radius
-        In the metric's norm.
-    accept, good, poor
-        Ratios of actual to predicted reduction: below ``accept`` a step is rejected, above ``good`` the radius grows,
-        below ``poor`` it shrinks.
-    first
-        Bounds of a step.
-    underway
-        The search on the way to target lengths, where there is no Lagrangian to model.
-    max_trials
-        Number of trials.
-    """
-
-    newton_threshold: float = 0.3
-    first_radius: float = 1.0
+    newton_threshold: float = number(0.3)  # of √E: longer gradients are not worth a Newton direction
+    first_radius: float = number(1.0)  # in the metric's norm
+    # accept, good, poor: ratios of actual to predicted reduction: below ``accept`` a step is rejected, above ``good``
+    # the radius grows, below ``poor`` it shrinks
     accept: float = 0.05
     good: float = 0.7
     poor: float = 0.25
     first: FirstTrial = field(default_factory=FirstTrial)
+    # the search on the way to target lengths, where there is no Lagrangian to model
     underway: Armijo = field(default_factory=Armijo)
-    max_trials: int = 40
+    max_trials: int = number(40)
     second_order: ClassVar[bool] = True
     other_metrics: ClassVar[tuple[Metric, ...]] = ()
 
     def __post_init__(self) -> None:
-        positive = (0.0, math.inf)
-        check_fields(self, newton_threshold=positive, first_radius=positive, max_trials=positive)
         if not 0.0 < self.accept <= self.poor < self.good < 1.0:
             raise OptionError(
                 f"accept, poor and good are {self.accept}, {self.poor} and {self.good}; they must ascend within (0, 1)"
             )
 
     def step(self, point: Point, state: State) -> tuple[Step | NoStep, State]:
-        """Take one step."""
         if not on_target(point):
             step = self.underway.along(point, -point.gradient, math.inf, state.last_step)
             return step, (State(None, step.size) if isinstance(step, Step) else state)
@@ -109,19 +93,16 @@ class TrustRegion:
         )
 
     def _radius(self, radius: float, length: float, ratio: float) -> float:
-        """The radius after a step of this length in the metric."""
         grown = radius * (2.0 if ratio > self.good and length > 0.8 * radius else 1.0)
         return 0.5 * grown if ratio < self.poor else grown
 
     def _shorter(self, rejected: Rejected, shortest: float, length: float) -> float:
-        """The radius after a trial that was rejected."""
         if rejected.proof is None:
             return 0.4 * shortest
         return self.first.collision_fraction * max(rejected.proof.time, 0.1) * length
 
 
 def _ratio(point: Point, trial: Point, predicted: float) -> float:
-    """Actual to predicted reduction."""
     rounding = ROUNDING * abs(point.energy)
     return (point.energy - trial.energy + rounding) / (predicted + rounding)
 
@@ -138,7 +119,6 @@ class _Model:
 
     @classmethod
     def at(cls, point: Point, last_gradient: FloatArray | None, newton_threshold: float) -> "_Model":
-        """The model at a point."""
         hessian = lagrangian_hessian(point)
         vectors = [-point.gradient]
         threshold = newton_threshold * math.sqrt(energy_scale(point.problem.mesh, point.energy))
@@ -160,7 +140,6 @@ class _Model:
         return s, -float(self.linear @ c + 0.5 * c @ self.quadratic @ c)
 
     def reduction(self, s: FloatArray) -> float:
-        """Predicted reduction of a vector of the span."""
         return -float(np.sum(self.point.derivative * s) + 0.5 * np.sum(s * self.hessian(s)))
 
 
@@ -204,39 +183,21 @@ def _minimum_in_ball(q: FloatArray, g: FloatArray, radius: float) -> FloatArray:
     return np.asarray(vectors @ c)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Escape:
-    """Halve a step along ± a direction of negative curvature until it lowers the energy and is proved.
+    """Halve a step along ± a direction of negative curvature until it lowers the energy and is proved."""
 
-    Parameters
-    ----------
-    decrease
-        Required fraction of the predicted decrease.
-    longest
-        First step, in the metric's norm.
-    first
-        The first trial.
-    max_trials
-        Number of trials each way.
-    """
-
-    decrease: float = 0.1
-    longest: float = 0.5
+    decrease: float = number(0.1, most=1)  # required fraction of the predicted decrease
+    longest: float = number(0.5)  # first step, in the metric's norm
     first: FirstTrial = field(default_factory=FirstTrial)
-    max_trials: int = 20
-
-    def __post_init__(self) -> None:
-        check_fields(self, decrease=(0.0, 1.0), longest=(0.0, math.inf), max_trials=(0, math.inf))
+    max_trials: int = number(20)
 
     def step(self, point: Point, direction: FloatArray, curvature: float) -> Step | NoStep:
         """Find a step with E(Q) < E(P) + ½ c τ² curvature, c the required decrease.
 
-        Parameters
-        ----------
-        direction
-            Tangent vector of length 1 in the metric; shape (n, m).
-        curvature
-            ⟨direction, D²L direction⟩ < 0.
+        The direction, shape (n, m), is tangent and of length 1 in the metric, the curvature ⟨direction, D²L direction⟩
+        < 0.
         """
         limited_by = None
         for sign in (1.0, -1.0):

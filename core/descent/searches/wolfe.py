@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...errors import OptionError
 from ...metrics import Metric
 from ...types import FloatArray
@@ -17,33 +17,24 @@ from .armijo import ROUNDING, Armijo
 from .trials import NOTHING, FirstTrial, on_target
 
 
+@checked_fields
 @dataclass(frozen=True)
 class WeakWolfe:
     """Widen or halve a bracket until the energy goes down enough and its slope has become flat enough.
 
     Bisection after Lewis and Overton (Nonsmooth optimization via quasi-Newton methods, 2013): it needs no more than the
     two conditions and ends for every function that is bounded below.
-
-    Parameters
-    ----------
-    decrease, curvature
-        c₁ < c₂ of the two conditions.
-    first
-        The first trial.
-    underway
-        The search on the way to target lengths, where these are prescribed.
-    max_trials
-        Number of trials.
     """
 
-    decrease: float = 1e-4
-    curvature: float = 0.9
+    # decrease, curvature: c₁ < c₂ of the two conditions
+    decrease: float = number(1e-4, most=1)
+    curvature: float = number(0.9, most=1)
     first: FirstTrial = field(default_factory=FirstTrial)
+    # on the way to target lengths, where these are prescribed
     underway: Armijo = field(default_factory=Armijo)
-    max_trials: int = 40
+    max_trials: int = number(40)
 
     def __post_init__(self) -> None:
-        check_fields(self, decrease=(0.0, 1.0), curvature=(0.0, 1.0), max_trials=(0, math.inf))
         if self.decrease >= self.curvature:
             raise OptionError(f"decrease is {self.decrease}; it must be less than curvature, {self.curvature}")
 
@@ -79,7 +70,6 @@ class WeakWolfe:
         return trial.energy <= point.energy + self.decrease * slope + ROUNDING * abs(point.energy)
 
     def flat(self, trial: Point, direction: FloatArray, slope: float) -> bool:
-        """The condition on the slope at the end."""
         return float(np.sum(trial.derivative * trial.transport(direction))) >= self.curvature * slope
 
 
@@ -97,14 +87,9 @@ class Accelerated:
 
     Both sub-steps are truncated by collision detection, and the momentum is reset when the objective goes up
     (O'Donoghue and Candès, Adaptive restart for accelerated gradient schemes, 2015).
-
-    Parameters
-    ----------
-    search
-        Finds τ.
     """
 
-    search: WeakWolfe = field(default_factory=WeakWolfe)
+    search: WeakWolfe = field(default_factory=WeakWolfe)  # finds τ
     second_order: ClassVar[bool] = False
     other_metrics: ClassVar[tuple[Metric, ...]] = ()
 

@@ -1,6 +1,5 @@
 """Among the Möbius images of a curve, which have the same energy, the one that bends least, and a proved way there."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
@@ -8,7 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...constraints import weighted_barycenter
 from ...curve import Curve
 from ...curve.bending import bending, bending_and_derivative
@@ -27,20 +26,13 @@ IS_BALANCED = "no Möbius image within reach bends less"
 class MoebiusImages:
     """The Möbius images of the smooth curve through a polygon's vertices, as polygons of as many.
 
-    Vertices slide along the curve, so that the edges of every component keep the ratios of their lengths however
-    strongly a map stretches them; length and barycenter stay.
-
-    Parameters
-    ----------
-    curve
-        The polygon.
-    lengths
-        Target lengths of its edges, shape (n,): of those of one component only the ratios count.
+    Vertices slide along the curve, so that the edges of every component keep the ratios of their target lengths, shape
+    (n,), however strongly a map stretches them; length and barycenter stay.
     """
 
     def __init__(self, curve: Curve, lengths: FloatArray) -> None:
         self._curve, self._center = curve, _barycenter(curve)
-        # the unit sphere passes amidst the curve: poles far away and near the middle are about as far from (1, 0)
+        # the unit sphere passes through the curve: poles far away and in its middle are about as far from (1, 0)
         self._radius = float(np.sqrt(np.square(curve.vertices - self._center).sum(axis=1).mean()))
         self._splines = [periodic_spline(self._unit(points)) for points in curve.components]
         self._fractions = [np.cumsum(lengths[s]) / lengths[s].sum() for s in curve.mesh.slices]
@@ -52,7 +44,6 @@ class MoebiusImages:
         return float(np.log(value)), moebius_pullback(points, q, derivative / value)
 
     def at(self, q: FloatArray) -> Curve:
-        """The image under the map of q, shape (m + 1,)."""
         pieces = [_image(*each, q) for each in zip(self._splines, self._fractions, strict=True)]
         image = self._curve.with_vertices(np.concatenate(pieces))
         scale = self._curve.length / image.length
@@ -74,28 +65,18 @@ def _barycenter(curve: Curve) -> FloatArray:
     return weighted_barycenter(curve) / curve.length
 
 
+@checked_fields
 @dataclass(eq=False)
 class Balance(Intervention):
-    """Go from a converged curve to its balanced image, once.
+    """Go from a converged curve to its balanced image, once."""
 
-    Parameters
-    ----------
-    gain
-        Relative decrease of the bending that is worth the way.
-    longest, shortest
-        Steps, in radians of half the sphere's angle of rotation.
-    """
-
-    gain: float = 0.01
-    longest: float = 0.02
-    shortest: float = 1e-5
+    gain: float = number(0.01, most=1)  # relative decrease of the bending that is worth the way
+    # longest, shortest: steps, in radians of half the sphere's angle of rotation
+    longest: float = number(0.02)
+    shortest: float = number(1e-5)
     _before: float | None = field(default=None, init=False)  # bending that the balanced curve had
 
-    def __post_init__(self) -> None:
-        check_fields(self, gain=(0.0, 1.0), longest=(0.0, math.inf), shortest=(0.0, self.longest))
-
     def ended(self, outcome: Outcome) -> Outcome | Change | None:
-        """Look at converged curves, and at ends of the run on the way from one."""
         run = self.run
         if not run.options.balance:
             return None
@@ -178,7 +159,7 @@ def _least(images: MoebiusImages, dimension: int) -> list[FloatArray]:
 
 
 def _starts(dimension: int) -> Iterator[FloatArray]:
-    """The pole at infinity, amidst the curve, and on the unit sphere along the axes on both sides."""
+    """The pole at infinity, in the middle of the curve, and on the unit sphere along the axes on both sides."""
     units = np.eye(dimension + 1)
     yield from units[:2]
     for unit in units[1:]:

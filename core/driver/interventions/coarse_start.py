@@ -1,12 +1,11 @@
 """A curve of many vertices is untangled with few of them, which is faster, and ends with all."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...collision import survives_rounding
 from ...curve import Curve
 from ...curve.pins import arcs
@@ -23,31 +22,20 @@ from .remesh import proved_remesh
 PASS = WAY_BACK = 2  # iterations that they take: a motion and a change of mesh
 
 
+@checked_fields
 @dataclass(eq=False)
 class CoarseStart(Intervention):
-    """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve.
+    """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve."""
 
-    Parameters
-    ----------
-    min_vertices
-        From which it is worth while.
-    min_gain
-        Factor by which there must be fewer at first.
-    min_iterations
-        The way there and back takes a dozen: with fewer nothing would be left for untangling.
-    min_share
-        Of the way to the smooth curve, below which the curve stays as it is.
-    """
-
-    min_vertices: int = 1500
-    min_gain: float = 2.0
-    min_iterations: int = 30
-    min_share: float = 0.05
+    min_vertices: int = number(1500)  # from which it is worth while
+    min_gain: float = number(2.0, above=1)  # factor by which there must be fewer at first
+    min_iterations: int = number(
+        30
+    )  # the way there and back takes a dozen: with fewer nothing would be left for untangling
+    min_share: float = number(0.05, most=1)  # of the way to the smooth curve, below which the curve stays as it is
     _coarse: Curve | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
-        check_fields(self, min_vertices=(0, math.inf), min_gain=(1.0, math.inf), min_share=(0.0, 1.0))
-        check_fields(self, min_iterations=(0, math.inf))
         self._problem, constraints = self.run.problem, self.run.problem.constraints
         # what kept lengths from being equal at the start is gone in the end
         lengths = equal_lengths(self._problem.mesh, constraints.lengths, constraints.pins.vertices)
@@ -55,19 +43,15 @@ class CoarseStart(Intervention):
         self._wanted = self._is_wanted()
 
     def started(self) -> Change | None:
-        """Leave out vertices at first, and smooth the curve once they are back."""
         return self._coarser() if self._wanted else self._smoother()
 
     def stepped(self, step: Step) -> Change | None:
-        """Bring the vertices back where iterations are about to run out."""
         return self._back(self.run.iterations_left <= WAY_BACK)
 
     def stuck(self, found: NoStep) -> Change | None:
-        """Bring the vertices back."""
         return self._back()
 
     def ended(self, outcome: Outcome) -> Change | None:
-        """Bring the vertices back."""
         return self._back()
 
     def _back(self, due: bool = True) -> Change | None:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field, replace
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...curve import Mesh
 from ...descent import METHODS, Method, NoStep
 from ...energies.barrier import replaced_pairs
@@ -17,32 +17,22 @@ INACCURATE = (
 )
 
 
+@checked_fields
 @dataclass(eq=False)
 class Fallback(Intervention):
-    """Hand over to another method where no step is found, and back after some steps.
+    """Hand over to another method where no step is found, and back after some steps."""
 
-    Parameters
-    ----------
-    method
-        Its metric does not see how near strands are, and so does not hold them together.
-    steps
-        Number of steps it takes.
-    progress
-        Relative decrease of the energy without which another attempt is no use.
-    """
-
+    # its metric does not see how near strands are, and so does not hold them together
     method: Method = METHODS["flow-h3-2"]
-    steps: int = 10
-    progress: float = 1e-6
+    steps: int = number(10)  # number of steps it takes
+    progress: float = number(1e-6, most=1)  # relative decrease of the energy without which another attempt is no use
     _until: int = field(default=0, init=False)  # iterate at which the fallback hands back
     _tried_at: float = field(default=math.inf, init=False)  # energy at the last attempt on the present mesh
 
     def __post_init__(self) -> None:
-        check_fields(self, steps=(0, math.inf), progress=(0.0, 1.0))
         self._asked_for, self._mesh = self.run.method, self.run.problem.mesh
 
     def __call__(self, event: Event) -> Event | Change:
-        """Change the method."""
         run = self.run
         if run.problem.mesh is not self._mesh:
             self._mesh, self._tried_at = run.problem.mesh, math.inf
@@ -71,7 +61,6 @@ class CheckAccuracy(Intervention):
     _seen: Mesh | None = field(default=None, init=False)
 
     def __call__(self, event: Event) -> Event | Change:
-        """Look at every new mesh, and wherever the run may end."""
         problem = self.run.problem
         energy = problem.objective.energy
         ends = isinstance(event, NoStep | Outcome)
@@ -96,7 +85,7 @@ class CheckAccuracy(Intervention):
             energy = tighter
 
     def _errors(self, energy: HierarchicalMoebiusEnergy) -> SampledErrors:
-        """At the present curve; near pairs that the barrier stands for are exact."""
+        """At the present curve; near pairs, which the barrier replaces, are exact."""
         point = self.run.point
         energy = energy.leaving_out(replaced_pairs(point.curve))
         return SampledErrors.at(energy, point.curve, point.energy, point.gradient, point.gradient_norm)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...constraints import weighted_barycenter
 from ...curve import Curve
 from ...curve.pins import spans
@@ -28,39 +28,25 @@ REACHED = 1e-9  # logarithm of what may be missing: rounding
 CROWDED = "every motion that changes the lengths as requested causes contact or costs too much energy"
 
 
+@checked_fields
 @dataclass(eq=False)
 class Grow(Intervention):
-    """Change the lengths, by motions that are proved like all others, where the steps between have settled.
+    """Change the lengths, by motions that are proved like all others, where the steps between have settled."""
 
-    Parameters
-    ----------
-    fastest, slowest
-        Logarithmic change of the lengths in one motion; less is not worth an iteration.
-    rise
-        Of the objective, by its scale, in one motion: more is made by contacts that it takes long to relax from.
-    settled
-        Decrease of the objective in a step, by its scale, from which on the next motion may come.
-    later
-        Factor of that after no motion was found.
-    edges_per_gap
-        What is packed bends as narrowly as strands are near.
-    most
-        Vertices, unless there are more.
-    """
-
-    fastest: float = 0.2
-    slowest: float = 0.01
-    rise: float = 0.25
-    settled: float = 0.01
-    later: float = 0.1
-    edges_per_gap: float = 2.0
-    most: int = FinerMesh.most
+    # fastest, slowest: logarithmic change of the lengths in one motion; less is not worth an iteration
+    fastest: float = number(0.2)
+    slowest: float = number(0.01)
+    # of the objective, by its scale, in one motion: more is made by contacts that it takes long to relax from
+    rise: float = number(0.25)
+    settled: float = number(
+        0.01
+    )  # decrease of the objective in a step, by its scale, from which on the next motion may come
+    later: float = number(0.1, most=1)  # factor of that after no motion was found
+    edges_per_gap: float = number(2.0)  # what is packed bends as narrowly as strands are near
+    most: int = number(FinerMesh.most)  # vertices, unless there are more
     _energy: float = field(default=math.inf, init=False)  # after the last event
 
     def __post_init__(self) -> None:
-        positive = (0.0, math.inf)
-        check_fields(self, fastest=positive, slowest=(0.0, self.fastest), rise=positive, settled=positive)
-        check_fields(self, later=(0.0, 1.0), edges_per_gap=positive, most=positive)
         self._longest, self._enough = self.fastest, self.settled
         self._is_done = self.run.options.grow == 1.0
         self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
@@ -89,7 +75,6 @@ class Grow(Intervention):
         return on_target(self.run.point) and gained <= self._enough * self._energy_scale
 
     def _grown(self, left: float, event: Event) -> Event | Change:
-        """A motion; where there is none the event, which is no convergence."""
         step = self._step(left)
         if step is not None:
             self._energy = step.point.energy

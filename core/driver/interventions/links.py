@@ -1,6 +1,5 @@
 """Links of several parts: unlinked ones would drift apart, and composite ones have no shape of least energy."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -9,7 +8,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...constraints import Barycenters, Parts
 from ...curve import Curve
 from ...descent import Step
@@ -34,29 +33,16 @@ COMPOSITE_KNOT = 140.0  # two trefoils (74.4 each) less a circle make 144.8,
 COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
 
 
+@checked_fields
 @dataclass(eq=False)
 class SplitLinks(Intervention):
-    """Give every part that is far from the others a barycenter of its own among the constraints.
+    """Give every part that is far from the others a barycenter of its own among the constraints."""
 
-    Parameters
-    ----------
-    interval
-        Accepted steps between two looks.
-    gap
-        Least one between the balls around two parts, in radii of the larger one.
-    most
-        Parts: each has rows of its own in the linear systems.
-    """
-
-    interval: int = 5
-    gap: float = 1.0
-    most: int = 50
-
-    def __post_init__(self) -> None:
-        check_fields(self, interval=(0, math.inf), gap=(0.0, math.inf), most=(0, math.inf))
+    interval: int = number(5)  # accepted steps between two looks
+    gap: float = number(1.0)  # least one between the balls around two parts, in radii of the larger one
+    most: int = number(50)  # parts: each has rows of its own in the linear systems
 
     def stepped(self, step: Step) -> Change | None:
-        """Look for parts now and then."""
         run, constraints = self.run, self.run.problem.constraints
         if not run.problem.geometry.prescribes or run.iterate.index % self.interval:
             return None
@@ -144,7 +130,6 @@ class Composite(Intervention):
     """Report composite curves: unless the energy sees size, only the mesh keeps a part from shrinking to a point."""
 
     def converged(self, outcome: Outcome) -> Outcome | None:
-        """Look for a ball with a knot in it."""
         problem = self.run.problem
         if problem.objective.sees_size or len(problem.constraints.pins):  # between pins no part shrinks without limit
             return None

@@ -1,11 +1,10 @@
 """Changes of mesh that follow the strands: along the way, with the proof that nothing touches meanwhile, or at rest."""
 
-import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...checks import check_fields
+from ...arguments import checked_fields, number
 from ...collision import Contact, survives_rounding
 from ...curve import Curve
 from ...curve.distances import arc_distance_of_pairs
@@ -24,30 +23,20 @@ ADVICE = Message("a finer or an adaptive mesh may help")
 UNRESOLVED = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
 
 
+@checked_fields
 @dataclass(eq=False)
 class Remesh(Intervention):
-    """The adaptive mesh: shorter edges where strands are near, and around edges that are stuck.
+    """The adaptive mesh: shorter edges where strands are near, and around edges that are stuck."""
 
-    Parameters
-    ----------
-    interval
-        Accepted steps between two looks at the mesh.
-    """
-
-    interval: int = 5
+    interval: int = number(5)  # accepted steps between two looks at the mesh
     _just_refined: bool = field(default=False, init=False)  # around edges that were stuck: once is enough
 
-    def __post_init__(self) -> None:
-        check_fields(self, interval=(0, math.inf))
-
     def stepped(self, step: Step) -> Change | None:
-        """Look at the mesh now and then."""
         self._just_refined = False
         due = self._adapts and self.run.iterate.index % self.interval == 0
         return self._change(None) if due else None
 
     def stuck(self, found: NoStep) -> NoStep | Change | None:
-        """Refine around what is in the way."""
         if not self._adapts:
             return replace(found, reason=joined((found.reason, ADVICE), "; "))
         if found.limited_by is None or self._just_refined:
@@ -61,13 +50,7 @@ class Remesh(Intervention):
         return self.run.options.mesh == "adaptive"
 
     def _change(self, stuck: Contact | None) -> Change | None:
-        """Another mesh; None if this one is good or must stay.
-
-        Parameters
-        ----------
-        stuck
-            What keeps edges from moving: the mesh around them is refined whether it needs it or not.
-        """
+        """Another mesh; None if this one is good or must stay. Around edges that are stuck it is finer in any case."""
         problem, curve, resolution = self.run.problem, self.run.iterate.curve, self.run.resolution
         pins = problem.constraints.pins.vertices
         spacing = graded_spacing(curve, resolution)
@@ -109,31 +92,21 @@ def proved_remesh(
     return Step((Leg(problem.at_curve(change.moved), free),), 0.0, None), change
 
 
+@checked_fields
 @dataclass(eq=False)
 class FinerMesh(Intervention):
-    """Split edges where a converged curve's strands are nearer than its mesh resolves, or say that it would help.
+    """Split edges where a converged curve's strands are nearer than its mesh resolves, or say that it would help."""
 
-    Parameters
-    ----------
-    edges_per_gap
-        The barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then.
-    most
-        Vertices, unless there are more: what the hierarchical solver has time for.
-    min_iterations
-        That are left: it takes two or three to get back what corners cost when their edges are split.
-    """
-
-    edges_per_gap: float = 6.0
-    most: int = 10_000
-    min_iterations: int = 5
+    # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
+    edges_per_gap: float = number(6.0)
+    most: int = number(10_000)  # vertices, unless there are more: what the hierarchical solver has time for
+    # that are left: it takes two or three to get back what corners cost when their edges are split
+    min_iterations: int = number(5)
 
     def __post_init__(self) -> None:
-        positive = (0, math.inf)
-        check_fields(self, edges_per_gap=positive, most=positive, min_iterations=positive)
         self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
-        """Look at converged curves."""
         curve = self.run.iterate.curve
         if not _unresolved(curve) or self.run.frozen:
             return None

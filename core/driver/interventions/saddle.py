@@ -22,18 +22,10 @@ RESOLVED = 1e-5  # residual at which Ritz values count as eigenvalues: their err
 
 @dataclass(frozen=True, eq=False)
 class Stability:
-    """Second-order information at a critical point.
+    """Second-order information at a critical point."""
 
-    Attributes
-    ----------
-    modes
-        The lowest eigenvalues and eigenvectors against J_C.
-    zero
-        Size up to which the mesh cannot distinguish an eigenvalue from 0.
-    """
-
-    modes: SoftModes
-    zero: float
+    modes: SoftModes  # the lowest eigenvalues and eigenvectors against J_C
+    zero: float  # size up to which the mesh cannot distinguish an eigenvalue from 0
 
     @property
     def index(self) -> int | None:
@@ -64,7 +56,6 @@ class EscapeSaddle(Intervention):
     search: Escape = field(default_factory=Escape)
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
-        """Count negative eigenvalues, if that is asked for."""
         options = self.run.options
         if not (options.stability or options.escape_saddles):
             return None

@@ -12,7 +12,7 @@ from mobius_flow.core import Obstacle
 from mobius_flow.core.collision.exact_triangle import first_contact_with_triangle
 from mobius_flow.core.verify import Verdict, verify
 from mobius_flow.core.verify.obstacles import Obstacles, overlapping
-from mobius_flow.core.verify.triangles import meet_triangle
+from mobius_flow.core.verify.segments import meet_triangle
 from obstacle_motions import Motion, Rng, in_plane, inside, lattice, touching
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from solids import box, plate, rod, sphere

@@ -20,18 +20,12 @@ _OWN_STREAMS = (1, 2)
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Give a temporary path to write to, and move it to ``path`` when the block ends well.
 
-    The temporary file lies in the same directory and has the same suffix, so libraries that look at the
-    suffix work too; text or binary is up to the block. If the block raises, ``path`` is left as it was and
-    the temporary file is removed. Symbolic links are followed. Where a file cannot be replaced, as in a directory
-    that is read-only or where it is mounted by itself, and to devices and pipes, the whole contents are copied.
+    The temporary file lies in the same directory and has the same suffix, so libraries that look at the suffix work
+    too; text or binary is up to the block. If the block raises, ``path`` is left as it was and the temporary file is
+    removed. Symbolic links are followed. Where a file cannot be replaced, as in a directory that is read-only or where
+    it is mounted by itself, and to devices and pipes, the whole contents are copied. An OSError if the target is a
+    directory or write-protected, or the disk refuses.
 
-    Raises
-    ------
-    OSError
-        If the target is a directory or write-protected, or the disk refuses.
-
-    Examples
-    --------
     >>> import tempfile
     >>> target = Path(tempfile.mkdtemp()) / "curve.txt"
     >>> with atomic_write(target) as temporary:
@@ -96,7 +90,6 @@ def _create(target: Path, found: os.stat_result | None, beside: bool) -> Path:
 
 
 def _replace(temporary: Path, target: Path, found: os.stat_result | None) -> bool:
-    """Move a file to its place, if it can be."""
     try:
         temporary.replace(target)
     except OSError as error:

@@ -1,6 +1,6 @@
 """One BLAS thread for the library's own work, and none of it left behind.
 
-NumPy and SciPy each bring a pool of BLAS threads, whose idle threads spin: beside other work the pools slow each other
+NumPy and SciPy each bring a pool of BLAS threads, whose idle threads spin: next to other work the pools slow each other
 down tenfold and more, where a thread each is as fast alone and never bad.
 """
 
@@ -53,7 +53,7 @@ class BlasPools:
             self._give_back()
 
     def bounding(self, work: Generator[_Yielded, None, _Returned]) -> Generator[_Yielded, None, _Returned]:
-        """The same generator with one BLAS thread: whoever it yields to has theirs."""
+        """The same generator with one BLAS thread: its consumer has its own."""
         with closing(work):
             while True:
                 with self.bounded():

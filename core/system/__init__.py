@@ -1,1 +1,0 @@
-"""What is asked of the operating system: files that appear whole or not at all, and signals."""
