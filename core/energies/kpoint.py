@@ -15,9 +15,8 @@ from ..curve.distances import points_at
 from ..curve.tiles import Tile, pair_tiles
 from ..quadrature import Rule
 from ..types import FloatArray
-from .arcs import ArcDerivative, Arcs
 from .components import ComponentShares
-from .density import Density, Partials, PointPairs, PointSet
+from .density import ArcDerivative, Arcs, Density, Partials, PointPairs, PointSet
 from .energy import is_moebius_invariant
 
 

@@ -16,8 +16,9 @@ from ..curve import Curve
 from ..curve.tiles import EdgePairIndices, pair_tiles, row_tiles
 from ..quadrature import MIDPOINT
 from ..types import FloatArray, IntArray
+from .complex_steps import change
 from .components import ComponentShares
-from .moebius_hessian import hessian, hessian_product
+from .moebius_hessian import hessian
 from .moebius_pairs import DerivativeSums, Edges, Pairs
 
 CONSTANT = 4.0  # of a closed component
@@ -79,8 +80,11 @@ class MoebiusEnergy:
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
+        edges, sums = Edges.of(curve, v), DerivativeSums.zeros(*curve.edge_vectors.shape, np.complex128)
+        for tile in pair_tiles(curve.mesh, self.without):
+            sums.add(tile.rows, tile.columns, Pairs.of(edges, tile).coefficients(), edges.vectors)
         shares = ComponentShares(curve).second_derivative(v)
-        return hessian_product(curve, v, self.without) + CONSTANT * shares
+        return 2.0 * change(sums.at_vertices(curve.mesh, edges.tau)) + CONSTANT * shares
 
 
 def energy_of_pairs(curve: Curve, pairs: float) -> float:

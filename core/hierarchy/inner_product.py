@@ -145,27 +145,13 @@ _COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], Comp
 class CompressedMetric:
     """One of the nonlocal metrics by products in O(N log N), with the midpoint rule.
 
-    Parameters
-    ----------
-    metric
-        The dense one, which has the same name, description, rule and penalty.
-    tolerances
-        Of what is solved with it.
-    theta
-        Separation parameter of blocks, below 1.
-    leaf
-        Edges up to which clusters are not halved.
-
-    Raises
-    ------
-    OptionError
-        If one of these is out of range.
+    OptionError if θ or the leaves are out of range.
     """
 
-    metric: Metric
-    tolerances: Tolerances = field(default_factory=Tolerances)
-    theta: float = 0.5
-    leaf: int = 4
+    metric: Metric  # the dense one
+    tolerances: Tolerances = field(default_factory=Tolerances)  # of what is solved with it
+    theta: float = 0.5  # separation parameter of blocks, below 1
+    leaf: int = 4  # edges up to which clusters are not halved
     most_vertices = MAX_VERTICES
 
     def __post_init__(self) -> None:
@@ -188,13 +174,7 @@ class CompressedMetric:
         return self.metric.rule
 
     def with_rule(self, rule: Rule) -> "CompressedMetric":
-        """Itself: there is no other rule.
-
-        Raises
-        ------
-        OptionError
-            If another rule is asked for.
-        """
+        """Itself; OptionError if another rule is asked for, for there is none."""
         if self.rule is not None and rule != MIDPOINT:
             raise OptionError("metrics for so many vertices use one Gauss point per edge; leave quadrature_points out")
         return self

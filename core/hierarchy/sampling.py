@@ -45,9 +45,6 @@ class Estimate:
         """What the error's modulus is at most, with 95 % probability."""
         return abs(self.mean) + CONFIDENCE * self.standard_error
 
-    def as_report(self) -> dict[str, float]:
-        return {"mean": self.mean, "standard_error": self.standard_error}
-
     def relative(self, scale: float) -> "Estimate":
         return Estimate(self.mean / scale, self.standard_error / scale)
 
@@ -97,17 +94,10 @@ def sampled_edges(curve: Curve, count: int) -> IntArray:
 
 @dataclass(frozen=True)
 class SampledErrors:
-    """What a sample tells of the errors of an energy and of a projected gradient.
-
-    Attributes
-    ----------
-    gradient_norm
-        Of the norm |u| that the projected gradient has in the metric it is taken in, relative to it, or to √E if that
-        is larger.
-    """
+    """Estimates of the errors of an energy and of a projected gradient from a sample."""
 
     energy: Estimate  # of the energy E, relative
-    gradient_norm: Estimate
+    gradient_norm: Estimate  # of the norm |u| of the gradient in its metric, relative to it, or to √E if that is larger
     order: int  # of the expansions
 
     @classmethod
@@ -127,10 +117,6 @@ class SampledErrors:
         """Whether the bounds are: for the norm, to whose error that of the solution is added, half of it."""
         energy, norm = ENERGY_SHARE * accuracy, NORM_SHARE * accuracy
         return self.energy.bound <= energy and self.gradient_norm.bound <= norm
-
-    def as_report(self) -> dict[str, object]:
-        energy, norm = self.energy.as_report(), self.gradient_norm.as_report()
-        return {"energy": energy, "gradient_norm": norm, "order": self.order}
 
 
 @BLAS.bounded()

@@ -40,14 +40,9 @@ class MoebiusMetric:
     """Σ ℓ_I ℓ_J (|ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/r² + |u_I − u_J|²/r² (1/r² − 1/ϱ²)) + |∫ u|², by a quadrature rule.
 
     The metric in which the Möbius energy's gradient flow is an ordinary differential equation.
-
-    Parameters
-    ----------
-    rule
-        The quadrature rule on every edge, by default the midpoint rule.
     """
 
-    rule: Rule = MIDPOINT
+    rule: Rule = MIDPOINT  # on every edge
     name = "moebius"
     description = "J_C of Theorem 4.1, extrinsic W^{3/2,2}"
     extends_penalty = True

@@ -30,32 +30,13 @@ WINDOW = 2  # iterations, at least, whose decrease is the estimate of the error 
 
 @dataclass(frozen=True)
 class Tolerances:
-    """How exactly systems are solved; relative errors in the norm of the inner product.
+    """How exactly systems are solved; relative errors in the norm of the inner product, in (0, 1], or OptionError."""
 
-    Parameters
-    ----------
-    gradient
-        Of projected gradients.
-    correction
-        Of pseudo-inverses, and of the correction that a projection makes.
-    preconditioner
-        Part of a preconditioned residual that is not tangential.
-    feasibility
-        Of C u = ξ.
-    max_iterations
-        Of one system.
-
-    Raises
-    ------
-    OptionError
-        If a value is outside (0, 1], or an iteration number not positive.
-    """
-
-    gradient: float = 1e-2
-    correction: float = 1e-1
-    preconditioner: float = 1e-2
-    feasibility: float = 1e-10
-    max_iterations: int = 500
+    gradient: float = 1e-2  # of projected gradients
+    correction: float = 1e-1  # of pseudo-inverses, and of the correction that a projection makes
+    preconditioner: float = 1e-2  # part of a preconditioned residual that is not tangential
+    feasibility: float = 1e-10  # of C u = ξ
+    max_iterations: int = 500  # of one system
 
     def __post_init__(self) -> None:
         below_one = (0.0, 1.0)

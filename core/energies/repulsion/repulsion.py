@@ -34,20 +34,11 @@ class Repulsion:
 
     Every curve has a schedule of its own, at whose change the value jumps by its error.  `frozen_at` keeps one, which
     makes a smooth function as long as it suits: what a line search should see.
-
-    Parameters
-    ----------
-    clusters
-        The simplices, in the units of curves.
-    theta
-        Separation parameter of clusters; with 0 all simplices count one by one.
-    schedule
-        The one to be used as long as it suits; None for that of each curve.
     """
 
-    clusters: Clusters
-    theta: float = THETA
-    schedule: Schedule | None = None
+    clusters: Clusters  # the simplices, in the units of curves
+    theta: float = THETA  # separation parameter of clusters; with 0 all simplices count one by one
+    schedule: Schedule | None = None  # to be used as long as it suits; None for that of each curve
 
     name = "repulsion"
     scale_exponent = 0.0

@@ -18,7 +18,7 @@ from numpy.polynomial.polynomial import polyval
 
 from ...types import BoolArray, FloatArray, IntArray, frozen
 from ..complex_steps import arctan2
-from ..moments import CONTACT
+from ..inverse_square import CONTACT
 
 Form = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 """N², D, ∇N² and ∇D."""
