@@ -83,18 +83,11 @@ class _Kernel(NamedTuple):
     first: FloatArray
     second: FloatArray
 
-    def by_first(self) -> FloatArray:
-        """Its derivatives with respect to M; shape (monomials, k)."""
-        return self._local(self.second)
-
-    def by_second(self) -> FloatArray:
-        """Its derivatives with respect to N; shape (monomials, k)."""
-        return self._local(self.first)
-
-    def _local(self, moments: FloatArray) -> FloatArray:
+    def by_moments(self, other: FloatArray) -> FloatArray:
+        """Its derivatives with respect to one cluster's moments, from the other's; shape (monomials, k)."""
         highest = self.lowest + self.expansion.order
         totals = range(2 * self.lowest, self.lowest + highest + 1)
-        return self.expansion.table.contract(self.derivatives, moments, range(self.lowest, highest + 1), totals)
+        return self.expansion.table.contract(self.derivatives, other, range(self.lowest, highest + 1), totals)
 
     def by_centre(self) -> FloatArray:
         """Its derivative with respect to the first centre, the edges at rest; minus the second's; shape (m, k).
@@ -105,14 +98,6 @@ class _Kernel(NamedTuple):
         totals = range(self.lowest + degrees[-1], self.lowest + degrees[-1] + 1)
         raised = self.expansion.table.contract(self.derivatives, self.second, degrees, totals)
         return self.expansion.table.contract(raised, self.first, range(1, 2), degrees)[1:]
-
-
-class _Chunk(NamedTuple):
-    """Some blocks: their clusters and kernels."""
-
-    first: IntArray
-    second: IntArray
-    kernels: tuple[_Kernel, _Kernel]
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,22 +117,25 @@ class FarField:
         return MomentTree(self.blocks.tree, self._expansion, self.vectors)
 
     def value(self) -> float:
-        kernels = (kernel for chunk in self._chunks() for kernel in chunk.kernels)
-        return sum(float(np.vdot(kernel.first, kernel.by_first())) for kernel in kernels)
+        kernels = (kernel for _, _, *both in self._chunks() for kernel in both)
+        return sum(float(np.vdot(kernel.first, kernel.by_moments(kernel.second))) for kernel in kernels)
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
         value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_centre.stop))
         by_second = np.zeros_like(by_first)
-        for first, second, (square, log) in self._chunks():
-            local, by_centre = (square.by_first(), log.by_first()), square.by_centre() + log.by_centre()
-            value += float(np.vdot(square.first, local[0]) + np.vdot(log.first, local[1]))
-            _add_rows(by_first, first, np.concatenate([*local, by_centre]))
-            _add_rows(by_second, second, np.concatenate([square.by_second(), log.by_second(), by_centre]))
+        for first, second, square, log in self._chunks():
+            by_centre = square.by_centre() + log.by_centre()
+            own = [kernel.by_moments(kernel.second) for kernel in (square, log)]
+            other = [kernel.by_moments(kernel.first) for kernel in (square, log)]
+            value += float(np.vdot(square.first, own[0]) + np.vdot(log.first, own[1]))
+            _add_rows(by_first, first, np.concatenate([*own, by_centre]))
+            _add_rows(by_second, second, np.concatenate([*other, by_centre]))
         by_second *= self._expansion.signs
         by_second += by_first
         return value, self._clusters.derivative_sums(by_second)
 
-    def _chunks(self) -> Iterator[_Chunk]:
+    def _chunks(self) -> Iterator[tuple[IntArray, IntArray, _Kernel, _Kernel]]:
+        """The two clusters and the kernels 1/|Δ|² and log|Δ| of some blocks at a time."""
         moments, centres, x = self._clusters.moments(), self._clusters.centres, self._expansion
         signed = moments * x.signs[: x.edges.stop]
         for start in range(0, len(self.blocks.first), BLOCKS):
@@ -155,11 +143,8 @@ class FarField:
             d = np.ascontiguousarray((centres[first] - centres[second]).T)
             square, log = kernel_derivatives(x.table, d, self.order + 1)
             own, other = polynomial_rows(moments, first), polynomial_rows(signed, second)
-            kernels = (
-                _Kernel(x, 0, square, own[x.lengths], other[x.lengths]),
-                _Kernel(x, 1, log, own[x.edges], other[x.edges]),
-            )
-            yield _Chunk(first, second, kernels)
+            kernel = _Kernel(x, 0, square, own[x.lengths], other[x.lengths])
+            yield first, second, kernel, _Kernel(x, 1, log, own[x.edges], other[x.edges])
 
 
 def _add_rows(total: FloatArray, clusters: IntArray, values: FloatArray) -> None:

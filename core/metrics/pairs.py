@@ -33,16 +33,10 @@ class Stencil(NamedTuple):
 
 
 class Stripe(NamedTuple):
-    """The pairs of edges that make the entries (v, w), v ≤ w, of a form, for consecutive vertices v of one component.
-
-    Attributes
-    ----------
-    rows
-        The edges that they belong to: the one before the first vertex, then those that begin at the vertices.
-    """
+    """The pairs of edges that make entries (v, w), v ≤ w, of a form, for consecutive vertices v of one component."""
 
     vertices: slice  # the vertices v
-    rows: IntArray
+    rows: IntArray  # the edges that they belong to: the one before the first vertex, then those that begin at vertices
     columns: slice  # the edges that the vertices from the first v on belong to
 
     def exclude_neighbours(self, mesh: Mesh, distance: FloatArray) -> None:
