@@ -153,7 +153,7 @@ MUTANTS = (
     ),
     Mutant(
         "stripes that forget the edge before",
-        "core/metrics/pairs.py",
+        "core/metrics/moebius.py",
         "np.concatenate([[before], np.arange(first, last)])",
         "np.concatenate([[first], np.arange(first, last)])",
         "tests/core/test_metrics.py::test_stripes_meet_every_pair_once",

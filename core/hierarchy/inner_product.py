@@ -25,11 +25,11 @@ from ..metrics.local import arc_stiffness, lumped_mass, mass
 from ..metrics.moebius import pair_kernels
 from ..quadrature import MIDPOINT, Rule
 from ..saddle import TangentSpace
-from ..saddle.circulant import Circulants
 from ..saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
 from ..saddle.krylov import conjugate_gradients, relative
 from ..saddle.models import TwoLevel
 from ..saddle.resolvent import Resolvents
+from ..saddle.symbol import Circulants
 from ..types import FloatArray
 from .blocks import BlockList
 from .pair_forms import PairForms, RunningSum

@@ -19,9 +19,8 @@ from ...obstacle import Obstacle
 from ...quadrature import gauss_legendre
 from ...types import FloatArray
 from ..complex_steps import change, stepped
-from .clusters import Clusters
 from .schedule import Schedule
-from .simplices import Simplices, norm
+from .simplices import Clusters, Simplices, norm
 
 THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
 KEPT = 0.9  # slack up to which a schedule is as good as a new one

@@ -11,8 +11,7 @@ import numpy as np
 
 from ...curve import Curve
 from ...types import BoolArray, FloatArray, IntArray
-from .clusters import Clusters
-from .simplices import norm
+from .simplices import Clusters, norm
 
 Potential = Callable[[IntArray, FloatArray], tuple[FloatArray, FloatArray]]
 """Φ and ∇Φ of some simplices or clusters, shape (k,), each at its own points, shape (3, k, points)."""
