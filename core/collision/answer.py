@@ -45,14 +45,6 @@ class FreeMotion:
     limit: Limit = Limit.NONE  # the reason
 
     @property
-    def pair(self) -> tuple[int, int] | None:
-        """The two edges that limit it; None if it is not limited, or by an obstacle."""
-        if self.contact is None or self.contact.obstacle is not None:
-            return None
-        i, j = self.contact.edges
-        return i, j
-
-    @property
     def proved(self) -> bool:
         """Whether the whole motion is proved free of contact."""
         return self.limit is Limit.NONE

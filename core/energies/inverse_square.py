@@ -169,4 +169,5 @@ def _tail(x: FloatArray) -> FloatArray:
     small = x2 < _SERIES_LIMIT
     safe = np.where(small, 1.0, x)
     closed = (arctan2(safe, np.ones_like(safe)) - safe / (1.0 + safe**2)) / (2.0 * safe**3)
-    return np.where(small, polyval(np.where(small, x2, 0.0), _SERIES), closed)
+    series = polyval(np.where(small, x2, 0.0), _SERIES)  # type: ignore[no-untyped-call]
+    return np.where(small, series, closed)

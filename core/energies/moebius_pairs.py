@@ -126,8 +126,8 @@ class DerivativeSums(NamedTuple):
     by_length: FloatArray
 
     @classmethod
-    def zeros(cls, edges: int, m: int, dtype: DTypeLike = np.float64) -> "DerivativeSums":
-        return cls(np.zeros((edges, m), dtype), np.zeros((edges, m), dtype), np.zeros(edges, dtype))
+    def zeros(cls, shape: tuple[int, ...], dtype: DTypeLike = np.float64) -> "DerivativeSums":
+        return cls(np.zeros(shape, dtype), np.zeros(shape, dtype), np.zeros(shape[0], dtype))
 
     def add(self, rows: slice, columns: slice, coefficients: Coefficients, vectors: Vectors) -> None:
         """Add the pairs of some rows and columns, seen from I and seen from J."""

@@ -1,4 +1,4 @@
-"""The Möbius energy of near pairs one by one, and of blocks by Taylor expansion about the centres of their clusters.
+"""The Möbius energy of near pairs one by one, and of blocks by Taylor expansion about the centers of their clusters.
 
 With G = log|Δ| the contribution of a pair of edges is W_IJ = ℓ_I ℓ_J/|Δ|² + ⟨e_I, ∇⟩⟨e_J, ∇⟩ G: sums over a block are
 products of two moments applied to two kernels, both up to the same order, so that errors cancel on straight pieces.
@@ -40,7 +40,7 @@ class NearField:
             value += scalars.energy()
             for whole, values in zip(coefficients, scalars.coefficients(), strict=True):
                 whole[part] = values
-        sums = DerivativeSums.zeros(*self.edges.tau.shape)
+        sums = DerivativeSums.zeros(self.edges.tau.shape)
         sums.add(slice(None), slice(None), Coefficients(*map(self._matrix, coefficients)), self.edges.vectors)
         return value, sums
 
@@ -89,8 +89,8 @@ class _Kernel(NamedTuple):
         totals = range(2 * self.lowest, self.lowest + highest + 1)
         return self.expansion.table.contract(self.derivatives, other, range(self.lowest, highest + 1), totals)
 
-    def by_centre(self) -> FloatArray:
-        """Its derivative with respect to the first centre, the edges at rest; minus the second's; shape (m, k).
+    def by_center(self) -> FloatArray:
+        """Its derivative with respect to the first center, the edges at rest; minus the second's; shape (m, k).
 
         Only terms of the highest order are left: any other change of d is undone by that of the moments.
         """
@@ -106,7 +106,7 @@ class FarField:
 
     blocks: BlockList  # the list, made at this curve or at one nearby
     vectors: Vectors  # the curve's edges; of size 1, for high powers of lengths are in use
-    order: int  # p, the order of the expansions in distances from the centres
+    order: int  # p, the order of the expansions in distances from the centers
 
     @cached_property
     def _expansion(self) -> Expansion:
@@ -121,26 +121,26 @@ class FarField:
         return sum(float(np.vdot(kernel.first, kernel.by_moments(kernel.second))) for kernel in kernels)
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
-        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_centre.stop))
+        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_center.stop))
         by_second = np.zeros_like(by_first)
         for first, second, square, log in self._chunks():
-            by_centre = square.by_centre() + log.by_centre()
+            by_center = square.by_center() + log.by_center()
             own = [kernel.by_moments(kernel.second) for kernel in (square, log)]
             other = [kernel.by_moments(kernel.first) for kernel in (square, log)]
             value += float(np.vdot(square.first, own[0]) + np.vdot(log.first, own[1]))
-            _add_rows(by_first, first, np.concatenate([*own, by_centre]))
-            _add_rows(by_second, second, np.concatenate([*other, by_centre]))
+            _add_rows(by_first, first, np.concatenate([*own, by_center]))
+            _add_rows(by_second, second, np.concatenate([*other, by_center]))
         by_second *= self._expansion.signs
         by_second += by_first
         return value, self._clusters.derivative_sums(by_second)
 
     def _chunks(self) -> Iterator[tuple[IntArray, IntArray, _Kernel, _Kernel]]:
         """The two clusters and the kernels 1/|Δ|² and log|Δ| of some blocks at a time."""
-        moments, centres, x = self._clusters.moments(), self._clusters.centres, self._expansion
+        moments, centers, x = self._clusters.moments(), self._clusters.centers, self._expansion
         signed = moments * x.signs[: x.edges.stop]
         for start in range(0, len(self.blocks.first), BLOCKS):
             first, second = (side[start : start + BLOCKS] for side in (self.blocks.first, self.blocks.second))
-            d = np.ascontiguousarray((centres[first] - centres[second]).T)
+            d = np.ascontiguousarray((centers[first] - centers[second]).T)
             square, log = kernel_derivatives(x.table, d, self.order + 1)
             own, other = polynomial_rows(moments, first), polynomial_rows(signed, second)
             kernel = _Kernel(x, 0, square, own[x.lengths], other[x.lengths])

@@ -3,7 +3,7 @@
 The error is Σ_I δ_I, δ_I that of Σ_J W_IJ over the partners of edge I: its mean over a sample, one edge from each of as
 many equal stretches of the curve, tells it up to a standard error.  That of the derivative along a field u is told by
 differences of δ_I between two curves P ± t u: forces on single edges would tell nothing, because their errors, of the
-sign of whichever side of its cluster's centre an edge is on, all but cancel, the more so the finer the mesh.
+sign of whichever side of its cluster's center an edge is on, all but cancel, the more so the finer the mesh.
 """
 
 from dataclasses import dataclass

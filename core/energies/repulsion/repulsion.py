@@ -95,7 +95,7 @@ class Repulsion:
 
     def _means(self, curve: Curve) -> FloatArray:
         """Those of Φ on every edge, shape (edges,)."""
-        return self._integrals(self._schedule(curve), *_ends(curve, curve.vertices))[0]
+        return np.asarray(self._integrals(self._schedule(curve), *_ends(curve, curve.vertices))[0])
 
     def _schedule(self, curve: Curve) -> Schedule:
         """The schedule that counts at a curve: its own, or that of the curve."""

@@ -80,14 +80,14 @@ class _View:
         return np.asarray(tails[:, panels.edge] + (panels.begin + 0.5 * panels.width) * vectors[:, panels.edge])
 
     def _distances(self, panels: Panels) -> FloatArray:
-        return norm(self._middles(panels) - self.clusters.centre[:, panels.source])
+        return norm(self._middles(panels) - self.clusters.center[:, panels.source])
 
 
 @dataclass(frozen=True, eq=False)
 class Schedule:
     """Every pair of an edge and a simplex exactly once, but for the panels that edges are cut into.
 
-    Panels see a cluster if (radius of the cluster + half length) < θ (distance of the centres).
+    Panels see a cluster if (radius of the cluster + half length) < θ (distance of the centers).
     """
 
     curve: Curve  # that it was made for

@@ -126,7 +126,8 @@ def _arctangent_quotient(square: FloatArray, d: FloatArray) -> tuple[FloatArray,
     by_square = (d * inverse - value) / (2.0 * square)
     flat = (d.real > 0.0) & (square.real < _FLAT * d.real**2)
     x, y = d[flat], square[flat] / d[flat] ** 2
-    value[flat], by_square[flat] = polyval(y, _VALUE) / x, polyval(y, _SLOPE) / x**3
+    value[flat] = polyval(y, _VALUE) / x  # type: ignore[no-untyped-call]
+    by_square[flat] = polyval(y, _SLOPE) / x**3  # type: ignore[no-untyped-call]
     return value, by_square, -inverse
 
 
@@ -162,7 +163,7 @@ class Clusters:
 
     simplices: Simplices  # sorted: the clusters are ranges
     tree: ClusterTree  # its leaves are single simplices
-    centre: FloatArray  # centroids c; shape (3, clusters)
+    center: FloatArray  # centroids c; shape (3, clusters)
     radius: FloatArray  # of the smallest balls around the centroids that hold the clusters; shape (clusters,)
     size: FloatArray  # areas or lengths W = ∫ dA; shape (clusters,)
     spread: FloatArray  # second moments Q = ∫ (y − c)(y − c)ᵀ dA; shape (3, 3, clusters)
@@ -179,9 +180,9 @@ class Clusters:
 
         tree = ClusterTree.halved(order, 1, cut)
         simplices = Simplices(frozen(np.ascontiguousarray(corners[:, :, order])))
-        size, centre, spread = _moments(simplices, tree)
-        radius = np.concatenate([_radii(simplices.corners, centre, tree, level) for level in tree.levels])
-        return cls(simplices, tree, *map(frozen, (centre, radius, size, spread)))
+        size, center, spread = _moments(simplices, tree)
+        radius = np.concatenate([_radii(simplices.corners, center, tree, level) for level in tree.levels])
+        return cls(simplices, tree, *map(frozen, (center, radius, size, spread)))
 
     def potential(self, index: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Φ and ∇Φ of the clusters ``index``, shape (k,), each at its own points x, shape (3, k, points).
@@ -190,7 +191,7 @@ class Clusters:
 
             Φ ≈ W K + ½ ⟨Q, ∇²K⟩ = r⁻ᵖ (W − p/2 tr Q/r² + p (p + 2)/2 dᵀQd/r⁴).
         """
-        p, d = self.simplices.exponent, x - self.centre[:, index, None]
+        p, d = self.simplices.exponent, x - self.center[:, index, None]
         q, half = self.spread[:, :, index, None], 0.5 * p * (p + 2)
         s = 1.0 / dot(d, d)
         kernel, q_d = self.simplices.strength * s ** (0.5 * p), q[:, 0] * d[0] + q[:, 1] * d[1] + q[:, 2] * d[2]
@@ -215,22 +216,22 @@ def _sort_across(points: FloatArray, order: IntArray, start: IntArray, count: In
 def _moments(simplices: Simplices, tree: ClusterTree) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Sizes W, centroids c and second moments Q of all clusters, from the leaves up."""
     k = len(simplices.corners)
-    size, centre = simplices.sizes[tree.start], np.mean(simplices.corners, axis=0)[:, tree.start]
-    from_centre = simplices.corners[:, :, tree.start] - centre
-    spread = size / (k * (k + 1)) * np.einsum("aif,ajf->ijf", from_centre, from_centre)
+    size, center = simplices.sizes[tree.start], np.mean(simplices.corners, axis=0)[:, tree.start]
+    from_center = simplices.corners[:, :, tree.start] - center
+    spread = size / (k * (k + 1)) * np.einsum("aif,ajf->ijf", from_center, from_center)
     for inner, child in tree.upward():
         size[inner] = size[child] + size[child + 1]
         share = size[child + 1] / size[inner]
-        between = centre[:, child + 1] - centre[:, child]
-        centre[:, inner] = centre[:, child] + share * between
+        between = center[:, child + 1] - center[:, child]
+        center[:, inner] = center[:, child] + share * between
         apart = size[child] * share * (between[:, None] * between)
         spread[:, :, inner] = spread[:, :, child] + spread[:, :, child + 1] + apart
-    return size, centre, spread
+    return size, center, spread
 
 
-def _radii(corners: FloatArray, centre: FloatArray, tree: ClusterTree, level: slice) -> FloatArray:
-    """Largest distance of a corner from the centre of its cluster, for the clusters of one level."""
+def _radii(corners: FloatArray, center: FloatArray, tree: ClusterTree, level: slice) -> FloatArray:
+    """Largest distance of a corner from the center of its cluster, for the clusters of one level."""
     count = (tree.stop - tree.start)[level]
-    from_centre = corners[:, :, ranges(tree.start[level], count)] - np.repeat(centre[:, level], count, axis=1)
-    square = np.max(np.einsum("cif,cif->cf", from_centre, from_centre), axis=0)
+    from_center = corners[:, :, ranges(tree.start[level], count)] - np.repeat(center[:, level], count, axis=1)
+    square = np.max(np.einsum("cif,cif->cf", from_center, from_center), axis=0)
     return np.asarray(np.sqrt(np.maximum.reduceat(square, np.cumsum(count) - count)))

@@ -31,7 +31,7 @@ def multiplicity(blocks: BlockList) -> np.ndarray:
     """How often each pair of edges is counted, symmetric; shape (n, n)."""
     n = len(blocks.tree.order)
     far, near = np.zeros((n, n)), np.zeros((n, n))
-    for a, b, c, d in zip(blocks.a, blocks.b, blocks.c, blocks.d, strict=True):
+    for a, b, c, d in blocks.ranges.T:
         far[a:b, c:d] += 1
     np.add.at(near, (blocks.i, blocks.j), 1)
     near[np.ix_(blocks.tree.order, blocks.tree.order)] += far
@@ -81,10 +81,8 @@ def test_a_list_is_of_one_mesh_only() -> None:
 def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
     blocks, n = BlockList.of(curve, 0.25, 4), len(curve)
     sums = np.zeros(n + 1)
-    for start, stop, partners in [
-        (blocks.a, blocks.b, blocks.d - blocks.c),
-        (blocks.c, blocks.d, blocks.b - blocks.a),
-    ]:
+    a, b, c, d = blocks.ranges
+    for start, stop, partners in [(a, b, d - c), (c, d, b - a)]:
         sums += np.bincount(start, partners, n + 1) - np.bincount(stop, partners, n + 1)
     sums = np.cumsum(sums)[:-1]
     near = np.bincount(blocks.i, minlength=n) + np.bincount(blocks.j, minlength=n)
@@ -95,7 +93,7 @@ def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
 @LIST
 def test_blocks_are_far_apart(curve: Curve, theta: float, leaf: int) -> None:
     blocks, order = BlockList.of(curve, theta, leaf), edge_clusters(curve, leaf).order
-    for a, b, c, d in zip(blocks.a, blocks.b, blocks.c, blocks.d, strict=True):
+    for a, b, c, d in blocks.ranges.T:
         i, j = order[a:b, None], order[None, c:d]
         apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=-1)
         assert np.all(apart > 0.5 * (1 / theta - 1) * (curve.edge_lengths[i] + curve.edge_lengths[j]))
