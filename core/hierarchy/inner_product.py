@@ -21,7 +21,7 @@ from ..curve.distances import arc_distance_of_pairs
 from ..errors import OptionError
 from ..metrics import FractionalMetric, Metric, MoebiusMetric
 from ..metrics.inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
-from ..metrics.local import arc_stiffness, lumped_mass, mass
+from ..metrics.local import lumped_mass, mass, stiffness
 from ..metrics.moebius import pair_kernels
 from ..quadrature import MIDPOINT, Rule
 from ..saddle import TangentSpace
@@ -110,7 +110,7 @@ def moebius_inner_product(
         far_forms.append((RunningSum.of_slopes(curve, order), forms.of_long_slopes(far.inverse)))
     return CompressedInnerProduct(
         curve,
-        forms.of_slopes(near.inverse, far.inverse) + values + arc_stiffness(curve),
+        forms.of_slopes(near.inverse, far.inverse) + values + stiffness(curve, curve.mesh.arc_edges),
         tuple(far_forms),
         lumped_mass(curve)[:, None],
         forms.of_components(near.density, far.density),

@@ -28,7 +28,7 @@ from ..curve.tiles import ROWS_TIMES_COLUMNS
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray, IntArray
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
-from .local import WithoutRule, lumped_mass, mass
+from .local import WithoutRule, lumped_mass, mass, stiffness
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
 # others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves it changes nothing.
@@ -157,8 +157,8 @@ class MoebiusMetric:
                 density *= omega_i * omega_j
                 form.add(stripe, inverse, slope, slope)
                 form.add(stripe, density, Stencil.value(mesh, t_i), Stencil.value(mesh, t_j))
-        gram = form.assembled()
-        _add_arc_stiffness(gram, curve)
+        gram, arcs = form.assembled(), stiffness(curve, curve.mesh.arc_edges).tocoo()
+        gram[arcs.coords] += arcs.data
         return DenseInnerProduct(blas.dsyr(1.0, lumped_mass(curve), a=gram, lower=1, overwrite_a=1))
 
 
@@ -176,15 +176,6 @@ def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
     inverse = 1.0 / np.maximum(np.einsum("km,km->k", chord, chord), nearest)
     rho = arc_distance_of_pairs(curve, i, j, 0.5)
     return PairKernels(inverse, inverse * (inverse - 1.0 / np.maximum(rho * rho, nearest)))
-
-
-def _add_arc_stiffness(gram: FloatArray, curve: Curve) -> None:
-    """Add ∫ |u'|² over the arcs, `arc_stiffness`, to the lower triangle."""
-    edges = curve.mesh.arc_edges
-    tails, heads, slope = curve.mesh.tails[edges], curve.mesh.heads[edges], 1.0 / curve.edge_lengths[edges]
-    gram[tails, tails] += slope
-    gram[heads, heads] += slope
-    gram[heads, tails] -= slope  # along an arc numbers grow
 
 
 class _PairWeights:
