@@ -46,17 +46,9 @@ class BlockList:
             return False
         return bool(_admissible(*balls(self.tree, curve), self.first, self.second, theta).all())
 
-    @property
-    def i(self) -> IntArray:
-        """The first edge of each near pair, i < j, sorted by i and then by j; shape (pairs,)."""
-        return self._edge_pairs[0]
-
-    @property
-    def j(self) -> IntArray:
-        return self._edge_pairs[1]
-
     @cached_property
-    def _edge_pairs(self) -> EdgePairIndices:
+    def near(self) -> EdgePairIndices:
+        """The edges i < j of each near pair, sorted by i and then by j; shape (pairs,) twice."""
         return _edge_pairs(self.mesh, self.tree, self.leaves)
 
     @property
@@ -74,13 +66,13 @@ class BlockList:
     def near_pairs(self, without: EdgePairIndices | None = None) -> EdgePairIndices:
         """The near pairs but for some that are left out; OptionError if one of these is not a near pair."""
         if without is None or not without[0].size:
-            return self.i, self.j
-        n = self.mesh.edges
-        code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
+            return self.near
+        (i, j), n = self.near, self.mesh.edges
+        code, left_out = _code(i, j, n), np.unique(_code(*without, n))
         place = np.searchsorted(code, left_out)
         if not np.array_equal(code[place[place < len(code)]], left_out):
             raise OptionError("a pair of edges to be left out is not a near one")
-        return np.delete(self.i, place), np.delete(self.j, place)
+        return np.delete(i, place), np.delete(j, place)
 
     @cached_property
     def middles(self) -> EdgePairIndices:

@@ -64,11 +64,8 @@ class NearField:
     def _matrix(self, entries: FloatArray) -> sp.csr_array:
         """Numbers of the pairs as a sparse matrix; shape (edges, edges)."""
         n = len(self.edges.tau)
-        return sp.csr_array((entries, self.pairs[1], self._row_ends), shape=(n, n))
-
-    @cached_property
-    def _row_ends(self) -> IntArray:
-        return np.searchsorted(self.pairs[0], np.arange(len(self.edges.tau) + 1))
+        row_ends = np.searchsorted(self.pairs[0], np.arange(n + 1))
+        return sp.csr_array((entries, self.pairs[1], row_ends), shape=(n, n))
 
 
 class _Kernel(NamedTuple):
@@ -110,7 +107,7 @@ class FarField:
 
     @cached_property
     def _expansion(self) -> Expansion:
-        return Expansion(self.vectors.m.shape[1], self.order)
+        return Expansion.of(self.vectors.m.shape[1], self.order)
 
     @cached_property
     def _clusters(self) -> MomentTree:

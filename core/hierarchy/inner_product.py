@@ -103,7 +103,7 @@ def moebius_inner_product(
     """J_C by the midpoint rule, as in `MoebiusMetric`, compressed."""
     blocks = BlockList.of(curve, theta, leaf)
     forms, order = PairForms(curve, blocks), blocks.tree.order
-    near, far = (pair_kernels(curve, *pairs) for pairs in (blocks.near_pairs(), blocks.middles))
+    near, far = (pair_kernels(curve, *pairs) for pairs in (blocks.near, blocks.middles))
     values, sums = forms.of_values(near.density, far.density)
     far_forms = [(RunningSum.of_values(curve, order), sums)]
     if not curve.mesh.all_closed:  # blocks of clusters of several components, some of them open
@@ -124,7 +124,7 @@ def fractional_inner_product(
     """W^{3/2,2}, as in `FractionalMetric`, compressed."""
     blocks = BlockList.of(curve, theta, leaf)
     forms = PairForms(curve, blocks)
-    near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (blocks.near_pairs(), blocks.middles))
+    near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (blocks.near, blocks.middles))
     n, indicators, weight = len(curve), _indicators(curve), mass(curve)
     return CompressedInnerProduct(
         curve,

@@ -18,8 +18,7 @@ from .polynomials import Polynomials, polynomials
 CHUNK = 1024  # polynomials handled at once, for the processor's cache
 
 
-@dataclass(frozen=True)
-class Expansion:
+class Expansion(NamedTuple):
     """Taylor expansions of order p about the center of a cluster: two moments, one below the other in one array.
 
     With u_I = m_I − center they are Σ_I ℓ_I exp⟨u_I, ξ⟩ up to degree p and Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1.
@@ -28,33 +27,19 @@ class Expansion:
 
     dimension: int  # m, that of space
     order: int  # p
+    table: Polynomials  # of all degrees needed, those of the kernels' derivatives among them
+    lengths: slice  # rows of the first moment
+    edges: slice  # rows of the second moment
+    by_center: slice  # rows of derivatives with respect to the center
+    signs: FloatArray  # that come with the second cluster of a block, seen from which d is −d; shape (rows,)
 
-    @property
-    def table(self) -> Polynomials:
-        """Polynomials of all degrees needed, those of the kernels' derivatives among them."""
-        return polynomials(self.dimension, self.order + 3)
-
-    @property
-    def lengths(self) -> slice:
-        """Rows of the first moment."""
-        return slice(0, self.table.size(self.order))
-
-    @property
-    def edges(self) -> slice:
-        """Rows of the second moment."""
-        return slice(self.lengths.stop, self.lengths.stop + self.table.size(self.order + 1))
-
-    @property
-    def by_center(self) -> slice:
-        """Rows of derivatives with respect to the center."""
-        return slice(self.edges.stop, self.edges.stop + self.dimension)
-
-    @cached_property
-    def signs(self) -> FloatArray:
-        """Signs that come with the second cluster of a block, seen from which d is −d; shape (rows,)."""
-        signs = self.table.signs[:, 0]
-        lengths, edges = signs[: self.table.size(self.order)], -signs[: self.table.size(self.order + 1)]
-        return np.concatenate([lengths, edges, np.full(self.dimension, -1.0)])
+    @classmethod
+    def of(cls, dimension: int, order: int) -> "Expansion":
+        """The expansions of an order."""
+        table = polynomials(dimension, order + 3)
+        a, b, signs = table.size(order), table.size(order) + table.size(order + 1), table.signs[:, 0]
+        signs = np.concatenate([signs[:a], -signs[: b - a], np.full(dimension, -1.0)])
+        return cls(dimension, order, table, slice(0, a), slice(a, b), slice(b, b + dimension), signs)
 
 
 class _Leaves(NamedTuple):

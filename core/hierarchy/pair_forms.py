@@ -62,7 +62,7 @@ class PairForms:
         Left out are blocks of clusters that hold several components, which would couple all with all.
         """
         ell, component = self._curve.edge_lengths, self._curve.mesh.edge_component
-        (i, j), (c, d), single = self._blocks.near_pairs(), self._blocks.middles, self._in_components
+        (i, j), (c, d), single = self._blocks.near, self._blocks.middles, self._in_components
         first = component[np.concatenate([i, c[single]])]
         second = component[np.concatenate([j, d[single]])]
         weights = np.concatenate([near * ell[i] * ell[j], (far * self._length_c * self._length_d)[single]])
@@ -78,7 +78,7 @@ class PairForms:
 
     def _on_edges(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
         """Near pairs, and the diagonal of the blocks, in edge values; shape (edges, edges)."""
-        ell, (i, j) = self._curve.edge_lengths, self._blocks.near_pairs()
+        ell, (i, j) = self._curve.edge_lengths, self._blocks.near
         off = _symmetric(2.0 * near * ell[i] * ell[j], i, j, len(ell))
         return sp.csr_array(sp.diags_array(off.sum(axis=1) + 2.0 * ell * self._opposite(far)) - off)
 

@@ -77,7 +77,7 @@ def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, 
 def _relative_change(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray) -> float:
     """The largest rate, relative to it, at which the distance of two near edges or two clusters can change along u."""
     blocks = energy.block_list(curve)
-    i, j = np.concatenate([(blocks.i, blocks.j), blocks.middles], axis=1)
+    i, j = np.concatenate([blocks.near, blocks.middles], axis=1)
     motion = 0.5 * (u[curve.mesh.tails] + u[curve.mesh.heads])
     speed, distance = (np.linalg.norm(x[i] - x[j], axis=1) for x in (motion, curve.midpoints))
     return float(np.max(speed / distance, initial=0.0))

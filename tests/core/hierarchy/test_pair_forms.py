@@ -23,11 +23,11 @@ CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 def forms_with_weights(curve: Curve) -> tuple[BlockList, np.ndarray, np.ndarray]:
     blocks, rng = BlockList.of(curve, 0.5, 4), np.random.default_rng(19)
-    return blocks, rng.uniform(size=len(blocks.i)), rng.uniform(size=len(blocks.first))
+    return blocks, rng.uniform(size=len(blocks.near[0])), rng.uniform(size=len(blocks.first))
 
 
 def weighted_pairs(blocks: BlockList, near: np.ndarray, far: np.ndarray) -> Iterator[tuple[int, int, float]]:
-    yield from zip(blocks.i, blocks.j, near, strict=True)
+    yield from zip(*blocks.near, near, strict=True)
     for (a, b, c, d), weight in zip(blocks.ranges.T, far, strict=True):
         for i in blocks.tree.order[a:b]:
             for j in blocks.tree.order[c:d]:
