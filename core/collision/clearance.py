@@ -98,12 +98,7 @@ def survives_rounding(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> bool:
     if curve.dimension > 3:
         return True
     rounding = UNITS * np.spacing(np.abs(curve.vertices).max()) * np.sqrt(curve.dimension)
-    nearest = min(minimal_gap(curve)[0], _fold_gap(curve))
-    return bool(nearest > 2.1 * rounding) and clears(curve, obstacles, float(1.1 * rounding))
-
-
-def _fold_gap(curve: Curve) -> float:
-    """The smallest distance of a vertex from the segment that it must not lie on; infinite if there is none."""
     points, unit = scaled_points(curve)
-    squares = squared_segment_distances(points, folds(curve.mesh))
-    return float(np.ldexp(np.sqrt(np.min(squares, initial=np.inf)), unit))
+    fold = np.sqrt(np.min(squared_segment_distances(points, folds(curve.mesh)), initial=np.inf))
+    nearest = min(minimal_gap(curve)[0], float(np.ldexp(fold, unit)))
+    return bool(nearest > 2.1 * rounding) and clears(curve, obstacles, float(1.1 * rounding))

@@ -33,7 +33,9 @@ def check_embedded(curve: Curve) -> None:
     _check_repeated(curve)
     points, _ = scaled_points(curve)
     _check_doubled_back(curve, points)
-    _check_crossings(curve, points)
+    touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
+    for i, j in touching(curve, points):
+        raise _refusal(TOUCHING, curve, i, j)
 
 
 def _check_repeated(curve: Curve) -> None:
@@ -78,12 +80,6 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
             place=written(curve.vertices[vertex]),
         )
         raise CurveError(reason, at_vertices(curve, vertex))
-
-
-def _check_crossings(curve: Curve, points: FloatArray) -> None:
-    touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
-    for i, j in touching(curve, points):
-        raise _refusal(TOUCHING, curve, i, j)
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:

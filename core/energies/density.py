@@ -104,7 +104,8 @@ class PointSet(NamedTuple):
 class PointPairs:
     """The pairs (x, y) of a tile, x on the edges of its rows and y on those of its columns; computed on demand.
 
-    All arrays have the shape (rows, columns).  Pairs that do not count have finite numbers without meaning.
+    These are r², a = ⟨x − y, τ_x⟩, b = ⟨x − y, τ_y⟩, c = ⟨τ_x, τ_y⟩ and ϱ.  All arrays have the shape (rows, columns).
+    Pairs that do not count have finite numbers without meaning.
     """
 
     def __init__(self, x: PointSet, y: PointSet, arcs: Arcs, tile: Tile) -> None:
@@ -119,7 +120,6 @@ class PointPairs:
 
     @cached_property
     def a(self) -> FloatArray:
-        """⟨x − y, τ_x⟩."""
         x, tau = self._x.x[self._tile.rows], self._x.tau[self._tile.rows]
         a = np.einsum("ij,ij->i", x, tau)[:, None] - tau @ self._y.x[self._tile.columns].T
         a[self._tile.excluded] = 0.0
@@ -127,7 +127,6 @@ class PointPairs:
 
     @cached_property
     def b(self) -> FloatArray:
-        """⟨x − y, τ_y⟩."""
         y, tau = self._y.x[self._tile.columns], self._y.tau[self._tile.columns]
         b = self._x.x[self._tile.rows] @ tau.T - np.einsum("ij,ij->i", y, tau)
         b[self._tile.excluded] = 0.0
@@ -135,7 +134,6 @@ class PointPairs:
 
     @cached_property
     def c(self) -> FloatArray:
-        """⟨τ_x, τ_y⟩."""
         return np.asarray(self._x.tau[self._tile.rows] @ self._y.tau[self._tile.columns].T)
 
     @cached_property

@@ -13,24 +13,21 @@ from .complex_steps import stepped
 
 
 class Vectors(NamedTuple):
-    """What the derivative is linear in: edge vectors with lengths, midpoints with ones; each (edges, m + 1)."""
+    """What the derivative is linear in: edge vectors e with lengths ℓ, midpoints m from their mean with ones."""
 
-    e_ell: FloatArray
+    e_ell: FloatArray  # (edges, m + 1), as the other
     m_one: FloatArray
 
     @property
     def e(self) -> FloatArray:
-        """Edge vectors; shape (edges, m)."""
         return self.e_ell[:, :-1]
 
     @property
     def m(self) -> FloatArray:
-        """Midpoints from their mean; shape (edges, m)."""
         return self.m_one[:, :-1]
 
     @property
     def ell(self) -> FloatArray:
-        """Lengths; shape (edges,)."""
         return self.e_ell[:, -1]
 
 
