@@ -25,7 +25,7 @@ def main(sizes: list[int]) -> None:
 def line(curve: Curve, repetitions: int) -> str:
     blocks = BlockList.of(curve, HierarchicalMoebiusEnergy.theta, HierarchicalMoebiusEnergy.leaf)
     energy = HierarchicalMoebiusEnergy(blocks)
-    sizes = [len(blocks.first) / len(curve), len(blocks.i) / len(curve)]
+    sizes = [len(blocks.first) / len(curve), len(blocks.near[0]) / len(curve)]
     times = [
         best(lambda: BlockList.of(curve, HierarchicalMoebiusEnergy.theta, HierarchicalMoebiusEnergy.leaf), repetitions),
         best(lambda: energy.value(curve), repetitions),

@@ -37,7 +37,8 @@ class ClusterTree:
             middle = cut(start, stop)
             start, stop = (np.stack(ends, axis=1).ravel() for ends in ((start, middle), (middle, stop)))
             first = last
-        return cls(order, *(frozen(np.concatenate(arrays)) for arrays in zip(*parts, strict=True)), tuple(levels))
+        starts, stops, children = (frozen(np.concatenate(arrays)) for arrays in zip(*parts, strict=True))
+        return cls(order, starts, stops, children, tuple(levels))
 
     @property
     def size(self) -> int:

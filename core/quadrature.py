@@ -22,13 +22,7 @@ def gauss_legendre(points: int) -> tuple[FloatArray, FloatArray]:
 @checked_fields
 @dataclass(frozen=True)
 class Rule:
-    """A quadrature rule on [0, 1].
-
-    Raises
-    ------
-    OptionError
-        If they are anything else.
-    """
+    """A quadrature rule: points t_i in [0, 1] and as many weights ω_i, which add up to 1, or an OptionError says so."""
 
     # points, weights: t_i in [0, 1] and ω_i, as many of one as of the other; the weights add up to 1
     points: tuple[float, ...]

@@ -10,15 +10,8 @@ Triangle = tuple[int, int, int]
 def triangulated(points: Sequence[Point]) -> list[Triangle]:
     """Cut a polygon into triangles of its own vertices by clipping ears, as seen along the axis nearest to its normal.
 
-    Parameters
-    ----------
-    points
-        Its vertices in order, k ≥ 3 points in space. Where they are not in a plane, or the polygon crosses itself or
-        has no area, there is no right answer; the triangles still span all vertices.
-
-    Returns
-    -------
-    The indices of the k − 2 triangles' vertices.
+    From k ≥ 3 points in space, in order, to the indices of the k − 2 triangles' vertices.  Where the points are not in
+    a plane, or the polygon crosses itself or has no area, there is no right answer; triangles still span all vertices.
     """
     flat = _flat(points) if len(points) > 3 else []
     before, after = [len(points) - 1, *range(len(points) - 1)], [*range(1, len(points)), 0]

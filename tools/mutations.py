@@ -132,7 +132,7 @@ MUTANTS = (
     ),
     Mutant(
         "the corner that closes a component",
-        "core/saddle/restoration.py",
+        "core/saddle/tangent_space.py",
         "w[first], w[last] = 1.0, sign",
         "w[first], w[last] = 1.0, 1.0",
         f"{RESTORATION}::test_corrections_solve_the_linearised_constraints_by_the_shortest_way",
@@ -153,7 +153,7 @@ MUTANTS = (
     ),
     Mutant(
         "stripes that forget the edge before",
-        "core/metrics/pairs.py",
+        "core/metrics/moebius.py",
         "np.concatenate([[before], np.arange(first, last)])",
         "np.concatenate([[first], np.arange(first, last)])",
         "tests/core/test_metrics.py::test_stripes_meet_every_pair_once",

@@ -34,24 +34,13 @@ class Contact:
 class FreeMotion:
     """How much of a motion is proved free of contact.
 
-    Attributes
-    ----------
-    time
-        No two non-neighbour edges, and no edge and obstacle, meet at any time t in [0, time], unless time is 0; 1 if
-        the whole motion is free. If two meet, this is at most 2 % before the contact.
+    No two non-neighbour edges, and no edge and obstacle, meet at any time t in [0, time], unless time is 0.  If two
+    meet, this is at most 2 % before the contact.
     """
 
-    time: float
+    time: float  # 1 if the whole motion is free
     contact: Contact | None = None  # what limits it, None if nothing does
     limit: Limit = Limit.NONE  # the reason
-
-    @property
-    def pair(self) -> tuple[int, int] | None:
-        """The two edges that limit it; None if it is not limited, or by an obstacle."""
-        if self.contact is None or self.contact.obstacle is not None:
-            return None
-        i, j = self.contact.edges
-        return i, j
 
     @property
     def proved(self) -> bool:

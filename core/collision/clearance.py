@@ -15,7 +15,7 @@ from .embedded import edge_name, meeting_point, written
 from .exact import first_contact
 from .exact_triangle import EDGES, crossing
 from .gap import MIN_GAP, folds, minimal_gap, scaled_points, squared_gaps, squared_segment_distances
-from .planes import Separation, closest_chord, relative_motion
+from .planes import doubtful
 
 # Bound of the rounding errors of tail + t (head − tail), in units of the last place of the largest coordinate: one each
 # of the difference, which may be twice as large, and of the product, and half a one of the sum.  That of t itself only
@@ -30,11 +30,8 @@ TOO_NEAR = Message("{edge} comes too near to {obstacle} at {place}; move one of 
 def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
     """Refuse a curve that touches obstacles or comes too near to them to compute with; inside a closed one it may be.
 
-    Raises
-    ------
-    CurveError
-        If there are obstacles and the curve is not in space, or not clear of them: one sentence that names the
-        component, its edge, counted from 1, the obstacle and the place.
+    A CurveError says so, naming edge, obstacle and place, and also if there are obstacles and the curve is not in
+    space.
     """
     if not obstacles:
         return
@@ -71,18 +68,9 @@ def _near(curve: Curve, obstacles: Sequence[Obstacle], distance: float) -> Itera
 
     for a, b in tree.pairs_with(still.tree, near):
         vertices = np.concatenate([tree.corners[:, a], len(curve) + still.tree.corners[:, b]])
-        close = np.flatnonzero(_doubtful(points, vertices, radius))
+        close = np.flatnonzero(doubtful(points, vertices, radius))
         for k in close[np.argsort(tree.order[a[close]], kind="stable")].tolist():
             yield int(tree.order[a[k]]), given[vertices[:, k]], still.obstacle_of(int(still.tree.order[b[k]]))
-
-
-def _doubtful(points: FloatArray, vertices: IntArray, radius: float) -> BoolArray:
-    """Pairs at a distance of at most the radius, or without a plane that certainly separates them; shape (pairs,)."""
-    motion = relative_motion(points, points, vertices)
-    chord = closest_chord(motion[0])
-    planes = Separation(motion, np.abs(motion).sum(axis=1), chord)
-    near = np.einsum("mp,mp->p", chord, chord) <= radius**2
-    return np.asarray(near | ~planes.proves(np.zeros(chord.shape[1])))
 
 
 def _meeting(corners: FloatArray) -> tuple[str, FloatArray]:
@@ -107,12 +95,7 @@ def survives_rounding(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> bool:
     if curve.dimension > 3:
         return True
     rounding = UNITS * np.spacing(np.abs(curve.vertices).max()) * np.sqrt(curve.dimension)
-    nearest = min(minimal_gap(curve)[0], _fold_gap(curve))
-    return bool(nearest > 2.1 * rounding) and clears(curve, obstacles, float(1.1 * rounding))
-
-
-def _fold_gap(curve: Curve) -> float:
-    """The smallest distance of a vertex from the segment that it must not lie on; infinite if there is none."""
     points, unit = scaled_points(curve)
-    squares = squared_segment_distances(points, folds(curve.mesh))
-    return float(np.ldexp(np.sqrt(np.min(squares, initial=np.inf)), unit))
+    fold = np.sqrt(np.min(squared_segment_distances(points, folds(curve.mesh)), initial=np.inf))
+    nearest = min(minimal_gap(curve)[0], float(np.ldexp(fold, unit)))
+    return bool(nearest > 2.1 * rounding) and clears(curve, obstacles, float(1.1 * rounding))

@@ -12,7 +12,7 @@ from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, corners
 from .exact import first_contact
 from .gap import near_edges, scaled_points
-from .planes import ROUNDING, Separation, closest_chord, relative_motion
+from .planes import ROUNDING, doubtful
 
 MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
 
@@ -28,17 +28,14 @@ def check_embedded(curve: Curve) -> None:
     """Raise unless the curve is embedded: no repeated points, no doubled-back edges, no edges that touch or cross.
 
     Exact in the plane and in space.  In four and more dimensions, where nothing is proved, edges touch if they are
-    together up to rounding.
-
-    Raises
-    ------
-    CurveError
-        One sentence that names the component and its edges and vertices, counted from 1, and the place.
+    together up to rounding.  The CurveError names component, edges and vertices, and the place.
     """
     _check_repeated(curve)
     points, _ = scaled_points(curve)
     _check_doubled_back(curve, points)
-    _check_crossings(curve, points)
+    touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
+    for i, j in touching(curve, points):
+        raise _refusal(TOUCHING, curve, i, j)
 
 
 def _check_repeated(curve: Curve) -> None:
@@ -74,12 +71,6 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
         raise CurveError(message, at_vertices(curve, vertex))
 
 
-def _check_crossings(curve: Curve, points: FloatArray) -> None:
-    touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
-    for i, j in touching(curve, points):
-        raise _refusal(TOUCHING, curve, i, j)
-
-
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
     """Pairs of edges that touch, decided exactly; raises a CurveError where more pairs are doubtful than can be."""
     for count, (i, j) in enumerate(_doubtful_pairs(curve.mesh, points)):
@@ -110,10 +101,8 @@ def _doubtful_pairs(mesh: Mesh, points: FloatArray) -> Iterator[tuple[int, int]]
 
     for a, b in tree.pairs(near):
         i, j = np.sort(tree.order[np.stack([a, b])], axis=0)
-        motion = relative_motion(points, points, corners(mesh, i, j))
-        planes = Separation(motion, np.abs(motion).sum(axis=1), closest_chord(motion[0]))
-        doubtful = ~planes.proves(np.zeros(len(i)))
-        yield from sorted(zip(i[doubtful].tolist(), j[doubtful].tolist(), strict=True))
+        kept = doubtful(points, corners(mesh, i, j))
+        yield from sorted(zip(i[kept].tolist(), j[kept].tolist(), strict=True))
 
 
 def meeting_point(ends: FloatArray) -> FloatArray:

@@ -39,13 +39,8 @@ def minimal_gap(curve: Curve) -> tuple[float, tuple[int, int] | None]:
 def check_gap(curve: Curve) -> None:
     """Refuse strands so near that the energy of their edges is nothing but rounding errors.
 
-    Edges of which only the ends are near, with a short edge between them or a vertex that nearly lies on an edge, do
-    no harm.
-
-    Raises
-    ------
-    CurveError
-        One sentence that says where.
+    The CurveError says where.  Edges of which only the ends are near, with a short edge between them or a vertex that
+    nearly lies on an edge, do no harm.
     """
     points, unit = scaled_points(curve)
     radius = float(np.ldexp(MIN_GAP * curve.length, -unit))
@@ -170,19 +165,13 @@ def _some_gap(curve: Curve, points: FloatArray) -> tuple[float, tuple[int, int] 
 
 
 def folds(mesh: Mesh) -> IntArray:
-    """Where a polygon may stop being embedded although no two of its non-neighbour edges meet.
+    """Vertices and the segments that they must not lie on, as the ends x₀ = x₁ and y₀, y₁; shape (4, folds).
 
-    When two neighbour edges fold onto each other, an end of one of them lies on the other: the end that they do not
-    share, where another edge begins.  This one then meets the edge that it lies on, and is no neighbour of it, but for
-    two cases.  In a triangle it is the neighbour on the other side; and at the end of an arc there is none.  The same
-    is true where an edge shrinks to a point.  So a polygon is embedded if no two non-neighbour edges meet, no vertex of
-    a triangle lies on the opposite edge, and no end of an arc lies on the edge after its neighbour, or, if that is the
-    other end, on that.
-
-    Returns
-    -------
-    Vertices and the segments that they must not lie on, as the ends x₀ = x₁ and y₀, y₁; shape (4, folds).  Segments
-    begin at the tails of their edges.
+    When two neighbour edges fold onto each other, or one shrinks to a point, an end of one lies on the other, and the
+    edge that begins there meets this one, which is no neighbour of it, but for two cases: in a triangle it is the
+    neighbour on the other side, and at the end of an arc there is none.  So a polygon is embedded if no two
+    non-neighbour edges meet, no vertex of a triangle lies on the opposite edge, and no end of an arc lies on the edge
+    after its neighbour, or, if that is the other end, on that.  Segments begin at the tails of their edges.
     """
     triangles = mesh.offsets[:-1][np.asarray(mesh.closed) & (np.asarray(mesh.component_sizes) == 3)]
     after, before = mesh.heads[mesh.outgoing], mesh.tails[mesh.incoming]

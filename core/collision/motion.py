@@ -26,19 +26,8 @@ def free_motion(mesh: Mesh, start: FloatArray, end: FloatArray, obstacles: Seque
     Neighbour edges are not tested: when they fold onto each other, one of them meets the edge after the other. In
     triangles and at the ends of arcs, where there is no such edge, a vertex is tested against an edge (`folds`).
 
-    Parameters
-    ----------
-    mesh
-        Connectivity.
-    start, end
-        Vertices at both ends, shape (n, m) with m = 2 or 3. The proof is about exactly these floating-point numbers.
-    obstacles
-        What edges must not meet either, in the same units; in space only.
-
-    Raises
-    ------
-    ValueError
-        If the shapes are wrong.
+    ``start`` and ``end`` are the vertices at both ends, shape (n, m) with m = 2 or 3, or a ValueError says so; the
+    proof is about exactly these floating-point numbers.  Obstacles are in the same units, and in space only.
     """
     return _search(mesh, start, end, obstacles, exhaustive=True)
 

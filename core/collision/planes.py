@@ -25,21 +25,9 @@ _SHARE = 1 - 2.0**-6  # part of the way to the plane's own contact that a step g
 def march(start: FloatArray, end: FloatArray, vertices: IntArray, reached: FloatArray, limit: float) -> FloatArray:
     """Prove each pair free of contact from plane to plane, for as long as planes make good progress.
 
-    Parameters
-    ----------
-    start, end
-        Vertices of the leg, shape (m, n), entries of at most 1 in size.
-    vertices
-        The pairs' vertices x₀, x₁, y₀, y₁, shape (4, pairs), and y₂ of triangles, shape (5, pairs).
-    reached
-        Times up to which the pairs are known to be free, shape (pairs,).
-    limit
-        Time beyond which nothing is asked.
-
-    Returns
-    -------
-    reached
-        The new times, at least ``limit`` where nothing stands in the way.
+    ``start`` and ``end`` are the vertices of the leg, shape (m, n), entries of at most 1 in size, ``vertices`` those of
+    the pairs, x₀, x₁, y₀, y₁ and y₂ of triangles, shape (4 or 5, pairs).  Pairs are known to be free up to the times
+    ``reached``, shape (pairs,); the new times are at least ``limit`` where nothing stands in the way.
     """
     reached = reached.copy()
     active = np.flatnonzero(reached < limit)
@@ -102,6 +90,15 @@ class Separation:
         with np.errstate(divide="ignore", invalid="ignore"):
             left = np.where(fall > 0, at_time(self.values, t) / fall, np.inf)
         return np.asarray(left.min(axis=0))
+
+
+def doubtful(points: FloatArray, vertices: IntArray, radius: float = 0.0) -> BoolArray:
+    """Still pairs no further apart than the radius, or without a plane that surely separates them; shape (pairs,)."""
+    motion = relative_motion(points, points, vertices)
+    chord = closest_chord(motion[0])
+    planes = Separation(motion, np.abs(motion).sum(axis=1), chord)
+    near = np.einsum("mp,mp->p", chord, chord) <= radius**2
+    return np.asarray(near | ~planes.proves(np.zeros(chord.shape[1])))
 
 
 def closest_chord(motion: FloatArray) -> FloatArray:

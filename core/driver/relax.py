@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -119,7 +119,7 @@ class Result:
             "method": self.method,
             "fallback_steps": list(self.fallback_steps),
             "negative_eigenvalues": self.outcome.negative_eigenvalues,
-            "sampled_errors": None if errors is None else errors.as_report(),
+            "sampled_errors": None if errors is None else asdict(errors),
         }
 
 

@@ -6,13 +6,12 @@ from types import MappingProxyType
 from ..quadrature import Rule
 from .barrier import Barrier
 from .bending import Bending
-from .densities import EDGE_ENERGY, VERTEX_ENERGY, moebius_kpoint
+from .densities import EDGE_ENERGY, TANGENT_POINT_ENERGY, VERTEX_ENERGY, moebius_kpoint
 from .density import Density
 from .energy import Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
 from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
 from .objective import Objective, Weighted
-from .tangent_point import TANGENT_POINT_ENERGY
 
 ENERGIES: Mapping[str, Energy] = MappingProxyType(
     {

@@ -34,15 +34,10 @@ BLOCK = 4096  # pairs at once, for the processor's cache
 class Barrier:
     """B, the difference between exact and midpoint energy over near pairs of edges.
 
-    Parameters
-    ----------
-    replaces_midpoint
-        Whether the midpoint contributions are subtracted, as is right for the default energy that contains them.
-        For other energies the barrier is Σ χ W_exact, positive and on top of their own contributions.
-    left_out
-        Whether the energy leaves the pairs with χ = 1 out (`replaced_pairs`), so that theirs is W_exact alone.  The sum
-        is the same, but nothing is added that is subtracted again: at a distance g that would be some 1/g² times the
-        rounding error of g, which drowns it from 10⁻⁸ of an edge on.
+    Midpoint contributions are subtracted for the default energy, which contains them; for others the barrier is
+    Σ χ W_exact, on top of their own contributions.  If the energy has left the pairs with χ = 1 out (`replaced_pairs`),
+    theirs is W_exact alone: the same sum, but nothing is added that is subtracted again, which at a distance g would
+    cost some 1/g² times the rounding error of g, all digits from 10⁻⁸ of an edge on.
     """
 
     replaces_midpoint: bool = True

@@ -15,28 +15,18 @@ from ..curve.distances import points_at
 from ..curve.tiles import Tile, pair_tiles
 from ..quadrature import Rule
 from ..types import FloatArray
-from .arcs import ArcDerivative, Arcs
 from .components import ComponentShares
-from .density import Density, Partials, PointPairs, PointSet
+from .density import ArcDerivative, Arcs, Density, Partials, PointPairs, PointSet
 from .energy import is_moebius_invariant
 
 
 @checked_fields
 @dataclass(frozen=True)
 class KPointEnergy:
-    """The energy of a density by a quadrature rule.
+    """The energy of a density F by a quadrature rule on every edge, with the name and description shown to users.
 
-    Parameters
-    ----------
-    name, description
-        As shown to users.
-    density
-        F.
-    rule
-        Its points on every edge.
-    arc_derivative
-        Whether the derivative includes that of ϱ.  If it does not, it is right only in directions that keep every
-        edge length, so for gradients projected onto that constraint (footnote 5 of [RS21]).
+    Without ``arc_derivative``, that of ϱ, the derivative is right only in directions that keep every edge length, so
+    for gradients projected onto that constraint (footnote 5 of [RS21]).
     """
 
     name: str

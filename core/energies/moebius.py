@@ -16,8 +16,9 @@ from ..curve import Curve
 from ..curve.tiles import EdgePairIndices, pair_tiles, row_tiles
 from ..quadrature import MIDPOINT
 from ..types import FloatArray, IntArray
+from .complex_steps import change
 from .components import ComponentShares
-from .moebius_hessian import hessian, hessian_product
+from .moebius_hessian import hessian
 from .moebius_pairs import DerivativeSums, Edges, Pairs
 
 CONSTANT = 4.0  # of a closed component
@@ -26,13 +27,7 @@ CONSTANT = 4.0  # of a closed component
 @checked_fields
 @dataclass(frozen=True, eq=False)
 class MoebiusEnergy:
-    """The plain midpoint sum, the energy that is reported as ``moebius``.
-
-    Parameters
-    ----------
-    without
-        Pairs of edges that are left out of the sum, because something else stands for them.
-    """
+    """The plain midpoint sum, reported as ``moebius``, without pairs of edges that something else stands for."""
 
     without: EdgePairIndices | None = field(default=None, repr=False)
     name = "moebius"
@@ -55,7 +50,7 @@ class MoebiusEnergy:
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
         edges = Edges.of(curve)
-        total, sums = 0.0, DerivativeSums.zeros(*curve.edge_vectors.shape)
+        total, sums = 0.0, DerivativeSums.zeros(curve.edge_vectors.shape)
         for tile in pair_tiles(curve.mesh, self.without):
             pairs = Pairs.of(edges, tile)
             total += pairs.energy()
@@ -79,8 +74,11 @@ class MoebiusEnergy:
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
+        edges, sums = Edges.of(curve, v), DerivativeSums.zeros(curve.edge_vectors.shape, np.complex128)
+        for tile in pair_tiles(curve.mesh, self.without):
+            sums.add(tile.rows, tile.columns, Pairs.of(edges, tile).coefficients(), edges.vectors)
         shares = ComponentShares(curve).second_derivative(v)
-        return hessian_product(curve, v, self.without) + CONSTANT * shares
+        return 2.0 * change(sums.at_vertices(curve.mesh, edges.tau)) + CONSTANT * shares
 
 
 def energy_of_pairs(curve: Curve, pairs: float) -> float:

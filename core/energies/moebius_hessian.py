@@ -17,11 +17,91 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..curve import Curve
+from ..curve import Curve, Mesh
 from ..curve.tiles import EdgePairIndices, Tile, pair_tiles
-from ..types import FloatArray
-from .hessian_blocks import CouplingPlanes, OwnBlocks
-from .moebius_pairs import Coefficients, DerivativeSums, Edges, Pairs, Vectors
+from ..types import FloatArray, IntArray
+from .moebius_pairs import Edges, Pairs
+
+
+class OwnBlocks(NamedTuple):
+    """Second derivatives by one edge's own e and c, summed over its partners; each of shape (edges, m, m)."""
+
+    ee: FloatArray
+    ec: FloatArray
+    cc: FloatArray
+
+    @classmethod
+    def zeros(cls, edges: int, m: int) -> "OwnBlocks":
+        return cls(*(np.zeros((edges, m, m)) for _ in range(3)))
+
+    def add_to(self, matrix: FloatArray, mesh: Mesh, factor: float) -> None:
+        """Add ``factor`` times the blocks to a matrix of shape (n, m, n, m)."""
+        even = factor * (self.ec + self.ec.transpose(0, 2, 1))
+        odd = factor * (self.ec - self.ec.transpose(0, 2, 1))
+        same, other = factor * (self.cc + self.ee), factor * (self.cc - self.ee)
+        t, h = mesh.tails, mesh.heads
+        # no vertex is the tail of two edges or the head of two, so no index repeats within a statement
+        matrix[h, :, h, :] += same + even
+        matrix[t, :, t, :] += same - even
+        matrix[h, :, t, :] += other + odd
+        matrix[t, :, h, :] += other - odd
+
+
+class CouplingPlanes:
+    """Blocks that couple two edges I ≠ J, collected as one (n, n) plane for each two coordinates.
+
+    Pairs are given once; `symmetric_matrix` adds the transposed blocks.  In the planes the tail of edge I has the
+    number I, and vertices where arcs end come last, so that blocks of edges are blocks of the planes.
+    """
+
+    def __init__(self, curve: Curve) -> None:
+        n, m = curve.vertices.shape
+        self.mesh = curve.mesh
+        self.planes = np.zeros((m, m, n, n))
+        self._numbers = np.empty(n, dtype=np.intp)
+        self._numbers[np.concatenate([curve.mesh.tails, curve.mesh.ends[:, 1]])] = np.arange(n)
+        self._heads = self._numbers[curve.mesh.heads]
+
+    def add(self, k: int, j: int, tile: Tile, ee: FloatArray, ec: FloatArray, fc: FloatArray, cc: FloatArray) -> None:
+        """Add the entries for coordinate k of edge I (rows) and coordinate j of edge J (columns) of a tile.
+
+        For a function of e_I, e_J and Δ = (c_I − c_J)/2 they are, all of shape (rows, columns), the derivatives
+        ∂e_I ∂e_J, ∂e_I ∂Δ/2, ∂Δ/2 ∂e_J and ∂Δ/2 ∂Δ/2.  They are overwritten.
+        """
+        rows = tile.rows
+        even, odd = ee - cc, ec - fc
+        ee += cc
+        ec += fc
+        self._add_rows(self.planes[k, j], rows, tile, even + odd, ec - ee)
+        even -= odd
+        ee += ec
+        self._add_rows(self.planes[k, j], self._heads[rows], tile, np.negative(ee, out=ee), even)
+
+    def _add_rows(
+        self, plane: FloatArray, rows: slice | IntArray, tile: Tile, at_tails: FloatArray, at_heads: FloatArray
+    ) -> None:
+        """Add entries for the tails and for the heads of the tile's columns to rows of a plane."""
+        first = tile.columns.start
+        for last in self.mesh.edge_offsets[1:] - 1:
+            # the head of a component's last edge is not the tail of the next one
+            if last >= first:
+                plane[rows, self._heads[last]] += at_heads[:, last - first]
+                at_heads[:, last - first] = 0.0
+        at_tails[:, 1:] += at_heads[:, :-1]
+        plane[rows, tile.columns] += at_tails
+
+    def symmetric_matrix(self, own: OwnBlocks, factor: float) -> FloatArray:
+        """``factor`` times the sum of all blocks, with the transposed ones; shape (n·m, n·m)."""
+        m, _, n, _ = self.planes.shape
+        matrix = np.empty((n, m, n, m))
+        for k in range(m):
+            for j in range(m):
+                np.add(self.planes[k, j], self.planes[j, k].T, out=matrix[:, k, :, j])
+        matrix *= factor
+        if not self.mesh.all_closed:  # else this would be a copy
+            matrix = matrix[self._numbers][:, :, self._numbers]
+        own.add_to(matrix, self.mesh, factor)
+        return matrix.reshape(n * m, n * m)
 
 
 def hessian(curve: Curve, without: EdgePairIndices | None = None) -> FloatArray:
@@ -89,63 +169,3 @@ def _column(vectors: FloatArray) -> FloatArray:
 def _row(vectors: FloatArray) -> FloatArray:
     """Coordinates of the tile's columns, (m, 1, columns)."""
     return vectors.T[:, None, :]
-
-
-def hessian_product(curve: Curve, v: FloatArray, without: EdgePairIndices | None = None) -> FloatArray:
-    """D²E v for ``v`` of shape (n, m), E without some pairs; shape (n, m)."""
-    edges = Edges.of(curve)
-    motion = _Motion.of(curve, edges, v)
-    sums = DerivativeSums.zeros(*curve.edge_vectors.shape)
-    lengths = np.zeros(curve.mesh.edges)  # Σ_J s ℓ_J
-    for tile in pair_tiles(curve.mesh, without):
-        pairs = Pairs.of(edges, tile)
-        lengths[tile.rows] += pairs.s @ edges.vectors.ell[tile.columns]
-        lengths[tile.columns] += edges.vectors.ell[tile.rows] @ pairs.s
-        # the sums are linear in the coefficients and in the vectors
-        sums.add(tile.rows, tile.columns, motion.coefficients(pairs, tile), edges.vectors)
-        sums.add(tile.rows, tile.columns, pairs.coefficients(), motion.vectors)
-    turning = (motion.vectors.e - motion.vectors.ell[:, None] * edges.tau) / edges.vectors.ell[:, None]  # τ̇
-    by_edge = sums.by_edge + lengths[:, None] * turning
-    return 2.0 * sums._replace(by_edge=by_edge).at_vertices(curve.mesh, edges.tau)
-
-
-class _Motion(NamedTuple):
-    """Derivatives along v of the edges' vectors, and factors of the pairs' scalars, of 2m + 1 or 2m + 2 columns."""
-
-    vectors: Vectors
-    delta: tuple[FloatArray, FloatArray]  # their product is ⟨Δ, Δ̇⟩
-    foot: tuple[FloatArray, FloatArray]  # ⟨Δ, e_I⟩˙, and −⟨Δ, e_J⟩˙ if the edges change places
-    length: tuple[FloatArray, FloatArray]  # ġ
-
-    @classmethod
-    def of(cls, curve: Curve, edges: Edges, v: FloatArray) -> "_Motion":
-        tails, heads = v[curve.mesh.tails], v[curve.mesh.heads]
-        still, one = edges.vectors, np.ones((len(tails), 1))
-        vectors = Vectors.of(heads - tails, _dot(edges.tau, heads - tails)[:, 0], 0.5 * (heads + tails))
-        e, m = vectors.e, vectors.m
-        outward, along = _dot(still.m, m), _dot(still.m, e) + _dot(m, still.e)
-        return cls(
-            vectors,
-            (np.hstack([-m, -still.m, outward, one]), np.hstack([still.m, m, one, outward])),
-            (np.hstack([-e, -still.e, along]), np.hstack([still.m, m, one])),
-            (np.hstack([vectors.e_ell, still.e_ell]), np.hstack([still.e_ell, vectors.e_ell])),
-        )
-
-    def coefficients(self, pairs: Pairs, tile: Tile) -> Coefficients:
-        """The derivatives along v of the pairs' coefficients."""
-        g, p, q, s = pairs
-        u = _products(self.delta, tile)
-        u *= 2.0 * s
-        p_dot = s * _products(self.foot, tile) - p * u
-        q_dot = s * _products((self.foot[1], -self.foot[0]), tile) - q * u
-        gs = g * s
-        a_dot = 4.0 * (p_dot * q + p * q_dot) - s * _products(self.length, tile) + u * (2.0 * gs - 4.0 * p * q)
-        return Coefficients(-s * u, s * a_dot, s * (q_dot - q * u), s * (p_dot - p * u))
-
-
-def _products(factors: tuple[FloatArray, FloatArray], tile: Tile) -> FloatArray:
-    return np.asarray(factors[0][tile.rows] @ factors[1][tile.columns].T)
-
-
-def _dot(x: FloatArray, y: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("ij,ij->i", x, y)[:, None])

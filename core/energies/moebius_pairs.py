@@ -3,40 +3,31 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import DTypeLike
 from scipy.spatial.distance import cdist
 
 from ..curve import Curve, Mesh
 from ..curve.tiles import RowTile, Tile
 from ..types import FloatArray
+from .complex_steps import stepped
 
 
 class Vectors(NamedTuple):
-    """What the derivative is linear in: edge vectors with lengths, midpoints with ones; each (edges, m + 1)."""
+    """What the derivative is linear in: edge vectors e with lengths ℓ, midpoints m from their mean with ones."""
 
-    e_ell: FloatArray
+    e_ell: FloatArray  # (edges, m + 1), as the other
     m_one: FloatArray
-
-    @classmethod
-    def of(cls, e: FloatArray, ell: FloatArray, m: FloatArray) -> "Vectors":
-        """Stack edge vectors (edges, m), lengths (edges,) and midpoints (edges, m), these taken from their mean.
-
-        Products of coordinates lose digits far from the origin, so the origin comes to the curve.
-        """
-        return cls(np.column_stack([e, ell]), np.column_stack([m - m.mean(axis=0), np.ones(len(m))]))
 
     @property
     def e(self) -> FloatArray:
-        """Edge vectors; shape (edges, m)."""
         return self.e_ell[:, :-1]
 
     @property
     def m(self) -> FloatArray:
-        """Midpoints from their mean; shape (edges, m)."""
         return self.m_one[:, :-1]
 
     @property
     def ell(self) -> FloatArray:
-        """Lengths; shape (edges,)."""
         return self.e_ell[:, -1]
 
 
@@ -48,11 +39,24 @@ class Edges(NamedTuple):
     foot: FloatArray  # (−e, ⟨m, e⟩), (edges, m + 1): times (m_J, 1) it is ⟨m_I − m_J, e_I⟩
 
     @classmethod
-    def of(cls, curve: Curve) -> "Edges":
-        e, ell = curve.edge_vectors, curve.edge_lengths
-        vectors = Vectors.of(e, ell, curve.midpoints)
+    def of(cls, curve: Curve, v: FloatArray | None = None) -> "Edges":
+        """Those of a curve, after a complex step along v, shape (n, m), if there is one."""
+        e, ell, m = curve.edge_vectors, curve.edge_lengths, curve.midpoints
+        if v is not None:
+            tails, heads = v[curve.mesh.tails], v[curve.mesh.heads]
+            e, m = stepped(e, heads - tails), stepped(m, 0.5 * (heads + tails))
+            ell = np.sqrt(np.einsum("ij,ij->i", e, e))
+        # products of coordinates lose digits far from the origin, so the origin comes to the curve
+        vectors = Vectors(np.column_stack([e, ell]), np.column_stack([m - m.mean(axis=0), np.ones(len(m))]))
         foot = np.column_stack([-e, np.einsum("ij,ij->i", vectors.m, e)])
         return cls(vectors, e / ell[:, None], foot)
+
+    def _rates(self, tile: Tile | RowTile) -> FloatArray:
+        """Im |Δ|²/2 = ⟨Re Δ, Im Δ⟩ after a complex step; shape (rows, columns)."""
+        m, v = self.vectors.m.real, self.vectors.m.imag
+        own, one = np.einsum("ij,ij->i", m, v), np.ones(len(m))
+        left, right = np.column_stack([-v, -m, own, one]), np.column_stack([m, v, one, own])
+        return np.asarray(left[tile.rows] @ right[tile.columns].T)
 
 
 class Pairs(NamedTuple):
@@ -68,9 +72,11 @@ class Pairs(NamedTuple):
         (e_ell, m_one), foot = edges.vectors, edges.foot
         rows, columns = tile.rows, tile.columns
         # distances from differences: strands may be close
-        r2 = cdist(edges.vectors.m[rows], edges.vectors.m[columns], "sqeuclidean")
+        r2 = cdist(edges.vectors.m[rows].real, edges.vectors.m[columns].real, "sqeuclidean")
         r2[tile.excluded] = np.inf
         s = np.divide(1.0, r2, out=r2)
+        if np.iscomplexobj(m_one):
+            s = s - 2j * s * s * edges._rates(tile)
         p = foot[rows] @ m_one[columns].T
         q = m_one[rows] @ -foot[columns].T
         p *= s
@@ -117,8 +123,8 @@ class DerivativeSums(NamedTuple):
     by_length: FloatArray
 
     @classmethod
-    def zeros(cls, edges: int, m: int) -> "DerivativeSums":
-        return cls(np.zeros((edges, m)), np.zeros((edges, m)), np.zeros(edges))
+    def zeros(cls, shape: tuple[int, ...], dtype: DTypeLike = np.float64) -> "DerivativeSums":
+        return cls(np.zeros(shape, dtype), np.zeros(shape, dtype), np.zeros(shape[0], dtype))
 
     def add(self, rows: slice, columns: slice, coefficients: Coefficients, vectors: Vectors) -> None:
         """Add the pairs of some rows and columns, seen from I and seen from J."""

@@ -22,10 +22,9 @@ MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are
 class BlockList:
     """Every unordered pair of edges with disjoint closures exactly once: in a block, or by itself.
 
-    A pair of clusters c, d is a block (is *admissible*) if r_c + r_d < θ |p_c − p_d|, for balls of centres p and radii
+    A pair of clusters c, d is a block (is *admissible*) if r_c + r_d < θ |p_c − p_d|, for balls of centers p and radii
     r around their edges.  In a block, therefore, midpoints of edges are never nearer than (1/θ − 1)(ℓ_I + ℓ_J)/2: with
-    θ ≤ 1/4 every pair that the barrier counts, |Δ| < 3/2 (ℓ_I + ℓ_J), is a near one.  The ranges of its clusters are
-    [a, b) and [c, d), arrays of shape (blocks,).
+    θ ≤ 1/4 every pair that the barrier counts, |Δ| < 3/2 (ℓ_I + ℓ_J), is a near one.
     """
 
     mesh: Mesh  # connectivity
@@ -47,17 +46,9 @@ class BlockList:
             return False
         return bool(_admissible(*balls(self.tree, curve), self.first, self.second, theta).all())
 
-    @property
-    def i(self) -> IntArray:
-        """The first edge of each near pair, i < j, sorted by i and then by j; shape (pairs,)."""
-        return self._edge_pairs[0]
-
-    @property
-    def j(self) -> IntArray:
-        return self._edge_pairs[1]
-
     @cached_property
-    def _edge_pairs(self) -> EdgePairIndices:
+    def near(self) -> EdgePairIndices:
+        """The edges i < j of each near pair, sorted by i and then by j; shape (pairs,) twice."""
         return _edge_pairs(self.mesh, self.tree, self.leaves)
 
     @property
@@ -75,45 +66,35 @@ class BlockList:
     def near_pairs(self, without: EdgePairIndices | None = None) -> EdgePairIndices:
         """The near pairs but for some that are left out; OptionError if one of these is not a near pair."""
         if without is None or not without[0].size:
-            return self.i, self.j
-        n = self.mesh.edges
-        code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
+            return self.near
+        (i, j), n = self.near, self.mesh.edges
+        code, left_out = _code(i, j, n), np.unique(_code(*without, n))
         place = np.searchsorted(code, left_out)
         if not np.array_equal(code[place[place < len(code)]], left_out):
             raise OptionError("a pair of edges to be left out is not a near one")
-        return np.delete(self.i, place), np.delete(self.j, place)
+        return np.delete(i, place), np.delete(j, place)
 
     @cached_property
     def middles(self) -> EdgePairIndices:
         """The middle edges of the two clusters of each block; shape (blocks,) twice."""
-        order = self.tree.order
-        return order[(self.a + self.b) // 2], order[(self.c + self.d) // 2]
+        a, b, c, d = self.ranges
+        return self.tree.order[(a + b) // 2], self.tree.order[(c + d) // 2]
 
     @cached_property
-    def a(self) -> IntArray:
-        return self.tree.start[self.first]
-
-    @cached_property
-    def b(self) -> IntArray:
-        return self.tree.stop[self.first]
-
-    @cached_property
-    def c(self) -> IntArray:
-        return self.tree.start[self.second]
-
-    @cached_property
-    def d(self) -> IntArray:
-        return self.tree.stop[self.second]
+    def ranges(self) -> IntArray:
+        """Where the ranges [a, b) and [c, d) of the two clusters of each block start and stop; shape (4, blocks)."""
+        start, stop = self.tree.start, self.tree.stop
+        return np.stack([start[self.first], stop[self.first], start[self.second], stop[self.second]])
 
 
 def _traverse(
-    tree: ClusterTree, centre: FloatArray, radius: FloatArray, theta: float
+    tree: ClusterTree, center: FloatArray, radius: FloatArray, theta: float
 ) -> tuple[ClusterPairs, ClusterPairs]:
     """Admissible pairs of clusters, and the pairs of leaves that remain (a leaf and itself among them)."""
     blocks, near = list[ClusterPairs](), list[ClusterPairs]()
     first = second = np.zeros(1, dtype=np.intp)
     while first.size:
-        admissible = _admissible(centre, radius, first, second, theta)
+        admissible = _admissible(center, radius, first, second, theta)
         blocks.append((first[admissible], second[admissible]))
         first, second = first[~admissible], second[~admissible]
         done = tree.is_leaf[first] & tree.is_leaf[second]
@@ -122,8 +103,8 @@ def _traverse(
     return _joined(blocks), _joined(near)
 
 
-def _admissible(centre: FloatArray, radius: FloatArray, first: IntArray, second: IntArray, theta: float) -> BoolArray:
-    d = centre[first] - centre[second]
+def _admissible(center: FloatArray, radius: FloatArray, first: IntArray, second: IntArray, theta: float) -> BoolArray:
+    d = center[first] - center[second]
     bound = radius[first] + radius[second]
     return np.asarray(bound * bound < theta**2 * np.einsum("ij,ij->i", d, d))
 

@@ -36,31 +36,16 @@ class HierarchicalMoebiusEnergy:
     which makes a smooth function as long as it fits: what a line search should see.  Where strands are so dense that
     much of the list would be near pairs, it is the midpoint sum itself.
 
-    Parameters
-    ----------
-    blocks
-        The list to be used as long as its blocks stay well separated; None for that of each curve.
-    without
-        Near pairs of edges that are left out of the sum, because something else stands for them.
-    order
-        Of the expansions, up to 8; even orders are worth more: errors of the next odd one nearly cancel.
-    theta
-        Separation parameter of blocks, below 1/3.  At order 4 the default leaves errors below 10⁻⁶ of a knot's energy,
-        of 10⁻⁵ of the derivative in J_C's dual norm.
-    leaf
-        Edges up to which clusters are not halved; with 8 to 16 the near field takes no longer than the far one.
-
-    Raises
-    ------
-    OptionError
-        If one of these is out of range.
+    At order 4, and even orders are worth more because errors of the next odd one nearly cancel, the default θ leaves
+    errors below 10⁻⁶ of a knot's energy, of 10⁻⁵ of the derivative in J_C's dual norm.  OptionError if one of the
+    numbers is out of range.
     """
 
-    blocks: BlockList | None = None
-    without: EdgePairIndices | None = None
-    order: int = number(4, most=MAX_ORDER)
-    theta: float = number(0.19, most=OUTDATED)
-    leaf: int = number(16)
+    blocks: BlockList | None = None  # to be used as long as its blocks stay well separated; None for that of each curve
+    without: EdgePairIndices | None = None  # near pairs of edges that are left out, because something stands for them
+    order: int = number(4, most=MAX_ORDER)  # of the expansions
+    theta: float = number(0.19, most=OUTDATED)  # separation parameter of blocks
+    leaf: int = number(16)  # edges up to which clusters are not halved; halving leaves 8 to 16, as much work near as far
 
     name = "moebius"
     rule = MIDPOINT
@@ -71,13 +56,7 @@ class HierarchicalMoebiusEnergy:
 
     @classmethod
     def instead_of(cls, energy: Energy) -> "HierarchicalMoebiusEnergy":
-        """The fast form of an energy.
-
-        Raises
-        ------
-        OptionError
-            If it is not the default one, the only one with a fast form.
-        """
+        """The fast form of an energy; OptionError unless it is the default one, the only one with a fast form."""
         if not isinstance(energy, MoebiusEnergy):
             raise OptionError(
                 f"energy {energy.name!r} has no fast form for so many vertices; choose 'moebius' or fewer vertices"

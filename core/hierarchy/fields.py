@@ -1,4 +1,4 @@
-"""The Möbius energy of near pairs one by one, and of blocks by Taylor expansion about the centres of their clusters.
+"""The Möbius energy of near pairs one by one, and of blocks by Taylor expansion about the centers of their clusters.
 
 With G = log|Δ| the contribution of a pair of edges is W_IJ = ℓ_I ℓ_J/|Δ|² + ⟨e_I, ∇⟩⟨e_J, ∇⟩ G: sums over a block are
 products of two moments applied to two kernels, both up to the same order, so that errors cancel on straight pieces.
@@ -40,7 +40,7 @@ class NearField:
             value += scalars.energy()
             for whole, values in zip(coefficients, scalars.coefficients(), strict=True):
                 whole[part] = values
-        sums = DerivativeSums.zeros(*self.edges.tau.shape)
+        sums = DerivativeSums.zeros(self.edges.tau.shape)
         sums.add(slice(None), slice(None), Coefficients(*map(self._matrix, coefficients)), self.edges.vectors)
         return value, sums
 
@@ -64,11 +64,8 @@ class NearField:
     def _matrix(self, entries: FloatArray) -> sp.csr_array:
         """Numbers of the pairs as a sparse matrix; shape (edges, edges)."""
         n = len(self.edges.tau)
-        return sp.csr_array((entries, self.pairs[1], self._row_ends), shape=(n, n))
-
-    @cached_property
-    def _row_ends(self) -> IntArray:
-        return np.searchsorted(self.pairs[0], np.arange(len(self.edges.tau) + 1))
+        row_ends = np.searchsorted(self.pairs[0], np.arange(n + 1))
+        return sp.csr_array((entries, self.pairs[1], row_ends), shape=(n, n))
 
 
 class _Kernel(NamedTuple):
@@ -83,21 +80,14 @@ class _Kernel(NamedTuple):
     first: FloatArray
     second: FloatArray
 
-    def by_first(self) -> FloatArray:
-        """Its derivatives with respect to M; shape (monomials, k)."""
-        return self._local(self.second)
-
-    def by_second(self) -> FloatArray:
-        """Its derivatives with respect to N; shape (monomials, k)."""
-        return self._local(self.first)
-
-    def _local(self, moments: FloatArray) -> FloatArray:
+    def by_moments(self, other: FloatArray) -> FloatArray:
+        """Its derivatives with respect to one cluster's moments, from the other's; shape (monomials, k)."""
         highest = self.lowest + self.expansion.order
         totals = range(2 * self.lowest, self.lowest + highest + 1)
-        return self.expansion.table.contract(self.derivatives, moments, range(self.lowest, highest + 1), totals)
+        return self.expansion.table.contract(self.derivatives, other, range(self.lowest, highest + 1), totals)
 
-    def by_centre(self) -> FloatArray:
-        """Its derivative with respect to the first centre, the edges at rest; minus the second's; shape (m, k).
+    def by_center(self) -> FloatArray:
+        """Its derivative with respect to the first center, the edges at rest; minus the second's; shape (m, k).
 
         Only terms of the highest order are left: any other change of d is undone by that of the moments.
         """
@@ -107,59 +97,51 @@ class _Kernel(NamedTuple):
         return self.expansion.table.contract(raised, self.first, range(1, 2), degrees)[1:]
 
 
-class _Chunk(NamedTuple):
-    """Some blocks: their clusters and kernels."""
-
-    first: IntArray
-    second: IntArray
-    kernels: tuple[_Kernel, _Kernel]
-
-
 @dataclass(frozen=True, eq=False)
 class FarField:
     """Σ W_IJ over all blocks of a list, unordered pairs."""
 
     blocks: BlockList  # the list, made at this curve or at one nearby
     vectors: Vectors  # the curve's edges; of size 1, for high powers of lengths are in use
-    order: int  # p, the order of the expansions in distances from the centres
+    order: int  # p, the order of the expansions in distances from the centers
 
     @cached_property
     def _expansion(self) -> Expansion:
-        return Expansion(self.vectors.m.shape[1], self.order)
+        return Expansion.of(self.vectors.m.shape[1], self.order)
 
     @cached_property
     def _clusters(self) -> MomentTree:
         return MomentTree(self.blocks.tree, self._expansion, self.vectors)
 
     def value(self) -> float:
-        kernels = (kernel for chunk in self._chunks() for kernel in chunk.kernels)
-        return sum(float(np.vdot(kernel.first, kernel.by_first())) for kernel in kernels)
+        kernels = (kernel for _, _, *both in self._chunks() for kernel in both)
+        return sum(float(np.vdot(kernel.first, kernel.by_moments(kernel.second))) for kernel in kernels)
 
     def value_and_derivative(self) -> tuple[float, DerivativeSums]:
-        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_centre.stop))
+        value, by_first = 0.0, np.zeros((self.blocks.tree.size, self._expansion.by_center.stop))
         by_second = np.zeros_like(by_first)
-        for first, second, (square, log) in self._chunks():
-            local, by_centre = (square.by_first(), log.by_first()), square.by_centre() + log.by_centre()
-            value += float(np.vdot(square.first, local[0]) + np.vdot(log.first, local[1]))
-            _add_rows(by_first, first, np.concatenate([*local, by_centre]))
-            _add_rows(by_second, second, np.concatenate([square.by_second(), log.by_second(), by_centre]))
+        for first, second, square, log in self._chunks():
+            by_center = square.by_center() + log.by_center()
+            own = [kernel.by_moments(kernel.second) for kernel in (square, log)]
+            other = [kernel.by_moments(kernel.first) for kernel in (square, log)]
+            value += float(np.vdot(square.first, own[0]) + np.vdot(log.first, own[1]))
+            _add_rows(by_first, first, np.concatenate([*own, by_center]))
+            _add_rows(by_second, second, np.concatenate([*other, by_center]))
         by_second *= self._expansion.signs
         by_second += by_first
         return value, self._clusters.derivative_sums(by_second)
 
-    def _chunks(self) -> Iterator[_Chunk]:
-        moments, centres, x = self._clusters.moments(), self._clusters.centres, self._expansion
+    def _chunks(self) -> Iterator[tuple[IntArray, IntArray, _Kernel, _Kernel]]:
+        """The two clusters and the kernels 1/|Δ|² and log|Δ| of some blocks at a time."""
+        moments, centers, x = self._clusters.moments(), self._clusters.centers, self._expansion
         signed = moments * x.signs[: x.edges.stop]
         for start in range(0, len(self.blocks.first), BLOCKS):
             first, second = (side[start : start + BLOCKS] for side in (self.blocks.first, self.blocks.second))
-            d = np.ascontiguousarray((centres[first] - centres[second]).T)
+            d = np.ascontiguousarray((centers[first] - centers[second]).T)
             square, log = kernel_derivatives(x.table, d, self.order + 1)
             own, other = polynomial_rows(moments, first), polynomial_rows(signed, second)
-            kernels = (
-                _Kernel(x, 0, square, own[x.lengths], other[x.lengths]),
-                _Kernel(x, 1, log, own[x.edges], other[x.edges]),
-            )
-            yield _Chunk(first, second, kernels)
+            kernel = _Kernel(x, 0, square, own[x.lengths], other[x.lengths])
+            yield first, second, kernel, _Kernel(x, 1, log, own[x.edges], other[x.edges])
 
 
 def _add_rows(total: FloatArray, clusters: IntArray, values: FloatArray) -> None:

@@ -21,15 +21,15 @@ from ..curve.distances import arc_distance_of_pairs
 from ..errors import OptionError
 from ..metrics import FractionalMetric, Metric, MoebiusMetric
 from ..metrics.inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
-from ..metrics.local import arc_stiffness, lumped_mass, mass
+from ..metrics.local import lumped_mass, mass, stiffness
 from ..metrics.moebius import pair_kernels
 from ..quadrature import MIDPOINT, Rule
 from ..saddle import TangentSpace
-from ..saddle.circulant import Circulants
 from ..saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
 from ..saddle.krylov import conjugate_gradients, relative
 from ..saddle.models import TwoLevel
 from ..saddle.resolvent import Resolvents
+from ..saddle.symbol import Circulants
 from ..types import FloatArray
 from .blocks import BlockList
 from .pair_forms import PairForms, RunningSum
@@ -103,14 +103,14 @@ def moebius_inner_product(
     """J_C by the midpoint rule, as in `MoebiusMetric`, compressed."""
     blocks = BlockList.of(curve, theta, leaf)
     forms, order = PairForms(curve, blocks), blocks.tree.order
-    near, far = (pair_kernels(curve, *pairs) for pairs in (blocks.near_pairs(), blocks.middles))
+    near, far = (pair_kernels(curve, *pairs) for pairs in (blocks.near, blocks.middles))
     values, sums = forms.of_values(near.density, far.density)
     far_forms = [(RunningSum.of_values(curve, order), sums)]
     if not curve.mesh.all_closed:  # blocks of clusters of several components, some of them open
         far_forms.append((RunningSum.of_slopes(curve, order), forms.of_long_slopes(far.inverse)))
     return CompressedInnerProduct(
         curve,
-        forms.of_slopes(near.inverse, far.inverse) + values + arc_stiffness(curve),
+        forms.of_slopes(near.inverse, far.inverse) + values + stiffness(curve, curve.mesh.arc_edges),
         tuple(far_forms),
         lumped_mass(curve)[:, None],
         forms.of_components(near.density, far.density),
@@ -124,7 +124,7 @@ def fractional_inner_product(
     """W^{3/2,2}, as in `FractionalMetric`, compressed."""
     blocks = BlockList.of(curve, theta, leaf)
     forms = PairForms(curve, blocks)
-    near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (blocks.near_pairs(), blocks.middles))
+    near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (blocks.near, blocks.middles))
     n, indicators, weight = len(curve), _indicators(curve), mass(curve)
     return CompressedInnerProduct(
         curve,
@@ -146,27 +146,13 @@ _COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], Comp
 class CompressedMetric:
     """One of the nonlocal metrics by products in O(N log N), with the midpoint rule.
 
-    Parameters
-    ----------
-    metric
-        The dense one, which has the same name, description, rule and penalty.
-    tolerances
-        Of what is solved with it.
-    theta
-        Separation parameter of blocks, below 1.
-    leaf
-        Edges up to which clusters are not halved.
-
-    Raises
-    ------
-    OptionError
-        If one of these is out of range.
+    OptionError if θ or the leaves are out of range.
     """
 
-    metric: Metric
-    tolerances: Tolerances = field(default_factory=Tolerances)
-    theta: float = number(0.5, most=1)
-    leaf: int = number(4)
+    metric: Metric  # the dense one
+    tolerances: Tolerances = field(default_factory=Tolerances)  # of what is solved with it
+    theta: float = number(0.5, most=1)  # separation parameter of blocks
+    leaf: int = number(4)  # edges up to which clusters are not halved
     most_vertices = MAX_VERTICES
 
     @property
@@ -186,13 +172,7 @@ class CompressedMetric:
         return self.metric.rule
 
     def with_rule(self, rule: Rule) -> "CompressedMetric":
-        """Itself: there is no other rule.
-
-        Raises
-        ------
-        OptionError
-            If another rule is asked for.
-        """
+        """Itself; OptionError if another rule is asked for, for there is none."""
         if self.rule is not None and rule != MIDPOINT:
             raise OptionError("metrics for so many vertices use one Gauss point per edge; leave quadrature_points out")
         return self

@@ -18,43 +18,28 @@ from .polynomials import Polynomials, polynomials
 CHUNK = 1024  # polynomials handled at once, for the processor's cache
 
 
-@dataclass(frozen=True)
-class Expansion:
-    """Taylor expansions of order p about the centre of a cluster: two moments, one below the other in one array.
+class Expansion(NamedTuple):
+    """Taylor expansions of order p about the center of a cluster: two moments, one below the other in one array.
 
-    With u_I = m_I − centre they are Σ_I ℓ_I exp⟨u_I, ξ⟩ up to degree p and Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1.
-    Arrays of derivatives with respect to these have rows for those with respect to the centre besides.
+    With u_I = m_I − center they are Σ_I ℓ_I exp⟨u_I, ξ⟩ up to degree p and Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1.
+    Arrays of derivatives with respect to these have rows for those with respect to the center besides.
     """
 
     dimension: int  # m, that of space
     order: int  # p
+    table: Polynomials  # of all degrees needed, those of the kernels' derivatives among them
+    lengths: slice  # rows of the first moment
+    edges: slice  # rows of the second moment
+    by_center: slice  # rows of derivatives with respect to the center
+    signs: FloatArray  # that come with the second cluster of a block, seen from which d is −d; shape (rows,)
 
-    @property
-    def table(self) -> Polynomials:
-        """Polynomials of all degrees needed, those of the kernels' derivatives among them."""
-        return polynomials(self.dimension, self.order + 3)
-
-    @property
-    def lengths(self) -> slice:
-        """Rows of the first moment."""
-        return slice(0, self.table.size(self.order))
-
-    @property
-    def edges(self) -> slice:
-        """Rows of the second moment."""
-        return slice(self.lengths.stop, self.lengths.stop + self.table.size(self.order + 1))
-
-    @property
-    def by_centre(self) -> slice:
-        """Rows of derivatives with respect to the centre."""
-        return slice(self.edges.stop, self.edges.stop + self.dimension)
-
-    @cached_property
-    def signs(self) -> FloatArray:
-        """Signs that come with the second cluster of a block, seen from which d is −d; shape (rows,)."""
-        signs = self.table.signs[:, 0]
-        lengths, edges = signs[: self.table.size(self.order)], -signs[: self.table.size(self.order + 1)]
-        return np.concatenate([lengths, edges, np.full(self.dimension, -1.0)])
+    @classmethod
+    def of(cls, dimension: int, order: int) -> "Expansion":
+        """The expansions of an order."""
+        table = polynomials(dimension, order + 3)
+        a, b, signs = table.size(order), table.size(order) + table.size(order + 1), table.signs[:, 0]
+        signs = np.concatenate([signs[:a], -signs[: b - a], np.full(dimension, -1.0)])
+        return cls(dimension, order, table, slice(0, a), slice(a, b), slice(b, b + dimension), signs)
 
 
 class _Leaves(NamedTuple):
@@ -68,20 +53,16 @@ class _Leaves(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MomentTree:
-    """The clusters of a curve with their centres, the means of their edges' midpoints."""
+    """The clusters of a curve with their centers, the means of their edges' midpoints."""
 
     tree: ClusterTree
     expansion: Expansion  # what their moments are
     vectors: Vectors  # edge vectors, lengths and midpoints
 
     @cached_property
-    def centres(self) -> FloatArray:
+    def centers(self) -> FloatArray:
         """Shape (clusters, m)."""
-        total = np.empty((self.tree.size, self.vectors.m.shape[1]))
-        leaves = self.tree.leaves()
-        total[leaves] = np.add.reduceat(self.vectors.m[self.tree.order], self.tree.start[leaves])
-        for inner, child in self.tree.upward():
-            total[inner] = total[child] + total[child + 1]
+        total = self.tree.reduced(np.add, self.vectors.m[self.tree.order])
         return np.asarray(total / (self.tree.stop - self.tree.start)[:, None])
 
     def moments(self) -> FloatArray:
@@ -101,14 +82,14 @@ class MomentTree:
     def derivative_sums(self, local: FloatArray) -> DerivativeSums:
         """The downward pass: derivatives with respect to edge vectors, midpoints and lengths.
 
-        ``local``, shape (clusters, rows), are those with respect to the moments at fixed centres and to the centres;
+        ``local``, shape (clusters, rows), are those with respect to the moments at fixed centers and to the centers;
         it is overwritten.
         """
         x = self.expansion
-        local[:, x.by_centre] /= (self.tree.stop - self.tree.start)[:, None]
+        local[:, x.by_center] /= (self.tree.stop - self.tree.start)[:, None]
         for parents, children in self._links(self.tree.downward()):
             local[children] += self._moved(polynomial_rows(local, parents), self._shifts(parents, children)).T
-        sums = DerivativeSums.zeros(*self.vectors.e.shape)
+        sums = DerivativeSums.zeros(self.vectors.e.shape)
         for leaves in self._leaves():
             by_edge, by_midpoint, by_length = self._at_edges(leaves, polynomial_rows(local, leaves.leaf_of))
             sums.by_edge[leaves.edges] = by_edge.T
@@ -122,7 +103,7 @@ class MomentTree:
         for lowest, rows in enumerate((x.lengths, x.edges)):
             degrees = range(lowest, x.order + lowest + 1)
             moved.append(x.table.contract(local[rows], shift, degrees, degrees))
-        return np.concatenate([*moved, local[x.by_centre]])
+        return np.concatenate([*moved, local[x.by_center]])
 
     def _at_edges(self, leaves: _Leaves, local: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Derivatives at some edges, from those of their leaves; shapes (m, k), (m, k) and (k,)."""
@@ -131,18 +112,18 @@ class MomentTree:
         by_length = contract(local[x.lengths], power, range(2), range(x.order + 1))
         by_edge = contract(local[x.edges], power, range(1, 3), range(1, x.order + 2))
         e = np.concatenate([np.zeros((1, len(leaves.edges))), self.vectors.e[leaves.edges].T])
-        by_midpoint = self.vectors.ell[leaves.edges] * by_length[1:] + local[x.by_centre]
+        by_midpoint = self.vectors.ell[leaves.edges] * by_length[1:] + local[x.by_center]
         by_midpoint += contract(by_edge, e, range(1, 2), range(2, 3))[1:]
         return by_edge[1 : m + 1], by_midpoint, by_length[0]
 
     def _powers(self, leaves: _Leaves) -> FloatArray:
-        """exp⟨u_I, ξ⟩ about the centres of the leaves, up to degree p; shape (monomials, k)."""
-        u = self.vectors.m[leaves.edges] - self.centres[leaves.leaf_of]
+        """exp⟨u_I, ξ⟩ about the centers of the leaves, up to degree p; shape (monomials, k)."""
+        u = self.vectors.m[leaves.edges] - self.centers[leaves.leaf_of]
         return self.expansion.table.exponentials(u.T, self.expansion.order)
 
     def _shifts(self, parents: IntArray, children: IntArray) -> FloatArray:
-        """exp⟨h, ξ⟩ for h from the parents' centres to the children's; shape (monomials, k)."""
-        h = self.centres[children] - self.centres[parents]
+        """exp⟨h, ξ⟩ for h from the parents' centers to the children's; shape (monomials, k)."""
+        h = self.centers[children] - self.centers[parents]
         return self.expansion.table.exponentials(h.T, self.expansion.order)
 
     def _leaves(self) -> Iterator[_Leaves]:

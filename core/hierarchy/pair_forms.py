@@ -35,26 +35,26 @@ class PairForms:
 
     def of_slopes(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
         """The matrix of Σ w ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|², shape (n, n), but for what `of_long_slopes` adds."""
-        mesh, b, order = self._curve.mesh, self._blocks, self._blocks.tree.order
+        mesh, order, (a, b, c, d) = self._curve.mesh, self._blocks.tree.order, self._blocks.ranges
         weights = np.where(self._in_components, far, 0.0)
-        c = mesh.tails[order[b.a]], mesh.heads[order[b.b - 1]]
-        d = mesh.tails[order[b.c]], mesh.heads[order[b.d - 1]]
+        first = mesh.tails[order[a]], mesh.heads[order[b - 1]]
+        second = mesh.tails[order[c]], mesh.heads[order[d - 1]]
         slope = sp.diags_array(1.0 / self._curve.edge_lengths) @ mesh.difference
-        return sp.csr_array(slope.T @ self._on_edges(near, far) @ slope - _products(weights, c, d, mesh.size))
+        return sp.csr_array(slope.T @ self._on_edges(near, far) @ slope - _products(weights, first, second, mesh.size))
 
     def of_long_slopes(self, far: FloatArray) -> sp.csr_array:
         """The part of blocks that are not within components, on running sums of ΔU; shape (edges + 1, edges + 1).
 
         Where all components are closed it vanishes, because the slopes of a whole one add up to 0.
         """
-        b, weights = self._blocks, np.where(self._in_components, 0.0, far)
-        return -_products(weights, (b.a, b.b), (b.c, b.d), self._curve.mesh.edges + 1)
+        a, b, c, d = self._blocks.ranges
+        return -_products(np.where(self._in_components, 0.0, far), (a, b), (c, d), self._curve.mesh.edges + 1)
 
     def of_values(self, near: FloatArray, far: FloatArray) -> tuple[sp.csr_array, sp.csr_array]:
         """The matrices of Σ w ℓ_I ℓ_J |u_I − u_J|², u at midpoints: on U, shape (n, n), and on z, (edges + 1) twice."""
-        b, average = self._blocks, self._curve.mesh.average
+        average, (a, b, c, d) = self._curve.mesh.average, self._blocks.ranges
         local = sp.csr_array(average.T @ self._on_edges(near, far) @ average)
-        return local, -_products(far, (b.a, b.b), (b.c, b.d), self._curve.mesh.edges + 1)
+        return local, -_products(far, (a, b), (c, d), self._curve.mesh.edges + 1)
 
     def of_components(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
         """`of_values` for functions constant on each component, but for far components; shape (components,) twice.
@@ -62,7 +62,7 @@ class PairForms:
         Left out are blocks of clusters that hold several components, which would couple all with all.
         """
         ell, component = self._curve.edge_lengths, self._curve.mesh.edge_component
-        (i, j), (c, d), single = self._blocks.near_pairs(), self._blocks.middles, self._in_components
+        (i, j), (c, d), single = self._blocks.near, self._blocks.middles, self._in_components
         first = component[np.concatenate([i, c[single]])]
         second = component[np.concatenate([j, d[single]])]
         weights = np.concatenate([near * ell[i] * ell[j], (far * self._length_c * self._length_d)[single]])
@@ -73,12 +73,12 @@ class PairForms:
     @cached_property
     def _in_components(self) -> BoolArray:
         """Whether each of the two clusters of a block is within one component; shape (blocks,)."""
-        b, component = self._blocks, self._curve.mesh.edge_component[self._blocks.tree.order]
-        return np.asarray((component[b.a] == component[b.b - 1]) & (component[b.c] == component[b.d - 1]))
+        (a, b, c, d), component = self._blocks.ranges, self._curve.mesh.edge_component[self._blocks.tree.order]
+        return np.asarray((component[a] == component[b - 1]) & (component[c] == component[d - 1]))
 
     def _on_edges(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
         """Near pairs, and the diagonal of the blocks, in edge values; shape (edges, edges)."""
-        ell, (i, j) = self._curve.edge_lengths, self._blocks.near_pairs()
+        ell, (i, j) = self._curve.edge_lengths, self._blocks.near
         off = _symmetric(2.0 * near * ell[i] * ell[j], i, j, len(ell))
         return sp.csr_array(sp.diags_array(off.sum(axis=1) + 2.0 * ell * self._opposite(far)) - off)
 

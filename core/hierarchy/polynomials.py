@@ -111,7 +111,8 @@ def kernel_derivatives(table: Polynomials, d: FloatArray, degree: int) -> tuple[
     """
     s = _inverse_square(table, d, degree + 1)
     log = _logarithm(table, d, s, degree + 2)
-    factorial = _factorials(table, degree + 2)
+    numbers = np.cumprod(np.maximum(np.arange(degree + 3), 1)).astype(np.float64)
+    factorial = numbers[table.exponents[: table.size(degree + 2)]].prod(axis=1)[:, None]  # α!
     return s[: table.size(degree)] * factorial[: table.size(degree)], log * factorial
 
 
@@ -143,8 +144,3 @@ def _logarithm(table: Polynomials, d: FloatArray, s: FloatArray, degree: int) ->
     log[1:] += s[twice]
     log[1:] /= exponents[np.arange(size - 1), axis][:, None]
     return log
-
-
-def _factorials(table: Polynomials, degree: int) -> FloatArray:
-    factorial = np.cumprod(np.maximum(np.arange(degree + 1), 1)).astype(np.float64)
-    return np.asarray(factorial[table.exponents[: table.size(degree)]].prod(axis=1)[:, None])

@@ -3,7 +3,7 @@
 The error is Σ_I δ_I, δ_I that of Σ_J W_IJ over the partners of edge I: its mean over a sample, one edge from each of as
 many equal stretches of the curve, tells it up to a standard error.  That of the derivative along a field u is told by
 differences of δ_I between two curves P ± t u: forces on single edges would tell nothing, because their errors, of the
-sign of whichever side of its cluster's centre an edge is on, all but cancel, the more so the finer the mesh.
+sign of whichever side of its cluster's center an edge is on, all but cancel, the more so the finer the mesh.
 """
 
 from dataclasses import dataclass
@@ -45,9 +45,6 @@ class Estimate:
         """What the error's modulus is at most, with 95 % probability."""
         return abs(self.mean) + CONFIDENCE * self.standard_error
 
-    def as_report(self) -> dict[str, float]:
-        return {"mean": self.mean, "standard_error": self.standard_error}
-
     def relative(self, scale: float) -> "Estimate":
         return Estimate(self.mean / scale, self.standard_error / scale)
 
@@ -80,7 +77,7 @@ def slope_error(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray, 
 def _relative_change(energy: HierarchicalMoebiusEnergy, curve: Curve, u: FloatArray) -> float:
     """The largest rate, relative to it, at which the distance of two near edges or two clusters can change along u."""
     blocks = energy.block_list(curve)
-    i, j = np.concatenate([(blocks.i, blocks.j), blocks.middles], axis=1)
+    i, j = np.concatenate([blocks.near, blocks.middles], axis=1)
     motion = 0.5 * (u[curve.mesh.tails] + u[curve.mesh.heads])
     speed, distance = (np.linalg.norm(x[i] - x[j], axis=1) for x in (motion, curve.midpoints))
     return float(np.max(speed / distance, initial=0.0))
@@ -97,17 +94,10 @@ def sampled_edges(curve: Curve, count: int) -> IntArray:
 
 @dataclass(frozen=True)
 class SampledErrors:
-    """What a sample tells of the errors of an energy and of a projected gradient.
-
-    Attributes
-    ----------
-    gradient_norm
-        Of the norm |u| that the projected gradient has in the metric it is taken in, relative to it, or to √E if that
-        is larger.
-    """
+    """Estimates of the errors of an energy and of a projected gradient from a sample."""
 
     energy: Estimate  # of the energy E, relative
-    gradient_norm: Estimate
+    gradient_norm: Estimate  # of the norm |u| of the gradient in its metric, relative to it, or to √E if that is larger
     order: int  # of the expansions
 
     @classmethod
@@ -127,10 +117,6 @@ class SampledErrors:
         """Whether the bounds are: for the norm, to whose error that of the solution is added, half of it."""
         energy, norm = ENERGY_SHARE * accuracy, NORM_SHARE * accuracy
         return self.energy.bound <= energy and self.gradient_norm.bound <= norm
-
-    def as_report(self) -> dict[str, object]:
-        energy, norm = self.energy.as_report(), self.gradient_norm.as_report()
-        return {"energy": energy, "gradient_norm": norm, "order": self.order}
 
 
 @BLAS.bounded()

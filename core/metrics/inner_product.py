@@ -49,15 +49,7 @@ class InnerProduct(Protocol):
 
 
 class DenseInnerProduct:
-    """A as an array in Fortran order for LAPACK, of which only the lower triangle counts.
-
-    Parameters
-    ----------
-    matrix
-        A, shape (n, n).
-    pins
-        Vertices at which functions vanish that are solved for; shape (k,).
-    """
+    """A as an array (n, n), of which only the lower triangle counts; functions solved for vanish at the pins."""
 
     @checked
     def __init__(self, matrix: FloatArray, pins: IntArray = NOWHERE) -> None:
@@ -105,13 +97,7 @@ class DenseInnerProduct:
 
 
 class SparseInnerProduct:
-    """A as a sparse matrix of few entries a row.
-
-    Attributes
-    ----------
-    matrix
-        A, in compressed rows.
-    """
+    """A as a sparse matrix of few entries a row; ``matrix`` has it in compressed rows."""
 
     @checked
     def __init__(self, matrix: sp.sparray) -> None:

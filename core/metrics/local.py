@@ -11,7 +11,7 @@ import scipy.sparse as sp
 
 from ..curve import Curve
 from ..quadrature import Rule
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 from .inner_product import MAX_SPARSE_ROWS, InnerProduct, SparseInnerProduct
 
 
@@ -23,15 +23,8 @@ def mass(curve: Curve) -> sp.csr_array:
     return sp.csr_array(average.T @ ell @ average + difference.T @ (ell / 12.0) @ difference)
 
 
-def stiffness(curve: Curve) -> sp.csr_array:
-    """Matrix of ∫ u' v' for piecewise linear u, v; shape (n, n)."""
-    difference = curve.mesh.difference
-    return sp.csr_array(difference.T @ sp.diags_array(1.0 / curve.edge_lengths) @ difference)
-
-
-def arc_stiffness(curve: Curve) -> sp.csr_array:
-    """Matrix of ∫ u' v' over the open components alone; shape (n, n)."""
-    edges = curve.mesh.arc_edges
+def stiffness(curve: Curve, edges: IntArray | slice = slice(None)) -> sp.csr_array:
+    """Matrix of ∫ u' v' for piecewise linear u, v, over all edges or some; shape (n, n)."""
     difference = curve.mesh.difference[edges]
     return sp.csr_array(difference.T @ sp.diags_array(1.0 / curve.edge_lengths[edges]) @ difference)
 

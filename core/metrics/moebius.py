@@ -1,4 +1,4 @@
-"""The inner product J_C of Theorem 4.1 in [RS21], discretised as in Section 6.1.2.
+"""The inner product J_C of Theorem 4.1 in [RS21], discretised as in Section 6.1.2, and the intrinsic W^{3/2,2}.
 
 For functions U on the vertices, u their piecewise linear interpolation and ΔU_I = U(I↑) − U(I↓),
 ⟨U, U⟩ is the sum over ordered pairs of edges with disjoint closures, ϱ the distance along the curve, of
@@ -12,6 +12,7 @@ edges for others too, so there is 4. ∫ |u'|² ds over all arcs, of lower order
 The Gram matrix is A ⊗ Id_m (footnote 6): only A, of shape (n, n), is assembled.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from typing import NamedTuple
@@ -21,17 +22,111 @@ from scipy.linalg import blas
 from scipy.spatial.distance import cdist
 
 from ..arguments import checked_fields
-from ..curve import Curve
+from ..curve import Curve, Mesh
 from ..curve.distances import arc_distance_of_pairs, arc_distances, points_at
+from ..curve.tiles import ROWS_TIMES_COLUMNS
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray, IntArray
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
-from .local import WithoutRule, lumped_mass, mass
-from .pairs import DifferenceForm, Stencil, Stripe, stripes
+from .local import WithoutRule, lumped_mass, mass, stiffness
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
 # others, and forbid the very motion that brings strands apart.  On curves that their mesh resolves it changes nothing.
 MIN_DISTANCE = 0.25
+
+
+class Stencil(NamedTuple):
+    """A linear map from vertices to edges, (B U)_I = tail_I U(I↓) + head_I U(I↑); both of shape (n,).
+
+    Here an edge has the number of its tail.  The vertex where an arc ends stands for an edge from there to the arc's
+    first vertex, which makes every component a cycle: its length, and with it its weight in all sums, is 0.
+    """
+
+    tail: FloatArray
+    head: FloatArray
+
+    @classmethod
+    def value(cls, mesh: Mesh, t: float) -> "Stencil":
+        """The values at parameter ``t`` of each edge."""
+        return cls(np.full(mesh.size, 1.0 - t), np.full(mesh.size, t))
+
+    @classmethod
+    def slope(cls, curve: Curve) -> "Stencil":
+        """ΔU_I/ℓ_I."""
+        slope = curve.mesh.at_tails(1.0 / curve.edge_lengths)
+        return cls(-slope, slope)
+
+
+class Stripe(NamedTuple):
+    """The pairs of edges that make entries (v, w), v ≤ w, of a form, for consecutive vertices v of one component."""
+
+    vertices: slice  # the vertices v
+    rows: IntArray  # the edges that they belong to: the one before the first vertex, then those that begin at vertices
+    columns: slice  # the edges that the vertices from the first v on belong to
+
+    def exclude_neighbours(self, mesh: Mesh, distance: FloatArray) -> None:
+        """Set the distances, shape (rows, columns), of edges that share a vertex to inf."""
+        for partner in (self.rows, mesh.cycle[self.rows], mesh.anticycle[self.rows]):
+            row = np.flatnonzero(partner >= self.columns.start)
+            distance[row, partner[row] - self.columns.start] = np.inf
+
+
+def stripes(mesh: Mesh) -> Iterator[Stripe]:
+    """Cover the upper triangle, in pieces that fit the processor's cache."""
+    for component in mesh.slices:
+        first = component.start
+        while first < component.stop:
+            last = min(component.stop, first + max(1, ROWS_TIMES_COLUMNS // (mesh.size - first)))
+            before = int(mesh.anticycle[first])
+            columns = slice(min(first, before), mesh.size)
+            yield Stripe(slice(first, last), np.concatenate([[before], np.arange(first, last)]), columns)
+            first = last
+
+
+class DifferenceForm:
+    """Collects the matrix of U ↦ Σ w_IJ ((B U)_I − (B' U)_J)² over ordered pairs of edges.
+
+    The sum over all terms must not change if edges change places: weights are known for half of the pairs.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._mesh = mesh
+        self._cross = np.zeros((mesh.size, mesh.size))  # Bᵀ w B', the upper triangle
+        self._squares = np.zeros((3, mesh.size))  # of tail and head of each edge, and half of their product
+
+    def add(self, stripe: Stripe, weights: FloatArray, left: Stencil, right: Stencil) -> None:
+        """Add a stripe of a term; ``weights`` has shape (rows, columns) and is changed.
+
+        Taking first rows and then columns together at their common vertices is Bᵀ w B' at a few operations an entry.
+        """
+        vertices, rows, columns = stripe
+        own = vertices.start - columns.start
+        # the pairs of the stripe's own edges come in either order, and so count by their rows alone
+        inside, beyond = weights[1:, own:], weights[1:, own + len(rows) - 1 :]
+        self._add_squares(vertices, left, inside.sum(axis=1))
+        self._add_squares(slice(vertices.stop, None), right, beyond.sum(axis=0))
+        at_vertices = left.tail[rows[1:], None] * weights[1:]
+        weights *= left.head[rows, None]
+        at_vertices += weights[:-1]
+        at_tails = at_vertices[:, own:] * right.tail[vertices.start :]
+        at_vertices *= right.head[columns]
+        at_tails += at_vertices.take(self._mesh.anticycle[vertices.start :] - columns.start, axis=1)
+        self._cross[vertices, vertices.start :] += at_tails
+
+    def assembled(self) -> FloatArray:
+        """Finish: the matrix, shape (n, n), in Fortran order, of which only the lower triangle counts."""
+        mesh = self._mesh
+        tail, head, mixed = self._squares
+        form = np.multiply(self._cross, -2.0, out=self._cross)
+        tails, heads = np.arange(mesh.size), mesh.cycle
+        np.add.at(form, (tails, tails), 2.0 * tail)
+        np.add.at(form, (heads, heads), 2.0 * head)
+        np.add.at(form, (np.minimum(tails, heads), np.maximum(tails, heads)), 2.0 * mixed)
+        return form.T
+
+    def _add_squares(self, edges: slice, stencil: Stencil, weights: FloatArray) -> None:
+        tail, head = stencil.tail[edges], stencil.head[edges]
+        self._squares[:, edges] += weights * np.stack([tail * tail, head * head, tail * head])
 
 
 @checked_fields
@@ -40,14 +135,9 @@ class MoebiusMetric:
     """Σ ℓ_I ℓ_J (|ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/r² + |u_I − u_J|²/r² (1/r² − 1/ϱ²)) + |∫ u|², by a quadrature rule.
 
     The metric in which the Möbius energy's gradient flow is an ordinary differential equation.
-
-    Parameters
-    ----------
-    rule
-        The quadrature rule on every edge, by default the midpoint rule.
     """
 
-    rule: Rule = MIDPOINT
+    rule: Rule = MIDPOINT  # on every edge
     name = "moebius"
     description = "J_C of Theorem 4.1, extrinsic W^{3/2,2}"
     extends_penalty = True
@@ -67,8 +157,8 @@ class MoebiusMetric:
                 density *= omega_i * omega_j
                 form.add(stripe, inverse, slope, slope)
                 form.add(stripe, density, Stencil.value(mesh, t_i), Stencil.value(mesh, t_j))
-        gram = form.assembled()
-        _add_arc_stiffness(gram, curve)
+        gram, arcs = form.assembled(), stiffness(curve, curve.mesh.arc_edges).tocoo()
+        gram[arcs.coords] += arcs.data
         return DenseInnerProduct(blas.dsyr(1.0, lumped_mass(curve), a=gram, lower=1, overwrite_a=1))
 
 
@@ -86,15 +176,6 @@ def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
     inverse = 1.0 / np.maximum(np.einsum("km,km->k", chord, chord), nearest)
     rho = arc_distance_of_pairs(curve, i, j, 0.5)
     return PairKernels(inverse, inverse * (inverse - 1.0 / np.maximum(rho * rho, nearest)))
-
-
-def _add_arc_stiffness(gram: FloatArray, curve: Curve) -> None:
-    """Add ∫ |u'|² over the arcs, `arc_stiffness`, to the lower triangle."""
-    edges = curve.mesh.arc_edges
-    tails, heads, slope = curve.mesh.tails[edges], curve.mesh.heads[edges], 1.0 / curve.edge_lengths[edges]
-    gram[tails, tails] += slope
-    gram[heads, heads] += slope
-    gram[heads, tails] -= slope  # along an arc numbers grow
 
 
 class _PairWeights:

@@ -31,32 +31,13 @@ WINDOW = 2  # iterations, at least, whose decrease is the estimate of the error 
 @checked_fields
 @dataclass(frozen=True)
 class Tolerances:
-    """How exactly systems are solved; relative errors in the norm of the inner product.
+    """How exactly systems are solved; relative errors in the norm of the inner product, in (0, 1], or OptionError."""
 
-    Parameters
-    ----------
-    gradient
-        Of projected gradients.
-    correction
-        Of pseudo-inverses, and of the correction that a projection makes.
-    preconditioner
-        Part of a preconditioned residual that is not tangential.
-    feasibility
-        Of C u = ξ.
-    max_iterations
-        Of one system.
-
-    Raises
-    ------
-    OptionError
-        If a value is outside (0, 1], or an iteration number not positive.
-    """
-
-    gradient: float = number(1e-2, most=1)
-    correction: float = number(1e-1, most=1)
-    preconditioner: float = number(1e-2, most=1)
-    feasibility: float = number(1e-10, most=1)
-    max_iterations: int = number(500)
+    gradient: float = number(1e-2, most=1)  # of projected gradients
+    correction: float = number(1e-1, most=1)  # of pseudo-inverses, and of the correction that a projection makes
+    preconditioner: float = number(1e-2, most=1)  # part of a preconditioned residual that is not tangential
+    feasibility: float = number(1e-10, most=1)  # of C u = ξ
+    max_iterations: int = number(500)  # of one system
 
     @classmethod
     def of_norms(cls, accuracy: float = 1e-4) -> "Tolerances":

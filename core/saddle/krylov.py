@@ -30,12 +30,8 @@ def conjugate_gradients(
 
     The operator and ``precondition``, near its inverse, are symmetric and positive definite.  ``enough`` says whether
     to stop, from rᵀz, the square of the preconditioned residual, and from xᵀ ``right``, which grows to the squared norm
-    of the solution in the operator's inner product.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the operator is not positive definite, or the iterations do not suffice.
+    of the solution in the operator's inner product.  A LinAlgError says if the operator
+    is not positive definite, or the iterations do not suffice.
     """
     x = np.zeros_like(right)
     r, direction, last, square = right.copy(), np.zeros_like(right), 1.0, 0.0
@@ -150,12 +146,12 @@ class ConstraintPreconditioner:
         return self._model.solve(self.constraints.apply_transpose(multipliers))
 
     def _solve_schur(self, right: FloatArray, enough: Callable[[float, float], bool]) -> FloatArray:
-        return conjugate_gradients(self._schur, self._near_inverse, right, enough, MAX_ITERATIONS)
-
-    def _schur(self, multipliers: FloatArray) -> FloatArray:
         c = self.constraints
-        return c.apply(self._model.solve(c.apply_transpose(multipliers)))
 
-    def _near_inverse(self, residual: FloatArray) -> FloatArray:
-        c = self.constraints
-        return np.concatenate([self._tension(c.tensions(residual))[c.edges], self._held @ residual[len(c.edges) :]])
+        def schur(multipliers: FloatArray) -> FloatArray:
+            return c.apply(self._model.solve(c.apply_transpose(multipliers)))
+
+        def near_inverse(residual: FloatArray) -> FloatArray:
+            return np.concatenate([self._tension(c.tensions(residual))[c.edges], self._held @ residual[len(c.edges) :]])
+
+        return conjugate_gradients(schur, near_inverse, right, enough, MAX_ITERATIONS)

@@ -7,7 +7,7 @@ from scipy.linalg import cho_factor, cho_solve
 from ..curve import Mesh
 from ..curve.pins import holds
 from ..types import FloatArray, IntArray
-from .krylov import LinearMap, Model
+from .krylov import Model
 from .sparse import factorised
 
 DEPTH = 2  # pins that count on either side of those in a row
@@ -24,6 +24,7 @@ class TwoLevel:
 
     def __init__(self, mesh: Mesh, fine: Model, coupling: sp.sparray, vectors: FloatArray) -> None:
         self._fine = fine
+        self.tension = fine.tension  # as a whole components have no edge differences
         self._component, self._starts = mesh.component, mesh.offsets[:-1]
         self._rank = vectors.shape[1]
         border = sp.csr_array(vectors)
@@ -35,10 +36,6 @@ class TwoLevel:
         padded = np.concatenate([force, np.zeros((self._rank, f.shape[1]))])
         shift = self._factor.solve(padded)[: len(force)]
         return np.asarray(self._fine.solve(f) + shift[self._component])
-
-    def tension(self, tangents: FloatArray) -> LinearMap:
-        """That of the model along the components: as a whole these have no edge differences."""
-        return self._fine.tension(tangents)
 
 
 class PinnedModel:
@@ -52,6 +49,7 @@ class PinnedModel:
 
     def __init__(self, whole: Model, mesh: Mesh, pins: IntArray) -> None:
         self._whole, self._pins = whole, pins
+        self.tension = whole.tension  # pins change the Schur complement by a matrix of low rank, for a few iterations
         self._near = _near_free(mesh, pins)
         units = np.zeros((mesh.size, len(self._near)))
         units[self._near, np.arange(len(self._near))] = 1.0
@@ -66,10 +64,6 @@ class PinnedModel:
         u = u - self._responses @ cho_solve(self._compliance, u[self._near])
         u[self._pins] = 0.0
         return np.asarray(u)
-
-    def tension(self, tangents: FloatArray) -> LinearMap:
-        """That of M: pins change the Schur complement by a matrix of low rank, for a few iterations more."""
-        return self._whole.tension(tangents)
 
 
 def vanishing_at(pins: IntArray, model: Model, mesh: Mesh) -> Model:

@@ -6,8 +6,7 @@ from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.metrics import METRICS, DenseInnerProduct, MoebiusMetric, SparseInnerProduct, WithoutRule
-from mobius_flow.core.metrics.moebius import MIN_DISTANCE
-from mobius_flow.core.metrics.pairs import DifferenceForm, Stencil, stripes
+from mobius_flow.core.metrics.moebius import MIN_DISTANCE, DifferenceForm, Stencil, stripes
 from mobius_flow.core.quadrature import ENDS, TAIL, Rule
 from scipy.integrate import quad
 from scipy.special import sici

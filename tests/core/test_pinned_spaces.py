@@ -13,7 +13,7 @@ from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
 from mobius_flow.core.metrics import METRICS, DenseInnerProduct, SparseInnerProduct
 from mobius_flow.core.saddle.iterative import Tolerances
 from mobius_flow.core.saddle.models import PinnedModel
-from mobius_flow.core.saddle.restoration import euclidean_correction
+from mobius_flow.core.saddle.tangent_space import euclidean_correction
 from mobius_flow.core.taylor import taylor_slope
 from mobius_flow.core.types import FloatArray, IntArray
 from shapes import hopf_link, regular_polygon, torus_trefoil

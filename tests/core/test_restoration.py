@@ -10,7 +10,7 @@ from mobius_flow.core import Curve, RelaxOptions, minimize
 from mobius_flow.core.constraints import Barycenters, Constraints
 from mobius_flow.core.descent.geometries import Constrained
 from mobius_flow.core.saddle import TangentSpace
-from mobius_flow.core.saddle.restoration import euclidean_correction
+from mobius_flow.core.saddle.tangent_space import euclidean_correction
 from mobius_flow.core.types import FloatArray
 from shapes import chain_of_rings, hopf_link, opened, regular_polygon, straight_arc, torus_trefoil
 

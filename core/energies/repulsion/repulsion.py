@@ -19,9 +19,8 @@ from ...obstacle import Obstacle
 from ...quadrature import gauss_legendre
 from ...types import FloatArray
 from ..complex_steps import change, stepped
-from .clusters import Clusters
 from .schedule import Schedule
-from .simplices import Simplices, norm
+from .simplices import Clusters, Simplices, norm
 
 THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
 KEPT = 0.9  # slack up to which a schedule is as good as a new one
@@ -34,20 +33,11 @@ class Repulsion:
 
     Every curve has a schedule of its own, at whose change the value jumps by its error.  `frozen_at` keeps one, which
     makes a smooth function as long as it suits: what a line search should see.
-
-    Parameters
-    ----------
-    clusters
-        The simplices, in the units of curves.
-    theta
-        Separation parameter of clusters; with 0 all simplices count one by one.
-    schedule
-        The one to be used as long as it suits; None for that of each curve.
     """
 
-    clusters: Clusters
-    theta: float = THETA
-    schedule: Schedule | None = None
+    clusters: Clusters  # the simplices, in the units of curves
+    theta: float = THETA  # separation parameter of clusters; with 0 all simplices count one by one
+    schedule: Schedule | None = None  # to be used as long as it suits; None for that of each curve
 
     name = "repulsion"
     scale_exponent = 0.0
@@ -105,7 +95,7 @@ class Repulsion:
 
     def _means(self, curve: Curve) -> FloatArray:
         """Those of Φ on every edge, shape (edges,)."""
-        return self._integrals(self._schedule(curve), *_ends(curve, curve.vertices))[0]
+        return np.asarray(self._integrals(self._schedule(curve), *_ends(curve, curve.vertices))[0])
 
     def _schedule(self, curve: Curve) -> Schedule:
         """The schedule that counts at a curve: its own, or that of the curve."""

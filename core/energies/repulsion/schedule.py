@@ -5,35 +5,25 @@ That follows all singularities wherever they are; the number of panels grows onl
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...curve import Curve
 from ...types import BoolArray, FloatArray, IntArray
-from .clusters import Clusters
-from .simplices import norm
+from .simplices import Clusters, norm
 
 Potential = Callable[[IntArray, FloatArray], tuple[FloatArray, FloatArray]]
 """Φ and ∇Φ of some simplices or clusters, shape (k,), each at its own points, shape (3, k, points)."""
 
 MAX_POINTS = 8
+# Ratios of analytic radius to half length from which 1, 2, … Gauss points leave an error of exp(−20) = 2e-9 for single
+# simplices, and of exp(−8) = 3e-4 for clusters, still less than what moments leave: k points have the error ρ⁻²ᵏ, and
+# the Bernstein ellipse lies within a disc of R half lengths if ρ + 1/ρ ≤ 2R.
+EXACT, CLUSTERED = (np.cosh(exponent / (2.0 * np.arange(1, MAX_POINTS + 1))) for exponent in (20.0, 8.0))
 SHORTEST = 2.0**-48  # of an edge: not even contact makes panels shorter
 EDGES = 1024  # looked at together, to bound the memory
 POINTS = 8192  # at which a potential is taken at once, for the processor's cache
-
-
-def _least_ratios(exponent: float) -> FloatArray:
-    """Ratios of analytic radius to half length from which 1, 2, … Gauss points leave an error of exp(−exponent).
-
-    k points have the error ρ⁻²ᵏ; the Bernstein ellipse lies within a disc of R half lengths if ρ + 1/ρ ≤ 2R.
-    """
-    return np.asarray(np.cosh(exponent / (2.0 * np.arange(1, MAX_POINTS + 1))))
-
-
-EXACT = _least_ratios(20.0)  # 2e-9
-CLUSTERED = _least_ratios(8.0)  # 3e-4, still less than what moments leave
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,33 +45,21 @@ class Panels:
     def joined(cls, parts: "Sequence[Panels]") -> "Panels":
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in cls.__match_args__))
 
-    def seeing(self, source: IntArray) -> "Panels":
-        """The same parts of edges with other sources."""
-        return Panels(self.edge, self.begin, self.width, source)
 
-    def halved(self) -> "Panels":
-        """Both halves of each."""
-        half = 0.5 * self.width
-        return Panels.joined([Panels(self.edge, begin, half, self.source) for begin in (self.begin, self.begin + half)])
+Groups = tuple[tuple[int, Panels], ...]
+"""Numbers of Gauss points, and the panels that take so many, sorted by edge."""
 
 
-class Group(NamedTuple):
-    """Panels that are integrated by equally many Gauss points, sorted by edge."""
-
-    points: int
-    panels: Panels
-
-
+@dataclass(frozen=True, eq=False)
 class _View:
     """How panels of a curve's edges see clusters and simplices."""
 
-    def __init__(self, curve: Curve, clusters: Clusters) -> None:
-        self.clusters = clusters
-        self._tail, self._vector = curve.vertices[curve.mesh.tails].T, curve.edge_vectors.T
-        self._length = curve.edge_lengths
+    curve: Curve
+    clusters: Clusters
 
     def half(self, panels: Panels) -> FloatArray:
-        return np.asarray(0.5 * panels.width * self._length[panels.edge])
+        """Half of the panels' lengths."""
+        return np.asarray(0.5 * panels.width * self.curve.edge_lengths[panels.edge])
 
     def are_far(self, panels: Panels, theta: float) -> BoolArray:
         """Whether the clusters that panels see may count by their moments."""
@@ -89,7 +67,7 @@ class _View:
 
     def analytic_ratios(self, panels: Panels) -> FloatArray:
         """Analytic radius to half length, for panels that see simplices."""
-        tau = self._vector[:, panels.edge] / self._length[panels.edge]
+        tau = (self.curve.edge_vectors / self.curve.edge_lengths[:, None]).T[:, panels.edge]
         reach = self.clusters.simplices.reach(panels.source, self._middles(panels), tau)
         return np.asarray(reach / self.half(panels))
 
@@ -98,31 +76,28 @@ class _View:
         return np.asarray((self._distances(panels) - self.clusters.radius[panels.source]) / self.half(panels))
 
     def _middles(self, panels: Panels) -> FloatArray:
-        t = panels.begin + 0.5 * panels.width
-        return np.asarray(self._tail[:, panels.edge] + t * self._vector[:, panels.edge])
+        tails, vectors = self.curve.vertices[self.curve.mesh.tails].T, self.curve.edge_vectors.T
+        return np.asarray(tails[:, panels.edge] + (panels.begin + 0.5 * panels.width) * vectors[:, panels.edge])
 
     def _distances(self, panels: Panels) -> FloatArray:
-        return norm(self._middles(panels) - self.clusters.centre[:, panels.source])
+        return norm(self._middles(panels) - self.clusters.center[:, panels.source])
 
 
 @dataclass(frozen=True, eq=False)
 class Schedule:
     """Every pair of an edge and a simplex exactly once, but for the panels that edges are cut into.
 
-    Attributes
-    ----------
-    clustered
-        Panels that see clusters: those with (radius of the cluster + half length) < θ (distance of the centres).
+    Panels see a cluster if (radius of the cluster + half length) < θ (distance of the centers).
     """
 
-    curve: Curve  # the curve that it was made for
-    single: tuple[Group, ...]  # panels that see simplices
-    clustered: tuple[Group, ...]
+    curve: Curve  # that it was made for
+    single: Groups  # panels that see simplices
+    clustered: Groups  # panels that see clusters
     theta: float  # the separation parameter θ
 
     @classmethod
     def of(cls, curve: Curve, clusters: Clusters, theta: float) -> "Schedule":
-        """That of a curve in R³."""
+        """The schedule of a curve in R³."""
         view, n = _View(curve, clusters), curve.mesh.edges
         found = [_traverse(view, np.arange(first, min(first + EDGES, n)), theta) for first in range(0, n, EDGES)]
         single, clustered = (Panels.joined(kind) for kind in zip(*found, strict=True))
@@ -163,7 +138,7 @@ def _traverse(view: _View, edges: IntArray, theta: float) -> tuple[Panels, Panel
         clustered.append(panels[far])
         panels = panels[~far]
         leaf = tree.is_leaf[panels.source]
-        seen = panels[leaf].seeing(tree.start[panels.source[leaf]])
+        seen = replace(panels[leaf], source=tree.start[panels.source[leaf]])
         fine = (view.analytic_ratios(seen) >= EXACT[-1]) | (seen.width <= SHORTEST)
         single.append(seen[fine])
         left = np.ones(len(panels), dtype=bool)
@@ -176,13 +151,15 @@ def _split(view: _View, panels: Panels) -> Panels:
     """Each panel with both children of the cluster it sees, or both of its halves if these are larger."""
     child = view.clusters.tree.child[panels.source]
     opened = (child > 0) & (view.clusters.radius[panels.source] >= view.half(panels))
-    same, child = panels[opened], child[opened]
-    return Panels.joined([same.seeing(child), same.seeing(child + 1), panels[~opened].halved()])
+    same, halved, child = panels[opened], panels[~opened], child[opened]
+    first = replace(halved, width=0.5 * halved.width)
+    second = replace(first, begin=first.begin + first.width)
+    return Panels.joined([replace(same, source=child), replace(same, source=child + 1), first, second])
 
 
-def _grouped(panels: Panels, ratio: FloatArray, least: FloatArray) -> tuple[Group, ...]:
+def _grouped(panels: Panels, ratio: FloatArray, least: FloatArray) -> Groups:
     """The panels by the number of points that they need."""
     points = np.minimum(np.searchsorted(-least, -ratio) + 1, MAX_POINTS)
     order = np.argsort(panels.edge, kind="stable")
     points, panels = points[order], panels[order]
-    return tuple(Group(k, panels[points == k]) for k in np.unique(points).tolist())
+    return tuple((k, panels[points == k]) for k in np.unique(points).tolist())

@@ -71,7 +71,7 @@ def test_an_end_that_swings_through_the_next_edge(tmp_path: Path, length: float,
     mesh = Mesh((3,), (False,))
     free = free_motion(mesh, *frames)
     assert free.limit is Limit.CONTACT
-    assert sorted(free.pair) == [0, 1]
+    assert sorted(free.contact.edges) == [0, 1]
     assert 0.48 < free.time <= 0.5
     rejected = verdict(tmp_path, mesh, *frames)
     assert not rejected.accepted
@@ -91,7 +91,7 @@ def test_a_single_edge_that_turns_inside_out(tmp_path: Path) -> None:
     mesh, frame = Mesh((2,), (False,)), np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]])
     free = free_motion(mesh, frame, frame[::-1])
     assert free.limit is Limit.CONTACT
-    assert free.pair == (0, 0)
+    assert free.contact.edges == (0, 0)
     rejected = verdict(tmp_path, mesh, frame, frame[::-1])
     assert rejected.edges == (0, 0)
 
@@ -105,7 +105,7 @@ def test_numbers_of_edges_are_not_those_of_their_tails(tmp_path: Path) -> None:
     free = free_motion(start.mesh, start.vertices, end)
     rejected = verdict(tmp_path, start.mesh, start.vertices, end)
     assert not rejected.accepted
-    assert {*free.pair} <= {3, 4, 5, 6}
+    assert {*free.contact.edges} <= {3, 4, 5, 6}
     assert {*rejected.edges} <= {3, 4, 5, 6}
 
 

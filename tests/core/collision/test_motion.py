@@ -42,8 +42,8 @@ def test_hopf_link_pulled_apart() -> None:
     # the second circle's leftmost vertex, at x = 0, meets the first circle's vertex at x = 1
     assert motion.limit is Limit.CONTACT
     assert 0.98 * 0.25 < motion.time < 0.25
-    assert motion.pair is not None
-    assert sorted(link.mesh.component[list(motion.pair)].tolist()) == [0, 1]
+    assert motion.contact is not None
+    assert sorted(link.mesh.component[list(motion.contact.edges)].tolist()) == [0, 1]
     assert not is_free(link.mesh, link.vertices, end)
     assert is_free(link.mesh, link.vertices, link.vertices + motion.time * (end - link.vertices))
 
@@ -55,11 +55,11 @@ def test_time_is_confirmed_by_sampling(seed: int, size: float) -> None:
     curve = torus_trefoil(240)
     start, step = curve.vertices, size * smooth_displacement(curve, seed)
     motion = free_motion(curve.mesh, start, start + step)
-    if motion.pair is None:
+    if motion.contact is None:
         assert motion.time == 1.0
         return
     assert 0 < motion.time < 1
-    volumes = [volume(curve, start + f * motion.time * step, motion.pair) for f in (1 - 1e-9, 1.021)]
+    volumes = [volume(curve, start + f * motion.time * step, motion.contact.edges) for f in (1 - 1e-9, 1.021)]
     assert volumes[0] * volumes[1] < 0
     assert is_free(curve.mesh, start, start + (1 - 1e-9) * motion.time * step)
 
@@ -86,7 +86,7 @@ def test_far_from_the_origin(offset: float) -> None:
     end = curve.vertices + smooth_displacement(curve, 3)
     expected = free_motion(curve.mesh, curve.vertices, end)
     moved = free_motion(curve.mesh, curve.vertices + offset, end + offset)
-    assert moved.pair == expected.pair
+    assert moved.contact == expected.contact
     assert moved.time == pytest.approx(expected.time, rel=0.02)
 
 
@@ -103,8 +103,8 @@ def test_earliest_contact_of_all_pairs(seed: int, m: int, sizes: tuple[int, ...]
             contacts += pair_contacts((start[four], end[four]))
     earliest = min((float(root.high) for root in contacts), default=np.inf)
     motion = free_motion(mesh, start, end)
-    if 3 in sizes and motion.pair is not None and motion.time < 0.98 * earliest:
-        assert not mesh.disjoint(*motion.pair)  # a triangle that turns inside out
+    if 3 in sizes and motion.contact is not None and motion.time < 0.98 * earliest:
+        assert not mesh.disjoint(*motion.contact.edges)  # a triangle that turns inside out
     elif np.isfinite(earliest):
         assert motion.time == pytest.approx(earliest, rel=0.02)
         assert motion.time <= earliest
@@ -202,5 +202,5 @@ def test_thousands_of_components() -> None:
     end[:3] += [1.0, 0, 0]
     end[3 * 144 : 3 * 144 + 3] -= [1.0, 0, 0]
     motion = free_motion(mesh, start, end)
-    if motion.pair is not None:
-        assert {0, 144} & set(mesh.component[list(motion.pair)].tolist())
+    if motion.contact is not None:
+        assert {0, 144} & set(mesh.component[list(motion.contact.edges)].tolist())

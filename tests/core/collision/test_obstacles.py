@@ -28,7 +28,6 @@ def test_a_wall_in_the_way(obstacle: Obstacle, scale: float) -> None:
     assert motion.contact is not None
     assert motion.contact.obstacle == "obstacle plate"
     assert motion.contact.edges[0] in (19, 20)
-    assert motion.pair is None
     assert motion.contact.message == f"edge {motion.contact.edges[0] + 1} and obstacle plate"
     assert not is_free(curve.mesh, curve.vertices, end, (still,))
     assert is_free(curve.mesh, curve.vertices, curve.vertices + motion.time * (end - curve.vertices), (still,))

@@ -7,9 +7,14 @@ from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.constraints import Constraints
 from mobius_flow.core.energies import ENERGIES, Energy, KPointEnergy, Rule, moebius_kpoint
 from mobius_flow.core.energies.barrier import exact
-from mobius_flow.core.energies.densities import EDGE_ENERGY, VERTEX_ENERGY, ArcDensity, IshizekiNagasawaDensity
+from mobius_flow.core.energies.densities import (
+    EDGE_ENERGY,
+    VERTEX_ENERGY,
+    ArcDensity,
+    IshizekiNagasawaDensity,
+    TangentPointDensity,
+)
 from mobius_flow.core.energies.edge_pairs import EdgePairs
-from mobius_flow.core.energies.tangent_point import TangentPointDensity
 from mobius_flow.core.errors import OptionError
 from mobius_flow.core.metrics import MoebiusMetric
 from mobius_flow.core.taylor import derivative_slope

@@ -9,10 +9,8 @@ import sympy as sp
 from energy_references import disjoint_pairs
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.curve.tiles import pair_tiles
-from mobius_flow.core.energies.arcs import Arcs
-from mobius_flow.core.energies.densities import ArcDensity, IshizekiNagasawaDensity
-from mobius_flow.core.energies.density import Density, PointPairs, PointSet
-from mobius_flow.core.energies.tangent_point import TangentPointDensity
+from mobius_flow.core.energies.densities import ArcDensity, IshizekiNagasawaDensity, TangentPointDensity
+from mobius_flow.core.energies.density import Arcs, Density, PointPairs, PointSet
 from smooth_curves import random_polygon
 
 R2, A, B, C, RHO = sp.symbols("r2 a b c rho", positive=True)

@@ -31,9 +31,9 @@ def multiplicity(blocks: BlockList) -> np.ndarray:
     """How often each pair of edges is counted, symmetric; shape (n, n)."""
     n = len(blocks.tree.order)
     far, near = np.zeros((n, n)), np.zeros((n, n))
-    for a, b, c, d in zip(blocks.a, blocks.b, blocks.c, blocks.d, strict=True):
+    for a, b, c, d in blocks.ranges.T:
         far[a:b, c:d] += 1
-    np.add.at(near, (blocks.i, blocks.j), 1)
+    np.add.at(near, blocks.near, 1)
     near[np.ix_(blocks.tree.order, blocks.tree.order)] += far
     return near + near.T
 
@@ -49,22 +49,22 @@ def test_every_pair_of_edges_exactly_once(curve: Curve, theta: float, leaf: int)
 @CURVE
 def test_near_pairs_are_sorted(curve: Curve) -> None:
     blocks = BlockList.of(curve, 0.25, 4)
-    assert np.all(blocks.i < blocks.j)
-    assert np.all(np.diff(blocks.i * len(curve) + blocks.j) > 0)
+    assert np.all(blocks.near[0] < blocks.near[1])
+    assert np.all(np.diff(blocks.near[0] * len(curve) + blocks.near[1]) > 0)
 
 
 @CURVE
 def test_share_of_near_pairs(curve: Curve) -> None:
     blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
     neighbours_and_halves = len(curve.mesh.inner) + 0.5 * n
-    assert blocks.near_share * n**2 / 2 == pytest.approx(len(blocks.i) + neighbours_and_halves, abs=1e-9)
+    assert blocks.near_share * n**2 / 2 == pytest.approx(len(blocks.near[0]) + neighbours_and_halves, abs=1e-9)
 
 
 @CURVE
 def test_only_near_pairs_can_be_left_out(curve: Curve) -> None:
     """Wherever among the pairs those would be that are not: the last two edges are neighbours, or of two components."""
     blocks, n = BlockList.of(curve, 0.25, 4), curve.mesh.edges
-    listed = set(zip(blocks.i.tolist(), blocks.j.tolist(), strict=True))
+    listed = set(zip(blocks.near[0].tolist(), blocks.near[1].tolist(), strict=True))
     for i, j in ((0, 1), (n - 2, n - 1)):
         if (i, j) not in listed:
             with pytest.raises(OptionError, match="is not a near one"):
@@ -81,13 +81,11 @@ def test_a_list_is_of_one_mesh_only() -> None:
 def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
     blocks, n = BlockList.of(curve, 0.25, 4), len(curve)
     sums = np.zeros(n + 1)
-    for start, stop, partners in [
-        (blocks.a, blocks.b, blocks.d - blocks.c),
-        (blocks.c, blocks.d, blocks.b - blocks.a),
-    ]:
+    a, b, c, d = blocks.ranges
+    for start, stop, partners in [(a, b, d - c), (c, d, b - a)]:
         sums += np.bincount(start, partners, n + 1) - np.bincount(stop, partners, n + 1)
     sums = np.cumsum(sums)[:-1]
-    near = np.bincount(blocks.i, minlength=n) + np.bincount(blocks.j, minlength=n)
+    near = np.bincount(blocks.near[0], minlength=n) + np.bincount(blocks.near[1], minlength=n)
     np.testing.assert_array_equal(sums + near[blocks.tree.order], n - 3)
 
 
@@ -95,7 +93,7 @@ def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
 @LIST
 def test_blocks_are_far_apart(curve: Curve, theta: float, leaf: int) -> None:
     blocks, order = BlockList.of(curve, theta, leaf), edge_clusters(curve, leaf).order
-    for a, b, c, d in zip(blocks.a, blocks.b, blocks.c, blocks.d, strict=True):
+    for a, b, c, d in blocks.ranges.T:
         i, j = order[a:b, None], order[None, c:d]
         apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=-1)
         assert np.all(apart > 0.5 * (1 / theta - 1) * (curve.edge_lengths[i] + curve.edge_lengths[j]))
@@ -105,7 +103,7 @@ def test_blocks_are_far_apart(curve: Curve, theta: float, leaf: int) -> None:
 def test_pairs_of_the_barrier_are_near(name: str) -> None:
     curve = CURVES[name]
     blocks = BlockList.of(curve, 0.25, 4)
-    listed = {frozenset(pair) for pair in zip(blocks.i, blocks.j, strict=True)}
+    listed = {frozenset(pair) for pair in zip(*blocks.near, strict=True)}
     counted = {frozenset(pair) for pair in zip(*near_pairs(curve), strict=True)}
     assert counted
     assert counted <= listed
@@ -136,7 +134,7 @@ def test_children_halve_their_parent_and_leaves_are_small(curve: Curve) -> None:
 def test_size_of_the_list_is_linear() -> None:
     blocks, twice = (BlockList.of(torus_trefoil(n), 0.25, 4) for n in (5_000, 10_000))
     assert len(twice.first) < 2.3 * len(blocks.first)
-    assert len(twice.i) < 2.3 * len(blocks.i)
+    assert len(twice.near[0]) < 2.3 * len(blocks.near[0])
 
 
 def test_many_components_make_no_more_pairs_than_one_curve() -> None:
@@ -148,4 +146,4 @@ def test_many_components_make_no_more_pairs_than_one_curve() -> None:
 def test_a_knot_of_the_table() -> None:
     blocks = BlockList.of(knot("8_19"), 0.25, 4)
     assert blocks.first.size
-    assert blocks.i.size
+    assert blocks.near[0].size

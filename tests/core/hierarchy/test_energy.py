@@ -186,9 +186,9 @@ def test_objective_is_that_of_the_default_energy() -> None:
 def test_left_out_pairs_must_be_near() -> None:
     curve = torus_trefoil(300)
     blocks = BlockList.of(curve, HierarchicalMoebiusEnergy.theta, 4)
-    far = blocks.tree.order[blocks.a[:1]], blocks.tree.order[blocks.c[:1]]
+    far = blocks.tree.order[blocks.ranges[0, :1]], blocks.tree.order[blocks.ranges[2, :1]]
     assert HierarchicalMoebiusEnergy(blocks, (far[0][:0], far[1][:0])).value(curve)
-    for pairs in (far, (np.append(blocks.i[:2], far[0]), np.append(blocks.j[:2], far[1]))):
+    for pairs in (far, (np.append(blocks.near[0][:2], far[0]), np.append(blocks.near[1][:2], far[1]))):
         with pytest.raises(MobiusFlowError, match="not a near one"):
             HierarchicalMoebiusEnergy(blocks, pairs).value(curve)
 

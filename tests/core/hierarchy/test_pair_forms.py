@@ -23,12 +23,12 @@ CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 def forms_with_weights(curve: Curve) -> tuple[BlockList, np.ndarray, np.ndarray]:
     blocks, rng = BlockList.of(curve, 0.5, 4), np.random.default_rng(19)
-    return blocks, rng.uniform(size=len(blocks.i)), rng.uniform(size=len(blocks.a))
+    return blocks, rng.uniform(size=len(blocks.near[0])), rng.uniform(size=len(blocks.first))
 
 
 def weighted_pairs(blocks: BlockList, near: np.ndarray, far: np.ndarray) -> Iterator[tuple[int, int, float]]:
-    yield from zip(blocks.i, blocks.j, near, strict=True)
-    for a, b, c, d, weight in zip(blocks.a, blocks.b, blocks.c, blocks.d, far, strict=True):
+    yield from zip(*blocks.near, near, strict=True)
+    for (a, b, c, d), weight in zip(blocks.ranges.T, far, strict=True):
         for i in blocks.tree.order[a:b]:
             for j in blocks.tree.order[c:d]:
                 yield i, j, weight
@@ -67,7 +67,8 @@ def test_components(curve: Curve) -> None:
     component = curve.mesh.edge_component
     u = np.random.default_rng(23).normal(size=len(curve.mesh.component_sizes))
     order = component[blocks.tree.order]
-    several = (order[blocks.a] != order[blocks.b - 1]) | (order[blocks.c] != order[blocks.d - 1])
+    a, b, c, d = blocks.ranges
+    several = (order[a] != order[b - 1]) | (order[c] != order[d - 1])
     expected = by_pairs(curve, weighted_pairs(blocks, near, np.where(several, 0.0, far)), u[component])
     assert u @ PairForms(curve, blocks).of_components(near, far) @ u == pytest.approx(expected, rel=1e-11)
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.energies.complex_steps import change, stepped
-from mobius_flow.core.energies.repulsion.clusters import Clusters
 from mobius_flow.core.energies.repulsion.repulsion import THETA
 from mobius_flow.core.energies.repulsion.schedule import Schedule
+from mobius_flow.core.energies.repulsion.simplices import Clusters
 from mobius_flow.core.obstacle import Obstacle
 from mobius_flow.core.taylor import taylor_slope
 from repulsion_references import quartered, repulsion, soup, sphere, wavy
@@ -47,7 +47,7 @@ def test_moments_against_many_points(obstacle: Obstacle) -> None:
         points, weights = np.array([corners[0], corners.mean(axis=0), corners[1]]), np.array([1, 4, 1]) / 6
     mass = weights[:, None] * sizes
     centre = np.einsum("qf,qif->i", mass, points) / sizes.sum()
-    np.testing.assert_allclose(clusters.centre[:, 0], centre, atol=1e-13)
+    np.testing.assert_allclose(clusters.center[:, 0], centre, atol=1e-13)
     away = points - centre[:, None]
     moments = np.einsum("qf,qif,qjf->ij", mass, away, away)
     np.testing.assert_allclose(clusters.spread[:, :, 0], moments, atol=1e-11)
@@ -62,7 +62,7 @@ def test_balls_hold_their_clusters(obstacle: Obstacle) -> None:
             child = clusters.tree.child[queue[0]]
             members += [] if child else [clusters.tree.start[queue[0]]]
             queue = queue[1:] + ([child, child + 1] if child else [])
-        away = clusters.simplices.corners[:, :, members] - clusters.centre[:, index, None]
+        away = clusters.simplices.corners[:, :, members] - clusters.center[:, index, None]
         assert np.linalg.norm(away, axis=1).max() == pytest.approx(clusters.radius[index], rel=1e-12)
 
 
