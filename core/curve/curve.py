@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import is_list
-from ..errors import CurveError, counted
+from ..errors import CurveError, Place, counted
 from ..types import FloatArray, frozen, real
 from .mesh import Mesh
 
@@ -126,6 +126,19 @@ def check_closed(curve: Curve, what: str) -> None:
     if not curve.mesh.all_closed:
         number = curve.mesh.closed.index(False) + 1
         raise CurveError(f"component {number} is open; {what} are for closed components")
+
+
+def at_vertices(curve: Curve, *vertices: int) -> Place:
+    """The place of some vertices, seen from the first."""
+    return Place(vertices, tuple(curve.vertices[vertices[0]].tolist()))
+
+
+def at_edges(curve: Curve, edges: tuple[int, ...], position: FloatArray | None = None) -> Place:
+    """The place of some edges, by their ends, seen from ``position``, (m,), or the middle of all."""
+    tails = list(edges)
+    where = curve.midpoints[tails].mean(axis=0) if position is None else position
+    ends = np.stack([curve.mesh.tails[tails], curve.mesh.heads[tails]], axis=1)
+    return Place(tuple(dict.fromkeys(ends.ravel().tolist())), tuple(where.tolist()))
 
 
 def _numbers(values: npt.ArrayLike, name: str) -> FloatArray:

@@ -34,8 +34,8 @@ class Mesh:
     Raises
     ------
     CurveError
-        If these are no whole numbers, there is no component, one has too few vertices, or ``closed`` does not tell of
-        every component.
+        If these are no whole numbers, there is no component, one has too few vertices, or ``closed`` is of another
+        length.
     """
 
     component_sizes: tuple[int, ...]
@@ -232,6 +232,28 @@ class Mesh:
         placed[...] = elsewhere
         placed[self.tails] = values
         return placed
+
+
+def component_order(mesh: Mesh, points: FloatArray) -> IntArray:
+    """Edges in curve order, the components sorted along a Z-curve through their centers; shapes (m, n) -> (edges,)."""
+    if len(mesh.component_sizes) < 3:
+        return np.arange(mesh.edges)
+    starts = mesh.offsets[:-1]
+    centers = 0.5 * (np.minimum.reduceat(points, starts, axis=1) + np.maximum.reduceat(points, starts, axis=1))
+    rank = np.empty(len(starts), dtype=np.intp)
+    rank[z_order(centers)] = np.arange(len(starts))
+    return np.argsort(rank[mesh.edge_component], kind="stable")
+
+
+def z_order(points: FloatArray) -> IntArray:
+    """Points along a Z-curve through a grid of 1024 cells in every direction; shapes (m, k) -> (k,)."""
+    low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
+    cells = ((points - low) / np.maximum(high - low, np.finfo(np.float64).tiny) * 1023).astype(np.int64)
+    code = np.zeros(points.shape[1], dtype=np.int64)
+    for bit in range(10):
+        for axis, cell in enumerate(cells):
+            code |= ((cell >> bit) & 1) << (len(cells) * bit + axis)
+    return np.argsort(code, kind="stable")
 
 
 def _flags(closed: Any, components: int) -> tuple[bool, ...]:

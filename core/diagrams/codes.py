@@ -21,13 +21,11 @@ from typing import NamedTuple
 
 from ..checks import check_known
 from ..errors import CurveError
-from .diagram import Diagram, Pass
-from .faces import Faces
+from .diagram import Diagram, Pass, diagram_of
 from .nested import Nested, components, flat, is_flat, nested, unwrapped
-from .planar_codes import diagram_of
 from .realize import realized
 
-MAX_CROSSINGS = 1000  # seconds to draw
+MAX_CROSSINGS = 1000  # of a code; drawing takes seconds
 _MAX_LENGTH = 100_000  # characters
 _SPELLING = re.compile(r"[\s\[({\"']*([A-Za-z]+)(?:\.([01]+))?[\s\])}\"']*")
 _CROSSING = re.compile(r"(?<![A-Za-z])X(?=\s*[\[({])")
@@ -48,14 +46,7 @@ def is_code(text: str) -> bool:
 
 
 def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
-    """The diagram that a code describes.
-
-    Parameters
-    ----------
-    text
-        The code; see the module.
-    kind
-        A key of `NOTATIONS`, if the text need not say so.
+    """The diagram of a code as described above; ``kind``, a key of `NOTATIONS`, is for texts that do not say theirs.
 
     Raises
     ------
@@ -110,7 +101,7 @@ def _parts(rows: Nested) -> list[list[int]]:
 
 
 def check_count(crossings: int) -> None:
-    """Raise a CurveError if there are more crossings than are drawn."""
+    """Raise a CurveError if there are too many crossings to be drawn in seconds."""
     if crossings > MAX_CROSSINGS:
         raise CurveError(f"the code has {crossings} crossings; at most {MAX_CROSSINGS} are allowed")
 
@@ -173,7 +164,7 @@ def _flipped(passes: Sequence[Sequence[Pass]], flips: Sequence[int]) -> Diagram:
 
 
 def _in_the_plane(diagram: Diagram, what: str) -> Diagram:
-    if not Faces(diagram).is_planar:
+    if not diagram.is_planar:
         raise CurveError(f"{what} is of no diagram in the plane")
     return diagram
 

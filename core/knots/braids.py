@@ -1,11 +1,12 @@
-"""Braid words: tuples of signed letters; letter i is the crossing σ_i of strands i and i+1, −i its inverse.
+"""Braid words and diagrams of their closures.
 
-A positive letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the right-handed
-trefoil.
+A word is a tuple of signed letters; letter i is the crossing σ_i of strands i and i+1, −i its inverse.  A positive
+letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the right-handed trefoil.
 """
 
 from collections.abc import Sequence
 
+from ..diagrams import Diagram, Pass
 from ..errors import CurveError
 
 Word = tuple[int, ...]
@@ -20,7 +21,7 @@ def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word,
     Raises
     ------
     CurveError
-        If a letter is 0 or no whole number, the strands are too few, or the braid is beyond all use.
+        If a letter is 0 or no whole number, or the strands are too few or too many.
     """
     letters = tuple(word)
     for position, letter in enumerate(letters, start=1):
@@ -89,3 +90,25 @@ def connected_sum(first: Sequence[int], second: Sequence[int]) -> Word:
     """Word whose closure is the connected sum, the second braid hung on the first one's last strand."""
     shift = max(map(abs, first), default=0)
     return (*first, *(letter + shift if letter > 0 else letter - shift for letter in second))
+
+
+def braid_diagram(word: Sequence[int]) -> Diagram:
+    """The closure of a braid as the word draws it; raises as `checked_word` does.
+
+    Examples
+    --------
+    >>> braid_diagram([1, 1]).linking_numbers
+    (1,)
+    """
+    letters, strands = checked_word(word)
+    passes: list[list[Pass]] = [[] for _ in range(strands)]
+    at = list(range(strands))
+    for crossing, letter in enumerate(letters):
+        place = abs(letter) - 1
+        passes[at[place]].append((crossing, letter > 0))  # in a positive crossing the one that moves outwards is over
+        passes[at[place + 1]].append((crossing, letter < 0))
+        at[place], at[place + 1] = at[place + 1], at[place]
+    parts = (
+        tuple(each for strand in cycle for each in passes[strand]) for cycle in cycles(permutation(letters, strands))
+    )
+    return Diagram(tuple(parts), tuple(1 if letter > 0 else -1 for letter in letters))

@@ -5,6 +5,7 @@ two parts' energies less the circle's 4 and never gets there.  A relaxation make
 looked for: lifted to the paraboloid (x, |x|²), balls are half spaces, and a ball round an arc is a separating plane.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain, compress, product
@@ -13,30 +14,59 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse.csgraph import connected_components
 
+from ..arguments import checked_fields
+from ..checks import check_fields
 from ..curve import Curve
+from ..diagrams import linking_numbers, quick_invariants
+from ..diagrams.invariants import TRIVIAL
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
-from .alexander import TRIVIAL, linking_numbers, signature
 
-_ARCS = 24  # arcs of a knot begin and end at multiples of this fraction of it; in links, of fewer per component
-_MIN_ARC = 1 / 8  # arc, as a fraction of its component
-_SAMPLES = 120  # vertices that balls are looked for with
-_MARGIN = 1e-6  # of the separating plane, for a curve of size 1
-_MAX_TRIALS = 3000  # balls that are looked for, which takes a few seconds
-_OUTER_PATH = 16  # edges of the path around a ball
+_MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above rounding
+_OUTER_PATH = 16  # edges of the path around a ball, which only has to stay outside
+
+
+@checked_fields
+@dataclass(frozen=True)
+class BallSearch:
+    """How thoroughly balls are searched for.
+
+    Parameters
+    ----------
+    arcs
+        Arcs of a knot begin and end at this many places; in links these are shared by the components.
+    shortest
+        Shortest arc, as a fraction of its component.
+    samples
+        Vertices of the curve that balls are fitted to.
+    trials
+        Balls that are fitted at most, which takes a few seconds; links that ask for more are not searched.
+    """
+
+    arcs: int = 24
+    shortest: float = 1 / 8
+    samples: int = 120
+    trials: int = 3000
+
+    def __post_init__(self) -> None:
+        check_fields(self, arcs=(1, math.inf), shortest=(0, 0.5), samples=(5, math.inf), trials=(0, math.inf))
+
+    def places(self, components: int) -> int:
+        """Places on each component."""
+        return max(int(1 / self.shortest), self.arcs // components)
+
+    def lengths(self, components: int) -> range:
+        """Lengths of arcs, from place to place."""
+        places = self.places(components)
+        return range(int(self.shortest * places), places // 2 + 1)
+
+
+DEFAULT_SEARCH = BallSearch()
 
 
 @dataclass(frozen=True, eq=False)
 class Ball:
-    """A round ball.
-
-    Attributes
-    ----------
-    center
-        Shape (3,), in the curve's units.
-    radius
-        In the curve's units.
-    """
+    """A round ball: ``center``, shape (3,), and ``radius`` are in the curve's units."""
 
     center: FloatArray
     radius: float
@@ -52,45 +82,31 @@ class Ball:
         return bool(np.linalg.norm(outside, axis=1).min() > self.radius)
 
 
-def knotted_ball(curve: Curve) -> Ball | None:
+def knotted_ball(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> Ball | None:
     """A ball whose sphere meets the curve in two points, both parts being knotted or linked; None if none is found.
 
     A ball proves that the curve is composite.  None proves nothing: parts may have a trivial Alexander polynomial, or
-    lie in no round ball, and a link may be beyond `is_searchable`.
-
-    Parameters
-    ----------
-    curve
-        Polygons; only closed ones in space can be knots.
+    lie in no round ball, and a link may be beyond `is_searchable`.  Only closed polygons in space can be knots.
     """
-    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve):
+    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve, search):
         return None
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())
     normal = curve.with_vertices((curve.vertices - middle) / size)
-    for inside in _arcs(curve):
-        ball = _ball(normal, inside)
+    for inside in _arcs(curve, search):
+        ball = _ball(normal, inside, search.samples)
         if ball is not None and _is_knotted(normal, ball):
             return Ball(middle + size * ball.center, size * ball.radius)
     return None
 
 
-def is_searchable(curve: Curve) -> bool:
+def is_searchable(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> bool:
     """Whether there are few enough ways in which the components of a curve in space can lie about a ball."""
     components = len(curve.mesh.component_sizes)
-    arcs = _arc_count(components)
-    places = arcs * len(_arc_lengths(arcs))
-    if components * places > _MAX_TRIALS:
+    arcs = search.places(components) * len(search.lengths(components))
+    if components * arcs > search.trials:
         return False
-    return places * sum(1 << len(groups) for groups in _linked_groups(curve)) <= _MAX_TRIALS
-
-
-def _arc_count(components: int) -> int:
-    return max(int(1 / _MIN_ARC), _ARCS // components)
-
-
-def _arc_lengths(arcs: int) -> range:
-    return range(int(_MIN_ARC * arcs), arcs // 2 + 1)
+    return arcs * sum(1 << len(groups) for groups in _linked_groups(curve)) <= search.trials
 
 
 def _linked_groups(curve: Curve) -> list[list[IntArray]]:
@@ -109,23 +125,22 @@ def _linked_groups(curve: Curve) -> list[list[IntArray]]:
     return found
 
 
-def _arcs(curve: Curve) -> Iterator[BoolArray]:
+def _arcs(curve: Curve, search: BallSearch) -> Iterator[BoolArray]:
     """Masks of vertices: an arc of one component, and any of the others as a whole that can lie there together."""
     slices, component = curve.mesh.slices, curve.mesh.component
-    arcs = _arc_count(len(slices))
+    places, wanted = search.places(len(slices)), np.array(search.lengths(len(slices)))
     for part, groups in zip(slices, _linked_groups(curve), strict=True):
         size = part.stop - part.start
-        starts = np.unique(np.arange(arcs) * size // arcs)
-        lengths = np.unique(np.array(_arc_lengths(arcs)) * size // arcs)
+        starts, lengths = np.unique(np.arange(places) * size // places), np.unique(wanted * size // places)
         for length, first, chosen in product(lengths[::-1], starts, product((False, True), repeat=len(groups))):
             inside = np.isin(component, list(chain.from_iterable(compress(groups, chosen))))
             inside[part] = (np.arange(size) - first) % size < length
             yield inside
 
 
-def _ball(curve: Curve, inside: BoolArray) -> Ball | None:
+def _ball(curve: Curve, inside: BoolArray, samples: int) -> Ball | None:
     """The ball with one part of the vertices inside and the other outside that leaves most room between, if any."""
-    sample = np.arange(0, len(curve), max(1, len(curve) // _SAMPLES))
+    sample = np.arange(0, len(curve), max(1, len(curve) // samples))
     x = curve.vertices[sample]
     side = np.where(inside[sample], 1.0, -1.0)
     lifted = side[:, None] * np.column_stack([x, (x**2).sum(axis=1), np.ones(len(x))])
@@ -163,7 +178,7 @@ def _is_knotted(curve: Curve, ball: Ball) -> bool:
 
 def _first_is_knotted(curve: Curve) -> bool:
     """Whether the first component is knotted, or linked with another."""
-    found = signature(curve)
+    found = quick_invariants(curve)
     others = len(curve.mesh.component_sizes) - 1  # pairs with the first component are listed first
     return found.alexander[0] != TRIVIAL or any(found.linking[:others])
 

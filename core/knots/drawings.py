@@ -6,6 +6,7 @@ the two strands have different heights: it is embedded, and has the drawn crossi
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -15,10 +16,10 @@ from ..collision import check_embedded
 from ..curve import Curve, check_closed
 from ..curve.distances import arc_distance_of_pairs
 from ..curve.refine import subdivide
-from ..diagrams.crossings import plane_crossings
+from ..curve.smooth import arc_lengths
+from ..diagrams.projection import plane_crossings
 from ..errors import CurveError, Place
 from ..types import BoolArray, FloatArray, IntArray
-from .lifting import lifted
 
 MAX_POINTS = 20_000  # of a drawing: seconds to compare all its edges
 _CLEAR = 1e-3  # of the drawing's size: nearer crossings, or strands so near that do not cross, are unclear
@@ -27,6 +28,7 @@ _JITTER = 1e-9  # of the size, by which points are moved so that no strand runs 
 _LIFT = 0.3  # height of strands above and below the plane, of the distance to the next crossing
 _HIGHEST = 0.08  # of the drawing's size
 _NEAREST = 1e-4  # of the size: vertices nearer than that to a crossing give way to it
+_RAMP = 10  # edges from one crossing to the next, at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +72,7 @@ class Drawing:
             raise CurveError("all points of the drawing are the same; draw a closed curve")
         generic = _jittered(curve)
         found = plane_crossings(generic.mesh, generic.vertices)
-        passes = np.stack([edge + at for edge, at in found.ends], axis=1)
+        passes = (found.edges + found.at).T
         passes = passes[np.argsort(passes[:, 0])]
         edge = passes[:, 0].astype(np.intp)
         points = generic.vertices[edge] + (passes[:, 0] - edge)[:, None] * generic.edge_vectors[edge]
@@ -102,7 +104,7 @@ class Drawing:
         parts, nearest = [], _NEAREST * _size(self.curve)
         for part in self.curve.mesh.slices:
             mine = order[(at[order] >= part.start) & (at[order] < part.stop)]
-            parts.append(lifted(self.curve.vertices[part], at[mine] - part.start, lift[mine], nearest))
+            parts.append(_lifted(self.curve.vertices[part], at[mine] - part.start, lift[mine], nearest))
         curve = Curve.from_components(parts)
         check_embedded(curve)
         return curve
@@ -114,6 +116,45 @@ class Drawing:
             return highest
         nearest = cKDTree(self.crossings).query(self.crossings, k=2)[0][:, 1]
         return np.minimum(highest, _LIFT * nearest)
+
+
+def _lifted(points: FloatArray, at: FloatArray, lift: FloatArray, nearest: float) -> FloatArray:
+    """Lift a closed polygon, shape (n, 2), to given heights at some places, with smooth ramps between them.
+
+    The places are edges and fractions of them, each as one number, sorted; vertices nearer to one than ``nearest`` give
+    way to it.  The result is a finer polygon, shape (m, 3), straight above the given one.
+    """
+    closed = np.concatenate([points, points[:1]])
+    arc = arc_lengths(closed)
+    marks = np.interp(at, np.arange(len(closed)), arc)
+    places = _vertices(arc, marks, nearest)
+    plane = [np.interp(places, arc, x) for x in closed.T]
+    if not len(marks):
+        return np.column_stack([*plane, np.zeros(len(places))])
+    ends = np.concatenate([marks[-1:] - arc[-1], marks, marks[:1] + arc[-1]])
+    k = np.searchsorted(ends, places, side="right") - 1
+    u = (places - ends[k]) / (ends[k + 1] - ends[k])
+    low, high = np.take(lift, k - 1, mode="wrap"), np.take(lift, k, mode="wrap")
+    return np.column_stack([*plane, low + (high - low) * u * u * (3.0 - 2.0 * u)])
+
+
+def _vertices(arc: FloatArray, marks: FloatArray, nearest: float) -> FloatArray:
+    """Where the lifted curve has vertices: at passes, at the drawing's vertices, and between them; sorted."""
+    length = arc[-1]
+    places = _with(marks, arc[:-1], nearest, length)
+    ends = np.append(marks, marks[0] + length) if len(marks) else np.array([0.0, length])
+    for a, b in pairwise(ends):
+        ramp = np.linspace(a, b, _RAMP, endpoint=False)[1:]
+        places = _with(places, ramp % length, 0.5 * (ramp[1] - ramp[0]), length)
+    return places
+
+
+def _with(places: FloatArray, more: FloatArray, nearest: float, length: float) -> FloatArray:
+    """Add places on a closed curve, but for those that are near others; sorted."""
+    if not len(places):
+        return more
+    gaps = np.abs(more[:, None] - places[None, :])
+    return np.sort(np.concatenate([places, more[np.minimum(gaps, length - gaps).min(axis=1) > nearest]]))
 
 
 def _size(curve: Curve) -> float:

@@ -7,11 +7,12 @@ import numpy as np
 
 from ..collision import is_free
 from ..curve import Curve, Mesh
-from ..curve.strands import nearest_strands
-from ..errors import CurveError
+from ..curve.distances import nearest_strands
+from ..curve.smooth import arc_lengths
+from ..errors import CurveError, counted
 from ..types import FloatArray
-from .rings import MAX_VERTICES, shares
 
+MAX_VERTICES = 400_000  # of any knot that is made: twice what any command takes
 _EDGE = 0.5  # default edge length in units of the gap between strands
 _DISTINCT = 2.0  # points are on different strands if they are this many times further apart along the curve
 _FINER = 4  # times as many vertices stand for the smooth curve
@@ -35,13 +36,32 @@ def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     gap = strand_gap(curve)
     if vertices is None:
         vertices = max(least, math.ceil(curve.length / (_EDGE * gap)) if gap > 0 else MAX_VERTICES + 1)
-    if vertices > MAX_VERTICES:
-        raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
-    sizes = shares(vertices, np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices]))
+    sizes = shares(vertices, curve.component_lengths)
     coarse, fine = (_resampled(curve, [factor * n for n in sizes]) for factor in (1, _FINER))
     if not is_isotopic(fine, equal_steps(fine), coarse, equal_steps(coarse)):
-        raise CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
+        raise too_few(vertices)
     return coarse
+
+
+def check_count(vertices: int) -> None:
+    """Raise a CurveError for more vertices than are of any use."""
+    if vertices > MAX_VERTICES:
+        raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
+
+
+def too_few(vertices: int) -> CurveError:
+    """What is raised where a polygon is not proved to be isotopic to its smooth curve."""
+    return CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
+
+
+def shares(vertices: int, lengths: FloatArray) -> list[int]:
+    """Share vertices among components in proportion to length, by rounding the running sums; a CurveError as above."""
+    check_count(vertices)
+    marks = np.rint(vertices * np.cumsum(lengths) / lengths.sum()).astype(np.intp)
+    counts = np.diff(marks, prepend=0)
+    if counts.min() < 3:
+        raise CurveError(f"{vertices} vertices are too few for {counted(len(lengths), 'component')}; give more")
+    return [int(count) for count in counts]
 
 
 def strand_gap(curve: Curve) -> float:
@@ -69,14 +89,8 @@ def equal_steps(curve: Curve) -> list[FloatArray]:
 
 def arc_steps(points: FloatArray) -> FloatArray:
     """Parameters of the vertices of a closed polygon that are proportional to arc length; shape (n,)."""
-    arc = _arc(points)
+    arc = arc_lengths(np.concatenate([points, points[:1]]))
     return np.asarray(arc[:-1] / arc[-1])
-
-
-def _arc(points: FloatArray) -> FloatArray:
-    """Arc length from the first vertex of a closed polygon to each and back to it; shape (n + 1,)."""
-    edges = np.diff(points, axis=0, append=points[:1])
-    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(edges, axis=1))])
 
 
 def _resampled(curve: Curve, sizes: Sequence[int]) -> Curve:

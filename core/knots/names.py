@@ -7,14 +7,11 @@ from ..arguments import checked
 from ..curve import Curve
 from ..diagrams.codes import is_code
 from ..errors import CurveError, MobiusFlowError
-from .arcs import ARCS
 from .braids import Word, checked_word, connected_sum, mirror
-from .closures import braid_closure
-from .coded import coded_knot
-from .larger_tables import larger_name, larger_word
-from .planar import diagram_knot
-from .table import ALIASES, HARD_UNKNOTS, KNOTS, ROLFSEN
-from .torus import torus_knot
+from .closed_braids import braid_closure, torus_knot
+from .parametric import ARCS
+from .planar import coded_knot, diagram_knot
+from .table import ALIASES, HARD_UNKNOTS, KNOTS, ROLFSEN, larger_name, larger_word
 
 _TORUS = re.compile(r"(?:t|torus)\((?P<numbers>[^()#]*)(?P<end>\)?)")
 _BRAID = re.compile(  # braid(1,1), {1,1} as in KnotInfo, BR[2,{1,1}] as in the Knot Atlas
@@ -30,11 +27,11 @@ _WORDS = {**ALIASES, **ROLFSEN}
 
 
 class UnknownKnotError(MobiusFlowError):
-    """A knot name that means nothing; the message says which part of it is wrong, or gives close names."""
+    """A name that is not known; the message says which part of it is wrong, or gives close names."""
 
 
 def knot_names() -> list[str]:
-    """The names of the table with its links, other words for them, the hard unknots, and arcs."""
+    """Names of the table's knots and links, other names for them, the hard unknots, and arcs."""
     return [*KNOTS, *(name.replace(" ", "-") for name in ALIASES), *HARD_UNKNOTS, *ARCS]
 
 
@@ -60,7 +57,7 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     Raises
     ------
     UnknownKnotError
-        If the name means nothing; the message gives close names.
+        If the name is not known; the message gives close names.
     CurveError
         If the vertices are too few or a number is not allowed.
 
@@ -71,7 +68,7 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     >>> knot("T(2,4)", 100).mesh.component_sizes
     (50, 50)
     """
-    name = str(name)  # a number is no name either, and is told so
+    name = str(name)  # a number is refused as other unknown names are
     squeezed = _squeezed(name)
     if (torus := _TORUS.fullmatch(squeezed)) is not None:
         return torus_knot(*_torus(torus, name), vertices)
@@ -80,12 +77,11 @@ def knot(name: str, vertices: int | None = None) -> Curve:
         return braid_closure(word, vertices, strands=strands)
     if is_code(name) and "#" not in name:
         return coded_knot(name, vertices)
-    by_itself = _unspaced(_plain(name))
+    by_itself = re.sub(r"[\s_-]", "", _plain(name))
     if by_itself in ARCS:
         return ARCS[by_itself](vertices)
-    hard = _HARD.get(by_itself)
-    if hard is not None:
-        return diagram_knot(HARD_UNKNOTS[hard], vertices)
+    if by_itself in _HARD:
+        return diagram_knot(HARD_UNKNOTS[_HARD[by_itself]], vertices)
     return braid_closure(braid_word(name), vertices)
 
 
@@ -102,14 +98,14 @@ def table_name(name: str) -> tuple[str, bool]:
     bare = part[mirrors.end() :] if mirrors else part
     entry = _WORDS.get(bare, bare)
     if (found := _TABLE.get(_squeezed(entry))) is None:
-        knot(name, None)  # which says what is wrong with names that mean nothing
+        knot(name)  # which says what is wrong with unknown names
         raise UnknownKnotError(f"{name[:60]!r} is a knot, but none of the table; give one of those, or m and one")
     return found, mirrors is not None and bool(mirrors[0].count("m") % 2)
 
 
 @checked
 def braid_word(name: str) -> Word:
-    """Braid word of a name in the grammar of :func:`knot`; raises UnknownKnotError, or CurveError as `knot` does."""
+    """Braid word of a name in the grammar of :func:`knot`; raises as `knot` does."""
     word: Word = ()
     for part in _plain(name).split("#"):
         word = connected_sum(word, _prime_word(part.strip(), name))
@@ -160,7 +156,7 @@ def _torus(match: re.Match[str], name: str) -> tuple[int, int]:
 
 
 def _braid(match: re.Match[str], name: str) -> tuple[Word, int | None]:
-    """The letters and, where it is told, the number of strands."""
+    """The letters and, where it is given, the number of strands."""
     word = _numbers(match, name)
     if word and match[0].startswith("{") and sorted(word) == sorted({side * abs(k) for k in word for side in (1, -1)}):
         raise UnknownKnotError(f"{name[:60]!r} may be a braid or a Gauss code; write braid(...) or Gauss: ...")
@@ -189,10 +185,6 @@ def _torus_word(p: int, q: int) -> Word:
 
 def _squeezed(text: str) -> str:
     return re.sub(r"\s", "", text.lower())
-
-
-def _unspaced(text: str) -> str:
-    return re.sub(r"[\s_-]", "", text)
 
 
 def _plain(name: str) -> str:

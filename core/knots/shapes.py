@@ -1,7 +1,7 @@
 """Smooth shapes of the table's knots and links, with evenly spread strands, stored as a few Fourier coefficients.
 
-The file ``shapes.npz`` is a build product, never edited by hand: ``tools/knot_shapes.py`` makes it from relaxations of
-the tangent-point energy, and proves that each polygon made here has the type its name says.
+``tools/knot_shapes.py`` makes ``shapes.npz`` from relaxations of the tangent-point energy, and proves that each polygon
+made here has the type its name says.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,11 +14,9 @@ import numpy as np
 
 from ..arguments import checked
 from ..curve import Curve
-from ..errors import CurveError
 from ..types import ComplexArray, FloatArray
-from .inscribed import equal_steps, is_isotopic
+from .inscribed import equal_steps, is_isotopic, shares, too_few
 from .names import table_name
-from .rings import MAX_VERTICES, shares
 
 FILE = Path(__file__).with_name("shapes.npz")
 QUANTUM = 2.0**-13  # coefficients are stored as multiples of it, in 16 bits
@@ -52,8 +50,7 @@ class Shape:
 def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link of the table as a smooth curve with evenly spread strands.
 
-    It is at rest under the tangent-point energy, not the Möbius energy, of which it has up to 16 % (median 10 %) more
-    than the least known.
+    It is at rest under the tangent-point energy; its Möbius energy is up to 16 % (median 10 %) above the least known.
 
     Handedness is the table's: 3_1 is the right-handed trefoil.  An m before the name gives the mirror image in the
     plane of the picture.
@@ -79,9 +76,11 @@ def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """
     entry, mirrored = table_name(name)
     shape = shapes()[entry]
-    curve = shape.polygon(shape.sizes)
+    curve = proved = shape.polygon(shape.sizes)
     if vertices is not None:
-        curve = _with_vertices(shape, curve, vertices)
+        curve = shape.polygon(shares(vertices, proved.component_lengths))
+        if not is_isotopic(proved, equal_steps(proved), curve, equal_steps(curve)):
+            raise too_few(vertices)
     return curve.with_vertices(curve.vertices * [1.0, 1.0, -1.0]) if mirrored else curve
 
 
@@ -96,34 +95,6 @@ def shapes() -> Mapping[str, Shape]:
     return MappingProxyType(
         {str(name): Shape(tuple(next(parts) for _ in range(count))) for name, count in zip(names, counts, strict=True)}
     )
-
-
-def rounded(shape: Shape) -> Shape:
-    """A shape as it is stored: coefficients are multiples of the quantum."""
-    return Shape(tuple(QUANTUM * np.round(c / QUANTUM) for c in shape.coefficients))
-
-
-def store(given: Mapping[str, Shape], path: Path = FILE) -> None:
-    """Write shapes, rounded."""
-    parts = [c for shape in given.values() for c in shape.coefficients]
-    values = np.concatenate(parts)
-    np.savez_compressed(
-        path,
-        names=np.array(list(given)),
-        components=np.array([len(shape.coefficients) for shape in given.values()], dtype=np.uint8),
-        modes=np.array([len(c) - 1 for c in parts], dtype=np.uint8),
-        coefficients=np.rint(np.stack([values.real, values.imag], axis=-1) / QUANTUM).astype(np.int16),
-    )
-
-
-def _with_vertices(shape: Shape, proved: Curve, vertices: int) -> Curve:
-    if vertices > MAX_VERTICES:
-        raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
-    lengths = np.array([proved.edge_lengths[s].sum() for s in proved.mesh.slices])
-    curve = shape.polygon(shares(vertices, lengths))
-    if not is_isotopic(proved, equal_steps(proved), curve, equal_steps(curve)):
-        raise CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
-    return curve
 
 
 def _values(coefficients: ComplexArray, t: FloatArray) -> FloatArray:

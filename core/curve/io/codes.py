@@ -11,11 +11,10 @@ from ...diagrams import Diagram, diagram_of, views
 from ...diagrams.codes import check_count, diagram_from_code, gauss_text, planar_text
 from ...diagrams.nested import CodeError
 from ...errors import CurveError, CurveFileError
-from ...knots.coded import drawn
+from ...knots.planar import drawn
 from ..curve import Curve, check_closed
 from . import xyz
-from .polygons import Polygon
-from .source import Source
+from .source import Polygon, Source
 
 _VIEWS = 4
 _EDGES = 4  # in a row of Knoodle's, before the sign
@@ -65,11 +64,8 @@ def read_tsv(source: Source) -> list[Polygon]:
 
 
 def _polygons(curve: Curve) -> list[Polygon]:
-    return [Polygon(part.tolist(), _nowhere) for part in curve.components]
-
-
-def _nowhere(_vertex: int) -> None:
-    """No vertex of a drawing is in any line of the code."""
+    """Those of a drawing, whose vertices are in no line of the code."""
+    return [Polygon(part.tolist(), lambda _: None) for part in curve.components]
 
 
 def _written(text_of: Callable[[Diagram], str], curve: Curve, stream: TextIO) -> None:

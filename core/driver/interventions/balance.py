@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from ...checks import check_fields
 from ...constraints import weighted_barycenter
 from ...curve import Curve
-from ...curve.bending import bending, bending_and_derivative
+from ...curve.measures import bending, bending_and_derivative
 from ...curve.moebius_map import moebius_image, moebius_pullback
 from ...curve.smooth import arc_lengths, periodic_spline, sample_parameters
 from ...descent import Leg, Point, Problem, Step

@@ -10,8 +10,7 @@ from knot_type import knot_invariants
 from mobius_flow.core.curve import Curve
 from mobius_flow.core.errors import CurveError
 from mobius_flow.core.knots import knot, scramble
-from mobius_flow.core.knots.scrambles import certified_moves
-from mobius_flow.core.knots.sweeps import segment_distances, triangle_distances
+from mobius_flow.core.knots.scrambles import certified_moves, triangle_distances
 
 POINTS = st.lists(st.integers(-6, 6), min_size=3, max_size=3).map(lambda p: np.array(p, dtype=np.float64) / 2)
 
@@ -75,15 +74,6 @@ def test_triangle_distance_is_never_too_large(
     assert found >= sampled - np.ptp(corners, axis=0).max() / 6 - np.ptp(on_segment, axis=0).max() / 24
     pierced = exactly_pierced((exact(triangle[0]), exact(triangle[1]), exact(triangle[2])), exact(p), exact(q))
     assert not pierced or found <= 1e-12
-
-
-@given(p=POINTS, q=POINTS, r=POINTS, s=POINTS)
-@settings(max_examples=100, deadline=None)
-def test_segment_distance(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> None:
-    found = float(segment_distances(p, q, r[None], s[None])[0])
-    t = np.linspace(0, 1, 41)[:, None]
-    sampled = np.linalg.norm((p + t * (q - p))[:, None] - (r + t * (s - r))[None], axis=2).min()
-    assert sampled - (np.ptp([p, q], axis=0).max() + np.ptp([r, s], axis=0).max()) / 20 <= found <= sampled + 1e-12
 
 
 def test_triangles_and_squares_can_be_scrambled() -> None:
