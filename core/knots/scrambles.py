@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arguments import checked
-from ..collision.chords import closest_chord
+from ..collision.planes import closest_chord
 from ..curve import Curve, check_closed
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
