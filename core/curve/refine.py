@@ -35,15 +35,9 @@ SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are
 class Resolution:
     """How long edges may be.
 
-    Attributes
-    ----------
-    vertices
-        How many there would be if no strands were near; None for 200 per component.
-    edges_per_gap
-        How many edges are to fit in between near strands.
-    clearance
-        How far obstacles are from each edge of a curve, both in the user's units; shape (edges,), or inf if there are
-        none.
+    ``vertices`` is how many there would be if no strands were near, None for 200 per component; ``edges_per_gap`` how
+    many edges fit in between near strands; ``clearance`` gives the distance of obstacles from each edge of a curve,
+    shape (edges,), or inf.
     """
 
     vertices: int | None = None
@@ -53,19 +47,9 @@ class Resolution:
 
 @checked
 def refine(curve: Curve, vertices: int | None = None) -> Curve:
-    """Subdivide edges until neighbours are nearer than strands, or to a given number of vertices.
+    """Subdivide edges of an embedded polygon until neighbours are nearer than strands, or to a total number of vertices.
 
-    Parameters
-    ----------
-    curve
-        An embedded polygon.
-    vertices
-        Requested total number of vertices; None leaves it to the rule.
-
-    Raises
-    ------
-    CurveOptionError
-        If fewer vertices are requested than the curve has: corners are never cut.
+    Raises CurveOptionError if fewer vertices are requested than the curve has: corners are never cut.
     """
     if vertices is not None and vertices < len(curve):
         raise CurveOptionError(

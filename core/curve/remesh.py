@@ -73,16 +73,9 @@ def onto_chords(curve: Curve, vertices: IntArray) -> FloatArray:
 class Remeshed:
     """A change of mesh.
 
-    Attributes
-    ----------
-    moved
-        The old polygon after its superfluous vertices have moved onto their chords.
-    curve
-        The new polygon: the same set of points as ``moved``, up to rounding.
-    lengths
-        Edge lengths wanted on the new mesh, adding up to the total of each arc between pins; shape (edges',).
-    pins
-        Those of the old mesh, on the new one.
+    ``moved`` is the old polygon after its superfluous vertices have moved onto their chords, and ``curve`` the new one:
+    the same set of points, up to rounding.  ``lengths``, shape (edges',), are wanted on the new mesh and add up to the
+    total of each arc between pins; ``pins`` are the old ones on it.
     """
 
     moved: Curve

@@ -14,13 +14,9 @@ SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its 
 def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArray = NOWHERE) -> Curve:
     """The polygon with vertices at equal distances along the cubic splines through those of each component.
 
-    Parameters
-    ----------
-    mesh
-        Its numbers of vertices, for as many components as the curve has.
-    pins, places
-        Vertices of the curve, ascending, and which ones of the polygon they are; shape (k,).  Distances are equal from
-        one of them to the next; a closed component without any has its first vertex at the same place, arcs their ends.
+    ``mesh`` has its numbers of vertices.  Some vertices of the curve, ``pins``, ascending, become those at ``places``;
+    distances are equal from one of them to the next.  A closed component without any has its first vertex at the same
+    place, arcs their ends.
     """
     pieces = []
     for old, new, closed in zip(curve.mesh.slices, mesh.slices, mesh.closed, strict=True):

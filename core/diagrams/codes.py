@@ -48,10 +48,7 @@ def is_code(text: str) -> bool:
 def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
     """The diagram of a code as described above; ``kind``, a key of `NOTATIONS`, is for texts that do not say theirs.
 
-    Raises
-    ------
-    CurveError
-        If it is no such code, of no diagram in the plane, or too long.  A `CodeError` knows where in the text.
+    Raises CurveError if it is no such code, of no diagram in the plane, or too long; a `CodeError` knows where.
     """
     if len(text) > _MAX_LENGTH:
         raise CurveError(f"the code has {len(text)} characters; at most {_MAX_LENGTH} are read")

@@ -165,18 +165,10 @@ class Diagram:
 
 
 def diagram_of(code: Sequence[Sequence[Hashable]]) -> Diagram:
-    """The diagram of a planar diagram code.
+    """The diagram of a planar diagram code; components run as the code has their first lower pass.
 
-    Parameters
-    ----------
-    code
-        For each crossing the labels of its edges, as in `PlanarCrossing`.  Components run as the code has their first
-        lower pass.
-
-    Raises
-    ------
-    CurveError
-        If a crossing has not four edges, an edge not two ends, or the code cannot be drawn in the plane.
+    ``code`` has for each crossing the labels of its edges, as in `PlanarCrossing`.  Raises CurveError if a crossing has
+    not four edges, an edge not two ends, or the code cannot be drawn in the plane.
     """
     ends: dict[Hashable, list[tuple[int, int]]] = {}  # of each edge: a crossing, and a place there from 0 to 3
     for c, edges in enumerate(code):

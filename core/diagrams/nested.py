@@ -21,20 +21,11 @@ class CodeError(CurveError):
 
 
 def nested(text: str, between: str | None = None) -> Nested:
-    """Whole numbers in lists for their brackets.
+    """Whole numbers, between blanks, commas or semicolons, in lists for their brackets.
 
-    Parameters
-    ----------
-    text
-        Numbers between blanks, commas or semicolons.
-    between
-        A pattern of what ends one list and begins the next, like ``],[``, with brackets around it all.  Signed passes
-        such as O1+ are then read like numbers, as strings.
-
-    Raises
-    ------
-    CodeError
-        If there is anything else, or brackets do not match.
+    ``between`` is a pattern of what ends one list and begins the next, like ``],[``, with brackets around it all;
+    signed passes such as O1+ are then read like numbers, as strings.  Raises CodeError if there is anything else, or
+    brackets do not match.
     """
     pattern = f"(?P<between>{between})|{_SIGNED}|{_PLAIN}" if between else _PLAIN
     stack: list[list[object]] = [[], []]

@@ -66,14 +66,9 @@ def _seen(curve: Curve, points: FloatArray, clear: float) -> Diagram | None:
 class PlaneCrossings(NamedTuple):
     """Pairs of edges without a common vertex whose inner points cross in the plane.
 
-    Attributes
-    ----------
-    edges
-        The edges of each pair, the first one less; shape (2, k).
-    at
-        Where on them, as fractions of their lengths; shape (2, k).
-    turn
-        Cross product of the first edge's vector with the second's, positive if the second crosses from right to left.
+    ``edges``, shape (2, k), are ascending in each pair; ``at``, shape (2, k), says where on them, as fractions of their
+    lengths; ``turn``, shape (k,), is the cross product of their vectors, positive if the second crosses from right to
+    left.
     """
 
     edges: IntArray

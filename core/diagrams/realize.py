@@ -26,15 +26,8 @@ class _Visit(NamedTuple):
 def realized(passes: Sequence[Sequence[Pass]]) -> Diagram:
     """The diagram of a Gauss code without signs, up to a mirror image, of which its first crossing is positive.
 
-    Parameters
-    ----------
-    passes
-        As in `Diagram`; each crossing is passed once above and once below.
-
-    Raises
-    ------
-    CurveError
-        If there is no such diagram in the plane, or there are several that are of different types.
+    ``passes`` are as in `Diagram`; each crossing is passed once above and once below.  Raises CurveError if there is no
+    such diagram in the plane, or there are several that are of different types.
     """
     count = sum(map(len, passes)) // 2
     whole = Diagram(tuple(map(tuple, passes)), (1,) * count)

@@ -85,14 +85,9 @@ def without_nugatory(diagram: Diagram) -> Diagram:
 
 
 def factors(piece: Diagram) -> list[Diagram]:
-    """The summands of a link whose diagram hangs together, those without crossings left out unless there is no other.
+    """The summands of a simplified connected diagram, those without crossings left out unless there is no other.
 
     Circles that meet the diagram in two points, on edges with the same faces, cut it into factors.
-
-    Parameters
-    ----------
-    piece
-        A connected diagram, simplified, so that no summand is a mere kink.
     """
     seen: dict[frozenset[int], int] = {}
     for edge in range(len(piece.sequence)):

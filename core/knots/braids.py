@@ -18,10 +18,7 @@ MAX_LETTERS = 20_000
 def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word, int]:
     """Check a braid word and its number of strands, by default as few as the letters need.
 
-    Raises
-    ------
-    CurveError
-        If a letter is 0 or no whole number, or the strands are too few or too many.
+    Raises CurveError if a letter is 0 or no whole number, or the strands are too few or too many.
     """
     letters = tuple(word)
     for position, letter in enumerate(letters, start=1):
@@ -93,13 +90,7 @@ def connected_sum(first: Sequence[int], second: Sequence[int]) -> Word:
 
 
 def braid_diagram(word: Sequence[int]) -> Diagram:
-    """The closure of a braid as the word draws it; raises as `checked_word` does.
-
-    Examples
-    --------
-    >>> braid_diagram([1, 1]).linking_numbers
-    (1,)
-    """
+    """The closure of a braid as the word draws it; raises as `checked_word` does."""
     letters, strands = checked_word(word)
     passes: list[list[Pass]] = [[] for _ in range(strands)]
     at = list(range(strands))

@@ -33,24 +33,12 @@ def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: 
     middle radius of 1; every crossing is a smooth half twist of two neighbours.  Seen from above the curve is the usual
     picture of the closed braid.
 
-    Parameters
-    ----------
-    word
-        Letters ±i, see :mod:`mobius_flow.core.knots.braids`; empty for the trivial braid.
-    vertices
-        Total number of vertices; by default so many that edges are shorter than strands are apart.
-    strands
-        Number of strands, by default as few as the word needs.
-
-    Raises
-    ------
-    CurveError
-        If it is no braid word or the vertices are too few.
+    ``word`` has letters ±i, see :mod:`mobius_flow.core.knots.braids`, and is empty for the trivial braid; there are as
+    few strands and as many vertices as needed, unless given.  Raises CurveError if it is no braid word or the vertices
+    are too few.
 
     Examples
     --------
-    >>> braid_closure([1, -2, 1, -2], vertices=100).mesh.component_sizes
-    (100,)
     >>> len(braid_closure([1, 1]).mesh.component_sizes)
     2
     """
@@ -88,13 +76,6 @@ def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.
     ------
     CurveError
         If a number or a radius is not allowed, or the vertices are too few.
-
-    Examples
-    --------
-    >>> torus_knot(2, 3, vertices=90).mesh.component_sizes
-    (90,)
-    >>> len(torus_knot(3, 3).mesh.component_sizes)
-    3
     """
     if not (0 < abs(p) <= _MAX_TURNS and 0 < abs(q) <= _MAX_TURNS):
         raise CurveError(

@@ -44,8 +44,7 @@ class Drawing:
     passes
         Edge and fraction of it, as one number, of the first and the second pass of each crossing; shape (c, 2).
     first_over
-        Whether the first pass is the upper one if the curve goes over and under by turns, over to begin with;
-        shape (c,).
+        Whether the first pass of each is the upper one where over and under alternate, over to begin with; shape (c,).
     """
 
     curve: Curve
@@ -58,10 +57,8 @@ class Drawing:
     def of(cls, curve: Curve) -> "Drawing":
         """Find the crossings of closed polygons in the plane.
 
-        Raises
-        ------
-        CurveError
-            If strands touch without crossing, or more than two meet; the message and its vertex say where.
+        Raises CurveError if strands touch without crossing, or more than two meet; the message and its vertex say
+        where.
         """
         if curve.dimension != 2:
             raise CurveError(f"the drawing has dimension {curve.dimension}; it must lie in the plane")
@@ -80,17 +77,9 @@ class Drawing:
         return cls(generic, points, passes, _upper(generic, passes))
 
     def lifted(self, changed: Collection[int] = ()) -> Curve:
-        """Lift the strands at crossings: over and under by turns, but for crossings that are changed.
+        """Lift the strands at crossings, over and under by turns but for those that are changed, by numbers from 1 on.
 
-        Parameters
-        ----------
-        changed
-            Numbers of crossings, from 1 on, where the other strand is the upper one.
-
-        Raises
-        ------
-        CurveError
-            If there is no crossing of such a number.
+        Raises CurveError if there is no crossing of such a number.
         """
         count = len(self.crossings)
         for number in changed:

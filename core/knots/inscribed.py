@@ -21,17 +21,9 @@ _FINER = 4  # times as many vertices stand for the smooth curve
 def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     """Inscribe a polygon with equal steps along the components of a smooth link, which is proved to be isotopic.
 
-    Parameters
-    ----------
-    curve
-        Polygons with so many vertices that they stand for the smooth curves.
-    vertices
-        Total number; by default so many that edges are shorter than strands are apart, and ``least`` or more.
-
-    Raises
-    ------
-    CurveError
-        If the curve meets itself, or as good as does, or the vertices are too few or too many.
+    The given polygons have so many vertices that they stand for the smooth curves.  By default edges are shorter than
+    strands are apart, and vertices ``least`` or more.  Raises CurveError if the curve meets itself, or as good as does,
+    or the vertices are too few or too many.
     """
     gap = strand_gap(curve)
     if vertices is None:

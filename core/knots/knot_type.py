@@ -33,7 +33,7 @@ SIGNATURE, DOUBLED, LINKING = "the signature", "the Jones polynomial of the doub
 @checked_fields
 @dataclass(frozen=True)
 class Effort:
-    """How much is done to identify a type; all are counts, so that results do not depend on a clock.
+    """How much is done to identify a type, in counts, so that results do not depend on a clock.
 
     Parameters
     ----------

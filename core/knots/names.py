@@ -37,7 +37,7 @@ def knot_names() -> list[str]:
 
 @checked
 def knot(name: str, vertices: int | None = None) -> Curve:
-    """Make a knot or link from its name.
+    """Make a knot or link from its name, in any spelling.
 
     Names: the table's (``3_1`` to ``10_165``, ``L5a1``, also ``5^2_1``), the words of :data:`ALIASES` (``trefoil``,
     ``figure-eight``), those of larger tables (``K11n34``, ``L10a100``) where spherogram is installed, torus knots
@@ -45,26 +45,12 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, the diagrams of :data:`HARD_UNKNOTS`
     (``goeritz``), the open polygons of :data:`ARCS` (``overhand``), and codes of diagrams (``DT: [4 6 2]``,
     ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``, and lists in brackets as SnapPy and KnotInfo have them).
-    Letter case, spaces, hyphens and a last word "knot", "unknot" or "link" don't matter.
 
-    Parameters
-    ----------
-    name
-        The name.
-    vertices
-        Total number of vertices; by default so many that edges are shorter than strands are apart.
-
-    Raises
-    ------
-    UnknownKnotError
-        If the name is not known; the message gives close names.
-    CurveError
-        If the vertices are too few or a number is not allowed.
+    ``vertices`` is the total number; by default edges are shorter than strands are apart.  Raises UnknownKnotError for
+    other names, and CurveError if the vertices are too few or a number is not allowed.
 
     Examples
     --------
-    >>> len(knot("figure-eight knot", 80))
-    80
     >>> knot("T(2,4)", 100).mesh.component_sizes
     (50, 50)
     """
@@ -86,13 +72,7 @@ def knot(name: str, vertices: int | None = None) -> Curve:
 
 
 def table_name(name: str) -> tuple[str, bool]:
-    """The table's name of a knot or link that is in it, and whether its mirror image is meant; raises as `knot` does.
-
-    Examples
-    --------
-    >>> table_name("m Trefoil knot")
-    ('3_1', True)
-    """
+    """The table's name of a knot or link that is in it, and whether its mirror image is meant; raises as `knot` does."""
     part = _plain(str(name))
     mirrors = _MIRRORS.match(part)
     bare = part[mirrors.end() :] if mirrors else part

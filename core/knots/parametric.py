@@ -31,22 +31,8 @@ def lissajous_knot(
 ) -> Curve:
     """Make the Lissajous knot (cos(a t + φ), cos(b t + ψ), cos(c t)), 0 ≤ t < 2π.
 
-    Parameters
-    ----------
-    frequencies
-        a, b and c: positive, no two of them with a common divisor.
-    phases
-        φ and ψ in radians.
-    vertices
-        Total number of vertices, by default enough.
-    least_gap
-        Distance of strands below which the curve counts as meeting itself; default polygons then have thousands of
-        vertices.
-
-    Raises
-    ------
-    CurveError
-        If a number is not allowed, or the curve meets itself or nearly does.
+    Frequencies are positive, no two with a common divisor; phases are in radians.  Raises CurveError for others, and
+    for strands nearer than ``least_gap``, below which default polygons would have thousands of vertices.
 
     Examples
     --------
@@ -71,24 +57,10 @@ def lissajous_knot(
 
 @checked
 def overhand(vertices: int | None = None) -> Curve:
-    """Make the overhand knot, a trefoil that is cut open, with straight ends.
+    """Make the overhand knot, a trefoil that is cut open, with straight ends, of 120 vertices or so many.
 
-    Shastri's polynomials (t³ − 3t, t⁴ − 4t², t⁵ − 10t), of which the last one is scaled down.
-
-    Parameters
-    ----------
-    vertices
-        Their number; by default 120.
-
-    Raises
-    ------
-    CurveError
-        If there are fewer than 40, with which the arc might be another one.
-
-    Examples
-    --------
-    >>> overhand(60).mesh.closed
-    (False,)
+    Shastri's polynomials (t³ − 3t, t⁴ − 4t², t⁵ − 10t), of which the last one is scaled down.  Raises CurveError for
+    fewer than 40 vertices, with which the arc might be another one.
     """
     count = 120 if vertices is None else vertices
     if count < _LEAST:

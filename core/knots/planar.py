@@ -31,17 +31,8 @@ _GAP = 0.5  # between parts that no crossing joins, all of radius 1
 def diagram_knot(code: Sequence[PlanarCrossing], vertices: int | None = None) -> Curve:
     """Make the knot or link of a planar diagram code as a polygon with four vertices for every crossing, or more.
 
-    Parameters
-    ----------
-    code
-        For each crossing its four edges, counterclockwise from the one that comes in below.
-    vertices
-        Total number of vertices; by default four for every crossing that is not nugatory.
-
-    Raises
-    ------
-    CurveError
-        If it is no such code, or the vertices are too few or too many.
+    The code has for each crossing its four edges, counterclockwise from the one that comes in below; nugatory crossings
+    are left out.  Raises CurveError if there is no such diagram, or the vertices are too few or too many.
 
     Examples
     --------
@@ -53,24 +44,9 @@ def diagram_knot(code: Sequence[PlanarCrossing], vertices: int | None = None) ->
 
 @checked
 def coded_knot(text: str, vertices: int | None = None, kind: str | None = None) -> Curve:
-    """Make the knot or link of a PD, DT or Gauss code, as :func:`diagram_knot` does.
+    """Make the knot or link of a PD, DT or Gauss code as :func:`diagram_knot` does.
 
-    Parameters
-    ----------
-    text, kind
-        The code, as :func:`~mobius_flow.core.diagrams.codes.diagram_from_code` reads it.
-    vertices
-        Total number of vertices.
-
-    Raises
-    ------
-    CurveError
-        If it is no code of a diagram in the plane, or the vertices are too few or too many.
-
-    Examples
-    --------
-    >>> len(coded_knot("DT: [4 6 2]"))
-    12
+    ``text`` and ``kind`` are read by :func:`~mobius_flow.core.diagrams.codes.diagram_from_code`.
     """
     return _refined(drawn(diagram_from_code(text, kind)), vertices)
 

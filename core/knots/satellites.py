@@ -25,23 +25,9 @@ def cable(companion: Curve, p: int, q: int, vertices: int | None = None, *, room
     """Make the cable C(p, q) of a knot: p strands along it that turn q/p times around, in gcd(p, q) components.
 
     Turns are counted from the longitude that does not link the knot, so that C(p, q) of the circle is T(p, q), and
-    C(p, 0) are p parallel copies that do not link each other.
-
-    Parameters
-    ----------
-    companion
-        The knot, a polygon that follows a smooth curve closely.
-    p, q
-        Number of strands, 2 or more, and of turns; negative q turn left.
-    vertices
-        Total number of vertices, by default enough.
-    room
-        Radius that the strands take, as a fraction below 1 of the thickest tube's.
-
-    Raises
-    ------
-    CurveError
-        If a number is not allowed, the companion is no knot, or the vertices are too few.
+    C(p, 0) are p parallel copies that do not link each other; negative q turn left.  The companion is a polygon that
+    follows a smooth curve closely; ``room`` is the radius that the strands take, as a fraction of the thickest tube's.
+    Raises CurveError if a number is not allowed, the companion is no knot, or the vertices are too few.
     """
     if not (2 <= p <= MAX_STRANDS and abs(q) <= MAX_TURNS):
         raise CurveError(
@@ -65,26 +51,8 @@ def double(
 ) -> Curve:
     """Make a twisted Whitehead double of a knot: two strands along it that hook into each other at a clasp.
 
-    Its Alexander polynomial is −cw t + (2 cw + 1) − cw t⁻¹ for w twists and a clasp c, whatever the companion.
-
-    Parameters
-    ----------
-    companion
-        The knot, a polygon that follows a smooth curve closely.
-    twists
-        Number of full right-handed twists of the strands around each other, counted from the longitude that does not
-        link the knot.
-    clasp
-        1 or −1: handedness of the clasp.
-    vertices
-        Total number of vertices, by default enough.
-    room
-        Radius that the strands take, as a fraction below 1 of the thickest tube's.
-
-    Raises
-    ------
-    CurveError
-        If a number is not allowed, the companion is no knot, or the vertices are too few.
+    Its Alexander polynomial is −cw t + (2 cw + 1) − cw t⁻¹ for w twists and a clasp c = ±1, whatever the companion.
+    Twists are full, right-handed, and counted from the longitude that does not link the knot.  Otherwise as `cable`.
     """
     if abs(twists) > MAX_TURNS or clasp not in (1, -1):
         raise CurveError(
@@ -114,14 +82,8 @@ class Tube:
     """A solid torus around a knot.
 
     Its points have coordinates t ∈ [0, 1) along the knot and (u, v) in the plane across it. Curves of constant (u, v)
-    do not link the knot: they are its longitudes in the sense of Seifert.
-
-    Attributes
-    ----------
-    length
-        Of the knot.
-    reach
-        Radius of the thickest tube: discs across the knot do not meet within it.
+    do not link the knot: they are its longitudes in the sense of Seifert.  ``length`` is the knot's, ``reach`` the
+    radius of the thickest tube: discs across the knot do not meet within it.
     """
 
     length: float

@@ -34,28 +34,23 @@ def scramble(
     """Make a messy polygon of the same knot type with the same numbers of vertices.
 
     Vertices move one at a time, straight and far, wherever the swept triangles are free of other edges; the
-    curve stays within the ball that held it.
+    curve stays within the ball that held it.  Raises CurveError if it is not in space or a number is not allowed.
 
     Parameters
     ----------
     curve
-        Polygons in space that don't touch.
+        Closed polygons in space that don't touch.
     seed
         The same seed gives the same curve.
     moves
         Number of moves tried, by default 20 for every vertex.
     reach
-        Length of the longest move, in the curve's units; by default half the curve's radius.
+        Length of the longest move, by default half the curve's radius.
     gap
         Distance that moving edges keep from others, at least a millionth of the curve's radius; by default a
         twentieth of the mean edge length.
     least_angle
         Between neighbouring edges, in radians, so that they never fold onto each other.
-
-    Raises
-    ------
-    CurveError
-        If the curve is not in space or a number is not allowed.
     """
     points = curve.vertices.copy()
     for vertex, position in certified_moves(curve, seed, moves=moves, reach=reach, gap=gap, least_angle=least_angle):

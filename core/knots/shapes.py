@@ -27,10 +27,8 @@ _PER_MODE, _LEAST = 10, 64  # vertices of a component for each of its modes, and
 class Shape:
     """A smooth knot or link, about as wide as the interval from −1 to 1, lying flat and facing +z.
 
-    Parameters
-    ----------
-    coefficients
-        For each component c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, at nearly constant speed.
+    For each component there are coefficients c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, at
+    nearly constant speed.
     """
 
     coefficients: tuple[ComplexArray, ...]
@@ -51,23 +49,11 @@ def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link of the table as a smooth curve with evenly spread strands.
 
     It is at rest under the tangent-point energy; its Möbius energy is up to 16 % (median 10 %) above the least known.
+    Handedness is the table's: 3_1 is the right-handed trefoil; an m before the name gives the mirror image in the plane
+    of the picture.  Names are spelt as for :func:`~mobius_flow.core.knots.knot`; ``vertices`` is the total number.
 
-    Handedness is the table's: 3_1 is the right-handed trefoil.  An m before the name gives the mirror image in the
-    plane of the picture.
-
-    Parameters
-    ----------
-    name
-        A name of the table or another word for one, as in :func:`~mobius_flow.core.knots.knot`.
-    vertices
-        Total number of vertices; by default so many that the curve looks smooth.
-
-    Raises
-    ------
-    UnknownKnotError
-        If no shape is stored for the name.
-    CurveError
-        If the vertices are too few to follow the strands, or too many for any use.
+    Raises UnknownKnotError if no shape is stored for the name, and CurveError if the vertices are too few to follow the
+    strands.
 
     Examples
     --------

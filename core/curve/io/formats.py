@@ -119,13 +119,9 @@ def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream:
 def read_curve(path: str | os.PathLike[str]) -> Curve:
     """Read polygons, closed or open, from a file; the suffix tells the format (see :data:`FORMATS`).
 
-    The order of components and vertices is kept. A vertex at a component's end that repeats its first
-    vertex is dropped, with a note in the log.
-
-    Raises
-    ------
-    CurveFileError
-        If the file cannot be read or is not what its suffix says; the message names file, line and reason.
+    The order of components and vertices is kept. A vertex at a component's end that repeats its first vertex is
+    dropped, with a note in the log.  Raises CurveFileError if the file cannot be read or is not what its suffix says;
+    the message names file, line and reason.
     """
     return load_curve(path).curve
 
@@ -134,13 +130,9 @@ def read_curve(path: str | os.PathLike[str]) -> Curve:
 def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None = None) -> None:
     """Write polygons to a file; the suffix tells the format (see :data:`FORMATS`) unless one is given.
 
-    Coordinates are written with all their digits: reading the file gives the same doubles. The file
-    appears whole or not at all.
-
-    Raises
-    ------
-    CurveFileError
-        If the suffix is unknown, the format cannot hold the curve, or the file cannot be written.
+    Coordinates are written with all their digits: reading the file gives the same doubles. The file appears whole or
+    not at all.  Raises CurveFileError if the suffix is unknown, the format cannot hold the curve, or the file cannot be
+    written.
     """
     path = Path(path)
     form = format_of(path) if form is None else form

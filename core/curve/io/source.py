@@ -102,16 +102,9 @@ def _decode(path: Path, data: bytes) -> str:
 class Polygon:
     """One component as found in a file.
 
-    Parameters
-    ----------
-    points
-        Its vertices, each a sequence of m coordinates.
-    line_of
-        Gives the line where the vertex of an index (from 0) was read.
-    closed
-        Whether an edge leads from the last vertex to the first; it is also closed if these are the same point.
-    numbers
-        What the file counts its vertices as, from 0, where these can be in another order than along the curve.
+    ``line_of`` gives the line where the vertex of an index (from 0) was read; ``numbers`` is what the file counts its
+    vertices as, from 0, where these can be in another order than along the curve.  It is also closed if the last vertex
+    repeats the first.
     """
 
     points: Sequence[Sequence[float]]
@@ -128,11 +121,8 @@ class Polygon:
 def assemble(source: Source, polygons: Sequence[Polygon]) -> Curve:
     """Join the polygons of a file into one curve.
 
-    Raises
-    ------
-    CurveFileError
-        If there is none, one has too few vertices, a coordinate is not finite, or dimensions differ or are too many;
-        the message names the component, the vertex and the line.
+    Raises CurveFileError if there is none, one has too few vertices, a coordinate is not finite, or dimensions differ
+    or are too many; the message names the component, the vertex and the line.
     """
     if not polygons:
         raise source.error("no vertex found; give at least one polygon")
