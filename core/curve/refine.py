@@ -47,7 +47,7 @@ class Resolution:
 
 @checked
 def refine(curve: Curve, vertices: int | None = None) -> Curve:
-    """Subdivide edges of an embedded polygon until neighbours are nearer than strands, or to a total number of vertices.
+    """Subdivide edges of an embedded polygon until neighbours are nearer than strands, or to a number of vertices.
 
     Raises CurveOptionError if fewer vertices are requested than the curve has: corners are never cut.
     """

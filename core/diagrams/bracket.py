@@ -88,7 +88,9 @@ def _contracted(code: list[Sequence[int]]) -> dict[int, int] | None:
     """The sum over all smoothings by powers of A; None if too many edges are cut on the way."""
     bits = _BITS * len(code) + 2
     states: dict[_State, int] = {frozenset(): 1}
-    order, width = _narrowest(code)
+    every = 1 + len(code) ** 2 // _STARTS
+    starts = range(0, max(len(code), 1), every)
+    order, width = min((_order(code, start) for start in starts), key=lambda found: found[1])
     if width > _MAX_WIDTH:
         return None
     for crossing in order:
@@ -97,14 +99,8 @@ def _contracted(code: list[Sequence[int]]) -> dict[int, int] | None:
     return {2 * k - _SHIFT * len(code): c for k, c in _unpacked(value, bits) if c}
 
 
-def _narrowest(code: Sequence[Sequence[int]]) -> tuple[list[Sequence[int]], int]:
-    """The crossings in an order that cuts few edges at a time, and how many these are at most."""
-    every = 1 + len(code) ** 2 // _STARTS
-    return min((_order(code, start) for start in range(0, max(len(code), 1), every)), key=lambda found: found[1])
-
-
 def _order(code: Sequence[Sequence[int]], start: int) -> tuple[list[Sequence[int]], int]:
-    """From a crossing on, always the next one that most edges lead to."""
+    """From a crossing on, always the next one that most edges lead to; and how many edges are cut at a time at most."""
     rest, order, width = list(code), list[Sequence[int]](), 0
     cut = set(code[start]) if code else set()
     while rest:

@@ -52,10 +52,7 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
     """
     if len(text) > _MAX_LENGTH:
         raise CurveError(f"the code has {len(text)} characters; at most {_MAX_LENGTH} are read")
-    if (begun := _begun(text)) is not None:
-        kind, start = begun
-    else:
-        start = len(text) - len(text.lstrip(" \t\n,;"))
+    kind, start = _begun(text) or (kind, len(text) - len(text.lstrip(" \t\n,;")))
     text = " " * start + text[start:].rstrip()  # so that errors count characters from where the text begins
     kind = kind or _kind_of_list(text)
     check_known("kind", kind, NOTATIONS)
@@ -67,10 +64,9 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
 
 
 def _begun(text: str) -> tuple[str, int] | None:
-    """The notation that a text begins with the words of, and where the code begins."""
+    """The notation whose words a text begins with, and where the code begins."""
     for kind, notation in NOTATIONS.items():
-        match = re.match(rf"\s*{notation.words}\b\s*(?:code\b\s*)?[:=]?\s*", text, re.IGNORECASE)
-        if match is not None:
+        if match := re.match(rf"\s*{notation.words}\b\s*(?:code\b\s*)?[:=]?\s*", text, re.IGNORECASE):
             return kind, match.end()
     return None
 
@@ -133,8 +129,16 @@ def _dowker_thistlethwaite(text: str) -> Diagram:
     for k, number in enumerate(numbers):
         sequence[2 * k], sequence[abs(number) - 1] = (k, number > 0), (k, number < 0)
     rest = iter(sequence)
-    passes = [list(islice(rest, 2 * len(part))) for part in parts]
-    return _flipped(passes, flips) if flips else realized(passes)
+    passes = tuple(tuple(islice(rest, 2 * len(part))) for part in parts)
+    if not flips:
+        return realized(passes)
+    if len(flips) != len(numbers):
+        raise CurveError(f"the DT code has {len(numbers)} crossings and {len(flips)} flips")
+    # SnapPy: from where the curve first comes to a crossing, the other strand comes from the right, or from the left if
+    # flipped.
+    first = dict(reversed(sequence))
+    signs = tuple(1 if first[crossing] != bool(flip) else -1 for crossing, flip in enumerate(flips))
+    return _in_the_plane(Diagram(passes, signs), "the DT code with these flips")
 
 
 def _without_flips(rows: Nested) -> tuple[Nested, list[int]]:
@@ -145,19 +149,6 @@ def _without_flips(rows: Nested) -> tuple[Nested, list[int]]:
     if isinstance(code, int | str) or isinstance(flips, int | str) or not flips or any(k not in (0, 1) for k in flips):
         return rows, []
     return code, [k == 1 for k in flips]
-
-
-def _flipped(passes: Sequence[Sequence[Pass]], flips: Sequence[int]) -> Diagram:
-    """SnapPy's signs: from where a strand first comes to a crossing, the other one comes from the right, or if flipped
-    from the left.
-    """
-    first: dict[int, bool] = {}
-    for crossing, over in (each for part in passes for each in part):
-        first.setdefault(crossing, over)
-    if len(flips) != len(first):
-        raise CurveError(f"the DT code has {len(first)} crossings and {len(flips)} flips")
-    signs = (1 if first[crossing] != bool(flip) else -1 for crossing, flip in enumerate(flips))
-    return _in_the_plane(Diagram(tuple(map(tuple, passes)), tuple(signs)), "the DT code with these flips")
 
 
 def _in_the_plane(diagram: Diagram, what: str) -> Diagram:
@@ -198,11 +189,11 @@ def _gauss(text: str) -> Diagram:
                 raise CurveError(f"crossing {crossing} of the Gauss code has both signs")
             passes[-1].append((crossing, each[0] == "O"))
     numbered, old = _numbered(passes)
-    diagram = Diagram(tuple(map(tuple, numbered)), tuple(signs[crossing] for crossing in old))
+    diagram = Diagram(numbered, tuple(signs[crossing] for crossing in old))
     return _in_the_plane(diagram, "the Gauss code with these signs")
 
 
-def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[list[list[Pass]], list[int]]:
+def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[tuple[tuple[Pass, ...], ...], list[int]]:
     """Passes with crossings numbered from 0, and the numbers that they had; each must be passed above and below."""
     levels: dict[int, list[bool]] = {}
     for old, over in (each for part in parts for each in part):
@@ -211,7 +202,7 @@ def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[list[list[Pass]], list[i
         if sorted(found) != [False, True]:
             raise CurveError(f"crossing {old} of the Gauss code must be there once above (positive) and once below")
     number = {old: k for k, old in enumerate(levels)}
-    return [[(number[old], over) for old, over in part] for part in parts], list(number)
+    return tuple(tuple((number[old], over) for old, over in part) for part in parts), list(number)
 
 
 def planar_text(diagram: Diagram) -> str:

@@ -15,7 +15,7 @@ from ..curve import Curve
 from ..curve.smooth import arc_lengths
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .braids import Word, checked_word, columns, cycles, permutation
+from .braids import checked_word, columns, cycles, permutation
 from .inscribed import MAX_VERTICES, check_count, shares, too_few
 
 _COLUMN = 2.2  # length of a crossing along the innermost strand, in units of the strands' distance
@@ -46,11 +46,14 @@ def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: 
     places, width = columns(letters)
     inner = max(_COLUMN * width / (2 * math.pi), 1.0)
     scale = 1.0 / (inner + (count - 1) / 2)
-    table = _letter_table(letters, places, count, max(width, 1))
-    rings = [
-        Ring(len(cycle), partial(_braid_profile, table, np.array(cycle), inner, scale))
-        for cycle in cycles(permutation(letters, count))
-    ]
+    moves: dict[tuple[int, int], tuple[int, int]] = {}  # by column and place before it: where to, and the sign
+    for letter, column in zip(letters, places, strict=True):
+        i, sign = abs(letter) - 1, 1 if letter > 0 else -1
+        moves[column, i], moves[column, i + 1] = (1, sign), (-1, sign)
+    rings = []
+    for cycle in cycles(permutation(letters, count)):
+        track = _track(cycle, moves, max(width, 1))
+        rings.append(Ring(len(cycle), partial(_braid_profile, track, max(width, 1), inner, scale)))
     return _polygon(rings, scale, max(60, 2 * count * width), vertices)
 
 
@@ -161,48 +164,29 @@ def _deviation(ring: Ring, theta: FloatArray) -> float:
     return float(np.linalg.norm(within - smooth, axis=2).max())
 
 
-def _letter_table(word: Word, places: list[int], strands: int, width: int) -> tuple[IntArray, IntArray]:
-    """For each column and each place before it: where the strand goes (−1, 0, 1), and the crossing's sign.
-
-    Returns two arrays (width, strands).
-    """
-    step = np.zeros((width, strands), dtype=np.intp)
-    sign = np.zeros((width, strands), dtype=np.intp)
-    for letter, column in zip(word, places, strict=True):
-        i = abs(letter) - 1
-        step[column, i], step[column, i + 1] = 1, -1
-        sign[column, i : i + 2] = 1 if letter > 0 else -1
-    return step, sign
+def _track(cycle: Sequence[int], moves: dict[tuple[int, int], tuple[int, int]], width: int) -> IntArray:
+    """For every column, turn after turn, a component's place before it, its move, and its crossing's sign."""
+    track = []
+    for place in cycle:
+        for column in range(width):
+            move, sign = moves.get((column, place), (0, 0))
+            track.append((place, move, sign))
+            place += move
+    return np.array(track, dtype=np.intp).T
 
 
-def _braid_profile(
-    letters: tuple[IntArray, IntArray], cycle: IntArray, inner: float, scale: float, theta: FloatArray
-) -> FloatArray:
+def _braid_profile(track: IntArray, width: int, inner: float, scale: float, theta: FloatArray) -> FloatArray:
     """Distance from the axis and height of one component at angles (k,); shape (k, 2)."""
-    step, sign = letters
-    width = len(step)
     along = np.asarray(theta, dtype=np.float64) / (2 * math.pi) * width
     # The clip keeps the closing angle 2π·turns in the last column instead of past it.
-    column = np.clip(np.floor(along).astype(np.intp), 0, width * len(cycle) - 1)
-    places = _places(step, cycle)[column]
+    column = np.clip(np.floor(along).astype(np.intp), 0, track.shape[1] - 1)
+    place, move, sign = track[:, column]
     x = along - column
     angle = math.pi * (x * x * (3.0 - 2.0 * x))
-    moves, signs = step[column % width, places], sign[column % width, places]
-    radius = inner + places + 0.5 * moves * (1 - np.cos(angle))
+    radius = inner + place + 0.5 * move * (1 - np.cos(angle))
     # The strand moving outwards passes over in a positive crossing and under in a negative one.
-    height = 0.5 * moves * signs * np.sin(angle)
+    height = 0.5 * move * sign * np.sin(angle)
     return np.stack([scale * radius, scale * height], axis=1)
-
-
-def _places(step: IntArray, cycle: IntArray) -> IntArray:
-    """The place before every column, turn after turn; shape (width · turns,)."""
-    places = []
-    for start in cycle:
-        place = int(start)
-        for moves in step:
-            places.append(place)
-            place += int(moves[place])
-    return np.array(places, dtype=np.intp)
 
 
 def _torus_profile(major: float, minor: float, hand: int, slope: float, phase: float, theta: FloatArray) -> FloatArray:

@@ -23,7 +23,6 @@ from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 
 _MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above rounding
-_OUTER_PATH = 16  # edges of the path around a ball, which only has to stay outside
 
 
 @checked_fields
@@ -169,8 +168,7 @@ def _is_knotted(curve: Curve, ball: Ball) -> bool:
     if outer.any() and _distances(curve, ball.center)[outer].min() <= ball.radius:
         return False
     entry, exit_ = cut if last[cut[0]] else cut[::-1]
-    ends = [_crossing(curve, edge, ball) for edge in (entry, exit_)]
-    chord = np.array(ends)
+    chord = np.array([_crossing(curve, edge, ball) for edge in (entry, exit_)])
     within = _part(curve, inside, int(mesh.heads[entry]), _around(ball, *chord[::-1]))
     without = _part(curve, ~inside, int(mesh.heads[exit_]), chord)
     return _first_is_knotted(within) and _first_is_knotted(without)
@@ -212,14 +210,12 @@ def _part(curve: Curve, chosen: BoolArray, begin: int, closing: FloatArray) -> C
 
 
 def _around(ball: Ball, a: FloatArray, b: FloatArray) -> FloatArray:
-    """Points of a path from a to b, both on the sphere, outside the ball: a polygon round a great circle."""
-    u = (a - ball.center) / ball.radius
-    v = (b - ball.center) / ball.radius
+    """Points of a path from a to b, both on the sphere, outside the ball and in the plane of a great circle."""
+    u, v = (a - ball.center) / ball.radius, (b - ball.center) / ball.radius
     across = v - (u @ v) * u
     if np.linalg.norm(across) < _MARGIN:  # opposite ends: any great circle will do
         across = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
     across /= np.linalg.norm(across)
-    angles = np.linspace(0.0, np.arccos(np.clip(u @ v, -1.0, 1.0)), _OUTER_PATH + 1)
-    outer = 1.01 * ball.radius / np.cos(np.pi / (2 * _OUTER_PATH))
-    circle = ball.center + outer * (np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * across)
-    return np.concatenate([a[None], circle, b[None]])
+    angles = np.linspace(0.0, np.arccos(np.clip(u @ v, -1.0, 1.0)), 3)[:, None]  # two edges, of a right angle at most
+    corners = ball.center + 1.5 * ball.radius * (np.cos(angles) * u + np.sin(angles) * across)
+    return np.concatenate([a[None], corners, b[None]])

@@ -67,7 +67,8 @@ class Drawing:
             raise CurveError(f"the drawing has {len(curve)} points; at most {MAX_POINTS} are allowed")
         if not _size(curve):
             raise CurveError("all points of the drawing are the same; draw a closed curve")
-        generic = _jittered(curve)
+        noise = np.random.default_rng(20213).uniform(-1.0, 1.0, curve.vertices.shape)
+        generic = curve.with_vertices(curve.vertices + _JITTER * _size(curve) * noise)
         found = plane_crossings(generic.mesh, generic.vertices)
         passes = (found.edges + found.at).T
         passes = passes[np.argsort(passes[:, 0])]
@@ -150,18 +151,14 @@ def _size(curve: Curve) -> float:
     return float(np.ptp(curve.vertices, axis=0).max())
 
 
-def _jittered(curve: Curve) -> Curve:
-    noise = np.random.default_rng(20213).uniform(-1.0, 1.0, curve.vertices.shape)
-    return curve.with_vertices(curve.vertices + _JITTER * _size(curve) * noise)
-
-
 def _check_clear(curve: Curve, crossings: FloatArray, edge: IntArray) -> None:
     """Refuse crossings that are hardly apart, and strands that are hardly apart without crossing there."""
     clear = _CLEAR * _size(curve)
     tree = cKDTree(crossings) if len(crossings) else None
     if tree is not None and (pairs := tree.query_pairs(clear, output_type="ndarray")).size:
         raise _unclear(crossings[pairs[0, 0]], int(edge[pairs[0, 0]]))
-    dense, source = _samples(curve, clear)
+    pieces = np.ceil(curve.edge_lengths / clear).astype(np.intp).clip(1)
+    dense, source = subdivide(curve, pieces), np.repeat(np.arange(len(curve)), pieces)
     i, j = cKDTree(dense.vertices).query_pairs(clear, output_type="ndarray").T
     apart = arc_distance_of_pairs(dense, i, j) > _FLATTEST * clear
     i = i[apart]
@@ -169,12 +166,6 @@ def _check_clear(curve: Curve, crossings: FloatArray, edge: IntArray) -> None:
         i = i[tree.query(dense.vertices[i])[0] > _FLATTEST * clear]
     if i.size:
         raise _unclear(dense.vertices[i[0]], int(source[i[0]]))
-
-
-def _samples(curve: Curve, spacing: float) -> tuple[Curve, IntArray]:
-    """The polygon with edges no longer than ``spacing``, and the edge that each of its points is on."""
-    pieces = np.ceil(curve.edge_lengths / spacing).astype(np.intp).clip(1)
-    return subdivide(curve, pieces), np.repeat(np.arange(len(curve)), pieces)
 
 
 def _unclear(point: FloatArray, vertex: int) -> CurveError:

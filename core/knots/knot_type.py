@@ -93,13 +93,12 @@ class KnotType:
     @cached_property
     def alexander(self) -> tuple[int, ...] | None:
         """Coefficients of the Alexander polynomial, positive at t = 1; None for links and large diagrams."""
-        diagram = self.diagram
-        return alexander(diagram) if diagram is not None and len(diagram.passes) == 1 else None
+        return alexander(self.diagram) if self.diagram and len(self.diagram.passes) == 1 else None
 
     @cached_property
     def jones(self) -> dict[int, int] | None:
         """Coefficients of the Jones polynomial by powers of √t; None where it was not computed."""
-        found = None if self.diagram is None else jones(self.diagram)
+        found = jones(self.diagram) if self.diagram else None
         return None if found is None else dict(found)
 
     @property
@@ -113,11 +112,11 @@ class KnotType:
         """The short form, and how that is known."""
         if self.diagram is None:
             return self.refusal
-        most = f"a diagram of {counted(self.diagram.crossings, 'crossing')}"
+        size = f"a diagram of {counted(self.diagram.crossings, 'crossing')}"
         if not self.names:
             polynomial = "" if self.alexander is None else f"Alexander polynomial {list(self.alexander)}, "
-            return f"not identified: {polynomial}{most}"
-        how = ", ".join(self.evidence) + ("" if self.evidence == (NO_CROSSINGS,) else f", {most}")
+            return f"not identified: {polynomial}{size}"
+        how = ", ".join(self.evidence if self.evidence == (NO_CROSSINGS,) else (*self.evidence, size))
         return f"{self} ({'proved by' if self.proved else 'not proved; it fits'} {how})"
 
 
@@ -129,8 +128,7 @@ def knot_type(curve: Curve, effort: Effort = DEFAULT_EFFORT) -> KnotType:
     of no more than ten (links: seven) it is the one of the table that has its polynomials.  Sums that the diagram shows
     are identified factor by factor.  Diagrams that keep too many crossings are not identified.
     """
-    refusal = _refusal(curve, effort)
-    if refusal:
+    if refusal := _refusal(curve, effort):
         return KnotType((), False, None, (), refusal)
     return type_of_diagram(_simplest(curve, effort.views), effort)
 
@@ -165,9 +163,8 @@ def type_of_diagram(diagram: Diagram, effort: Effort = DEFAULT_EFFORT) -> KnotTy
 def _simplest(curve: Curve, count: int) -> Diagram:
     """The diagram with the fewest crossings of several views, or one that is simple enough."""
     best: Diagram | None = None
-    for view in views(curve, count):
-        found = simplified(view)
-        best = found if best is None or found.crossings < best.crossings else best
+    for view in map(simplified, views(curve, count)):
+        best = view if best is None or view.crossings < best.crossings else best
         if _is_enough(best):
             return best
     if best is None:

@@ -21,7 +21,6 @@ _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
-_MIRRORS = re.compile(r"(?:m\s*)+")
 _TABLE = {name.lower(): name for name in KNOTS}
 _WORDS = {**ALIASES, **ROLFSEN}
 
@@ -72,15 +71,13 @@ def knot(name: str, vertices: int | None = None) -> Curve:
 
 
 def table_name(name: str) -> tuple[str, bool]:
-    """The table's name of a knot or link that is in it, and whether its mirror image is meant; raises as `knot` does."""
+    """The table's name of a knot or link in it, and whether its mirror image is meant; raises as `knot` does."""
     part = _plain(str(name))
-    mirrors = _MIRRORS.match(part)
-    bare = part[mirrors.end() :] if mirrors else part
-    entry = _WORDS.get(bare, bare)
-    if (found := _TABLE.get(_squeezed(entry))) is None:
+    bare, mirrored = _unmirrored(part)
+    if (found := _TABLE.get(_squeezed(_WORDS.get(bare, bare)))) is None:
         knot(name)  # which says what is wrong with unknown names
         raise UnknownKnotError(f"{name[:60]!r} is a knot, but none of the table; give one of those, or m and one")
-    return found, mirrors is not None and bool(mirrors[0].count("m") % 2)
+    return found, mirrored
 
 
 @checked
@@ -107,15 +104,20 @@ def _prime_word(part: str, name: str) -> Word:
         return KNOTS[_TABLE[squeezed]]
     if (larger := larger_name(squeezed)) is not None:
         return larger_word(larger)
-    mirrors = _MIRRORS.match(part)
-    if mirrors is None or mirrors.end() == len(part):
+    bare, mirrored = _unmirrored(part)
+    if bare in ("", part):
         raise _unknown(name)
-    word = _prime_word(part[mirrors.end() :], name)  # no name begins with an m
-    return mirror(word) if mirrors[0].count("m") % 2 else word
+    word = _prime_word(bare, name)
+    return mirror(word) if mirrored else word
+
+
+def _unmirrored(part: str) -> tuple[str, bool]:
+    """A name without the letters m before it, with which no name begins, and whether there is an odd number of them."""
+    bare = part.lstrip("m ") if part.startswith("m") else part
+    return bare, part[: len(part) - len(bare)].count("m") % 2 == 1
 
 
 def _numbers(match: re.Match[str], name: str) -> Word:
-    """The numbers in the brackets of T(p,q) or a braid."""
     if not match["end"]:
         raise UnknownKnotError(f"{name[:60]!r} has no closing bracket; {_FORMS}")
     numbers = match["numbers"].split(",") if match["numbers"] else []
@@ -128,7 +130,6 @@ def _numbers(match: re.Match[str], name: str) -> Word:
 
 
 def _torus(match: re.Match[str], name: str) -> tuple[int, int]:
-    """p and q."""
     numbers = _numbers(match, name)
     if len(numbers) != 2:
         raise UnknownKnotError(f"{name[:60]!r} does not have two numbers; write T(p,q), such as T(2,5)")

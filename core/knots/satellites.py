@@ -88,9 +88,7 @@ class Tube:
 
     length: float
     reach: float
-    _center: FloatArray
-    _across: FloatArray
-    _up: FloatArray
+    _frame: FloatArray  # center, and unit vectors across and up, at equal steps of t; shape (samples, 3, 3)
 
     @classmethod
     def around(cls, curve: Curve) -> "Tube":
@@ -106,7 +104,7 @@ class Tube:
         turned = Curve.from_components([center, center + 0.3 * reach * across])
         across = _turned(across, tangent, -2.0 * np.pi * linking_numbers(turned)[0] * np.arange(count) / count)
         length = float(np.linalg.norm(np.diff(center, axis=0, append=center[:1]), axis=1).sum())
-        return cls(length, reach, center, across, np.cross(tangent, across))
+        return cls(length, reach, np.stack([center, across, np.cross(tangent, across)], axis=1))
 
     def radius(self, room: float) -> float:
         """That fraction of the reach; a CurveError unless it is between 0 and 1."""
@@ -120,13 +118,11 @@ class Tube:
 
     def points(self, t: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:
         """Points in space, shape (k, 3), with these coordinates, each (k,); t is taken modulo 1."""
-        center, across, up = (self._at(t, x) for x in (self._center, self._across, self._up))
+        place = t % 1.0 * len(self._frame)
+        k = np.floor(place).astype(np.intp)
+        here, there = (self._frame[each % len(self._frame)] for each in (k, k + 1))
+        center, across, up = (here + (place % 1.0)[:, None, None] * (there - here)).swapaxes(0, 1)
         return np.asarray(center + u[:, None] * across + v[:, None] * up)
-
-    def _at(self, t: FloatArray, values: FloatArray) -> FloatArray:
-        place = t % 1.0 * len(values)
-        k = np.floor(place).astype(np.intp) % len(values)
-        return np.asarray(values[k] + (place % 1.0)[:, None] * (values[(k + 1) % len(values)] - values[k]))
 
 
 def _samples(spline: CubicSpline, count: int) -> tuple[FloatArray, FloatArray]:

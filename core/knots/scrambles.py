@@ -6,7 +6,6 @@ comes near them, the polygons before and after are isotopic: this is the element
 """
 
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -52,22 +51,6 @@ def scramble(
     least_angle
         Between neighbouring edges, in radians, so that they never fold onto each other.
     """
-    points = curve.vertices.copy()
-    for vertex, position in certified_moves(curve, seed, moves=moves, reach=reach, gap=gap, least_angle=least_angle):
-        points[vertex] = position
-    return curve.with_vertices(points)
-
-
-def certified_moves(
-    curve: Curve,
-    seed: int,
-    *,
-    moves: int | None = None,
-    reach: float | None = None,
-    gap: float | None = None,
-    least_angle: float = 0.2,
-) -> Iterator[tuple[int, FloatArray]]:
-    """The vertices that :func:`scramble` moves, one after the other, and where each moves to."""
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; only curves in space can be scrambled")
     check_closed(curve, "scrambles")
@@ -84,25 +67,20 @@ def certified_moves(
         raise CurveError(f"gap is {gap}; it must be at least {_MIN_GAP:g} of the curve's radius, {radius:g}")
     if not 0 < least_angle < math.pi:
         raise CurveError(f"least_angle is {least_angle}; it must be above 0 and below π")
-    polygons = _Polygons(curve.vertices.copy(), curve.mesh.anticycle, curve.mesh.heads, gap, least_angle)
-    return _moves(polygons, np.random.default_rng(seed), moves, reach, center, radius)
-
-
-def _moves(
-    polygons: "_Polygons", rng: np.random.Generator, moves: int, reach: float, center: FloatArray, radius: float
-) -> Iterator[tuple[int, FloatArray]]:
+    polygons = Polygons(curve.vertices.copy(), curve.mesh.anticycle, curve.mesh.heads, gap, least_angle)
+    rng = np.random.default_rng(seed)
     for _ in range(moves):
-        vertex = int(rng.integers(len(polygons.points)))
+        vertex = int(rng.integers(len(curve)))
         step = rng.normal(size=3)
         # Lengths spread over a decade: long moves get stuck first, short ones go on finding room.
         step *= reach * 10.0 ** -rng.random() / np.linalg.norm(step)
         position = polygons.points[vertex] + step
         if np.linalg.norm(position - center) <= radius and polygons.can_move(vertex, position):
             polygons.points[vertex] = position
-            yield vertex, position
+    return curve.with_vertices(polygons.points)
 
 
-class _Polygons(NamedTuple):
+class Polygons(NamedTuple):
     """Polygons under way: positions that change, the neighbours of each vertex, and what moves must keep."""
 
     points: FloatArray
@@ -112,21 +90,22 @@ class _Polygons(NamedTuple):
     least_angle: float
 
     def can_move(self, vertex: int, position: FloatArray) -> bool:
-        """Whether the straight move of a vertex keeps its edges ``gap`` away from the others all the way."""
-        old, a, b = self.points[vertex], int(self.before[vertex]), int(self.after[vertex])
+        """Whether the straight move of a vertex keeps its edges away from all others, and from the next ones open."""
+        a, b = self.before[vertex], self.after[vertex]
         return all(
-            self._opens(pivot, old, position, beyond) and self._free(vertex, pivot, old, position)
-            for pivot, beyond in ((a, int(self.before[a])), (b, int(self.after[b])))
+            self._opens(vertex, pivot, position, beyond) and self._free(vertex, pivot, position)
+            for pivot, beyond in ((a, self.before[a]), (b, self.after[b]))
         )
 
-    def _opens(self, pivot: int, old: FloatArray, new: FloatArray, beyond: int) -> bool:
+    def _opens(self, vertex: int, pivot: int, position: FloatArray, beyond: int) -> bool:
         """Whether the edge that turns about ``pivot`` stays away from the next edge there."""
         here = self.points[pivot]
-        return angle_to_sector(self.points[beyond] - here, old - here, new - here) >= self.least_angle
+        sector = self.points[vertex] - here, position - here
+        return angle_to_sector(self.points[beyond] - here, *sector) >= self.least_angle
 
-    def _free(self, vertex: int, pivot: int, old: FloatArray, new: FloatArray) -> bool:
+    def _free(self, vertex: int, pivot: int, position: FloatArray) -> bool:
         """Whether the triangle swept by the edge from ``pivot`` to the vertex is free of edges beyond both."""
-        triangle = np.stack([self.points[pivot], old, new])
+        triangle = np.stack([self.points[pivot], self.points[vertex], position])
         tails, heads = self.points, self.points[self.after]
         low, high = triangle.min(axis=0) - self.gap, triangle.max(axis=0) + self.gap
         near = ((np.minimum(tails, heads) <= high) & (np.maximum(tails, heads) >= low)).all(axis=1)

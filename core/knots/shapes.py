@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..curve import Curve
-from ..types import ComplexArray, FloatArray
+from ..types import ComplexArray
 from .inscribed import equal_steps, is_isotopic, shares, too_few
 from .names import table_name
 
@@ -40,7 +40,10 @@ class Shape:
 
     def polygon(self, sizes: Sequence[int]) -> Curve:
         """Inscribe a polygon with so many vertices on each component, at equal steps of t."""
-        parts = [_values(c, np.arange(n) / n) for c, n in zip(self.coefficients, sizes, strict=True)]
+        parts = []
+        for c, n in zip(self.coefficients, sizes, strict=True):
+            waves = np.exp(2j * np.pi * np.outer(np.arange(n) / n, np.arange(len(c))))
+            parts.append((waves @ c).real)
         return Curve.from_components(parts)
 
 
@@ -81,9 +84,3 @@ def shapes() -> Mapping[str, Shape]:
     return MappingProxyType(
         {str(name): Shape(tuple(next(parts) for _ in range(count))) for name, count in zip(names, counts, strict=True)}
     )
-
-
-def _values(coefficients: ComplexArray, t: FloatArray) -> FloatArray:
-    """Points at parameters t of shape (n,); shape (n, 3)."""
-    waves = np.exp(2j * np.pi * np.outer(t, np.arange(len(coefficients))))
-    return np.asarray((waves @ coefficients).real)

@@ -27,7 +27,8 @@ def read(source: Source) -> list[Polygon]:
         if "components" not in value:
             raise source.error('the object has no key "components"', 1)
         value, flags, at = value["components"], value.get("closed"), ("components",)
-    if isinstance(value, list) and value and isinstance(value[0], list) and _is_point(value[0]):
+    first = value[0] if isinstance(value, list) and value else None
+    if isinstance(first, list) and first and not any(isinstance(x, list | dict) for x in first):  # a point
         return [_polygon(source, value, at, *_flags(source, flags, 1))]
     parts = _items(source, value, at, "a list of components")
     closed = _flags(source, flags, len(parts))
@@ -52,10 +53,6 @@ def _flags(source: Source, flags: object, components: int) -> list[bool]:
         return flags
     reason = f'"closed" must be a list of true or false, one for each component, of which there are {components}'
     raise source.error(reason, _line_of(source.text, ("closed",)))
-
-
-def _is_point(value: list[object]) -> bool:
-    return bool(value) and not any(isinstance(x, list | dict) for x in value)
 
 
 def _items(source: Source, value: object, at: _Path, wanted: str) -> list[object]:
@@ -93,10 +90,8 @@ def _coordinate(source: Source, at: _Path, value: object) -> float:
 
 def _kind(value: object) -> str:
     """Name what was found, in the words of JSON."""
-    kinds: list[tuple[type, str]] = [(dict, "an object"), (list, "a list"), (str, "a string")]
-    if value is None or isinstance(value, bool):
-        return json.dumps(value)
-    return next((name for kind, name in kinds if isinstance(value, kind)), "a number")
+    kinds = {dict: "an object", list: "a list", str: "a string", int: "a number", float: "a number"}
+    return kinds.get(type(value)) or json.dumps(value)
 
 
 def _line_of(text: str, path: _Path) -> int | None:
