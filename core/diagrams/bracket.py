@@ -13,6 +13,7 @@ from .diagram import Diagram, Pass
 Laurent = Mapping[int, int]  # exponent to coefficient, which is not 0
 _State = frozenset[tuple[int, int]]  # both ends of every open arc, each with the other one
 
+_LOOP = {2: -1, -2: -1}  # −A² − A⁻²
 _MAX_WIDTH = 18  # edges cut at a time, of which there are up to 4862 pairings; doubles of small knots have 12 to 14
 _STARTS = 10_000  # every crossing is tried as the first one of a diagram whose number of crossings, squared, is below
 _BITS = 3  # by which coefficients may grow with a crossing: two smoothings, each with up to two loops −q − 1/q
@@ -43,7 +44,7 @@ def doubled_bracket(knot: Diagram) -> Laurent | None:
     found = _bracket(doubled(knot))
     if found is None:
         return None
-    both = _times_loop(found)
+    both = times(found, _LOOP)
     both[0] = both.get(0, 0) - 1
     return {power - 8 * knot.writhe: c for power, c in both.items() if c}
 
@@ -71,16 +72,15 @@ def _bracket(diagram: Diagram) -> dict[int, int] | None:
         loops -= 1
     found = _contracted(code)
     for _ in range(loops if found is not None else 0):
-        found = _times_loop(found or {})
+        found = times(found or {}, _LOOP)
     return found
 
 
-def _times_loop(polynomial: Laurent) -> dict[int, int]:
-    """Times −A² − A⁻²."""
+def times(a: Laurent, b: Laurent) -> dict[int, int]:
+    """The product of two Laurent polynomials."""
     found: dict[int, int] = {}
-    for power, c in polynomial.items():
-        for shifted in (power + 2, power - 2):
-            found[shifted] = found.get(shifted, 0) - c
+    for (i, x), (j, y) in product(a.items(), b.items()):
+        found[i + j] = found.get(i + j, 0) + x * y
     return {power: c for power, c in found.items() if c}
 
 

@@ -20,12 +20,8 @@ PlanarCrossing = tuple[int, int, int, int]  # edges counterclockwise from the on
 class Diagram:
     """A diagram of an oriented link.
 
-    Attributes
-    ----------
-    passes
-        For each component the crossings that it passes, in order; empty for a circle that crosses nothing.
-    signs
-        1 or −1 for each crossing; crossings are numbered from 0.
+    ``passes`` has for each component the crossings that it passes, in order, and is empty for a circle that crosses
+    nothing; ``signs`` has 1 or −1 for each crossing, numbered from 0.
     """
 
     passes: tuple[tuple[Pass, ...], ...]

@@ -22,13 +22,9 @@ _VIEWS = 12  # tried until one is clear, as the first almost always is
 class QuickInvariants:
     """What is quickly computed of a knot or link of any size.
 
-    Attributes
-    ----------
-    alexander
-        For each component, the polynomial's values at roots of unity of order 2, 3, 5 and 7 modulo a prime; of each
-        value, which is defined up to units ±tᵏ, the smallest associate.
-    linking
-        Linking numbers of all pairs of components: of the first with the second, the third, …
+    For each component ``alexander`` has the polynomial's values at roots of unity of order 2, 3, 5 and 7 modulo a
+    prime: of each value, which is defined up to units ±tᵏ, the smallest associate.  ``linking`` has the linking numbers
+    of all pairs of components: of the first with the second, the third, …
     """
 
     alexander: tuple[tuple[int, ...], ...]

@@ -37,29 +37,20 @@ def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word,
     return letters, strands
 
 
-def permutation(word: Sequence[int], strands: int) -> list[int]:
-    """Where the strand that starts at each place ends; places count from 0."""
+def cycles(word: Sequence[int], strands: int) -> list[list[int]]:
+    """For each component of the closure the places, from 0, where its turns begin; each from its smallest on."""
     at = list(range(strands))
     for letter in word:
         i = abs(letter) - 1
         at[i], at[i + 1] = at[i + 1], at[i]
-    ends = [0] * strands
-    for place, strand in enumerate(at):
-        ends[strand] = place
-    return ends
-
-
-def cycles(ends: Sequence[int]) -> list[list[int]]:
-    """Split a permutation into cycles, each from its smallest place on; one per component of the closure."""
+    ends = {strand: place for place, strand in enumerate(at)}
     found: list[list[int]] = []
-    seen: set[int] = set()
-    for start in range(len(ends)):
-        if start not in seen:
-            cycle = [start]
-            while ends[cycle[-1]] != start:
-                cycle.append(ends[cycle[-1]])
-            seen.update(cycle)
-            found.append(cycle)
+    for place in range(strands):
+        cycle = []
+        while place in ends:
+            cycle.append(place)
+            place = ends.pop(place)
+        found += [cycle] if cycle else []
     return found
 
 
@@ -99,7 +90,5 @@ def braid_diagram(word: Sequence[int]) -> Diagram:
         passes[at[place]].append((crossing, letter > 0))  # in a positive crossing the one that moves outwards is over
         passes[at[place + 1]].append((crossing, letter < 0))
         at[place], at[place + 1] = at[place + 1], at[place]
-    parts = (
-        tuple(each for strand in cycle for each in passes[strand]) for cycle in cycles(permutation(letters, strands))
-    )
+    parts = (tuple(each for strand in cycle for each in passes[strand]) for cycle in cycles(letters, strands))
     return Diagram(tuple(parts), tuple(1 if letter > 0 else -1 for letter in letters))

@@ -7,6 +7,7 @@ from functools import cache
 from itertools import product
 
 from ..diagrams import Diagram, Laurent, normalized_bracket
+from ..diagrams.bracket import times
 from .braids import braid_diagram
 from .names import braid_word
 from .table import AMPHICHEIRAL, KNOTS
@@ -71,17 +72,10 @@ def _sums(primes: list[tuple[str, Laurent]]) -> Iterator[tuple[str, Laurent]]:
         for (name, bracket, last), (k, (factor, own)) in product(shorter, enumerate(primes)):
             joined = f"{name}#{factor}"
             if k >= last and crossing_number(joined) <= (LINKS_TO if _is_link(joined) else KNOTS_TO):
-                longer.append((joined, _times(bracket, own), k))
+                longer.append((joined, times(bracket, own), k))
         yield from ((name, bracket) for name, bracket, _ in longer)
         shorter = longer
 
 
 def _is_link(name: str) -> bool:
     return "L" in name
-
-
-def _times(a: Laurent, b: Laurent) -> Laurent:
-    found: dict[int, int] = {}
-    for (i, x), (j, y) in product(a.items(), b.items()):
-        found[i + j] = found.get(i + j, 0) + x * y
-    return {power: c for power, c in found.items() if c}

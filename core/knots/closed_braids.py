@@ -15,7 +15,7 @@ from ..curve import Curve
 from ..curve.smooth import arc_lengths
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .braids import checked_word, columns, cycles, permutation
+from .braids import checked_word, columns, cycles
 from .inscribed import MAX_VERTICES, check_count, shares, too_few
 
 _COLUMN = 2.2  # length of a crossing along the innermost strand, in units of the strands' distance
@@ -51,7 +51,7 @@ def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: 
         i, sign = abs(letter) - 1, 1 if letter > 0 else -1
         moves[column, i], moves[column, i + 1] = (1, sign), (-1, sign)
     rings = []
-    for cycle in cycles(permutation(letters, count)):
+    for cycle in cycles(letters, count):
         track = _track(cycle, moves, max(width, 1))
         rings.append(Ring(len(cycle), partial(_braid_profile, track, max(width, 1), inner, scale)))
     return _polygon(rings, scale, max(60, 2 * count * width), vertices)
@@ -65,20 +65,9 @@ def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.
     r₂ = ``minor / major``: it runs p times around the z axis and q times around the tube, its strands evenly spread in
     the conformal sense. Positive p and q give the right-handed knot, a negative one its mirror image.
 
-    Parameters
-    ----------
-    p, q
-        Numbers of turns, not 0.
-    vertices
-        Total number of vertices; by default so many that edges are shorter than strands are apart.
-    major, minor
-        Radii of the torus and of its tube, 0 < minor < major; the default tube is near the one of least Möbius
-        energy, which for T(2, 3) is 0.47407312473.
-
-    Raises
-    ------
-    CurveError
-        If a number or a radius is not allowed, or the vertices are too few.
+    ``vertices`` is the total number; by default edges are shorter than strands are apart.  The radii of the torus and
+    of its tube satisfy 0 < minor < major; the default tube is near the one of least Möbius energy, which for T(2, 3) is
+    0.47407312473.  Raises CurveError if a number is not allowed, or the vertices are too few.
     """
     if not (0 < abs(p) <= _MAX_TURNS and 0 < abs(q) <= _MAX_TURNS):
         raise CurveError(

@@ -28,24 +28,12 @@ _MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above roun
 @checked_fields
 @dataclass(frozen=True)
 class BallSearch:
-    """How thoroughly balls are searched for.
+    """How thoroughly balls are searched for."""
 
-    Parameters
-    ----------
-    arcs
-        Arcs of a knot begin and end at this many places; in links these are shared by the components.
-    shortest
-        Shortest arc, as a fraction of its component.
-    samples
-        Vertices of the curve that balls are fitted to.
-    trials
-        Balls that are fitted at most, which takes a few seconds; links that ask for more are not searched.
-    """
-
-    arcs: int = 24
-    shortest: float = 1 / 8
-    samples: int = 120
-    trials: int = 3000
+    arcs: int = 24  # places where arcs of a knot begin and end; in links these are shared by the components
+    shortest: float = 1 / 8  # arc, as a fraction of its component
+    samples: int = 120  # vertices of the curve that balls are fitted to
+    trials: int = 3000  # balls that are fitted at most, which takes a few seconds; other links are not searched
 
     def __post_init__(self) -> None:
         check_fields(self, arcs=(1, math.inf), shortest=(0, 0.5), samples=(5, math.inf), trials=(0, math.inf))

@@ -35,16 +35,9 @@ _RAMP = 10  # edges from one crossing to the next, at least
 class Drawing:
     """Closed curves in the plane that cross themselves and each other clearly, two strands at a time.
 
-    Attributes
-    ----------
-    curve
-        The drawing, of dimension 2.
-    crossings
-        Places of the crossings, in the order in which they are come to; shape (c, 2).
-    passes
-        Edge and fraction of it, as one number, of the first and the second pass of each crossing; shape (c, 2).
-    first_over
-        Whether the first pass of each is the upper one where over and under alternate, over to begin with; shape (c,).
+    ``curve`` is the drawing; of its c crossings there are the places, shape (c, 2), in the order in which they are come
+    to, the edges of their first and second ``passes``, shape (c, 2), each with the fraction of it as one number, and
+    whether the first pass is the upper one, shape (c,), where over and under alternate, over to begin with.
     """
 
     curve: Curve
@@ -88,7 +81,11 @@ class Drawing:
                 raise CurveError(f"there is no crossing {number}; the drawing has {count}, counted from 1")
         over = self.first_over.copy()
         over[[number - 1 for number in changed]] ^= True
-        heights = self._heights() * np.where(over, 1.0, -1.0)
+        heights = np.full(count, _HIGHEST * _size(self.curve))
+        if count > 1:
+            nearest_crossing = cKDTree(self.crossings).query(self.crossings, k=2)[0][:, 1]
+            heights = np.minimum(heights, _LIFT * nearest_crossing)
+        heights = np.where(over, heights, -heights)
         at, lift = self.passes.ravel(), np.stack([heights, -heights], axis=1).ravel()
         order = np.argsort(at)
         parts, nearest = [], _NEAREST * _size(self.curve)
@@ -98,14 +95,6 @@ class Drawing:
         curve = Curve.from_components(parts)
         check_embedded(curve)
         return curve
-
-    def _heights(self) -> FloatArray:
-        """Height of the strands at each crossing above and below the plane; shape (c,)."""
-        highest = np.full(len(self.crossings), _HIGHEST * _size(self.curve))
-        if len(highest) < 2:
-            return highest
-        nearest = cKDTree(self.crossings).query(self.crossings, k=2)[0][:, 1]
-        return np.minimum(highest, _LIFT * nearest)
 
 
 def _lifted(points: FloatArray, at: FloatArray, lift: FloatArray, nearest: float) -> FloatArray:

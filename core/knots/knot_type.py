@@ -33,24 +33,12 @@ SIGNATURE, DOUBLED, LINKING = "the signature", "the Jones polynomial of the doub
 @checked_fields
 @dataclass(frozen=True)
 class Effort:
-    """How much is done to identify a type, in counts, so that results do not depend on a clock.
+    """How much is done to identify a type, in counts, so that results do not depend on a clock."""
 
-    Parameters
-    ----------
-    vertices
-        Of the largest curve whose crossings are looked for, which takes seconds.
-    views
-        Directions that the curve is looked at from: one of many crossings simplifies better in some.
-    doubled
-        Crossings of the largest knots that are compared by the polynomials of their doubles.
-    names
-        How many possible names are listed at most.
-    """
-
-    vertices: int = 20_000
-    views: int = 12
-    doubled: int = 14
-    names: int = 16
+    vertices: int = 20_000  # of the largest curve whose crossings are looked for, which takes seconds
+    views: int = 12  # directions that the curve is looked at from: one of many crossings simplifies better in some
+    doubled: int = 14  # crossings of the largest knots that are compared by the polynomials of their doubles
+    names: int = 16  # in a list of possible ones
 
     def __post_init__(self) -> None:
         check_fields(self, **dict.fromkeys(("vertices", "views", "doubled", "names"), (0.0, inf)))
@@ -63,19 +51,10 @@ DEFAULT_EFFORT = Effort()
 class KnotType:
     """What is known of a type.
 
-    Attributes
-    ----------
-    names
-        Those of the table that fit, with m for mirror images, # for sums and ⊔ between parts that come apart; in 0_1
-        ⊔ 0_1 two circles.  Empty if none fits.
-    proved
-        Whether it is certain that the type is one of the names: no knot of so few crossings is left out.
-    diagram
-        With the fewest crossings that were found; None if none was looked for.
-    evidence
-        What distinguishes the names from others.
-    refusal
-        Why no diagram was looked for; empty if one was.
+    ``names`` are those of the table that fit, with m for mirror images, # for sums and ⊔ between parts that come apart,
+    in 0_1 ⊔ 0_1 two circles; empty if none fits.  It is ``proved`` if the type certainly is one of the names, as no
+    knot of so few crossings is left out.  ``diagram`` has the fewest crossings that were found, ``evidence`` is what
+    distinguishes the names from others, and ``refusal`` says why no diagram was looked for.
     """
 
     names: tuple[str, ...]

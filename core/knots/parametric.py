@@ -33,11 +33,6 @@ def lissajous_knot(
 
     Frequencies are positive, no two with a common divisor; phases are in radians.  Raises CurveError for others, and
     for strands nearer than ``least_gap``, below which default polygons would have thousands of vertices.
-
-    Examples
-    --------
-    >>> len(lissajous_knot((3, 2, 7), vertices=200))
-    200
     """
     a, b, c = frequencies
     if not all(1 <= f <= MAX_FREQUENCY for f in frequencies) or max(math.gcd(a, b), math.gcd(b, c), math.gcd(a, c)) > 1:

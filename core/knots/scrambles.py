@@ -32,24 +32,13 @@ def scramble(
 ) -> Curve:
     """Make a messy polygon of the same knot type with the same numbers of vertices.
 
-    Vertices move one at a time, straight and far, wherever the swept triangles are free of other edges; the
-    curve stays within the ball that held it.  Raises CurveError if it is not in space or a number is not allowed.
+    Of closed polygons in space that don't touch, vertices move one at a time, straight and far, wherever the swept
+    triangles are free of other edges; the curve stays within the ball that held it.  The same ``seed`` gives the same
+    curve.  By default 20 ``moves`` are tried for every vertex, of at most half the ball's radius (``reach``), and keep
+    edges a twentieth of their mean length from others (``gap``, at least a millionth of the radius) and
+    ``least_angle``, in radians, from folding onto their neighbours.
 
-    Parameters
-    ----------
-    curve
-        Closed polygons in space that don't touch.
-    seed
-        The same seed gives the same curve.
-    moves
-        Number of moves tried, by default 20 for every vertex.
-    reach
-        Length of the longest move, by default half the curve's radius.
-    gap
-        Distance that moving edges keep from others, at least a millionth of the curve's radius; by default a
-        twentieth of the mean edge length.
-    least_angle
-        Between neighbouring edges, in radians, so that they never fold onto each other.
+    Raises CurveError if the curve is not in space or a number is not allowed.
     """
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; only curves in space can be scrambled")

@@ -59,11 +59,6 @@ def larger_name(name: str) -> str | None:
     """The name, such as K11n34, that is meant by one in small letters (``11n_34``); None if it is none of this form.
 
     Hoste and Thistlethwaite number alternating and other ones apart, to fourteen crossings.
-
-    Examples
-    --------
-    >>> larger_name("12a_0003"), larger_name("l10a100"), larger_name("3_1")
-    ('K12a3', 'L10a100', None)
     """
     match = _LARGER.fullmatch(name)
     if match is None:
