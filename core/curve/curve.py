@@ -1,4 +1,4 @@
-"""Polygons in R^m, closed or open: the one value that everything else takes and gives."""
+"""Polygons in R^m, closed or open: the value that everything else takes and returns."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -69,12 +69,11 @@ def _areas(curve: Curve, first: int) -> FloatArray:
     i, j = slice(first, first + _ROWS), slice(first, None)
     a, b, d, c = (end[None, j] - start[i, None] for start in (tails, heads) for end in (tails, heads))
     volume = _dot(np.cross(curve.edge_vectors[None, j], curve.edge_vectors[i, None]), a)
-    size = {name: np.sqrt(_dot(x, x)) for name, x in zip("abcd", (a, b, c, d), strict=True)}
-    diagonal = _dot(a, c)
+    size_a, size_c = (np.sqrt(_dot(x, x)) for x in (a, c))
     area = np.zeros_like(volume)
-    for x, name in ((b, "b"), (d, "d")):
-        across = (size["a"] * size["c"] + diagonal) * size[name]
-        area += 2.0 * np.arctan2(volume, across + _dot(a, x) * size["c"] + _dot(c, x) * size["a"])
+    for x in (b, d):
+        across = (size_a * size_c + _dot(a, c)) * np.sqrt(_dot(x, x))
+        area += 2.0 * np.arctan2(volume, across + _dot(a, x) * size_c + _dot(c, x) * size_a)
     rows, columns = np.arange(mesh.edges)[i, None], np.arange(mesh.edges)[None, j]
     counted = (columns > rows) & mesh.disjoint(rows, columns)
     return np.asarray(np.where(counted, area, 0.0))

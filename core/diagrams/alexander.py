@@ -34,7 +34,7 @@ def alexander(knot: Diagram) -> tuple[int, ...] | None:
     From det(A), A the matrix of the arcs' relations at the crossings without a row and a column (Alexander, *Trans.
     AMS* 30, 1928): each says (1 − t) a + t b − c = 0 for the upper arc a and the lower ones b, c on its two sides.
     Where |t| = 1 rows have at most the length √6, so that coefficients are at most √6ⁿ⁻¹ (Hadamard), and as many primes
-    are taken as tell these apart.
+    are taken as distinguish these.
     """
     if knot.crossings > MAX_CROSSINGS:
         return None

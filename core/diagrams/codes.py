@@ -22,7 +22,7 @@ from typing import NamedTuple
 from ..checks import check_known
 from ..errors import CurveError
 from .diagram import Diagram, Pass, diagram_of
-from .nested import Nested, components, flat, is_flat, nested, unwrapped
+from .nested import Nested, components, nested, unwrapped
 from .realize import realized
 
 MAX_CROSSINGS = 1000  # of a code; drawing takes seconds
@@ -100,13 +100,11 @@ def check_count(crossings: int) -> None:
 
 
 def _planar(text: str) -> Diagram:
-    rows = unwrapped(nested(_CROSSING.sub(" ", text)))
-    if is_flat(rows):
-        rows = [rows[k : k + 4] for k in range(0, len(rows), 4)]
+    rows = components(nested(_CROSSING.sub(" ", text)))
+    if len(rows) == 1:
+        rows = [rows[0][k : k + 4] for k in range(0, len(rows[0]), 4)]
     check_count(len(rows))
-    if not rows:
-        return Diagram(((),), ())
-    return diagram_of([flat([row] if isinstance(row, int | str) else row) for row in rows])
+    return diagram_of(rows) if rows else Diagram(((),), ())
 
 
 def _dowker_thistlethwaite(text: str) -> Diagram:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curve import Curve, check_closed
-from ..errors import CurveError
 from .alexander import FIELDS, alexander_values
 from .diagram import Diagram
 from .projection import views
@@ -39,7 +38,7 @@ class QuickInvariants:
 def quick_invariants(curve: Curve) -> QuickInvariants:
     """Those of closed polygons in space; a CurveError if some are open, or touch themselves."""
     check_closed(curve, "knot types")
-    diagram = _seen(curve)
+    diagram = next(views(curve, _VIEWS, clear=0.0))  # strands may be as near as doubles resolve: this is no proof
     parts = range(len(diagram.passes))
     return QuickInvariants(tuple(_values(diagram.restricted({k})) for k in parts), diagram.linking_numbers)
 
@@ -47,15 +46,7 @@ def quick_invariants(curve: Curve) -> QuickInvariants:
 def linking_numbers(curve: Curve) -> tuple[int, ...]:
     """Linking numbers of all pairs of components of a link in space; a CurveError as `quick_invariants`."""
     check_closed(curve, "linking numbers")
-    return _seen(curve).linking_numbers
-
-
-def _seen(curve: Curve) -> Diagram:
-    """A view of a curve whose strands may be as near to each other as doubles resolve: nothing here is a proof."""
-    found = next(views(curve, _VIEWS, clear=0.0), None)
-    if found is None:
-        raise CurveError("the curve touches itself: no view of it tells which strand is in front")
-    return found
+    return next(views(curve, _VIEWS, clear=0.0)).linking_numbers
 
 
 def _values(knot: Diagram) -> tuple[int, ...]:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..curve import Curve, Mesh
+from ..errors import CurveError
 from ..types import FloatArray, IntArray
 from .diagram import Diagram, Pass
 
@@ -18,17 +19,21 @@ def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> I
     """Diagrams of a closed polygon in space: first from where it looks flattest, then from random directions.
 
     Directions in which rounding might decide what crosses what are left out: where a crossing is nearer to another
-    strand, or to the end of an edge, than ``clear``, a fraction of the curve's size or the edge's length.
+    strand, or to the end of an edge, than ``clear``, a fraction of the curve's size or the edge's length.  Raises
+    CurveError if there is no other direction.
     """
     rng = np.random.default_rng(seed)
     _, power = np.frexp(np.abs(curve.vertices).max())
     points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
     middle = points - points.mean(axis=0)
     flattest = np.linalg.svd(middle, full_matrices=False)[2] + _TILT * rng.normal(size=(3, 3))
-    for frame in (flattest, *rng.normal(size=(count - 1, 3, 3))):
-        found = _seen(curve, middle @ _rotation(frame), clear)
-        if found is not None:
-            yield found
+    every = (_seen(curve, middle @ _rotation(each), clear) for each in (flattest, *rng.normal(size=(count - 1, 3, 3))))
+    none = True
+    for diagram in filter(None, every):
+        none = False
+        yield diagram
+    if none:
+        raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
 
 
 def _rotation(frame: FloatArray) -> FloatArray:

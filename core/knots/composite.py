@@ -150,10 +150,11 @@ def _is_knotted(curve: Curve, ball: Ball) -> bool:
     mesh = curve.mesh
     first, last = inside[mesh.tails], inside[mesh.heads]
     cut = np.flatnonzero(first != last)
-    outer = ~first & ~last
     if len(cut) != 2 or mesh.component[cut[0]] != mesh.component[cut[1]]:
         return False
-    if outer.any() and _distances(curve, ball.center)[outer].min() <= ball.radius:
+    start, edge = curve.vertices[mesh.tails], curve.edge_vectors
+    s = np.clip(np.einsum("ij,ij->i", ball.center - start, edge) / curve.edge_lengths**2, 0.0, 1.0)
+    if (ball.contains(start + s[:, None] * edge) & ~first & ~last).any():
         return False
     entry, exit_ = cut if last[cut[0]] else cut[::-1]
     chord = np.array([_crossing(curve, edge, ball) for edge in (entry, exit_)])
@@ -167,13 +168,6 @@ def _first_is_knotted(curve: Curve) -> bool:
     found = quick_invariants(curve)
     others = len(curve.mesh.component_sizes) - 1  # pairs with the first component are listed first
     return found.alexander[0] != TRIVIAL or any(found.linking[:others])
-
-
-def _distances(curve: Curve, point: FloatArray) -> FloatArray:
-    """Distance of each edge from a point."""
-    start, edge = curve.vertices[curve.mesh.tails], curve.edge_vectors
-    s = np.clip(np.einsum("ij,ij->i", point - start, edge) / curve.edge_lengths**2, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(start + s[:, None] * edge - point, axis=1))
 
 
 def _crossing(curve: Curve, edge: np.intp, ball: Ball) -> FloatArray:

@@ -106,7 +106,10 @@ def _lifted(points: FloatArray, at: FloatArray, lift: FloatArray, nearest: float
     closed = np.concatenate([points, points[:1]])
     arc = arc_lengths(closed)
     marks = np.interp(at, np.arange(len(closed)), arc)
-    places = _vertices(arc, marks, nearest)
+    places = _with(marks, arc[:-1], nearest, arc[-1])
+    for a, b in pairwise([*marks, marks[0] + arc[-1]] if len(marks) else [0.0, arc[-1]]):
+        ramp = np.linspace(a, b, _RAMP, endpoint=False)[1:]
+        places = _with(places, ramp % arc[-1], 0.5 * (ramp[1] - ramp[0]), arc[-1])
     plane = [np.interp(places, arc, x) for x in closed.T]
     if not len(marks):
         return np.column_stack([*plane, np.zeros(len(places))])
@@ -115,17 +118,6 @@ def _lifted(points: FloatArray, at: FloatArray, lift: FloatArray, nearest: float
     u = (places - ends[k]) / (ends[k + 1] - ends[k])
     low, high = np.take(lift, k - 1, mode="wrap"), np.take(lift, k, mode="wrap")
     return np.column_stack([*plane, low + (high - low) * u * u * (3.0 - 2.0 * u)])
-
-
-def _vertices(arc: FloatArray, marks: FloatArray, nearest: float) -> FloatArray:
-    """Where the lifted curve has vertices: at passes, at the drawing's vertices, and between them; sorted."""
-    length = arc[-1]
-    places = _with(marks, arc[:-1], nearest, length)
-    ends = np.append(marks, marks[0] + length) if len(marks) else np.array([0.0, length])
-    for a, b in pairwise(ends):
-        ramp = np.linspace(a, b, _RAMP, endpoint=False)[1:]
-        places = _with(places, ramp % length, 0.5 * (ramp[1] - ramp[0]), length)
-    return places
 
 
 def _with(places: FloatArray, more: FloatArray, nearest: float, length: float) -> FloatArray:

@@ -15,13 +15,13 @@ from ..types import FloatArray
 MAX_VERTICES = 400_000  # of any knot that is made: twice what any command takes
 _EDGE = 0.5  # default edge length in units of the gap between strands
 _DISTINCT = 2.0  # points are on different strands if they are this many times further apart along the curve
-_FINER = 4  # times as many vertices stand for the smooth curve
+_FINER = 4  # times as many vertices represent the smooth curve
 
 
 def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     """Inscribe a polygon with equal steps along the components of a smooth link, which is proved to be isotopic.
 
-    The given polygons have so many vertices that they stand for the smooth curves.  By default edges are shorter than
+    The given polygons have enough vertices to represent the smooth curves.  By default edges are shorter than
     strands are apart, and vertices ``least`` or more.  Raises CurveError if the curve meets itself, or as good as does,
     or the vertices are too few or too many.
     """
@@ -29,7 +29,10 @@ def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     if vertices is None:
         vertices = max(least, math.ceil(curve.length / (_EDGE * gap)) if gap > 0 else MAX_VERTICES + 1)
     sizes = shares(vertices, curve.component_lengths)
-    coarse, fine = (_resampled(curve, [factor * n for n in sizes]) for factor in (1, _FINER))
+    at = [(part, arc_steps(part), n) for part, n in zip(curve.components, sizes, strict=True)]
+    coarse, fine = (
+        Curve.from_components([_along(part, t, np.arange(k * n) / (k * n)) for part, t, n in at]) for k in (1, _FINER)
+    )
     if not is_isotopic(fine, equal_steps(fine), coarse, equal_steps(coarse)):
         raise too_few(vertices)
     return coarse
@@ -83,11 +86,6 @@ def arc_steps(points: FloatArray) -> FloatArray:
     """Parameters of the vertices of a closed polygon that are proportional to arc length; shape (n,)."""
     arc = arc_lengths(np.concatenate([points, points[:1]]))
     return np.asarray(arc[:-1] / arc[-1])
-
-
-def _resampled(curve: Curve, sizes: Sequence[int]) -> Curve:
-    parts = [_along(part, arc_steps(part), np.arange(n) / n) for part, n in zip(curve.components, sizes, strict=True)]
-    return Curve.from_components(parts)
 
 
 def _along(points: FloatArray, at: FloatArray, t: FloatArray) -> FloatArray:

@@ -22,7 +22,7 @@ from ..diagrams import (
     simplified,
     views,
 )
-from ..errors import CurveError, counted
+from ..errors import counted
 from .catalogue import KNOTS_TO, LINKS_TO, Key, bracket_key, crossing_number, invariant_of, key, types_with
 
 _UNKNOT = re.compile(r"\b0_1\b")
@@ -141,14 +141,14 @@ def type_of_diagram(diagram: Diagram, effort: Effort = DEFAULT_EFFORT) -> KnotTy
 
 def _simplest(curve: Curve, count: int) -> Diagram:
     """The diagram with the fewest crossings of several views, or one that is simple enough."""
-    best: Diagram | None = None
-    for view in map(simplified, views(curve, count)):
-        best = view if best is None or view.crossings < best.crossings else best
-        if _is_enough(best):
-            return best
-    if best is None:
-        raise CurveError("strands are so near to each other that no view of the curve tells which one is in front")
-    return shuffled_down(best, _is_enough)
+    every = map(simplified, views(curve, count))
+    best = next(every)
+    while not _is_enough(best):
+        view = next(every, None)
+        if view is None:
+            return shuffled_down(best, _is_enough)
+        best = view if view.crossings < best.crossings else best
+    return best
 
 
 def _is_enough(diagram: Diagram) -> bool:

@@ -26,7 +26,7 @@ _WORDS = {**ALIASES, **ROLFSEN}
 
 
 class UnknownKnotError(MobiusFlowError):
-    """A name that is not known; the message says which part of it is wrong, or gives close names."""
+    """A name that is not known; the message says which part of it is wrong, or suggests close names."""
 
 
 def knot_names() -> list[str]:

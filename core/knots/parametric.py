@@ -14,7 +14,7 @@ from ..types import FloatArray
 from .inscribed import inscribed, strand_gap
 
 MAX_FREQUENCY = 40
-_SAMPLES = 160  # for each period of the fastest cosine: enough to stand for the smooth curve
+_SAMPLES = 160  # for each period of the fastest cosine: enough to represent the smooth curve
 _REACH = 2.1  # of the overhand knot's parameter: beyond it the curve is all but straight
 _FLATNESS = 0.1  # of its third coordinate, which grows with the fifth power
 _ENDS = 3.0  # length of its straight ends; longer ones would need more vertices for the same knot
@@ -55,7 +55,7 @@ def overhand(vertices: int | None = None) -> Curve:
     """Make the overhand knot, a trefoil that is cut open, with straight ends, of 120 vertices or so many.
 
     Shastri's polynomials (t³ − 3t, t⁴ − 4t², t⁵ − 10t), of which the last one is scaled down.  Raises CurveError for
-    fewer than 40 vertices, with which the arc might be another one.
+    fewer than 40 vertices, with which it might not be knotted so.
     """
     count = 120 if vertices is None else vertices
     if count < _LEAST:

@@ -113,7 +113,7 @@ class Tube:
         return room * self.reach
 
     def samples(self, length: float) -> int:
-        """Number of points that stand for a smooth curve of this length in the tube."""
+        """Number of points that resolve a smooth curve of this length in the tube."""
         return max(400, math.ceil(length / (0.05 * self.reach)))
 
     def points(self, t: FloatArray, u: FloatArray, v: FloatArray) -> FloatArray:

@@ -15,24 +15,14 @@ _LARGER = re.compile(r"(?P<kind>[kl]?)(?P<crossings>[1-9]\d?)_?(?P<sort>[an])_?0
 _OTHERWISE = 'give its code, such as "DT: [4 6 2]", "PD[X[1,5,2,4], ...]" or "Gauss: 1 -2 3 -1 2 -3"'
 
 
-def _sections() -> ConfigParser:
-    """The file, with names as they are written there."""
-    parser = ConfigParser(delimiters="=", interpolation=None)
-    parser.optionxform = str  # type: ignore[assignment,method-assign]
-    parser.read_string(FILE.read_text(encoding="utf-8"))
-    return parser
+_FILE = ConfigParser(delimiters="=", interpolation=None)
+_FILE.optionxform = str  # type: ignore[assignment,method-assign]  # names are as they are written there
+_FILE.read_string(FILE.read_text(encoding="utf-8"))
 
 
 def _word(letters: str) -> Word:
     return tuple(map(int, letters.split()))
 
-
-def _code(edges: str) -> tuple[PlanarCrossing, ...]:
-    numbers = iter(_word(edges))
-    return tuple(zip(numbers, numbers, numbers, numbers, strict=True))
-
-
-_FILE = _sections()
 
 KNOTS: Mapping[str, Word] = MappingProxyType({name: _word(letters) for name, letters in _FILE["braids"].items()})
 """Braid words of all prime knots to ten crossings and links to seven.
@@ -41,7 +31,7 @@ Handedness is the word's, positive letters being right-handed crossings: 3_1 is 
 """
 
 HARD_UNKNOTS: Mapping[str, tuple[PlanarCrossing, ...]] = MappingProxyType(
-    {name: _code(edges) for name, edges in _FILE["hard unknots"].items()}
+    {name: tuple(zip(*[iter(_word(edges))] * 4, strict=True)) for name, edges in _FILE["hard unknots"].items()}
 )
 """Planar diagram codes of famous unknots that are hard to untangle, from 10 to 141 crossings."""
 

@@ -35,7 +35,7 @@ read_pd, read_dt, read_gauss = (partial(_read, kind) for kind in ("pd", "dt", "g
 
 
 def read_tsv(source: Source) -> list[Polygon]:
-    """Polygons of coordinates, or of a crossing in each line: its four edges, and 1 or -1 for its sign if it is told.
+    """Polygons of coordinates, or of a crossing in each line: its four edges, and 1 or -1 for its sign if it is given.
 
     Raises CurveFileError naming the line.
     """
@@ -73,9 +73,7 @@ def _written(text_of: Callable[[Diagram], str], curve: Curve, stream: TextIO) ->
     check_closed(curve, "codes of diagrams")
     if curve.dimension != 3:
         raise CurveError(f"codes are of curves in space, not of dimension {curve.dimension}; use .json")
-    found = min(views(curve, _VIEWS), key=lambda diagram: diagram.crossings, default=None)
-    if found is None:
-        raise CurveError("strands are so near to each other that no view of the curve tells which one is in front")
+    found = min(views(curve, _VIEWS), key=lambda diagram: diagram.crossings)
     stream.write(text_of(found) + "\n")
 
 

@@ -117,7 +117,7 @@ def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream:
 
 @checked
 def read_curve(path: str | os.PathLike[str]) -> Curve:
-    """Read polygons, closed or open, from a file; the suffix tells the format (see :data:`FORMATS`).
+    """Read polygons, closed or open, from a file; the suffix determines the format (see :data:`FORMATS`).
 
     The order of components and vertices is kept. A vertex at a component's end that repeats its first vertex is
     dropped, with a note in the log.  Raises CurveFileError if the file cannot be read or is not what its suffix says;
@@ -128,7 +128,7 @@ def read_curve(path: str | os.PathLike[str]) -> Curve:
 
 @checked
 def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None = None) -> None:
-    """Write polygons to a file; the suffix tells the format (see :data:`FORMATS`) unless one is given.
+    """Write polygons to a file; the suffix determines the format (see :data:`FORMATS`) unless one is given.
 
     Coordinates are written with all their digits: reading the file gives the same doubles. The file appears whole or
     not at all.  Raises CurveFileError if the suffix is unknown, the format cannot hold the curve, or the file cannot be
@@ -146,7 +146,7 @@ def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None 
 
 
 def format_of(path: Path) -> Format:
-    """The format that a suffix tells; a CurveFileError lists the known ones."""
+    """The format of a suffix; a CurveFileError lists the known ones."""
     try:
         return FORMATS[path.suffix.lower()]
     except KeyError:

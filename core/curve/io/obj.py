@@ -54,7 +54,11 @@ def read(source: Source) -> list[Polygon]:
     content = parsed(source)
     if content.faces:
         _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, len(content.faces))
-    return [_polygon(content, *chain) for chain in _all_chains(source, content)]
+    points, lines = content.points, content.lines
+    return [
+        Polygon([points[i] for i in chain], [lines[i] for i in chain].__getitem__, closed, chain)
+        for chain, closed in _all_chains(source, content)
+    ]
 
 
 def parsed(source: Source) -> Content:
@@ -82,10 +86,6 @@ def index_of(source: Source, argument: str, line: int, known: int) -> int:
     if index == 0 or index < -known:
         raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)
     return index - 1 if index > 0 else known + index
-
-
-def _polygon(content: Content, vertices: list[int], closed: bool) -> Polygon:
-    return Polygon([content.points[i] for i in vertices], lambda i: content.lines[vertices[i]], closed, vertices)
 
 
 def _all_chains(source: Source, content: Content) -> list[tuple[list[int], bool]]:
@@ -137,7 +137,7 @@ def _take(source: Source, content: Content, words: list[str], line: int) -> None
 
 
 def _chains(source: Source, links: Sequence[Link]) -> list[tuple[list[int], bool]]:
-    """Join edges into chains of vertices, and tell whether each is closed.
+    """Chains of vertices joined by edges, and whether each is closed.
 
     Each closed chain starts at its smallest index and follows the direction of the edges there, so a file that lists
     its polygon in order keeps that order. An open chain starts at the end with the smaller index.

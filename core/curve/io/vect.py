@@ -72,7 +72,12 @@ def read(source: Source) -> list[Polygon]:
         if size == 0:
             raise words.error(f"polyline {k} has no vertices; leave it out")
     words.demand(3 * vertices, "coordinates")
-    polygons = [_polygon(words, abs(size), closed=size < 0) for size in sizes]
+    polygons = []
+    for size in sizes:
+        lines = [line for _, line in words.words[words.position : words.position + 3 * abs(size) : 3]]
+        values = words.numbers(3 * abs(size))
+        points = list(zip(values[::3], values[1::3], values[2::3], strict=True))
+        polygons.append(Polygon(points, lines.__getitem__, closed=size < 0))
     words.demand(4 * colours, "colour values")
     words.numbers(4 * colours)
     if words.left:
@@ -88,13 +93,6 @@ def _check_magic(words: _Words) -> None:
         raise words.error(f"a VECT file starts with the word VECT, not {shown(magic)}")
     if words.left and words.words[1][0] == "BINARY":
         raise words.error("binary VECT is not read; write it as text")
-
-
-def _polygon(words: _Words, size: int, closed: bool) -> Polygon:
-    first = words.position
-    values = words.numbers(3 * size)
-    points = list(zip(values[::3], values[1::3], values[2::3], strict=True))
-    return Polygon(points, lambda i: words.words[first + 3 * i][1], closed)
 
 
 def write(curve: Curve, stream: TextIO) -> None:

@@ -62,7 +62,7 @@ def test_strands_that_nearly_touch_are_told_apart():
 
 def test_curves_that_touch_themselves_have_none():
     once = knot("3_1").vertices
-    with pytest.raises(CurveError, match="the curve touches itself"):
+    with pytest.raises(CurveError, match="no view of the curve shows which one is in front"):
         quick_invariants(Curve(np.concatenate([once, once])))
 
 
