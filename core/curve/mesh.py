@@ -175,10 +175,6 @@ class Mesh:
         """Sparse matrix of midpoint values, (U(I↑) + U(I↓))/2; shape (edges, n)."""
         return self._incidence(0.5, 0.5)
 
-    def interpolation(self, t: float) -> sp.csr_array:
-        """Sparse matrix of the values at parameter ``t`` of each edge, (1−t) U(I↓) + t U(I↑)."""
-        return self._incidence(1.0 - t, t)
-
     def _incidence(self, tail: float, head: float) -> sp.csr_array:
         edges = np.arange(self.edges)
         return sp.csr_array(

@@ -59,7 +59,8 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     if vertices is not None:
         edges = vertices - len(curve.mesh.ends)
         return subdivide(curve, apportion(curve.edge_lengths / spacing, edges))
-    most = min(max(2 * len(curve), MAX_PER_COMPONENT * _sharers(curve)), MAX_ALTOGETHER)
+    components = len(curve.mesh.component_sizes)
+    most = min(max(2 * len(curve), MAX_PER_COMPONENT * min(COMPONENTS, components)), MAX_ALTOGETHER)
     return subdivide(curve, affordable_pieces(curve, spacing, most))
 
 
@@ -95,7 +96,8 @@ def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
 
     Gaps that allow edges longer than that, or than the longest there is, do not matter and are not looked for.
     """
-    base = curve.length / (resolution.vertices or DEFAULT_VERTICES * _sharers(curve))
+    sharers = min(COMPONENTS, len(curve.mesh.component_sizes))
+    base = curve.length / (resolution.vertices or DEFAULT_VERTICES * sharers)
     pieces = np.ceil(SAMPLES_PER_SPACING * curve.edge_lengths / base).astype(np.intp)
     samples = subdivide(curve, pieces)
     spacing = np.full(curve.mesh.edges, base)
@@ -161,10 +163,6 @@ def _feet(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
         found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
     (after, ahead), (before, behind) = found
     return np.where(after < before, ahead, behind)
-
-
-def _sharers(curve: Curve) -> int:
-    return min(COMPONENTS, len(curve.mesh.component_sizes))
 
 
 def affordable_pieces(curve: Curve, spacing: FloatArray, most: int) -> IntArray:

@@ -14,7 +14,7 @@ crosses nothing.
 
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from itertools import islice
 from types import MappingProxyType
 from typing import NamedTuple
@@ -173,34 +173,30 @@ def _gauss(text: str) -> Diagram:
     between = r"\s*[/|;]\s*" if any(bracket in text for bracket in _BRACKETS) else r"\s*[/|;]\s*|\s*\n\s*"
     parts = components(nested(text, between))  # within brackets lines may end anywhere
     check_count(sum(map(len, parts)) // 2)
-    if not any(isinstance(each, str) for part in parts for each in part):
-        return realized(_numbered([[(abs(int(number)), int(number) > 0) for number in part] for part in parts])[0])
-    passes: list[list[Pass]] = []
+    signed = any(isinstance(each, str) for part in parts for each in part)
+    number: dict[int, int] = {}  # from 0, of each crossing
+    levels: dict[int, list[bool]] = {}
     signs: dict[int, int] = {}
+    passes: list[list[Pass]] = []
     for part in parts:
         passes.append([])
         for each in part:
-            if isinstance(each, int):
+            if isinstance(each, str):
+                crossing, over, sign = int(each[1:-1]), each[0] == "O", 1 if each[-1] == "+" else -1
+            elif signed:
                 raise CurveError(f"{each} is no part of a Gauss code with signs, such as O1+U2+O3+U1+O2+U3+")
-            crossing, sign = int(each[1:-1]), 1 if each[-1] == "+" else -1
+            else:
+                crossing, over, sign = abs(each), each > 0, 1
             if signs.setdefault(crossing, sign) != sign:
                 raise CurveError(f"crossing {crossing} of the Gauss code has both signs")
-            passes[-1].append((crossing, each[0] == "O"))
-    numbered, old = _numbered(passes)
-    diagram = Diagram(numbered, tuple(signs[crossing] for crossing in old))
-    return _in_the_plane(diagram, "the Gauss code with these signs")
-
-
-def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[tuple[tuple[Pass, ...], ...], list[int]]:
-    """Passes with crossings numbered from 0, and the numbers that they had; each must be passed above and below."""
-    levels: dict[int, list[bool]] = {}
-    for old, over in (each for part in parts for each in part):
-        levels.setdefault(old, []).append(over)
-    for old, found in levels.items():
+            levels.setdefault(crossing, []).append(over)
+            passes[-1].append((number.setdefault(crossing, len(number)), over))
+    for crossing, found in levels.items():
         if sorted(found) != [False, True]:
-            raise CurveError(f"crossing {old} of the Gauss code must be there once above (positive) and once below")
-    number = {old: k for k, old in enumerate(levels)}
-    return tuple(tuple((number[old], over) for old, over in part) for part in parts), list(number)
+            raise CurveError(f"crossing {crossing} of the Gauss code must occur once above (positive) and once below")
+    if not signed:
+        return realized(passes)
+    return _in_the_plane(Diagram(tuple(map(tuple, passes)), tuple(signs.values())), "the Gauss code with these signs")
 
 
 def planar_text(diagram: Diagram) -> str:

@@ -18,7 +18,7 @@ from ..diagrams import Diagram, PlanarCrossing, diagram_of
 from ..diagrams.codes import diagram_from_code
 from ..diagrams.simplify import without_nugatory
 from ..errors import CurveError
-from ..types import FloatArray, IntArray
+from ..types import FloatArray
 from .inscribed import MAX_VERTICES
 
 _ROUNDS = 4  # in which weights grow with the square roots of lengths; with many more some lines collapse
@@ -108,24 +108,14 @@ def _drawing(piece: Diagram) -> tuple[FloatArray, FloatArray]:
     angles = -2 * np.pi * np.arange(len(outer)) / len(outer)  # the outer face is on its left
     points = np.zeros((3 * count + len(inner), 2))
     points[outer] = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    inside = np.ones(len(points), dtype=bool)
+    inside[outer] = False
     weights = np.ones(len(tails))
     for _ in range(_ROUNDS):
-        points = _balanced(points, outer, tails, heads, weights)
+        ends = np.r_[tails, heads], np.r_[heads, tails]
+        adjacency = sp.coo_array((np.r_[weights, weights], ends), shape=(len(points), len(points)))
+        rows = (sp.diags_array(adjacency.sum(axis=1)) - adjacency).tocsc()[inside]  # of the Laplacian
+        points[inside] = spsolve(rows[:, inside], -rows[:, ~inside] @ points[~inside])
         lengths = np.linalg.norm(points[tails] - points[heads], axis=1)
         weights *= np.sqrt(lengths / lengths.mean())
     return points[:count], points[[node[edge] for edge in range(2 * count)]]
-
-
-def _balanced(
-    points: FloatArray, fixed: list[int], tails: IntArray, heads: IntArray, weights: FloatArray
-) -> FloatArray:
-    """Put every node that is not fixed into the weighted mean of its neighbours along lines."""
-    adjacency = sp.coo_array(
-        (np.r_[weights, weights], (np.r_[tails, heads], np.r_[heads, tails])), shape=(len(points), len(points))
-    )
-    laplacian = (sp.diags_array(adjacency.sum(axis=1)) - adjacency).tocsc()
-    free = np.ones(len(points), dtype=bool)
-    free[fixed] = False
-    rows, placed = laplacian[free], points.copy()
-    placed[free] = spsolve(rows[:, free], -rows[:, ~free] @ points[~free])
-    return placed

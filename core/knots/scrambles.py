@@ -80,26 +80,19 @@ class Polygons(NamedTuple):
 
     def can_move(self, vertex: int, position: FloatArray) -> bool:
         """Whether the straight move of a vertex keeps its edges away from all others, and from the next ones open."""
-        a, b = self.before[vertex], self.after[vertex]
-        return all(
-            self._opens(vertex, pivot, position, beyond) and self._free(vertex, pivot, position)
-            for pivot, beyond in ((a, self.before[a]), (b, self.after[b]))
-        )
-
-    def _opens(self, vertex: int, pivot: int, position: FloatArray, beyond: int) -> bool:
-        """Whether the edge that turns about ``pivot`` stays away from the next edge there."""
-        here = self.points[pivot]
-        sector = self.points[vertex] - here, position - here
-        return angle_to_sector(self.points[beyond] - here, *sector) >= self.least_angle
-
-    def _free(self, vertex: int, pivot: int, position: FloatArray) -> bool:
-        """Whether the triangle swept by the edge from ``pivot`` to the vertex is free of edges beyond both."""
-        triangle = np.stack([self.points[pivot], self.points[vertex], position])
+        old, a, b = self.points[vertex], self.before[vertex], self.after[vertex]
         tails, heads = self.points, self.points[self.after]
-        low, high = triangle.min(axis=0) - self.gap, triangle.max(axis=0) + self.gap
-        near = ((np.minimum(tails, heads) <= high) & (np.maximum(tails, heads) >= low)).all(axis=1)
-        near[[vertex, self.before[vertex], pivot, self.before[pivot]]] = False
-        return not near.any() or bool(triangle_distances(triangle, tails[near], heads[near]).min() >= self.gap)
+        for pivot, beyond in ((a, self.before[a]), (b, self.after[b])):
+            here = self.points[pivot]
+            if angle_to_sector(self.points[beyond] - here, old - here, position - here) < self.least_angle:
+                return False
+            triangle = np.stack([here, old, position])  # swept by the edge from the pivot to the vertex
+            low, high = triangle.min(axis=0) - self.gap, triangle.max(axis=0) + self.gap
+            near = ((np.minimum(tails, heads) <= high) & (np.maximum(tails, heads) >= low)).all(axis=1)
+            near[[vertex, a, pivot, self.before[pivot]]] = False
+            if near.any() and triangle_distances(triangle, tails[near], heads[near]).min() < self.gap:
+                return False
+        return True
 
 
 def triangle_distances(triangle: FloatArray, tails: FloatArray, heads: FloatArray) -> FloatArray:
