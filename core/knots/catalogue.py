@@ -68,7 +68,7 @@ def _sums(primes: list[tuple[str, Laurent]]) -> Iterator[tuple[str, Laurent]]:
     primes = [each for each in primes if 0 < crossing_number(each[0]) <= KNOTS_TO - 2]
     shorter: list[tuple[str, Laurent, int]] = [(*each, k) for k, each in enumerate(primes)]
     while shorter:
-        longer = []
+        longer: list[tuple[str, Laurent, int]] = []
         for (name, bracket, last), (k, (factor, own)) in product(shorter, enumerate(primes)):
             joined = f"{name}#{factor}"
             if k >= last and crossing_number(joined) <= (LINKS_TO if _is_link(joined) else KNOTS_TO):

@@ -112,8 +112,8 @@ def _drawing(piece: Diagram) -> tuple[FloatArray, FloatArray]:
     inside[outer] = False
     weights = np.ones(len(tails))
     for _ in range(_ROUNDS):
-        ends = np.r_[tails, heads], np.r_[heads, tails]
-        adjacency = sp.coo_array((np.r_[weights, weights], ends), shape=(len(points), len(points)))
+        both_ways = np.r_[tails, heads], np.r_[heads, tails]
+        adjacency = sp.coo_array((np.r_[weights, weights], both_ways), shape=(len(points), len(points)))
         rows = (sp.diags_array(adjacency.sum(axis=1)) - adjacency).tocsc()[inside]  # of the Laplacian
         points[inside] = spsolve(rows[:, inside], -rows[:, ~inside] @ points[~inside])
         lengths = np.linalg.norm(points[tails] - points[heads], axis=1)

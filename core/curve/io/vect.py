@@ -54,8 +54,8 @@ class _Words:
 
 def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line."""
-    lines = enumerate(source.lines, start=1)
-    words = _Words(source, [(word, number) for number, line in lines for word in line.partition("#")[0].split()])
+    numbered = enumerate(source.lines, start=1)
+    words = _Words(source, [(word, number) for number, line in numbered for word in line.partition("#")[0].split()])
     if not words.left:
         raise source.error("the file has comments only")
     _check_magic(words)
