@@ -64,15 +64,25 @@ def doubled(diagram: Diagram) -> Diagram:
 
 
 def _bracket(diagram: Diagram) -> dict[int, int] | None:
+    """The sum over all smoothings by powers of A, 1 for a circle; None if too many edges are cut on the way."""
     code: list[Sequence[int]] = list(diagram.planar_code)
     loops = sum(not part for part in diagram.passes)
     if code:
         code[0] = (-1, *code[0][1:])  # cut open, the last loop counts 1, not −A² − A⁻²
     else:
         loops -= 1
-    found = _contracted(code)
-    for _ in range(loops if found is not None else 0):
-        found = times(found or {}, _LOOP)
+    starts = range(0, max(len(code), 1), 1 + len(code) ** 2 // _STARTS)
+    order, width = min((_order(code, start) for start in starts), key=lambda found: found[1])
+    if width > _MAX_WIDTH:
+        return None
+    bits = _BITS * len(code) + 2
+    states: dict[_State, int] = {frozenset(): 1}
+    for crossing in order:
+        states = _smoothed(states, crossing, bits)
+    (value,) = states.values()
+    found = {2 * k - _SHIFT * len(code): c for k, c in _unpacked(value, bits) if c}
+    for _ in range(loops):
+        found = times(found, _LOOP)
     return found
 
 
@@ -82,21 +92,6 @@ def times(a: Laurent, b: Laurent) -> dict[int, int]:
     for (i, x), (j, y) in product(a.items(), b.items()):
         found[i + j] = found.get(i + j, 0) + x * y
     return {power: c for power, c in found.items() if c}
-
-
-def _contracted(code: list[Sequence[int]]) -> dict[int, int] | None:
-    """The sum over all smoothings by powers of A; None if too many edges are cut on the way."""
-    bits = _BITS * len(code) + 2
-    states: dict[_State, int] = {frozenset(): 1}
-    every = 1 + len(code) ** 2 // _STARTS
-    starts = range(0, max(len(code), 1), every)
-    order, width = min((_order(code, start) for start in starts), key=lambda found: found[1])
-    if width > _MAX_WIDTH:
-        return None
-    for crossing in order:
-        states = _smoothed(states, crossing, bits)
-    (value,) = states.values()
-    return {2 * k - _SHIFT * len(code): c for k, c in _unpacked(value, bits) if c}
 
 
 def _order(code: Sequence[Sequence[int]], start: int) -> tuple[list[Sequence[int]], int]:

@@ -53,8 +53,8 @@ def _values(knot: Diagram) -> tuple[int, ...]:
     """Values of the Alexander polynomial of one component, one after the other: matrices may be large."""
     if knot.crossings < 3:
         return TRIVIAL
-    found = (alexander_values(knot, np.array([FIELD.root_of_unity(q)]), FIELD)[0] for q in _ORDERS)
-    return tuple(_smallest_associate(int(value), q) for value, q in zip(found, _ORDERS, strict=True))
+    found = [int(alexander_values(knot, np.array([FIELD.root_of_unity(q)]), FIELD)[0]) for q in _ORDERS]
+    return tuple(map(_smallest_associate, found, _ORDERS))
 
 
 def _smallest_associate(value: int, q: int) -> int:

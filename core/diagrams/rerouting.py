@@ -90,14 +90,9 @@ def rerouted(diagram: Diagram, strand: Strand, route: Sequence[int]) -> Diagram:
     new = range(diagram.crossings, diagram.crossings + len(route))
     after: dict[int, list[Pass]] = {dart // 2: [(c, not strand.over)] for c, dart in zip(new, route, strict=True)}
     after[strand.first] = [(c, strand.over) for c in new]
-    passes: list[tuple[Pass, ...]] = []
-    i = 0
-    for part in diagram.passes:
-        rest: list[Pass] = []
-        for each in part:
-            rest += [each, *after.get(i, [])]
-            i += 1
-        passes.append(tuple(rest))
+    passes: list[list[Pass]] = [[] for _ in diagram.passes]
+    for i, each in enumerate(diagram.sequence):
+        passes[diagram.component[i]] += [each, *after.get(i, [])]
     # A strand that crosses over another one from its left is the upper strand of a positive crossing.
     signs = (1 if (dart % 2 == 0) == strand.over else -1 for dart in route)
-    return Diagram(tuple(passes), (*diagram.signs, *signs)).without(gone)
+    return Diagram(tuple(map(tuple, passes)), (*diagram.signs, *signs)).without(gone)

@@ -58,7 +58,7 @@ def _by_bracket() -> Mapping[Key, list[str]]:
         if name not in AMPHICHEIRAL:
             primes.append((f"m{name}", {-power: c for power, c in bracket.items()}))
     every = [*primes, *_sums(primes)]
-    for name, bracket in sorted(every, key=lambda each: (crossing_number(each[0]), _is_link(each[0]))):
+    for name, bracket in sorted(every, key=lambda each: (crossing_number(each[0]), "L" in each[0])):
         found[key(bracket)].append(name)
     return found
 
@@ -71,11 +71,7 @@ def _sums(primes: list[tuple[str, Laurent]]) -> Iterator[tuple[str, Laurent]]:
         longer: list[tuple[str, Laurent, int]] = []
         for (name, bracket, last), (k, (factor, own)) in product(shorter, enumerate(primes)):
             joined = f"{name}#{factor}"
-            if k >= last and crossing_number(joined) <= (LINKS_TO if _is_link(joined) else KNOTS_TO):
+            if k >= last and crossing_number(joined) <= (LINKS_TO if "L" in joined else KNOTS_TO):
                 longer.append((joined, times(bracket, own), k))
         yield from ((name, bracket) for name, bracket, _ in longer)
         shorter = longer
-
-
-def _is_link(name: str) -> bool:
-    return "L" in name

@@ -181,14 +181,10 @@ def _crossing(curve: Curve, edge: np.intp, ball: Ball) -> FloatArray:
 
 def _part(curve: Curve, chosen: BoolArray, begin: int, closing: FloatArray) -> Curve:
     """The arc of chosen vertices that begins at one of them, closed up, and then whole components that are chosen."""
-    parts: list[FloatArray] = []
-    for k, part in enumerate(curve.mesh.slices):
-        if k == curve.mesh.component[begin]:
-            ring = np.roll(np.arange(part.start, part.stop), part.start - begin)
-            parts.insert(0, np.concatenate([curve.vertices[ring[chosen[ring]]], closing]))
-        elif chosen[part].all():
-            parts.append(curve.vertices[part])
-    return Curve.from_components(parts)
+    own = curve.mesh.slices[curve.mesh.component[begin]]
+    ring = np.roll(np.arange(own.start, own.stop), own.start - begin)
+    whole = [curve.vertices[part] for part in curve.mesh.slices if part != own and chosen[part].all()]
+    return Curve.from_components([np.concatenate([curve.vertices[ring[chosen[ring]]], closing]), *whole])
 
 
 def _around(ball: Ball, a: FloatArray, b: FloatArray) -> FloatArray:
