@@ -16,8 +16,8 @@ from functools import partial
 from hard_curves import hard_unknot, lattice_knot, lattice_unknot, rope, spiral, uneven
 from mobius_flow.cli import options as relax_options
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Status, minimize
+from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, scramble, torus_knot
-from mobius_flow.core.knots.alexander import signature
 
 CIRCLE = 4.02  # energy below which an unknot counts as a circle
 
@@ -71,7 +71,7 @@ def row(name: str, curve: Curve, options: RelaxOptions, width: int) -> bool:
     result = minimize(curve, options)
     if result.status is Status.INTERRUPTED:  # an interrupt ends the bench, not only the curve at hand
         raise KeyboardInterrupt
-    before, after = signature(curve), signature(result.curve)
+    before, after = quick_invariants(curve), quick_invariants(result.curve)
     is_knot = len(curve.mesh.component_sizes) == 1
     kind = "CHANGED" if before != after else "unknot" if after.is_trivial and is_knot else "kept"
     print(

@@ -7,7 +7,7 @@ from .arguments import check_known, checked
 from .collision import check_embedded, check_gap, minimal_gap
 from .collision.gap import thickness
 from .curve import Curve
-from .curve.writhe import writhe_and_crossings
+from .curve.measures import writhe_and_crossings
 from .descent import Point
 from .driver import RelaxOptions
 from .driver.interventions.saddle import stability
@@ -93,7 +93,7 @@ class Info:
     thickness
         See :func:`~mobius_flow.core.collision.gap.thickness`.
     writhe, average_crossing_number
-        See :func:`~mobius_flow.core.curve.writhe.writhe_and_crossings`.
+        See :func:`~mobius_flow.core.curve.measures.writhe_and_crossings`.
     gap
         Least distance of edges that are no neighbours; infinite for a triangle.
     """

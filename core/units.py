@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .curve import Curve
-from .curve.places import at_vertices
+from .curve import Curve, at_vertices
 from .errors import CurveError
 from .messages import VERTEX, Message
 from .obstacle import Obstacle

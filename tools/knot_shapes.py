@@ -12,14 +12,15 @@ minutes of processor time in all; they are kept in build/knot_shapes, and those 
 
 import argparse
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
+from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.knots import KNOTS, knot
-from mobius_flow.core.knots.alexander import signature
 from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic, strand_gap
-from mobius_flow.core.knots.shapes import FILE, Shape, rounded, shapes, smooth_knot, store
+from mobius_flow.core.knots.shapes import FILE, QUANTUM, Shape, shapes, smooth_knot
 from mobius_flow.core.types import ComplexArray, FloatArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
@@ -46,9 +47,27 @@ def main() -> int:
     store({name: made[name] for name in KNOTS if name in made})
     shapes.cache_clear()
     for name in chosen:
-        if signature(smooth_knot(name)) != signature(knot(name)):
-            sys.exit(f"{name}: the stored shape has another signature")
+        if quick_invariants(smooth_knot(name)) != quick_invariants(knot(name)):
+            sys.exit(f"{name}: the stored shape has other invariants")
     return 0
+
+
+def rounded(given: Shape) -> Shape:
+    """A shape as it is stored: coefficients are multiples of the quantum."""
+    return Shape(tuple(QUANTUM * np.round(c / QUANTUM) for c in given.coefficients))
+
+
+def store(given: Mapping[str, Shape], path: Path = FILE) -> None:
+    """Write shapes, rounded."""
+    parts = [c for each in given.values() for c in each.coefficients]
+    values = np.concatenate(parts)
+    np.savez_compressed(
+        path,
+        names=np.array(list(given)),
+        components=np.array([len(each.coefficients) for each in given.values()], dtype=np.uint8),
+        modes=np.array([len(c) - 1 for c in parts], dtype=np.uint8),
+        coefficients=np.rint(np.stack([values.real, values.imag], axis=-1) / QUANTUM).astype(np.int16),
+    )
 
 
 def relaxed(name: str) -> Curve:

@@ -615,9 +615,9 @@ MUTANTS = (
     ),
     Mutant(
         "bigons of opposite strands",
-        "core/diagrams/reduction.py",
-        "self._next[x] == y or self._next[y] == x",
-        "self._next[x] == y",
+        "core/diagrams/simplify.py",
+        "(following[x] == y or following[y] == x)",
+        "following[x] == y",
         "tests/core/diagrams/test_moves.py::test_bigons_are_undone_whichever_way_their_strands_run",
     ),
     Mutant(
@@ -644,14 +644,14 @@ MUTANTS = (
     Mutant(
         "knots of eleven crossings by names of ten",
         "core/knots/knot_type.py",
-        "_DOUBLED_TO = 14",
-        "_DOUBLED_TO = 10",
+        "doubled: int = 14",
+        "doubled: int = 10",
         f"{KNOT_TYPE}::test_a_knot_beyond_the_table_is_not_called_by_the_name_of_one_with_its_polynomials",
     ),
     Mutant(
         "one name is proof enough",
         "core/knots/knot_type.py",
-        "(len(names) > 1 or knot.crossings > KNOTS_TO)",
+        "(len(names) > 1 or factor.crossings > KNOTS_TO)",
         "len(names) > 1",
         f"{KNOT_TYPE}::test_a_knot_beyond_the_table_is_not_called_by_the_name_of_one_with_its_polynomials",
     ),

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from ...core import Curve, CurveError, RelaxOptions, Status, Task, minimize
-from ...core.knots.alexander import TRIVIAL, signature
+from ...core.diagrams import quick_invariants
 from ...core.messages import Message
 
 CIRCLE = 4.0  # Möbius energy of the round circle, the least of any closed curve: Freedman, He and Wang (1994)
@@ -85,5 +85,5 @@ def target_of(curve: Curve | Task, options: RelaxOptions) -> Target | None:
     if len(closed) > 1:
         floor = CIRCLE * sum(closed)
         return Target(floor, Message("floor = {energy:g}", energy=floor))
-    knotted = len(curve) <= _MOST and signature(curve).alexander != (TRIVIAL,)
+    knotted = len(curve) <= _MOST and not quick_invariants(curve).is_trivial
     return None if knotted else Target(CIRCLE, Message("circle = {energy:g}", energy=CIRCLE))

@@ -7,7 +7,7 @@ import numpy as np
 from ...core import Curve, Obstacle
 from ...core.collision.clearance import clears
 from ...core.curve import Mesh
-from ...core.curve.strands import nearest_strands
+from ...core.curve.distances import nearest_strands
 from ...core.types import FloatArray
 from .placement import Frame
 

@@ -6,8 +6,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from ...core import Curve
-from ...core.curve.distances import arc_distance_of_vertices
-from ...core.curve.refine import STRAND_RATIO, TINY
+from ...core.curve.distances import STRAND_RATIO, TINY, arc_distance_of_vertices
 from ...core.energies.moebius import moebius_by_length
 from ...core.types import FloatArray, IntArray
 from .colours import of_components, ramp

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from mobius_flow.core import Curve
 from mobius_flow.core.knots import braid_word
-from mobius_flow.core.knots.braids import checked_word, columns, cycles, permutation
+from mobius_flow.core.knots.braids import checked_word, columns, cycles
 from mobius_flow.core.types import IntArray
 
 from .unknots import unknot_word
@@ -44,7 +44,7 @@ def lattice_closure(word: Sequence[int], *, strands: int | None = None) -> Curve
         crossings[column, left] = 1, over
         crossings[column, left + 1] = -1, not over
     components = []
-    for cycle in cycles(permutation(letters, count)):
+    for cycle in cycles(letters, count):
         path: list[_Corner] = []
         for place in cycle:
             path += _strand(crossings, width, place, count)

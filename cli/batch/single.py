@@ -11,7 +11,7 @@ from ...core import Curve, CurveError, MobiusFlowError, RelaxOptions, Result, Ta
 from ...core.collision import check_embedded
 from ...core.collision.gap import thickness
 from ...core.curve.io import FORMATS, CurveFile, load_curve
-from ...core.curve.writhe import writhe_and_crossings
+from ...core.curve.measures import writhe_and_crossings
 from ...core.errors import OutputError
 from ...core.extrapolation import extrapolated
 from ...core.info import PAIRS_UP_TO

@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..curve import Mesh
-from ..curve.ordering import component_order, z_order
+from ..curve.mesh import component_order, z_order
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 from .planes import UNDERFLOW

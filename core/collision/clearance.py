@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..curve import Curve
-from ..curve.places import at_edges
+from ..curve import Curve, at_edges
 from ..errors import CurveError
 from ..messages import Message
 from ..obstacle import Obstacle

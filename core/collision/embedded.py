@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..curve import Curve, Mesh
-from ..curve.places import at_edges, at_vertices
+from ..curve import Curve, Mesh, at_edges, at_vertices
 from ..errors import CurveError
 from ..messages import COMPONENT, EDGE, VERTEX, Message
 from ..types import BoolArray, FloatArray, IntArray

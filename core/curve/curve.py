@@ -1,4 +1,4 @@
-"""Polygons in R^m, closed or open: the one value that everything else takes and gives."""
+"""Polygons in R^m, closed or open: the value that everything else takes and returns."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arguments import is_list
-from ..errors import CurveError, counted
+from ..errors import CurveError, Place, counted
 from ..types import FloatArray, frozen, real
 from .mesh import Mesh
 
@@ -18,17 +18,9 @@ from .mesh import Mesh
 class Curve:
     """One or more polygons, closed or open: an immutable array of vertices and its connectivity.
 
-    Parameters
-    ----------
-    vertices
-        Positions P, shape (n, m) with m ≥ 2, in the user's units; copied and made read-only.
-    mesh
-        Connectivity; by default all vertices form one closed component.
-
-    Raises
-    ------
-    CurveError
-        If these are no numbers, the shape is wrong or a coordinate is not finite; the message names the vertex.
+    Vertices P, shape (n, m) with m ≥ 2, are in the user's units, copied and made read-only; by default all form one
+    closed component.  Raises CurveError if these are no numbers, the shape is wrong or a coordinate is not finite; the
+    message names the vertex.
     """
 
     vertices: FloatArray
@@ -126,6 +118,19 @@ def check_closed(curve: Curve, what: str) -> None:
     if not curve.mesh.all_closed:
         number = curve.mesh.closed.index(False) + 1
         raise CurveError(f"component {number} is open; {what} are for closed components")
+
+
+def at_vertices(curve: Curve, *vertices: int) -> Place:
+    """The place of some vertices, seen from the first."""
+    return Place(vertices, tuple(curve.vertices[vertices[0]].tolist()))
+
+
+def at_edges(curve: Curve, edges: tuple[int, ...], position: FloatArray | None = None) -> Place:
+    """The place of some edges, by their ends, seen from ``position``, (m,), or the middle of all."""
+    tails = list(edges)
+    where = curve.midpoints[tails].mean(axis=0) if position is None else position
+    ends = np.stack([curve.mesh.tails[tails], curve.mesh.heads[tails]], axis=1)
+    return Place(tuple(dict.fromkeys(ends.ravel().tolist())), tuple(where.tolist()))
 
 
 def _numbers(values: npt.ArrayLike, name: str) -> FloatArray:

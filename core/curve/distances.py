@@ -1,9 +1,14 @@
-"""Distances between points of a polygon, in space and along the curve."""
+"""Distances between points of a polygon, in space and along the curve, and between its strands."""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 from .curve import Curve
+
+STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
+CLOSING_IN = 0.6  # ratio below which strands close in on each other: four times nearer to a corner its sides do
+TINY = float(np.finfo(np.float64).tiny)  # against division by 0: far from the origin sample points may coincide
 
 
 def points_at(curve: Curve, t: float) -> FloatArray:
@@ -82,3 +87,79 @@ def _shorter_way(curve: Curve, c: IntArray, d: IntArray, gap: FloatArray) -> Flo
     lengths = np.add.reduceat(curve.edge_lengths, curve.mesh.edge_offsets[:-1])
     other_way = np.where(curve.mesh.closed, lengths, np.inf)[c] - gap
     return np.where(c == d, np.minimum(gap, other_way), np.inf)
+
+
+def nearest_strands(curve: Curve, ratio: float, furthest: float = np.inf) -> float:
+    """Least distance between vertices of different strands, inf if it is more than ``furthest``.
+
+    Two vertices lie on different strands if they are more than ``ratio`` times further apart along the curve than in
+    space, or on different components.  The radius of search doubles until it finds some: all pairs within the furthest
+    would be too many where a long curve is tightly wound, as there the nearest strands are much nearer.
+    """
+    tree = cKDTree(curve.vertices)
+    furthest = min(furthest, float(np.linalg.norm(np.ptp(curve.vertices, axis=0))))
+    radius = curve.length / len(curve)
+    while True:
+        radius = min(2.0 * radius, furthest)
+        i, j = tree.query_pairs(radius, output_type="ndarray").T
+        distance = np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1)
+        distance = distance[arc_distance_of_vertices(curve, i, j) > ratio * distance]
+        if distance.size:
+            return float(distance.min())
+        if radius >= furthest:
+            return np.inf
+
+
+def strand_gaps(curve: Curve, radius: float) -> FloatArray:
+    """Distance from each vertex to the nearest one on another strand, inf beyond ``radius``; shape (n,)."""
+    tree = cKDTree(curve.vertices)
+    pairs = tree.query_pairs(radius, output_type="ndarray")
+    i, j = np.concatenate([pairs, pairs[:, ::-1]]).T  # seen from either end
+    distance = _distances(curve, i, j)
+    mesh = curve.mesh
+    passing = (distance <= _distances(curve, i, mesh.heads[mesh.outgoing[j]])) & (
+        distance <= _distances(curve, i, mesh.tails[mesh.incoming[j]])
+    )
+    passing &= arc_distance_of_vertices(curve, i, j) > STRAND_RATIO * distance
+    i, j, distance = i[passing], j[passing], distance[passing]
+    strands = ~_sides_of_corners(curve, i, j)
+    gaps = np.full(len(curve), np.inf)
+    np.minimum.at(gaps, i[strands], distance[strands])
+    return gaps
+
+
+def _distances(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1))
+
+
+def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
+    """Whether the curve between vertices ``i`` and the strands that pass them at vertices ``j`` is but a corner.
+
+    A corner, however sharp, looks the same at every scale: shorter edges do not bring neighbours nearer than its sides.
+    """
+    start, end = vertex_positions(curve)[i], _feet(curve, i, j)
+    component = curve.mesh.component[i]
+    closed, length = np.asarray(curve.mesh.closed)[component], curve.component_lengths[component]
+
+    def apart(arc: FloatArray, fraction: float) -> FloatArray:
+        """The distance of the ends of the arc's middle part."""
+        ends = [points_along(curve, component, start + 0.5 * (1.0 + s * fraction) * arc) for s in (-1, 1)]
+        return np.asarray(np.linalg.norm(ends[1] - ends[0], axis=1))
+
+    forward = np.where(closed, (end - start) % length, end - start)
+    other_way = np.where(closed, forward - length, forward)
+    closing = [apart(arc, 0.25) < CLOSING_IN * apart(arc, 1.0) for arc in (forward, other_way)]
+    return np.asarray((component == curve.mesh.component[j]) & (closing[0] | closing[1]))
+
+
+def _feet(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
+    """Arc length to the point nearest to vertex ``i`` on the edges that meet at vertex ``j``, elementwise."""
+    mesh, found, position = curve.mesh, [], vertex_positions(curve)[j]
+    for edge in (mesh.outgoing[j], mesh.incoming[j]):
+        e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
+        base = position - np.where(mesh.tails[edge] == j, 0.0, ell)
+        chord = curve.vertices[i] - curve.vertices[mesh.tails[edge]]
+        t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
+        found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
+    (after, ahead), (before, behind) = found
+    return np.where(after < before, ahead, behind)

@@ -22,20 +22,8 @@ class Mesh:
     """Connectivity of one or more polygons, closed or open, sharing one array of vertices.
 
     Edge I runs from vertex ``tails[I]`` to vertex ``heads[I]``; vertices of one component are consecutive, and so are
-    its edges.  A closed component has as many edges as vertices, an open one (an arc) one less.
-
-    Parameters
-    ----------
-    component_sizes
-        Number of vertices of every component, each at least 3, or 2 where it is open.
-    closed
-        Whether each component is closed; by default all are.
-
-    Raises
-    ------
-    CurveError
-        If these are no whole numbers, there is no component, one has too few vertices, or ``closed`` does not tell of
-        every component.
+    its edges.  A closed component has at least 3 vertices and as many edges, an open one (an arc) at least 2 and one
+    edge less; by default all are closed.  Raises CurveError for other sizes, or flags of another number.
     """
 
     component_sizes: tuple[int, ...]
@@ -187,10 +175,6 @@ class Mesh:
         """Sparse matrix of midpoint values, (U(I↑) + U(I↓))/2; shape (edges, n)."""
         return self._incidence(0.5, 0.5)
 
-    def interpolation(self, t: float) -> sp.csr_array:
-        """Sparse matrix of the values at parameter ``t`` of each edge, (1−t) U(I↓) + t U(I↑)."""
-        return self._incidence(1.0 - t, t)
-
     def _incidence(self, tail: float, head: float) -> sp.csr_array:
         edges = np.arange(self.edges)
         return sp.csr_array(
@@ -232,6 +216,28 @@ class Mesh:
         placed[...] = elsewhere
         placed[self.tails] = values
         return placed
+
+
+def component_order(mesh: Mesh, points: FloatArray) -> IntArray:
+    """Edges in curve order, the components sorted along a Z-curve through their centers; shapes (m, n) -> (edges,)."""
+    if len(mesh.component_sizes) < 3:
+        return np.arange(mesh.edges)
+    starts = mesh.offsets[:-1]
+    centers = 0.5 * (np.minimum.reduceat(points, starts, axis=1) + np.maximum.reduceat(points, starts, axis=1))
+    rank = np.empty(len(starts), dtype=np.intp)
+    rank[z_order(centers)] = np.arange(len(starts))
+    return np.argsort(rank[mesh.edge_component], kind="stable")
+
+
+def z_order(points: FloatArray) -> IntArray:
+    """Points along a Z-curve through a grid of 1024 cells in every direction; shapes (m, k) -> (k,)."""
+    low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
+    cells = ((points - low) / np.maximum(high - low, np.finfo(np.float64).tiny) * 1023).astype(np.int64)
+    code = np.zeros(points.shape[1], dtype=np.int64)
+    for bit in range(10):
+        for axis, cell in enumerate(cells):
+            code |= ((cell >> bit) & 1) << (len(cells) * bit + axis)
+    return np.argsort(code, kind="stable")
 
 
 def _flags(closed: Any, components: int) -> tuple[bool, ...]:

@@ -18,16 +18,9 @@ NOWHERE: IntArray = frozen(np.empty(0, dtype=np.intp))
 
 @dataclass(frozen=True, eq=False)
 class Pins:
-    """Vertices that are held at their very coordinates.
+    """Vertices, ascending, that are held at their very coordinates, shape (k, m), in the user's units.
 
     By these they are found on any other mesh of the curve: no two vertices of an embedded polygon are equal.
-
-    Parameters
-    ----------
-    vertices
-        Indices on the present mesh, ascending, shape (k,).
-    positions
-        Their coordinates in the user's units, shape (k, m).
     """
 
     vertices: IntArray = field(default_factory=lambda: NOWHERE)
@@ -104,19 +97,7 @@ def ends_of(mesh: Mesh, edges: IntArray) -> IntArray:
 
 
 class Span(NamedTuple):
-    """An arc between two different pins.
-
-    Attributes
-    ----------
-    edges
-        Of the arc, ascending; shape (k,).
-    ends
-        The two pins.
-    distance
-        That of the pins.
-    length
-        That of the arc.
-    """
+    """An arc between two different pins: its edges, ascending, the pins, their distance, and its length."""
 
     edges: IntArray
     ends: tuple[int, int]

@@ -10,24 +10,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..arguments import checked
 from ..errors import CurveOptionError
-from ..types import BoolArray, FloatArray, IntArray
+from ..types import FloatArray, IntArray
 from .curve import Curve
-from .distances import arc_distance_of_vertices, points_along, vertex_positions
+from .distances import strand_gaps
 from .mesh import Mesh
 
 DEFAULT_VERTICES = 200  # per component: enough for energies to a tenth of a per cent
-STRAND_RATIO = 2.0  # points are on different strands if their distance along the curve is this many times their gap
 # to begin with: where gaps ask for more, the barrier's exact energies do, and hard unknots become circles in a sixth of
 # the time; strands that are as near in the end get more then
 MAX_PER_COMPONENT = 1000  # unless the curve has half as many
 MAX_ALTOGETHER = 5000  # unless the curve has more
 COMPONENTS = 10  # that get so many each; more share what ten would have
-CLOSING_IN = 0.6  # ratio below which strands close in on each other: four times nearer to a corner its sides do
-TINY = float(np.finfo(np.float64).tiny)  # against division by 0: far from the origin sample points may coincide
 SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are measured
 
 
@@ -35,15 +31,9 @@ SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are
 class Resolution:
     """How long edges may be.
 
-    Attributes
-    ----------
-    vertices
-        How many there would be if no strands were near; None for 200 per component.
-    edges_per_gap
-        How many edges are to fit in between near strands.
-    clearance
-        How far obstacles are from each edge of a curve, both in the user's units; shape (edges,), or inf if there are
-        none.
+    ``vertices`` is how many there would be if no strands were near, None for 200 per component; ``edges_per_gap`` how
+    many edges fit in between near strands; ``clearance`` gives the distance of obstacles from each edge of a curve,
+    shape (edges,), or inf.
     """
 
     vertices: int | None = None
@@ -53,19 +43,9 @@ class Resolution:
 
 @checked
 def refine(curve: Curve, vertices: int | None = None) -> Curve:
-    """Subdivide edges until neighbours are nearer than strands, or to a given number of vertices.
+    """Subdivide edges of an embedded polygon until neighbours are nearer than strands, or to a number of vertices.
 
-    Parameters
-    ----------
-    curve
-        An embedded polygon.
-    vertices
-        Requested total number of vertices; None leaves it to the rule.
-
-    Raises
-    ------
-    CurveOptionError
-        If fewer vertices are requested than the curve has: corners are never cut.
+    Raises CurveOptionError if fewer vertices are requested than the curve has: corners are never cut.
     """
     if vertices is not None and vertices < len(curve):
         raise CurveOptionError(
@@ -75,7 +55,8 @@ def refine(curve: Curve, vertices: int | None = None) -> Curve:
     if vertices is not None:
         edges = vertices - len(curve.mesh.ends)
         return subdivide(curve, apportion(curve.edge_lengths / spacing, edges))
-    most = min(max(2 * len(curve), MAX_PER_COMPONENT * _sharers(curve)), MAX_ALTOGETHER)
+    components = len(curve.mesh.component_sizes)
+    most = min(max(2 * len(curve), MAX_PER_COMPONENT * min(COMPONENTS, components)), MAX_ALTOGETHER)
     return subdivide(curve, affordable_pieces(curve, spacing, most))
 
 
@@ -111,76 +92,18 @@ def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
 
     Gaps that allow edges longer than that, or than the longest there is, do not matter and are not looked for.
     """
-    base = curve.length / (resolution.vertices or DEFAULT_VERTICES * _sharers(curve))
+    sharers = min(COMPONENTS, len(curve.mesh.component_sizes))
+    base = curve.length / (resolution.vertices or DEFAULT_VERTICES * sharers)
     pieces = np.ceil(SAMPLES_PER_SPACING * curve.edge_lengths / base).astype(np.intp)
     samples = subdivide(curve, pieces)
     spacing = np.full(curve.mesh.edges, base)
     longest = min(base, float(curve.edge_lengths.max()))
-    allowed = _strand_gaps(samples, resolution.edges_per_gap * longest) / resolution.edges_per_gap
+    allowed = strand_gaps(samples, resolution.edges_per_gap * longest) / resolution.edges_per_gap
     allowed = np.maximum(allowed, np.finfo(np.float64).eps * base)  # rounded sample points may coincide
     near = allowed < np.inf
     edge = np.repeat(np.arange(curve.mesh.edges), pieces)[samples.mesh.outgoing]
     np.minimum.at(spacing, edge[near], allowed[near])
     return spacing
-
-
-def _strand_gaps(curve: Curve, radius: float) -> FloatArray:
-    """Distance from each vertex to the nearest one on another strand, inf beyond ``radius``; shape (n,)."""
-    tree = cKDTree(curve.vertices)
-    pairs = tree.query_pairs(radius, output_type="ndarray")
-    i, j = np.concatenate([pairs, pairs[:, ::-1]]).T  # seen from either end
-    distance = _distances(curve, i, j)
-    mesh = curve.mesh
-    passing = (distance <= _distances(curve, i, mesh.heads[mesh.outgoing[j]])) & (
-        distance <= _distances(curve, i, mesh.tails[mesh.incoming[j]])
-    )
-    passing &= arc_distance_of_vertices(curve, i, j) > STRAND_RATIO * distance
-    i, j, distance = i[passing], j[passing], distance[passing]
-    strands = ~_sides_of_corners(curve, i, j)
-    gaps = np.full(len(curve), np.inf)
-    np.minimum.at(gaps, i[strands], distance[strands])
-    return gaps
-
-
-def _distances(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
-    return np.asarray(np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1))
-
-
-def _sides_of_corners(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
-    """Whether the curve between vertices ``i`` and the strands that pass them at vertices ``j`` is but a corner.
-
-    A corner, however sharp, looks the same at every scale: shorter edges do not bring neighbours nearer than its sides.
-    """
-    start, end = vertex_positions(curve)[i], _feet(curve, i, j)
-    component = curve.mesh.component[i]
-    closed, length = np.asarray(curve.mesh.closed)[component], curve.component_lengths[component]
-
-    def apart(arc: FloatArray, fraction: float) -> FloatArray:
-        """The distance of the ends of the arc's middle part."""
-        ends = [points_along(curve, component, start + 0.5 * (1.0 + s * fraction) * arc) for s in (-1, 1)]
-        return np.asarray(np.linalg.norm(ends[1] - ends[0], axis=1))
-
-    forward = np.where(closed, (end - start) % length, end - start)
-    other_way = np.where(closed, forward - length, forward)
-    closing = [apart(arc, 0.25) < CLOSING_IN * apart(arc, 1.0) for arc in (forward, other_way)]
-    return np.asarray((component == curve.mesh.component[j]) & (closing[0] | closing[1]))
-
-
-def _feet(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
-    """Arc length to the point nearest to vertex ``i`` on the edges that meet at vertex ``j``, elementwise."""
-    mesh, found, position = curve.mesh, [], vertex_positions(curve)[j]
-    for edge in (mesh.outgoing[j], mesh.incoming[j]):
-        e, ell = curve.edge_vectors[edge], curve.edge_lengths[edge]
-        base = position - np.where(mesh.tails[edge] == j, 0.0, ell)
-        chord = curve.vertices[i] - curve.vertices[mesh.tails[edge]]
-        t = (np.einsum("km,km->k", chord, e) / np.maximum(ell**2, TINY)).clip(0.0, 1.0)
-        found.append((np.linalg.norm(chord - t[:, None] * e, axis=1), base + t * ell))
-    (after, ahead), (before, behind) = found
-    return np.where(after < before, ahead, behind)
-
-
-def _sharers(curve: Curve) -> int:
-    return min(COMPONENTS, len(curve.mesh.component_sizes))
 
 
 def affordable_pieces(curve: Curve, spacing: FloatArray, most: int) -> IntArray:

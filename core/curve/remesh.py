@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..types import BoolArray, FloatArray, IntArray
+from ..types import FloatArray, IntArray
 from .curve import Curve
 from .mesh import Mesh
 from .pins import NO_PINS, NOWHERE, Pins, arcs, holds
@@ -73,16 +73,9 @@ def onto_chords(curve: Curve, vertices: IntArray) -> FloatArray:
 class Remeshed:
     """A change of mesh.
 
-    Attributes
-    ----------
-    moved
-        The old polygon after its superfluous vertices have moved onto their chords.
-    curve
-        The new polygon: the same set of points as ``moved``, up to rounding.
-    lengths
-        Edge lengths wanted on the new mesh, adding up to the total of each arc between pins; shape (edges',).
-    pins
-        Those of the old mesh, on the new one.
+    ``moved`` is the old polygon after its superfluous vertices have moved onto their chords, and ``curve`` the new one:
+    the same set of points, up to rounding.  ``lengths``, shape (edges',), are wanted on the new mesh and add up to the
+    total of each arc between pins; ``pins`` are the old ones on it.
     """
 
     moved: Curve
@@ -98,7 +91,8 @@ def remesh(
     moved = curve.with_vertices(onto_chords(curve, removable))
     keep = np.ones(len(curve), dtype=bool)
     keep[removable] = False
-    coarse = _without(moved, keep)
+    sizes = tuple(int(np.count_nonzero(keep[part])) for part in curve.mesh.slices)
+    coarse = Curve(moved.vertices[keep], Mesh(sizes, curve.mesh.closed))
     wanted = spacing[keep[curve.mesh.tails]]
     pieces = np.where(coarse.edge_lengths > SPLIT * wanted, np.ceil(coarse.edge_lengths / wanted), 1.0)
     fine = subdivide(coarse, pieces.astype(np.intp))
@@ -110,11 +104,6 @@ def needs_remesh(curve: Curve, spacing: FloatArray, kept: IntArray = NOWHERE) ->
     """Whether an edge is too long for its neighbourhood, or a tenth of the vertices are superfluous."""
     too_long = bool((curve.edge_lengths > SPLIT * spacing).any())
     return too_long or len(superfluous(curve, spacing, kept)) > 0.1 * len(curve)
-
-
-def _without(curve: Curve, keep: BoolArray) -> Curve:
-    sizes = tuple(int(np.count_nonzero(keep[part])) for part in curve.mesh.slices)
-    return Curve(curve.vertices[keep], Mesh(sizes, curve.mesh.closed))
 
 
 def normalised(curve: Curve, spacing: FloatArray, pins: IntArray) -> FloatArray:

@@ -14,13 +14,9 @@ SAMPLES = 8  # points of a spline, for each vertex of its polygon, at which its 
 def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArray = NOWHERE) -> Curve:
     """The polygon with vertices at equal distances along the cubic splines through those of each component.
 
-    Parameters
-    ----------
-    mesh
-        Its numbers of vertices, for as many components as the curve has.
-    pins, places
-        Vertices of the curve, ascending, and which ones of the polygon they are; shape (k,).  Distances are equal from
-        one of them to the next; a closed component without any has its first vertex at the same place, arcs their ends.
+    ``mesh`` has its numbers of vertices.  Some vertices of the curve, ``pins``, ascending, become those at ``places``;
+    distances are equal from one of them to the next.  A closed component without any has its first vertex at the same
+    place, arcs their ends.
     """
     pieces = []
     for old, new, closed in zip(curve.mesh.slices, mesh.slices, mesh.closed, strict=True):
@@ -34,7 +30,7 @@ def smoothed(curve: Curve, mesh: Mesh, pins: IntArray = NOWHERE, places: IntArra
 
 def _resampled(points: FloatArray, closed: bool, size: int, pins: IntArray, places: IntArray) -> FloatArray:
     """Points on the spline, the given ones that are pins among them at their places; shape (size, m)."""
-    spline = periodic_spline(points) if closed else open_spline(points)
+    spline = cubic_spline(points, closed)
     parameter = sample_parameters(spline)
     arc = arc_lengths(spline(parameter))
     at, numbers = arc[SAMPLES * pins], places[0] + np.arange(size)
@@ -46,15 +42,10 @@ def _resampled(points: FloatArray, closed: bool, size: int, pins: IntArray, plac
     return np.asarray(spline(np.interp(wanted, arc, parameter)))
 
 
-def periodic_spline(points: FloatArray) -> CubicSpline:
-    """The periodic cubic spline through the vertices of a closed polygon, shape (n, m), by its arc length."""
-    closed = np.concatenate([points, points[:1]])
-    return CubicSpline(arc_lengths(closed), closed, bc_type="periodic")
-
-
-def open_spline(points: FloatArray) -> CubicSpline:
-    """The natural cubic spline through the vertices of an arc, shape (n, m), by its arc length."""
-    return CubicSpline(arc_lengths(points), points, bc_type="natural")
+def cubic_spline(points: FloatArray, closed: bool = True) -> CubicSpline:
+    """The cubic spline through the vertices of a polygon, shape (n, m), by its arc length; a natural one if open."""
+    points = np.concatenate([points, points[:1]]) if closed else points
+    return CubicSpline(arc_lengths(points), points, bc_type="periodic" if closed else "natural")
 
 
 def sample_parameters(spline: CubicSpline) -> FloatArray:

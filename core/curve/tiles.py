@@ -44,7 +44,11 @@ def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None) -> Iterator[T
     first = 0
     while first < n:
         last = min(n, first + max(1, ROWS_TIMES_COLUMNS // (n - first)))
-        excluded = _excluded(mesh, first, last)
+        rows = np.arange(first, last)
+        excluded = np.arange(first, n) <= rows[:, None]
+        for neighbour in (mesh.next[rows], mesh.previous[rows]):
+            inside = neighbour >= first
+            excluded[rows[inside] - first, neighbour[inside] - first] = True
         row, column = left_out[:, begins[first] : begins[last]] - first
         excluded[row, column] = True
         yield Tile(slice(first, last), slice(first, n), excluded)
@@ -63,13 +67,3 @@ def row_tiles(mesh: Mesh, rows: IntArray, without: EdgePairIndices | None = None
             row, pair = np.nonzero(own[:, None] == i)
             excluded[row, j[pair]] = True
         yield RowTile(own, slice(None), excluded)
-
-
-def _excluded(mesh: Mesh, first: int, last: int) -> BoolArray:
-    rows = np.arange(first, last)
-    columns = np.arange(first, mesh.edges)
-    excluded: BoolArray = columns[None, :] <= rows[:, None]
-    for neighbour in (mesh.next[rows], mesh.previous[rows]):
-        inside = neighbour >= first
-        excluded[rows[inside] - first, neighbour[inside] - first] = True
-    return excluded

@@ -34,7 +34,7 @@ def alexander(knot: Diagram) -> tuple[int, ...] | None:
     From det(A), A the matrix of the arcs' relations at the crossings without a row and a column (Alexander, *Trans.
     AMS* 30, 1928): each says (1 − t) a + t b − c = 0 for the upper arc a and the lower ones b, c on its two sides.
     Where |t| = 1 rows have at most the length √6, so that coefficients are at most √6ⁿ⁻¹ (Hadamard), and as many primes
-    are taken as tell these apart.
+    are taken as distinguish these.
     """
     if knot.crossings > MAX_CROSSINGS:
         return None
@@ -48,7 +48,7 @@ def alexander(knot: Diagram) -> tuple[int, ...] | None:
     return tuple(kept if sum(kept) > 0 else (-x for x in kept))
 
 
-def values(knot: Diagram, t: IntArray, field: Field) -> IntArray:
+def alexander_values(knot: Diagram, t: IntArray, field: Field) -> IntArray:
     """Values of the Alexander polynomial of a knot, each up to a unit ±tᵏ, modulo a prime; shape (len(t),)."""
     return _determinants(_matrices(knot, t, field.prime), field.prime)
 
@@ -58,7 +58,7 @@ def _coefficients(knot: Diagram, field: Field) -> IntArray:
     order, prime = 1 << knot.crossings.bit_length(), field.prime
     powers = np.array([pow(field.root_of_unity(order), k, prime) for k in range(order)], dtype=np.int64)
     exponents = np.outer(np.arange(order), -np.arange(order)) % order
-    transformed = (powers[exponents] * values(knot, powers, field) % prime).sum(axis=1)
+    transformed = (powers[exponents] * alexander_values(knot, powers, field) % prime).sum(axis=1)
     return np.asarray(transformed % prime * pow(order, -1, prime) % prime)
 
 
@@ -78,7 +78,7 @@ def _matrices(knot: Diagram, t: IntArray, prime: int) -> IntArray:
         arcs.append(arc)  # that on which the pass is, and that comes in below at a lower pass
         arc = (arc + (not over)) % count
     rows, sign = np.arange(count), np.array(knot.signs, dtype=np.intp)
-    lower, upper = np.array(arcs, dtype=np.intp)[np.array(knot.strands, dtype=np.intp).reshape(count, 2).T]
+    lower, upper = np.array(arcs, dtype=np.intp)[np.array(knot.levels, dtype=np.intp).reshape(count, 2).T]
     after = (lower + 1) % max(count, 1)
     found = np.zeros((len(t), count, count), dtype=np.int64)
     found[:, rows, upper] += 1 - t[:, None]

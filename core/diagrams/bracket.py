@@ -13,6 +13,7 @@ from .diagram import Diagram, Pass
 Laurent = Mapping[int, int]  # exponent to coefficient, which is not 0
 _State = frozenset[tuple[int, int]]  # both ends of every open arc, each with the other one
 
+_LOOP = {2: -1, -2: -1}  # −A² − A⁻²
 _MAX_WIDTH = 18  # edges cut at a time, of which there are up to 4862 pairings; doubles of small knots have 12 to 14
 _STARTS = 10_000  # every crossing is tried as the first one of a diagram whose number of crossings, squared, is below
 _BITS = 3  # by which coefficients may grow with a crossing: two smoothings, each with up to two loops −q − 1/q
@@ -43,7 +44,7 @@ def doubled_bracket(knot: Diagram) -> Laurent | None:
     found = _bracket(doubled(knot))
     if found is None:
         return None
-    both = _times_loop(found)
+    both = times(found, _LOOP)
     both[0] = both.get(0, 0) - 1
     return {power - 8 * knot.writhe: c for power, c in both.items() if c}
 
@@ -63,48 +64,38 @@ def doubled(diagram: Diagram) -> Diagram:
 
 
 def _bracket(diagram: Diagram) -> dict[int, int] | None:
+    """The sum over all smoothings by powers of A, 1 for a circle; None if too many edges are cut on the way."""
     code: list[Sequence[int]] = list(diagram.planar_code)
     loops = sum(not part for part in diagram.passes)
     if code:
         code[0] = (-1, *code[0][1:])  # cut open, the last loop counts 1, not −A² − A⁻²
     else:
         loops -= 1
-    found = _contracted(code)
-    for _ in range(loops if found is not None else 0):
-        found = _times_loop(found or {})
-    return found
-
-
-def _times_loop(polynomial: Laurent) -> dict[int, int]:
-    """Times −A² − A⁻²."""
-    found: dict[int, int] = {}
-    for power, c in polynomial.items():
-        for shifted in (power + 2, power - 2):
-            found[shifted] = found.get(shifted, 0) - c
-    return {power: c for power, c in found.items() if c}
-
-
-def _contracted(code: list[Sequence[int]]) -> dict[int, int] | None:
-    """The sum over all smoothings by powers of A; None if too many edges are cut on the way."""
-    bits = _BITS * len(code) + 2
-    states: dict[_State, int] = {frozenset(): 1}
-    order, width = _narrowest(code)
+    starts = range(0, max(len(code), 1), 1 + len(code) ** 2 // _STARTS)
+    order, width = min((_order(code, start) for start in starts), key=lambda found: found[1])
     if width > _MAX_WIDTH:
         return None
+    bits = _BITS * len(code) + 2
+    states: dict[_State, int] = {frozenset(): 1}
     for crossing in order:
         states = _smoothed(states, crossing, bits)
     (value,) = states.values()
-    return {2 * k - _SHIFT * len(code): c for k, c in _unpacked(value, bits) if c}
+    found = {2 * k - _SHIFT * len(code): c for k, c in _unpacked(value, bits) if c}
+    for _ in range(loops):
+        found = times(found, _LOOP)
+    return found
 
 
-def _narrowest(code: Sequence[Sequence[int]]) -> tuple[list[Sequence[int]], int]:
-    """The crossings in an order that cuts few edges at a time, and how many these are at most."""
-    every = 1 + len(code) ** 2 // _STARTS
-    return min((_order(code, start) for start in range(0, max(len(code), 1), every)), key=lambda found: found[1])
+def times(a: Laurent, b: Laurent) -> dict[int, int]:
+    """The product of two Laurent polynomials."""
+    found: dict[int, int] = {}
+    for (i, x), (j, y) in product(a.items(), b.items()):
+        found[i + j] = found.get(i + j, 0) + x * y
+    return {power: c for power, c in found.items() if c}
 
 
 def _order(code: Sequence[Sequence[int]], start: int) -> tuple[list[Sequence[int]], int]:
-    """From a crossing on, always the next one that most edges lead to."""
+    """From a crossing on, always the next one that most edges lead to; and how many edges are cut at a time at most."""
     rest, order, width = list(code), list[Sequence[int]](), 0
     cut = set(code[start]) if code else set()
     while rest:

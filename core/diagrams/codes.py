@@ -14,20 +14,18 @@ crosses nothing.
 
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from itertools import islice
 from types import MappingProxyType
 from typing import NamedTuple
 
 from ..arguments import check_known
 from ..errors import CurveError
-from .diagram import Diagram, Pass
-from .faces import Faces
-from .nested import Nested, components, flat, is_flat, nested, unwrapped
-from .planar_codes import diagram_of
+from .diagram import Diagram, Pass, diagram_of
+from .nested import Nested, components, nested, unwrapped
 from .realize import realized
 
-MAX_CROSSINGS = 1000  # seconds to draw
+MAX_CROSSINGS = 1000  # of a code; drawing takes seconds
 _MAX_LENGTH = 100_000  # characters
 _SPELLING = re.compile(r"[\s\[({\"']*([A-Za-z]+)(?:\.([01]+))?[\s\])}\"']*")
 _CROSSING = re.compile(r"(?<![A-Za-z])X(?=\s*[\[({])")
@@ -48,26 +46,13 @@ def is_code(text: str) -> bool:
 
 
 def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
-    """The diagram that a code describes.
+    """The diagram of a code as described above; ``kind``, a key of `NOTATIONS`, is for texts that do not say theirs.
 
-    Parameters
-    ----------
-    text
-        The code; see the module.
-    kind
-        A key of `NOTATIONS`, if the text need not say so.
-
-    Raises
-    ------
-    CurveError
-        If it is no such code, of no diagram in the plane, or too long.  A `CodeError` knows where in the text.
+    Raises CurveError if it is no such code, of no diagram in the plane, or too long; a `CodeError` knows where.
     """
     if len(text) > _MAX_LENGTH:
         raise CurveError(f"the code has {len(text)} characters; at most {_MAX_LENGTH} are read")
-    if (begun := _begun(text)) is not None:
-        kind, start = begun
-    else:
-        start = len(text) - len(text.lstrip(" \t\n,;"))
+    kind, start = _begun(text) or (kind, len(text) - len(text.lstrip(" \t\n,;")))
     text = " " * start + text[start:].rstrip()  # so that errors count characters from where the text begins
     kind = kind or _kind_of_list(text)
     check_known("kind", kind, NOTATIONS)
@@ -79,10 +64,9 @@ def diagram_from_code(text: str, kind: str | None = None) -> Diagram:
 
 
 def _begun(text: str) -> tuple[str, int] | None:
-    """The notation that a text begins with the words of, and where the code begins."""
+    """The notation whose words a text begins with, and where the code begins."""
     for kind, notation in NOTATIONS.items():
-        match = re.match(rf"\s*{notation.words}\b\s*(?:code\b\s*)?[:=]?\s*", text, re.IGNORECASE)
-        if match is not None:
+        if match := re.match(rf"\s*{notation.words}\b\s*(?:code\b\s*)?[:=]?\s*", text, re.IGNORECASE):
             return kind, match.end()
     return None
 
@@ -110,19 +94,17 @@ def _parts(rows: Nested) -> list[list[int]]:
 
 
 def check_count(crossings: int) -> None:
-    """Raise a CurveError if there are more crossings than are drawn."""
+    """Raise a CurveError if there are too many crossings to be drawn in seconds."""
     if crossings > MAX_CROSSINGS:
         raise CurveError(f"the code has {crossings} crossings; at most {MAX_CROSSINGS} are allowed")
 
 
 def _planar(text: str) -> Diagram:
-    rows = unwrapped(nested(_CROSSING.sub(" ", text)))
-    if is_flat(rows):
-        rows = [rows[k : k + 4] for k in range(0, len(rows), 4)]
+    rows = components(nested(_CROSSING.sub(" ", text)))
+    if len(rows) == 1:
+        rows = [rows[0][k : k + 4] for k in range(0, len(rows[0]), 4)]
     check_count(len(rows))
-    if not rows:
-        return Diagram(((),), ())
-    return diagram_of([flat([row] if isinstance(row, int | str) else row) for row in rows])
+    return diagram_of(rows) if rows else Diagram(((),), ())
 
 
 def _dowker_thistlethwaite(text: str) -> Diagram:
@@ -145,8 +127,16 @@ def _dowker_thistlethwaite(text: str) -> Diagram:
     for k, number in enumerate(numbers):
         sequence[2 * k], sequence[abs(number) - 1] = (k, number > 0), (k, number < 0)
     rest = iter(sequence)
-    passes = [list(islice(rest, 2 * len(part))) for part in parts]
-    return _flipped(passes, flips) if flips else realized(passes)
+    passes = tuple(tuple(islice(rest, 2 * len(part))) for part in parts)
+    if not flips:
+        return realized(passes)
+    if len(flips) != len(numbers):
+        raise CurveError(f"the DT code has {len(numbers)} crossings and {len(flips)} flips")
+    # SnapPy: from where the curve first comes to a crossing, the other strand comes from the right, or from the left if
+    # flipped.
+    first = dict(reversed(sequence))
+    signs = tuple(1 if first[crossing] != bool(flip) else -1 for crossing, flip in enumerate(flips))
+    return _in_the_plane(Diagram(passes, signs), "the DT code with these flips")
 
 
 def _without_flips(rows: Nested) -> tuple[Nested, list[int]]:
@@ -159,21 +149,8 @@ def _without_flips(rows: Nested) -> tuple[Nested, list[int]]:
     return code, [k == 1 for k in flips]
 
 
-def _flipped(passes: Sequence[Sequence[Pass]], flips: Sequence[int]) -> Diagram:
-    """SnapPy's signs: from where a strand first comes to a crossing, the other one comes from the right, or if flipped
-    from the left.
-    """
-    first: dict[int, bool] = {}
-    for crossing, over in (each for part in passes for each in part):
-        first.setdefault(crossing, over)
-    if len(flips) != len(first):
-        raise CurveError(f"the DT code has {len(first)} crossings and {len(flips)} flips")
-    signs = (1 if first[crossing] != bool(flip) else -1 for crossing, flip in enumerate(flips))
-    return _in_the_plane(Diagram(tuple(map(tuple, passes)), tuple(signs)), "the DT code with these flips")
-
-
 def _in_the_plane(diagram: Diagram, what: str) -> Diagram:
-    if not Faces(diagram).is_planar:
+    if not diagram.is_planar:
         raise CurveError(f"{what} is of no diagram in the plane")
     return diagram
 
@@ -196,34 +173,32 @@ def _gauss(text: str) -> Diagram:
     between = r"\s*[/|;]\s*" if any(bracket in text for bracket in _BRACKETS) else r"\s*[/|;]\s*|\s*\n\s*"
     parts = components(nested(text, between))  # within brackets lines may end anywhere
     check_count(sum(map(len, parts)) // 2)
-    if not any(isinstance(each, str) for part in parts for each in part):
-        return realized(_numbered([[(abs(int(number)), int(number) > 0) for number in part] for part in parts])[0])
-    passes: list[list[Pass]] = []
+    signed = any(isinstance(each, str) for part in parts for each in part)
+    number: dict[int, int] = {}  # from 0, of each crossing
+    levels: dict[int, list[bool]] = {}
     signs: dict[int, int] = {}
+    passes: list[list[Pass]] = []
     for part in parts:
         passes.append([])
         for each in part:
-            if isinstance(each, int):
+            if isinstance(each, str):
+                crossing, over, sign = int(each[1:-1]), each[0] == "O", 1 if each[-1] == "+" else -1
+            elif signed:
                 raise CurveError(f"{each} is no part of a Gauss code with signs, such as O1+U2+O3+U1+O2+U3+")
-            crossing, sign = int(each[1:-1]), 1 if each[-1] == "+" else -1
+            else:
+                crossing, over, sign = abs(each), each > 0, 1
             if signs.setdefault(crossing, sign) != sign:
                 raise CurveError(f"crossing {crossing} of the Gauss code has both signs")
-            passes[-1].append((crossing, each[0] == "O"))
-    numbered, old = _numbered(passes)
-    diagram = Diagram(tuple(map(tuple, numbered)), tuple(signs[crossing] for crossing in old))
-    return _in_the_plane(diagram, "the Gauss code with these signs")
-
-
-def _numbered(parts: Sequence[Sequence[Pass]]) -> tuple[list[list[Pass]], list[int]]:
-    """Passes with crossings numbered from 0, and the numbers that they had; each must be passed above and below."""
-    levels: dict[int, list[bool]] = {}
-    for old, over in (each for part in parts for each in part):
-        levels.setdefault(old, []).append(over)
-    for old, found in levels.items():
+            levels.setdefault(crossing, []).append(over)
+            passes[-1].append((number.setdefault(crossing, len(number)), over))
+    for crossing, found in levels.items():
         if sorted(found) != [False, True]:
-            raise CurveError(f"crossing {old} of the Gauss code must be there once above (positive) and once below")
-    number = {old: k for k, old in enumerate(levels)}
-    return [[(number[old], over) for old, over in part] for part in parts], list(number)
+            raise CurveError(
+                f"crossing {crossing} of the Gauss code must be there once above (positive) and once below"
+            )
+    if not signed:
+        return realized(passes)
+    return _in_the_plane(Diagram(tuple(map(tuple, passes)), tuple(signs.values())), "the Gauss code with these signs")
 
 
 def planar_text(diagram: Diagram) -> str:

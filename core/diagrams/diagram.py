@@ -1,14 +1,18 @@
-"""Link diagrams as signed Gauss codes: what every strand passes, one after the other, and the signs of the crossings.
+"""Link diagrams on the sphere, stored as signed Gauss codes: what each component passes, and signs of crossings.
 
-A signed Gauss code determines the diagram on the sphere, so nothing else is stored.  Pass i is the i-th of all passes,
-component by component; edge i runs from it to the next pass of its component.
+A signed Gauss code determines the diagram, and everything else is derived from it.  *Pass* i is the i-th of all passes,
+component by component; *edge* i runs from it to the next pass of its component; *dart* 2i runs along edge i and dart
+2i + 1 back, so that ``dart ^ 1`` is the reverse of a dart.  A *strand* is a run of passes that are all over, or all
+under.
 """
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-Pass = tuple[int, bool]  # a crossing, and whether the strand passes over
+from ..errors import CurveError
+
+Pass = tuple[int, bool]  # a crossing, and whether the curve passes over
 PlanarCrossing = tuple[int, int, int, int]  # edges counterclockwise from the one that comes in below
 
 
@@ -16,12 +20,8 @@ PlanarCrossing = tuple[int, int, int, int]  # edges counterclockwise from the on
 class Diagram:
     """A diagram of an oriented link.
 
-    Attributes
-    ----------
-    passes
-        For each component the crossings that it passes, in order; empty for a circle that crosses nothing.
-    signs
-        1 or −1 for each crossing; crossings are numbered from 0.
+    ``passes`` has for each component the crossings that it passes, in order, and is empty for a circle that crosses
+    nothing; ``signs`` has 1 or −1 for each crossing, numbered from 0.
     """
 
     passes: tuple[tuple[Pass, ...], ...]
@@ -58,36 +58,67 @@ class Diagram:
 
     @cached_property
     def previous(self) -> list[int]:
-        """The pass before each pass."""
+        """The pass before each pass, which is also the edge that leads to it."""
         before = [0] * len(self.next)
         for i, after in enumerate(self.next):
             before[after] = i
         return before
 
     @cached_property
-    def strands(self) -> list[tuple[int, int]]:
+    def levels(self) -> list[tuple[int, int]]:
         """For each crossing its lower and its upper pass."""
         found = [[0, 0] for _ in self.signs]
         for i, (crossing, over) in enumerate(self.sequence):
             found[crossing][over] = i
         return [(lower, upper) for lower, upper in found]
 
+    @cached_property
+    def darts(self) -> list[tuple[int, int, int, int]]:
+        """The four darts that leave each crossing, counterclockwise from the edge that comes in below."""
+        found = []
+        for (lower, upper), sign in zip(self.levels, self.signs, strict=True):
+            right, left = 2 * upper, 2 * self.previous[upper] + 1
+            if sign < 0:
+                right, left = left, right
+            found.append((2 * self.previous[lower] + 1, right, 2 * lower, left))
+        return found
+
     @property
     def planar_code(self) -> list[PlanarCrossing]:
         """For each crossing its four edges, counterclockwise from the one that comes in below."""
-        return [tuple(edge for edge, _ in around) for around in self.rotations()]  # type: ignore[misc]
+        return [(a // 2, b // 2, c // 2, d // 2) for a, b, c, d in self.darts]
 
-    def rotations(self) -> Iterator[tuple[tuple[int, bool], ...]]:
-        """For each crossing its four edges as `planar_code` has them, and whether each goes out there."""
-        for (lower, upper), sign in zip(self.strands, self.signs, strict=True):
-            right, left = (upper, True), (self.previous[upper], False)
-            if sign < 0:
-                right, left = left, right
-            yield (self.previous[lower], False), right, (lower, True), left
+    @cached_property
+    def faces(self) -> list[list[int]]:
+        """The darts round each region of the sphere, which lies on their left, one after the other."""
+        after = {around[k] ^ 1: around[k - 1] for around in self.darts for k in range(4)}
+        found: list[list[int]] = []
+        for start in (each for around in self.darts for dart in around for each in (dart, dart ^ 1)):
+            face, dart = [], start
+            while dart in after:
+                face.append(dart)
+                dart = after.pop(dart)
+            found += [face] if face else []
+        return found
+
+    @cached_property
+    def face_of(self) -> list[int]:
+        """The face on the left of each dart."""
+        number = [0] * (2 * len(self.sequence))
+        for k, face in enumerate(self.faces):
+            for dart in face:
+                number[dart] = k
+        return number
+
+    @property
+    def is_planar(self) -> bool:
+        """Whether the code is of a diagram on the sphere: Euler's formula holds for each piece."""
+        pieces = sum(bool(piece.crossings) for piece in self.pieces())
+        return len(self.faces) == self.crossings + 2 * pieces
 
     def joins(self) -> Iterator[tuple[int, int]]:
         """The components that meet at each crossing, the lower one first."""
-        for lower, upper in self.strands:
+        for lower, upper in self.levels:
             yield self.component[lower], self.component[upper]
 
     @property
@@ -98,12 +129,12 @@ class Diagram:
     @property
     def linking_numbers(self) -> tuple[int, ...]:
         """Linking numbers of all pairs of components: of the first with the second, the third, …"""
-        doubled: dict[tuple[int, int], int] = {}
-        for sign, (a, b) in zip(self.signs, self.joins(), strict=True):
-            pair = min(a, b), max(a, b)
-            doubled[pair] = doubled.get(pair, 0) + sign
         count = len(self.passes)
-        return tuple(doubled.get((a, b), 0) // 2 for a in range(count) for b in range(a + 1, count))
+        doubled = {(a, b): 0 for a in range(count) for b in range(a + 1, count)}
+        for sign, (a, b) in zip(self.signs, self.joins(), strict=True):
+            if a != b:
+                doubled[min(a, b), max(a, b)] += sign
+        return tuple(twice // 2 for twice in doubled.values())
 
     def without(self, removed: set[int]) -> "Diagram":
         """The code without some crossings; whether that is a diagram of the same link is for the caller to know."""
@@ -127,3 +158,38 @@ class Diagram:
                     groups[k] = groups[a]
         found = {id(group): group for group in groups}
         return [self.restricted(group) for group in found.values()]
+
+
+def diagram_of(code: Sequence[Sequence[Hashable]]) -> Diagram:
+    """The diagram of a planar diagram code; components run as the code has their first lower pass.
+
+    ``code`` has for each crossing the labels of its edges, as in `PlanarCrossing`.  Raises CurveError if a crossing has
+    not four edges, an edge not two ends, or the code cannot be drawn in the plane.
+    """
+    ends: dict[Hashable, list[tuple[int, int]]] = {}  # of each edge: a crossing, and a place there from 0 to 3
+    for c, edges in enumerate(code):
+        if len(edges) != 4:
+            raise CurveError(f"crossing {c + 1} of the planar diagram code has {len(edges)} edges; it must have 4")
+        for place, label in enumerate(edges):
+            ends.setdefault(label, []).append((c, place))
+    for label, pair in ends.items():
+        if len(pair) != 2:
+            times = "once" if len(pair) == 1 else f"{len(pair)} times"
+            raise CurveError(f"edge {label} is in the planar diagram code {times}; every edge must be there twice")
+    other_end = {end: other for pair in ends.values() for end, other in (pair, pair[::-1])}
+    entries: dict[tuple[int, int], Pass] = {}  # where components come in
+    components = []
+    for start in [(c, place) for place in (0, 1) for c in range(len(code))]:
+        if start not in entries and (start[0], start[1] + 2) not in entries:
+            first = len(entries)
+            end = start
+            while end not in entries:
+                entries[end] = end[0], end[1] % 2 == 1
+                end = other_end[end[0], (end[1] + 2) % 4]
+            components.append(tuple(list(entries.values())[first:]))
+    # A positive crossing's upper strand comes in on the left, the fourth edge from where the lower one comes in.
+    signs = (1 if ((c, 0) in entries) == ((c, 3) in entries) else -1 for c in range(len(code)))
+    diagram = Diagram(tuple(components), tuple(signs))
+    if not diagram.is_planar:
+        raise CurveError("the planar diagram code cannot be drawn in the plane")
+    return diagram

@@ -21,20 +21,11 @@ class CodeError(CurveError):
 
 
 def nested(text: str, between: str | None = None) -> Nested:
-    """Whole numbers in lists for their brackets.
+    """Whole numbers, between blanks, commas or semicolons, in lists for their brackets.
 
-    Parameters
-    ----------
-    text
-        Numbers between blanks, commas or semicolons.
-    between
-        A pattern of what ends one list and begins the next, like ``],[``, with brackets around it all.  Signed passes
-        such as O1+ are then read like numbers, as strings.
-
-    Raises
-    ------
-    CodeError
-        If there is anything else, or brackets do not match.
+    ``between`` is a pattern of what ends one list and begins the next, like ``],[``, with brackets around it all;
+    signed passes such as O1+ are then read like numbers, as strings.  Raises CodeError if there is anything else, or
+    brackets do not match.
     """
     pattern = f"(?P<between>{between})|{_SIGNED}|{_PLAIN}" if between else _PLAIN
     stack: list[list[object]] = [[], []]
@@ -75,25 +66,20 @@ def _close(stack: list[list[object]], empty: int | None = None) -> None:
 def unwrapped(rows: Nested) -> Nested:
     """What is within brackets around it all."""
     while len(rows) == 1 and not isinstance(rows[0], int | str):
-        if is_flat(rows[0]) and rows[0]:
+        if _is_flat(rows[0]) and rows[0]:
             return rows[0]
         rows = rows[0]
     return rows
 
 
-def is_flat(rows: Nested) -> bool:
-    """Whether there are no brackets within."""
-    return all(isinstance(each, int | str) for each in rows)
-
-
 def components(rows: Nested) -> list[list[int | str]]:
-    """Lists without brackets, one for each component; raises CurveError for lists deeper down."""
+    """Lists without brackets, one for each component or crossing; raises CurveError for lists deeper down."""
     rows = unwrapped(rows)
-    return [flat(rows)] if is_flat(rows) else [flat([r] if isinstance(r, int | str) else unwrapped(r)) for r in rows]
-
-
-def flat(row: Nested) -> list[int | str]:
-    """A list without brackets; raises CurveError if it has some."""
-    if not is_flat(row):
+    parts = [rows] if _is_flat(rows) else [[row] if isinstance(row, int | str) else unwrapped(row) for row in rows]
+    if not all(map(_is_flat, parts)):
         raise CurveError("brackets of the code are not where they should be: write numbers, or lists of numbers")
-    return list(cast(Sequence[int | str], row))
+    return [list(cast(Sequence[int | str], part)) for part in parts]
+
+
+def _is_flat(rows: Nested) -> bool:
+    return all(isinstance(each, int | str) for each in rows)

@@ -1,23 +1,22 @@
-"""Diagrams with fewer crossings, by moves that keep the type; how long is told by counts, never by clocks."""
+"""Diagrams with fewer crossings, by moves that keep the type, and the factors of sums that they show.
+
+How long this takes is bounded by counts, never by clocks.
+"""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from .diagram import Diagram
-from .reduction import reduced
 from .rerouting import shortened, shuffled
 
-_WORK = 400_000  # crossings looked at by moves that remove some, all in all: seconds
-_SHUFFLES = 150  # random moves without any that removes crossings, after which a diagram is given up on
-_FEW = 60  # crossings, of diagrams that random moves may still improve
 
-
-def simplified(diagram: Diagram) -> Diagram:
-    """Remove crossings while a move of a single strand does so; a diagram of thousands may keep some."""
-    diagram, work = reduced(diagram), 0
-    while work < _WORK:
-        work += diagram.crossings
+def simplified(diagram: Diagram, work: int = 400_000) -> Diagram:
+    """Remove crossings while a move of a single strand does so, and no more than ``work`` crossings are visited."""
+    diagram = reduced(diagram)
+    while work > 0:
+        work -= diagram.crossings
         fewer = shortened(diagram)
         if fewer is None:
             break
@@ -25,13 +24,16 @@ def simplified(diagram: Diagram) -> Diagram:
     return diagram
 
 
-def shuffled_down(diagram: Diagram, enough: Callable[[Diagram], bool], seed: int = 20219) -> Diagram:
+def shuffled_down(
+    diagram: Diagram, enough: Callable[[Diagram], bool], *, seed: int = 20219, patience: int = 150, most: int = 60
+) -> Diagram:
     """Move strands at random until crossings can be removed, again and again.
 
-    Ends where there is ``enough`` done, or many moves in a row were in vain.
+    Ends at a diagram that is simple ``enough``, after ``patience`` moves in a row that removed none, or at once if
+    there are more than ``most`` crossings, which random moves hardly improve.
     """
     rng, vain, trial = np.random.default_rng(seed), 0, diagram
-    while vain < _SHUFFLES and diagram.crossings <= _FEW and not enough(diagram):
+    while vain < patience and diagram.crossings <= most and not enough(diagram):
         trial, vain = simplified(shuffled(trial, rng)), vain + 1
         if trial.crossings < diagram.crossings:
             diagram, vain = trial, 0
@@ -44,3 +46,62 @@ def is_least(diagram: Diagram) -> bool:
     (Kauffman, Murasugi, Thistlethwaite 1987; moves of single strands leave no nugatory crossings.)
     """
     return all(part[k - 1][1] != part[k][1] for part in diagram.passes for k in range(len(part)))
+
+
+def reduced(diagram: Diagram) -> Diagram:
+    """Undo loops of one crossing and bigons of one strand over another (Reidemeister I and II) until there are none.
+
+    The time grows with the number of passes.
+    """
+    following, before = list(diagram.next), list(diagram.previous)  # linked lists, from which passes are taken out
+    sequence, removed = diagram.sequence, set[int]()
+    waiting = list(range(len(sequence)))
+    while waiting:
+        i = waiting.pop()
+        j = following[i]
+        (a, over), (b, also) = sequence[i], sequence[j]
+        if a in removed:
+            continue
+        x, y = diagram.levels[a][not over], diagram.levels[b][not over]
+        # Where the signs are equal both crossings are nugatory: what is between them and the rest meet in each alone.
+        if a != b and not (over == also and (following[x] == y or following[y] == x)):
+            continue
+        for crossing in {a, b}:
+            removed.add(crossing)
+            for k in diagram.levels[crossing]:
+                following[before[k]], before[following[k]] = following[k], before[k]
+                waiting.append(before[k])
+    return diagram.without(removed)
+
+
+def without_nugatory(diagram: Diagram) -> Diagram:
+    """The diagram without nugatory crossings, at which a face meets itself; turning over one side undoes them.
+
+    Leaving one out of the code makes a connected sum, in one component, of the two sides, which is what it was.
+    """
+    while found := {c for c, darts in enumerate(diagram.darts) if len({diagram.face_of[d] for d in darts}) < 4}:
+        diagram = diagram.without(found)
+    return diagram
+
+
+def factors(piece: Diagram) -> list[Diagram]:
+    """The summands of a simplified connected diagram, those without crossings left out unless there is no other.
+
+    Circles that meet the diagram in two points, on edges with the same faces, cut it into factors.
+    """
+    seen: dict[frozenset[int], int] = {}
+    for edge in range(len(piece.sequence)):
+        sides = frozenset((piece.face_of[2 * edge], piece.face_of[2 * edge + 1]))
+        other = seen.setdefault(sides, edge)
+        if other != edge and piece.component[other] == piece.component[edge]:
+            return [factor for part in _cut(piece, other, edge).pieces() for factor in factors(part)]
+    return [piece]
+
+
+def _cut(piece: Diagram, first: int, second: int) -> Diagram:
+    """The passes after one edge up to another of the same component made a component of their own."""
+    k = piece.component[first]
+    start = piece.component.index(k)
+    part = piece.passes[k]
+    a, b = first - start + 1, second - start + 1
+    return replace(piece, passes=(*piece.passes[:k], part[:a] + part[b:], part[a:b], *piece.passes[k + 1 :]))

@@ -8,10 +8,10 @@ import numpy as np
 
 from ..arguments import checked_fields, number
 from ..curve import Curve
+from ..diagrams import quick_invariants
 from ..energies.components import energy_scale
 from ..errors import CurveError
 from ..knots import knot_type
-from ..knots.alexander import signature
 from ..messages import Message
 from ..types import FloatArray
 from .interventions import ON_A_FIXED_MESH
@@ -148,7 +148,7 @@ def unknot_message(curve: Curve) -> Message | None:
     alone = len(curve.mesh.component_sizes) == 1
     if not alone or curve.dimension != 3 or len(curve) > MOST_VERTICES or is_circle(curve):
         return None
-    if not signature(curve).is_trivial:
+    if not quick_invariants(curve).is_trivial:
         return None
     try:
         names = knot_type(curve).names

@@ -5,7 +5,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 import numpy as np
 
 from ..arguments import checked
-from ..curve.places import at_edges
+from ..curve import at_edges
 from ..deadline import TimeIsUp, TimeLimit
 from ..descent import NoStep, Step
 from .interventions import INTERVENTIONS

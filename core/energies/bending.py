@@ -6,13 +6,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..curve import Curve
-from ..curve.bending import bending, bending_and_derivative
+from ..curve.measures import bending, bending_and_derivative
 from ..types import FloatArray
 
 
 @dataclass(frozen=True)
 class Bending:
-    """L ∫ κ² ds, 4π² on a round circle; see `core.curve.bending`."""
+    """L ∫ κ² ds, 4π² on a round circle; see `core.curve.measures`."""
 
     name = "bending"
     description = "L ∫ κ² ds, 4π² on a round circle"

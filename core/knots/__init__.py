@@ -2,19 +2,16 @@
 arcs.
 """
 
-from .arcs import ARCS, overhand
-from .closures import braid_closure
-from .coded import coded_knot
+from .closed_braids import braid_closure, torus_knot
 from .drawings import Drawing
-from .knot_type import KnotType, knot_type
-from .lissajous import lissajous_knot
+from .knot_type import Effort, KnotType, knot_type
 from .names import UnknownKnotError, braid_word, knot, knot_names
-from .planar import diagram_knot
+from .parametric import ARCS, lissajous_knot, overhand
+from .planar import coded_knot, diagram_knot
 from .satellites import cable, double
 from .scrambles import scramble
 from .shapes import smooth_knot
 from .table import ALIASES, HARD_UNKNOTS, KNOTS
-from .torus import torus_knot
 
 __all__ = [
     "ALIASES",
@@ -22,6 +19,7 @@ __all__ = [
     "HARD_UNKNOTS",
     "KNOTS",
     "Drawing",
+    "Effort",
     "KnotType",
     "UnknownKnotError",
     "braid_closure",

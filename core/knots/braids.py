@@ -1,11 +1,12 @@
-"""Braid words: tuples of signed letters; letter i is the crossing σ_i of strands i and i+1, −i its inverse.
+"""Braid words and diagrams of their closures.
 
-A positive letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the right-handed
-trefoil.
+A word is a tuple of signed letters; letter i is the crossing σ_i of strands i and i+1, −i its inverse.  A positive
+letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the right-handed trefoil.
 """
 
 from collections.abc import Sequence
 
+from ..diagrams import Diagram, Pass
 from ..errors import CurveError
 
 Word = tuple[int, ...]
@@ -17,10 +18,7 @@ MAX_LETTERS = 20_000
 def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word, int]:
     """Check a braid word and its number of strands, by default as few as the letters need.
 
-    Raises
-    ------
-    CurveError
-        If a letter is 0 or no whole number, the strands are too few, or the braid is beyond all use.
+    Raises CurveError if a letter is 0 or no whole number, or the strands are too few or too many.
     """
     letters = tuple(word)
     for position, letter in enumerate(letters, start=1):
@@ -39,29 +37,20 @@ def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word,
     return letters, strands
 
 
-def permutation(word: Sequence[int], strands: int) -> list[int]:
-    """Where the strand that starts at each place ends; places count from 0."""
+def cycles(word: Sequence[int], strands: int) -> list[list[int]]:
+    """For each component of the closure the places, from 0, where its turns begin; each from its smallest on."""
     at = list(range(strands))
     for letter in word:
         i = abs(letter) - 1
         at[i], at[i + 1] = at[i + 1], at[i]
-    ends = [0] * strands
-    for place, strand in enumerate(at):
-        ends[strand] = place
-    return ends
-
-
-def cycles(ends: Sequence[int]) -> list[list[int]]:
-    """Split a permutation into cycles, each from its smallest place on; one per component of the closure."""
+    ends = {strand: place for place, strand in enumerate(at)}
     found: list[list[int]] = []
-    seen: set[int] = set()
-    for start in range(len(ends)):
-        if start not in seen:
-            cycle = [start]
-            while ends[cycle[-1]] != start:
-                cycle.append(ends[cycle[-1]])
-            seen.update(cycle)
-            found.append(cycle)
+    for place in range(strands):
+        cycle = []
+        while place in ends:
+            cycle.append(place)
+            place = ends.pop(place)
+        found += [cycle] if cycle else []
     return found
 
 
@@ -89,3 +78,17 @@ def connected_sum(first: Sequence[int], second: Sequence[int]) -> Word:
     """Word whose closure is the connected sum, the second braid hung on the first one's last strand."""
     shift = max(map(abs, first), default=0)
     return (*first, *(letter + shift if letter > 0 else letter - shift for letter in second))
+
+
+def braid_diagram(word: Sequence[int]) -> Diagram:
+    """The closure of a braid as the word draws it; raises as `checked_word` does."""
+    letters, strands = checked_word(word)
+    passes: list[list[Pass]] = [[] for _ in range(strands)]
+    at = list(range(strands))
+    for crossing, letter in enumerate(letters):
+        place = abs(letter) - 1
+        passes[at[place]].append((crossing, letter > 0))  # in a positive crossing the one that moves outwards is over
+        passes[at[place + 1]].append((crossing, letter < 0))
+        at[place], at[place + 1] = at[place + 1], at[place]
+    parts = (tuple(each for strand in cycle for each in passes[strand]) for cycle in cycles(letters, strands))
+    return Diagram(tuple(parts), tuple(1 if letter > 0 else -1 for letter in letters))

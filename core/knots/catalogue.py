@@ -2,22 +2,20 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from itertools import product
 
-import numpy as np
-
-from ..diagrams import Diagram, Laurent, alexander, doubled_bracket, knot_signature, normalized_bracket
-from .braid_diagrams import braid_diagram
+from ..diagrams import Diagram, Laurent, normalized_bracket
+from ..diagrams.bracket import times
+from .braids import braid_diagram
 from .names import braid_word
 from .table import AMPHICHEIRAL, KNOTS
 
 Key = tuple[tuple[int, int], ...]  # a polynomial that can be looked up: exponents and coefficients
 
-KNOTS_TO, LINKS_TO = 10, 7  # crossings up to which no type is missing
+KNOTS_TO, LINKS_TO = 10, 7  # crossings up to which the table is complete
 _NUMBER = re.compile(r"(?<![\d_an])\d+")  # of crossings, with which the name of a factor begins
-_SEVERAL = 2  # least number of factors of a sum
 
 
 def key(polynomial: Laurent) -> Key:
@@ -43,77 +41,37 @@ def crossing_number(name: str) -> int:
 
 
 @cache
-def alexander_of(name: str) -> tuple[int, ...] | None:
-    """Alexander polynomial of a knot's name; that of a sum is the product."""
-    found = np.ones(1, dtype=np.int64)
-    for factor in name.split("#"):
-        found = np.convolve(found, alexander(braid_diagram(braid_word(factor))) or ())
-    return tuple(found.tolist())
-
-
-@cache
-def signature_of(name: str) -> int:
-    """Signature of a knot's name."""
-    return knot_signature(braid_diagram(braid_word(name)))
-
-
-@cache
-def linking_of(name: str) -> list[int]:
-    """Linking numbers of a link's name without their signs, which orientations decide; sorted."""
-    return sorted(map(abs, braid_diagram(braid_word(name)).linking_numbers))
-
-
-@cache
-def doubled_of(name: str) -> Key:
-    """The bracket of the doubled knot of a name."""
-    found = doubled_bracket(braid_diagram(braid_word(name)))
-    return () if found is None else key(found)
+def invariant_of(name: str, invariant: Callable[[Diagram], object]) -> object:
+    """An invariant of the knot or link of a name."""
+    return invariant(braid_diagram(braid_word(name)))
 
 
 @cache
 def _by_bracket() -> Mapping[Key, list[str]]:
     """Names of the types with each bracket, those of few crossings first."""
     found: defaultdict[Key, list[str]] = defaultdict(list)
-    every = [*_primes(), *_sums()]
-    for name, bracket in sorted(every, key=lambda each: (crossing_number(each[0]), _is_link(each[0]))):
+    primes: list[tuple[str, Laurent]] = []
+    for name, word in KNOTS.items():
+        diagram = braid_diagram(word)
+        bracket = normalized_bracket(diagram, diagram.own_writhe) or {}
+        primes.append((name, bracket))
+        if name not in AMPHICHEIRAL:
+            primes.append((f"m{name}", {-power: c for power, c in bracket.items()}))
+    every = [*primes, *_sums(primes)]
+    for name, bracket in sorted(every, key=lambda each: (crossing_number(each[0]), "L" in each[0])):
         found[key(bracket)].append(name)
     return found
 
 
-@cache
-def _primes() -> list[tuple[str, Laurent]]:
-    """Brackets of all prime types, mirror images among them."""
-    found = []
-    for name, word in KNOTS.items():
-        diagram = braid_diagram(word)
-        bracket = normalized_bracket(diagram, diagram.own_writhe) or {}
-        found.append((name, bracket))
-        if name not in AMPHICHEIRAL:
-            found.append((f"m{name}", {-power: c for power, c in bracket.items()}))
-    return found
-
-
-def _sums() -> Iterator[tuple[str, Laurent]]:
+def _sums(primes: list[tuple[str, Laurent]]) -> Iterator[tuple[str, Laurent]]:
     """Brackets of all composite types: those of the factors multiplied."""
-    primes = [each for each in _primes() if 0 < crossing_number(each[0]) <= KNOTS_TO - 2]
-    shorter: list[tuple[str, Laurent, int, int]] = [("", {0: 1}, 0, -1)]
-    for count in range(1, KNOTS_TO // 2 + 1):
-        longer = []
-        for (name, bracket, total, last), (k, (factor, own)) in product(shorter, enumerate(primes)):
-            joined = f"{name}#{factor}" if name else factor
-            if k >= last and total + crossing_number(factor) <= (LINKS_TO if _is_link(joined) else KNOTS_TO):
-                longer.append((joined, _times(bracket, own), total + crossing_number(factor), k))
-        if count >= _SEVERAL:
-            yield from ((name, bracket) for name, bracket, _, _ in longer)
+    primes = [each for each in primes if 0 < crossing_number(each[0]) <= KNOTS_TO - 2]
+    shorter: list[tuple[str, Laurent, int]] = [(*each, k) for k, each in enumerate(primes)]
+    while shorter:
+        longer: list[tuple[str, Laurent, int]] = []
+        for (name, bracket, last), (k, (factor, own)) in product(shorter, enumerate(primes)):
+            joined = f"{name}#{factor}"
+            if k >= last and crossing_number(joined) <= (LINKS_TO if "L" in joined else KNOTS_TO):
+                longer.append((joined, times(bracket, own), k))
+        yield from ((name, bracket) for name, bracket, _ in longer)
         shorter = longer
-
-
-def _is_link(name: str) -> bool:
-    return "L" in name
-
-
-def _times(a: Laurent, b: Laurent) -> Laurent:
-    found: dict[int, int] = {}
-    for (i, x), (j, y) in product(a.items(), b.items()):
-        found[i + j] = found.get(i + j, 0) + x * y
-    return {power: c for power, c in found.items() if c}

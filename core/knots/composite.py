@@ -5,6 +5,7 @@ two parts' energies less the circle's 4 and never gets there.  A relaxation make
 looked for: lifted to the paraboloid (x, |x|²), balls are half spaces, and a ball round an arc is a separating plane.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain, compress, product
@@ -13,30 +14,46 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse.csgraph import connected_components
 
+from ..arguments import checked_fields
+from ..checks import check_fields
 from ..curve import Curve
+from ..diagrams import linking_numbers, quick_invariants
+from ..diagrams.invariants import TRIVIAL
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
-from .alexander import TRIVIAL, linking_numbers, signature
 
-_ARCS = 24  # arcs of a knot begin and end at multiples of this fraction of it; in links, of fewer per component
-_MIN_ARC = 1 / 8  # arc, as a fraction of its component
-_SAMPLES = 120  # vertices that balls are looked for with
-_MARGIN = 1e-6  # of the separating plane, for a curve of size 1
-_MAX_TRIALS = 3000  # balls that are looked for, which takes a few seconds
-_OUTER_PATH = 16  # edges of the path around a ball
+_MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above rounding
+
+
+@checked_fields
+@dataclass(frozen=True)
+class BallSearch:
+    """How thoroughly balls are searched for."""
+
+    arcs: int = 24  # places where arcs of a knot begin and end; in links these are shared by the components
+    shortest: float = 1 / 8  # arc, as a fraction of its component
+    samples: int = 120  # vertices of the curve that balls are fitted to
+    trials: int = 3000  # balls that are fitted at most, which takes a few seconds; other links are not searched
+
+    def __post_init__(self) -> None:
+        check_fields(self, arcs=(1, math.inf), shortest=(0, 0.5), samples=(5, math.inf), trials=(0, math.inf))
+
+    def places(self, components: int) -> int:
+        """Places on each component."""
+        return max(int(1 / self.shortest), self.arcs // components)
+
+    def lengths(self, components: int) -> range:
+        """Lengths of arcs, from place to place."""
+        places = self.places(components)
+        return range(int(self.shortest * places), places // 2 + 1)
+
+
+DEFAULT_SEARCH = BallSearch()
 
 
 @dataclass(frozen=True, eq=False)
 class Ball:
-    """A round ball.
-
-    Attributes
-    ----------
-    center
-        Shape (3,), in the curve's units.
-    radius
-        In the curve's units.
-    """
+    """A round ball: ``center``, shape (3,), and ``radius`` are in the curve's units."""
 
     center: FloatArray
     radius: float
@@ -52,45 +69,31 @@ class Ball:
         return bool(np.linalg.norm(outside, axis=1).min() > self.radius)
 
 
-def knotted_ball(curve: Curve) -> Ball | None:
+def knotted_ball(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> Ball | None:
     """A ball whose sphere meets the curve in two points, both parts being knotted or linked; None if none is found.
 
     A ball proves that the curve is composite.  None proves nothing: parts may have a trivial Alexander polynomial, or
-    lie in no round ball, and a link may be beyond `is_searchable`.
-
-    Parameters
-    ----------
-    curve
-        Polygons; only closed ones in space can be knots.
+    lie in no round ball, and a link may be beyond `is_searchable`.  Only closed polygons in space can be knots.
     """
-    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve):
+    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve, search):
         return None
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())
     normal = curve.with_vertices((curve.vertices - middle) / size)
-    for inside in _arcs(curve):
-        ball = _ball(normal, inside)
+    for inside in _arcs(curve, search):
+        ball = _ball(normal, inside, search.samples)
         if ball is not None and _is_knotted(normal, ball):
             return Ball(middle + size * ball.center, size * ball.radius)
     return None
 
 
-def is_searchable(curve: Curve) -> bool:
+def is_searchable(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> bool:
     """Whether there are few enough ways in which the components of a curve in space can lie about a ball."""
     components = len(curve.mesh.component_sizes)
-    arcs = _arc_count(components)
-    places = arcs * len(_arc_lengths(arcs))
-    if components * places > _MAX_TRIALS:
+    arcs = search.places(components) * len(search.lengths(components))
+    if components * arcs > search.trials:
         return False
-    return places * sum(1 << len(groups) for groups in _linked_groups(curve)) <= _MAX_TRIALS
-
-
-def _arc_count(components: int) -> int:
-    return max(int(1 / _MIN_ARC), _ARCS // components)
-
-
-def _arc_lengths(arcs: int) -> range:
-    return range(int(_MIN_ARC * arcs), arcs // 2 + 1)
+    return arcs * sum(1 << len(groups) for groups in _linked_groups(curve)) <= search.trials
 
 
 def _linked_groups(curve: Curve) -> list[list[IntArray]]:
@@ -109,23 +112,22 @@ def _linked_groups(curve: Curve) -> list[list[IntArray]]:
     return found
 
 
-def _arcs(curve: Curve) -> Iterator[BoolArray]:
+def _arcs(curve: Curve, search: BallSearch) -> Iterator[BoolArray]:
     """Masks of vertices: an arc of one component, and any of the others as a whole that can lie there together."""
     slices, component = curve.mesh.slices, curve.mesh.component
-    arcs = _arc_count(len(slices))
+    places, wanted = search.places(len(slices)), np.array(search.lengths(len(slices)))
     for part, groups in zip(slices, _linked_groups(curve), strict=True):
         size = part.stop - part.start
-        starts = np.unique(np.arange(arcs) * size // arcs)
-        lengths = np.unique(np.array(_arc_lengths(arcs)) * size // arcs)
+        starts, lengths = np.unique(np.arange(places) * size // places), np.unique(wanted * size // places)
         for length, first, chosen in product(lengths[::-1], starts, product((False, True), repeat=len(groups))):
             inside = np.isin(component, list(chain.from_iterable(compress(groups, chosen))))
             inside[part] = (np.arange(size) - first) % size < length
             yield inside
 
 
-def _ball(curve: Curve, inside: BoolArray) -> Ball | None:
+def _ball(curve: Curve, inside: BoolArray, samples: int) -> Ball | None:
     """The ball with one part of the vertices inside and the other outside that leaves most room between, if any."""
-    sample = np.arange(0, len(curve), max(1, len(curve) // _SAMPLES))
+    sample = np.arange(0, len(curve), max(1, len(curve) // samples))
     x = curve.vertices[sample]
     side = np.where(inside[sample], 1.0, -1.0)
     lifted = side[:, None] * np.column_stack([x, (x**2).sum(axis=1), np.ones(len(x))])
@@ -148,14 +150,14 @@ def _is_knotted(curve: Curve, ball: Ball) -> bool:
     mesh = curve.mesh
     first, last = inside[mesh.tails], inside[mesh.heads]
     cut = np.flatnonzero(first != last)
-    outer = ~first & ~last
     if len(cut) != 2 or mesh.component[cut[0]] != mesh.component[cut[1]]:
         return False
-    if outer.any() and _distances(curve, ball.center)[outer].min() <= ball.radius:
+    start, edge = curve.vertices[mesh.tails], curve.edge_vectors
+    s = np.clip(np.einsum("ij,ij->i", ball.center - start, edge) / curve.edge_lengths**2, 0.0, 1.0)
+    if (ball.contains(start + s[:, None] * edge) & ~first & ~last).any():
         return False
     entry, exit_ = cut if last[cut[0]] else cut[::-1]
-    ends = [_crossing(curve, edge, ball) for edge in (entry, exit_)]
-    chord = np.array(ends)
+    chord = np.array([_crossing(curve, edge, ball) for edge in (entry, exit_)])
     within = _part(curve, inside, int(mesh.heads[entry]), _around(ball, *chord[::-1]))
     without = _part(curve, ~inside, int(mesh.heads[exit_]), chord)
     return _first_is_knotted(within) and _first_is_knotted(without)
@@ -163,16 +165,9 @@ def _is_knotted(curve: Curve, ball: Ball) -> bool:
 
 def _first_is_knotted(curve: Curve) -> bool:
     """Whether the first component is knotted, or linked with another."""
-    found = signature(curve)
+    found = quick_invariants(curve)
     others = len(curve.mesh.component_sizes) - 1  # pairs with the first component are listed first
     return found.alexander[0] != TRIVIAL or any(found.linking[:others])
-
-
-def _distances(curve: Curve, point: FloatArray) -> FloatArray:
-    """Distance of each edge from a point."""
-    start, edge = curve.vertices[curve.mesh.tails], curve.edge_vectors
-    s = np.clip(np.einsum("ij,ij->i", point - start, edge) / curve.edge_lengths**2, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(start + s[:, None] * edge - point, axis=1))
 
 
 def _crossing(curve: Curve, edge: np.intp, ball: Ball) -> FloatArray:
@@ -186,25 +181,19 @@ def _crossing(curve: Curve, edge: np.intp, ball: Ball) -> FloatArray:
 
 def _part(curve: Curve, chosen: BoolArray, begin: int, closing: FloatArray) -> Curve:
     """The arc of chosen vertices that begins at one of them, closed up, and then whole components that are chosen."""
-    parts: list[FloatArray] = []
-    for k, part in enumerate(curve.mesh.slices):
-        if k == curve.mesh.component[begin]:
-            ring = np.roll(np.arange(part.start, part.stop), part.start - begin)
-            parts.insert(0, np.concatenate([curve.vertices[ring[chosen[ring]]], closing]))
-        elif chosen[part].all():
-            parts.append(curve.vertices[part])
-    return Curve.from_components(parts)
+    own = curve.mesh.slices[curve.mesh.component[begin]]
+    ring = np.roll(np.arange(own.start, own.stop), own.start - begin)
+    whole = [curve.vertices[part] for part in curve.mesh.slices if part != own and chosen[part].all()]
+    return Curve.from_components([np.concatenate([curve.vertices[ring[chosen[ring]]], closing]), *whole])
 
 
 def _around(ball: Ball, a: FloatArray, b: FloatArray) -> FloatArray:
-    """Points of a path from a to b, both on the sphere, outside the ball: a polygon round a great circle."""
-    u = (a - ball.center) / ball.radius
-    v = (b - ball.center) / ball.radius
+    """Points of a path from a to b, both on the sphere, outside the ball and in the plane of a great circle."""
+    u, v = (a - ball.center) / ball.radius, (b - ball.center) / ball.radius
     across = v - (u @ v) * u
     if np.linalg.norm(across) < _MARGIN:  # opposite ends: any great circle will do
         across = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
     across /= np.linalg.norm(across)
-    angles = np.linspace(0.0, np.arccos(np.clip(u @ v, -1.0, 1.0)), _OUTER_PATH + 1)
-    outer = 1.01 * ball.radius / np.cos(np.pi / (2 * _OUTER_PATH))
-    circle = ball.center + outer * (np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * across)
-    return np.concatenate([a[None], circle, b[None]])
+    angles = np.linspace(0.0, np.arccos(np.clip(u @ v, -1.0, 1.0)), 3)[:, None]  # two edges, of a right angle at most
+    corners = ball.center + 1.5 * ball.radius * (np.cos(angles) * u + np.sin(angles) * across)
+    return np.concatenate([a[None], corners, b[None]])

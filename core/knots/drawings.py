@@ -6,6 +6,7 @@ the two strands have different heights: it is embedded, and has the drawn crossi
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -15,10 +16,10 @@ from ..collision import check_embedded
 from ..curve import Curve, check_closed
 from ..curve.distances import arc_distance_of_pairs
 from ..curve.refine import subdivide
-from ..diagrams.crossings import plane_crossings
+from ..curve.smooth import arc_lengths
+from ..diagrams.projection import plane_crossings
 from ..errors import CurveError, Place
 from ..types import BoolArray, FloatArray, IntArray
-from .lifting import lifted
 
 MAX_POINTS = 20_000  # of a drawing: seconds to compare all its edges
 _CLEAR = 1e-3  # of the drawing's size: nearer crossings, or strands so near that do not cross, are unclear
@@ -27,23 +28,16 @@ _JITTER = 1e-9  # of the size, by which points are moved so that no strand runs 
 _LIFT = 0.3  # height of strands above and below the plane, of the distance to the next crossing
 _HIGHEST = 0.08  # of the drawing's size
 _NEAREST = 1e-4  # of the size: vertices nearer than that to a crossing give way to it
+_RAMP = 10  # edges from one crossing to the next, at least
 
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
     """Closed curves in the plane that cross themselves and each other clearly, two strands at a time.
 
-    Attributes
-    ----------
-    curve
-        The drawing, of dimension 2.
-    crossings
-        Places of the crossings, in the order in which they are come to; shape (c, 2).
-    passes
-        Edge and fraction of it, as one number, of the first and the second pass of each crossing; shape (c, 2).
-    first_over
-        Whether the first pass is the upper one if the curve goes over and under by turns, over to begin with;
-        shape (c,).
+    ``curve`` is the drawing; of its c crossings there are the places, shape (c, 2), in the order in which they are come
+    to, the edges of their first and second ``passes``, shape (c, 2), each with the fraction of it as one number, and
+    whether the first pass is the upper one, shape (c,), where over and under alternate, over to begin with.
     """
 
     curve: Curve
@@ -56,10 +50,8 @@ class Drawing:
     def of(cls, curve: Curve) -> "Drawing":
         """Find the crossings of closed polygons in the plane.
 
-        Raises
-        ------
-        CurveError
-            If strands touch without crossing, or more than two meet; the message and its vertex say where.
+        Raises CurveError if strands touch without crossing, or more than two meet; the message and its vertex say
+        where.
         """
         if curve.dimension != 2:
             raise CurveError(f"the drawing has dimension {curve.dimension}; it must lie in the plane")
@@ -68,9 +60,10 @@ class Drawing:
             raise CurveError(f"the drawing has {len(curve)} points; at most {MAX_POINTS} are allowed")
         if not _size(curve):
             raise CurveError("all points of the drawing are the same; draw a closed curve")
-        generic = _jittered(curve)
+        noise = np.random.default_rng(20213).uniform(-1.0, 1.0, curve.vertices.shape)
+        generic = curve.with_vertices(curve.vertices + _JITTER * _size(curve) * noise)
         found = plane_crossings(generic.mesh, generic.vertices)
-        passes = np.stack([edge + at for edge, at in found.ends], axis=1)
+        passes = (found.edges + found.at).T
         passes = passes[np.argsort(passes[:, 0])]
         edge = passes[:, 0].astype(np.intp)
         points = generic.vertices[edge] + (passes[:, 0] - edge)[:, None] * generic.edge_vectors[edge]
@@ -78,17 +71,9 @@ class Drawing:
         return cls(generic, points, passes, _upper(generic, passes))
 
     def lifted(self, changed: Collection[int] = ()) -> Curve:
-        """Lift the strands at crossings: over and under by turns, but for crossings that are changed.
+        """Lift the strands at crossings, over and under by turns but for those that are changed, by numbers from 1 on.
 
-        Parameters
-        ----------
-        changed
-            Numbers of crossings, from 1 on, where the other strand is the upper one.
-
-        Raises
-        ------
-        CurveError
-            If there is no crossing of such a number.
+        Raises CurveError if there is no crossing of such a number.
         """
         count = len(self.crossings)
         for number in changed:
@@ -96,33 +81,55 @@ class Drawing:
                 raise CurveError(f"there is no crossing {number}; the drawing has {count}, counted from 1")
         over = self.first_over.copy()
         over[[number - 1 for number in changed]] ^= True
-        heights = self._heights() * np.where(over, 1.0, -1.0)
+        heights = np.full(count, _HIGHEST * _size(self.curve))
+        if count > 1:
+            nearest_crossing = cKDTree(self.crossings).query(self.crossings, k=2)[0][:, 1]
+            heights = np.minimum(heights, _LIFT * nearest_crossing)
+        heights = np.where(over, heights, -heights)
         at, lift = self.passes.ravel(), np.stack([heights, -heights], axis=1).ravel()
         order = np.argsort(at)
         parts, nearest = [], _NEAREST * _size(self.curve)
         for part in self.curve.mesh.slices:
             mine = order[(at[order] >= part.start) & (at[order] < part.stop)]
-            parts.append(lifted(self.curve.vertices[part], at[mine] - part.start, lift[mine], nearest))
+            parts.append(_lifted(self.curve.vertices[part], at[mine] - part.start, lift[mine], nearest))
         curve = Curve.from_components(parts)
         check_embedded(curve)
         return curve
 
-    def _heights(self) -> FloatArray:
-        """Height of the strands at each crossing above and below the plane; shape (c,)."""
-        highest = np.full(len(self.crossings), _HIGHEST * _size(self.curve))
-        if len(highest) < 2:
-            return highest
-        nearest = cKDTree(self.crossings).query(self.crossings, k=2)[0][:, 1]
-        return np.minimum(highest, _LIFT * nearest)
+
+def _lifted(points: FloatArray, at: FloatArray, lift: FloatArray, nearest: float) -> FloatArray:
+    """Lift a closed polygon, shape (n, 2), to given heights at some places, with smooth ramps between them.
+
+    The places are edges and fractions of them, each as one number, sorted; vertices nearer to one than ``nearest`` give
+    way to it.  The result is a finer polygon, shape (m, 3), straight above the given one.
+    """
+    closed = np.concatenate([points, points[:1]])
+    arc = arc_lengths(closed)
+    marks = np.interp(at, np.arange(len(closed)), arc)
+    places = _with(marks, arc[:-1], nearest, arc[-1])
+    for a, b in pairwise([*marks, marks[0] + arc[-1]] if len(marks) else [0.0, arc[-1]]):
+        ramp = np.linspace(a, b, _RAMP, endpoint=False)[1:]
+        places = _with(places, ramp % arc[-1], 0.5 * (ramp[1] - ramp[0]), arc[-1])
+    plane = [np.interp(places, arc, x) for x in closed.T]
+    if not len(marks):
+        return np.column_stack([*plane, np.zeros(len(places))])
+    ends = np.concatenate([marks[-1:] - arc[-1], marks, marks[:1] + arc[-1]])
+    k = np.searchsorted(ends, places, side="right") - 1
+    u = (places - ends[k]) / (ends[k + 1] - ends[k])
+    low, high = np.take(lift, k - 1, mode="wrap"), np.take(lift, k, mode="wrap")
+    return np.column_stack([*plane, low + (high - low) * u * u * (3.0 - 2.0 * u)])
+
+
+def _with(places: FloatArray, more: FloatArray, nearest: float, length: float) -> FloatArray:
+    """Add places on a closed curve, but for those that are near others; sorted."""
+    if not len(places):
+        return more
+    gaps = np.abs(more[:, None] - places[None, :])
+    return np.sort(np.concatenate([places, more[np.minimum(gaps, length - gaps).min(axis=1) > nearest]]))
 
 
 def _size(curve: Curve) -> float:
     return float(np.ptp(curve.vertices, axis=0).max())
-
-
-def _jittered(curve: Curve) -> Curve:
-    noise = np.random.default_rng(20213).uniform(-1.0, 1.0, curve.vertices.shape)
-    return curve.with_vertices(curve.vertices + _JITTER * _size(curve) * noise)
 
 
 def _check_clear(curve: Curve, crossings: FloatArray, edge: IntArray) -> None:
@@ -131,7 +138,8 @@ def _check_clear(curve: Curve, crossings: FloatArray, edge: IntArray) -> None:
     tree = cKDTree(crossings) if len(crossings) else None
     if tree is not None and (pairs := tree.query_pairs(clear, output_type="ndarray")).size:
         raise _unclear(crossings[pairs[0, 0]], int(edge[pairs[0, 0]]))
-    dense, source = _samples(curve, clear)
+    pieces = np.ceil(curve.edge_lengths / clear).astype(np.intp).clip(1)
+    dense, source = subdivide(curve, pieces), np.repeat(np.arange(len(curve)), pieces)
     i, j = cKDTree(dense.vertices).query_pairs(clear, output_type="ndarray").T
     apart = arc_distance_of_pairs(dense, i, j) > _FLATTEST * clear
     i = i[apart]
@@ -139,12 +147,6 @@ def _check_clear(curve: Curve, crossings: FloatArray, edge: IntArray) -> None:
         i = i[tree.query(dense.vertices[i])[0] > _FLATTEST * clear]
     if i.size:
         raise _unclear(dense.vertices[i[0]], int(source[i[0]]))
-
-
-def _samples(curve: Curve, spacing: float) -> tuple[Curve, IntArray]:
-    """The polygon with edges no longer than ``spacing``, and the edge that each of its points is on."""
-    pieces = np.ceil(curve.edge_lengths / spacing).astype(np.intp).clip(1)
-    return subdivide(curve, pieces), np.repeat(np.arange(len(curve)), pieces)
 
 
 def _unclear(point: FloatArray, vertex: int) -> CurveError:

@@ -7,41 +7,56 @@ import numpy as np
 
 from ..collision import is_free
 from ..curve import Curve, Mesh
-from ..curve.strands import nearest_strands
-from ..errors import CurveError
+from ..curve.distances import nearest_strands
+from ..curve.smooth import arc_lengths
+from ..errors import CurveError, counted
 from ..types import FloatArray
-from .rings import MAX_VERTICES, shares
 
+MAX_VERTICES = 400_000  # of any knot that is made: twice what any command takes
 _EDGE = 0.5  # default edge length in units of the gap between strands
 _DISTINCT = 2.0  # points are on different strands if they are this many times further apart along the curve
-_FINER = 4  # times as many vertices stand for the smooth curve
+_FINER = 4  # times as many vertices represent the smooth curve
 
 
 def inscribed(curve: Curve, vertices: int | None, least: int = 120) -> Curve:
     """Inscribe a polygon with equal steps along the components of a smooth link, which is proved to be isotopic.
 
-    Parameters
-    ----------
-    curve
-        Polygons with so many vertices that they stand for the smooth curves.
-    vertices
-        Total number; by default so many that edges are shorter than strands are apart, and ``least`` or more.
-
-    Raises
-    ------
-    CurveError
-        If the curve meets itself, or as good as does, or the vertices are too few or too many.
+    The given polygons have enough vertices to represent the smooth curves.  By default edges are shorter than
+    strands are apart, and vertices ``least`` or more.  Raises CurveError if the curve meets itself, or as good as does,
+    or the vertices are too few or too many.
     """
     gap = strand_gap(curve)
     if vertices is None:
         vertices = max(least, math.ceil(curve.length / (_EDGE * gap)) if gap > 0 else MAX_VERTICES + 1)
+    sizes = shares(vertices, curve.component_lengths)
+    at = [(part, arc_steps(part), n) for part, n in zip(curve.components, sizes, strict=True)]
+    coarse, fine = (
+        Curve.from_components([_along(part, t, np.arange(k * n) / (k * n)) for part, t, n in at]) for k in (1, _FINER)
+    )
+    if not is_isotopic(fine, equal_steps(fine), coarse, equal_steps(coarse)):
+        raise too_few(vertices)
+    return coarse
+
+
+def check_count(vertices: int) -> None:
+    """Raise a CurveError for more vertices than are of any use."""
     if vertices > MAX_VERTICES:
         raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
-    sizes = shares(vertices, np.array([curve.edge_lengths[s].sum() for s in curve.mesh.slices]))
-    coarse, fine = (_resampled(curve, [factor * n for n in sizes]) for factor in (1, _FINER))
-    if not is_isotopic(fine, equal_steps(fine), coarse, equal_steps(coarse)):
-        raise CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
-    return coarse
+
+
+def too_few(vertices: int) -> CurveError:
+    """What is raised where a polygon is not proved to be isotopic to its smooth curve."""
+    return CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
+
+
+def shares(vertices: int, lengths: FloatArray) -> list[int]:
+    """Share vertices among components in proportion to length, by rounding the running sums; a CurveError as above."""
+    check_count(vertices)
+    marks = np.rint(vertices * np.cumsum(lengths) / lengths.sum()).astype(np.intp)
+    counts = np.diff(marks, prepend=0)
+    if counts.min() < 3:
+        raise CurveError(f"{vertices} vertices are too few for {counted(len(lengths), 'component')}; give more")
+    return [int(count) for count in counts]
 
 
 def strand_gap(curve: Curve) -> float:
@@ -69,19 +84,8 @@ def equal_steps(curve: Curve) -> list[FloatArray]:
 
 def arc_steps(points: FloatArray) -> FloatArray:
     """Parameters of the vertices of a closed polygon that are proportional to arc length; shape (n,)."""
-    arc = _arc(points)
+    arc = arc_lengths(np.concatenate([points, points[:1]]))
     return np.asarray(arc[:-1] / arc[-1])
-
-
-def _arc(points: FloatArray) -> FloatArray:
-    """Arc length from the first vertex of a closed polygon to each and back to it; shape (n + 1,)."""
-    edges = np.diff(points, axis=0, append=points[:1])
-    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(edges, axis=1))])
-
-
-def _resampled(curve: Curve, sizes: Sequence[int]) -> Curve:
-    parts = [_along(part, arc_steps(part), np.arange(n) / n) for part, n in zip(curve.components, sizes, strict=True)]
-    return Curve.from_components(parts)
 
 
 def _along(points: FloatArray, at: FloatArray, t: FloatArray) -> FloatArray:

@@ -1,12 +1,14 @@
-"""What is told of the type of a polygon in space: a name of the table, several, or none."""
+"""The type of a polygon in space: a name of the table, several that are possible, or none; and the evidence."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from math import prod
+from math import inf, prod
 
-from ..arguments import checked
+from ..arguments import checked, checked_fields
+from ..checks import check_fields
 from ..curve import Curve
 from ..diagrams import (
     Diagram,
@@ -15,76 +17,67 @@ from ..diagrams import (
     factors,
     is_least,
     jones,
-    knot_signature,
     shuffled_down,
+    signature,
     simplified,
     views,
 )
-from ..errors import CurveError, counted
-from .catalogue import (
-    KNOTS_TO,
-    LINKS_TO,
-    alexander_of,
-    bracket_key,
-    crossing_number,
-    doubled_of,
-    key,
-    linking_of,
-    signature_of,
-    types_with,
-)
-
-MAX_VERTICES = 20_000  # seconds to find the crossings
-_VIEWS = 12  # a curve of many crossings simplifies better in some
-_DOUBLED_TO = 14  # crossings of knots whose doubles are looked at
-_MAX_NAMES = 16  # in a list of names one of which is the right one
+from ..errors import counted
+from .catalogue import KNOTS_TO, LINKS_TO, Key, bracket_key, crossing_number, invariant_of, key, types_with
 
 _UNKNOT = re.compile(r"\b0_1\b")
 NO_CROSSINGS, JONES, ALEXANDER = "a diagram without crossings", "the Jones polynomial", "the Alexander polynomial"
 SIGNATURE, DOUBLED, LINKING = "the signature", "the Jones polynomial of the doubled knot", "linking numbers"
 
 
+@checked_fields
+@dataclass(frozen=True)
+class Effort:
+    """How much is done to identify a type, in counts, so that results do not depend on a clock."""
+
+    vertices: int = 20_000  # of the largest curve whose crossings are looked for, which takes seconds
+    views: int = 12  # directions that the curve is looked at from: one of many crossings simplifies better in some
+    doubled: int = 14  # crossings of the largest knots that are compared by the polynomials of their doubles
+    names: int = 16  # in a list of possible ones
+
+    def __post_init__(self) -> None:
+        check_fields(self, **dict.fromkeys(("vertices", "views", "doubled", "names"), (0.0, inf)))
+
+
+DEFAULT_EFFORT = Effort()
+
+
 @dataclass(frozen=True)
 class KnotType:
-    """What is told of a type.
+    """What is known of a type.
 
-    Attributes
-    ----------
-    names
-        Those of the table that fit, with m for mirror images, # for sums and ⊔ between parts that come apart; in 0_1
-        ⊔ 0_1 two circles.  Empty if none fits.
-    proved
-        Whether it is certain that the type is one of the names: no knot of so few crossings is left out.
-    diagram
-        With the fewest crossings that were found; None if none was looked for.
-    evidence
-        What tells the names from others.
-    untold
-        Why no diagram was looked for; empty if one was.
+    ``names`` are those of the table that fit, with m for mirror images, # for sums and ⊔ between parts that come apart,
+    in 0_1 ⊔ 0_1 two circles; empty if none fits.  It is ``proved`` if the type certainly is one of the names, as no
+    knot of so few crossings is left out.  ``diagram`` has the fewest crossings that were found, ``evidence`` is what
+    distinguishes the names from others, and ``refusal`` says why no diagram was looked for.
     """
 
     names: tuple[str, ...]
     proved: bool
     diagram: Diagram | None
     evidence: tuple[str, ...]
-    untold: str = ""
+    refusal: str = ""
 
     def __repr__(self) -> str:
         return f"<KnotType: {self.sentence:.100}>"
 
     def __str__(self) -> str:
-        return _UNKNOT.sub("unknot", " or ".join(self.names)) if self.names else "not told"
+        return _UNKNOT.sub("unknot", " or ".join(self.names)) if self.names else "not identified"
 
     @cached_property
     def alexander(self) -> tuple[int, ...] | None:
         """Coefficients of the Alexander polynomial, positive at t = 1; None for links and large diagrams."""
-        diagram = self.diagram
-        return alexander(diagram) if diagram is not None and len(diagram.passes) == 1 else None
+        return alexander(self.diagram) if self.diagram and len(self.diagram.passes) == 1 else None
 
     @cached_property
     def jones(self) -> dict[int, int] | None:
         """Coefficients of the Jones polynomial by powers of √t; None where it was not computed."""
-        found = None if self.diagram is None else jones(self.diagram)
+        found = jones(self.diagram) if self.diagram else None
         return None if found is None else dict(found)
 
     @property
@@ -97,46 +90,46 @@ class KnotType:
     def sentence(self) -> str:
         """The short form, and how that is known."""
         if self.diagram is None:
-            return self.untold
-        most = f"a diagram of {counted(self.diagram.crossings, 'crossing')}"
+            return self.refusal
+        size = f"a diagram of {counted(self.diagram.crossings, 'crossing')}"
         if not self.names:
             polynomial = "" if self.alexander is None else f"Alexander polynomial {list(self.alexander)}, "
-            return f"not told: {polynomial}{most}"
-        how = ", ".join(self.evidence) + ("" if self.evidence == (NO_CROSSINGS,) else f", {most}")
+            return f"not identified: {polynomial}{size}"
+        how = ", ".join(self.evidence if self.evidence == (NO_CROSSINGS,) else (*self.evidence, size))
         return f"{self} ({'proved by' if self.proved else 'not proved; it fits'} {how})"
 
 
 @checked
-def knot_type(curve: Curve) -> KnotType:
-    """Tell the type of closed polygons in space that do not touch themselves; open ones have none.
+def knot_type(curve: Curve, effort: Effort = DEFAULT_EFFORT) -> KnotType:
+    """Identify the type of closed polygons in space that do not touch themselves; open ones have none.
 
     The diagram is simplified by moves that keep the type; a knot whose diagram then has no crossing is the unknot, and
     of no more than ten (links: seven) it is the one of the table that has its polynomials.  Sums that the diagram shows
-    are told factor by factor.  How long it takes is bounded by counts: diagrams that keep too many crossings are not
-    told.
+    are identified factor by factor.  Diagrams that keep too many crossings are not identified.
     """
-    untold = _untold(curve)
-    return KnotType((), False, None, (), untold) if untold else type_of_diagram(_simplest(curve))
+    if refusal := _refusal(curve, effort):
+        return KnotType((), False, None, (), refusal)
+    return type_of_diagram(_simplest(curve, effort.views), effort)
 
 
-def _untold(curve: Curve) -> str:
-    """Why a curve has no type, or too many vertices to tell it; empty for all others."""
+def _refusal(curve: Curve, effort: Effort) -> str:
+    """Why a curve has no type, or too many vertices to identify it; empty for all others."""
     if not curve.mesh.all_closed:
         which = "this one is open" if len(curve.mesh.component_sizes) == 1 else "some parts of this one are open"
         return f"none: only closed curves have a knot type, and {which}"
     if curve.dimension != 3:
         return f"none: only curves in space have a knot type, and this one is in dimension {curve.dimension}"
-    if len(curve) > MAX_VERTICES:
-        return f"not told: the curve has {len(curve):,} vertices, more than {MAX_VERTICES:,}"
+    if len(curve) > effort.vertices:
+        return f"not identified: the curve has {len(curve):,} vertices, more than {effort.vertices:,}"
     return ""
 
 
-def type_of_diagram(diagram: Diagram) -> KnotType:
-    """Tell the type of a simplified diagram."""
-    pieces = [[_factor_type(factor) for factor in factors(piece)] for piece in diagram.pieces()]
+def type_of_diagram(diagram: Diagram, effort: Effort = DEFAULT_EFFORT) -> KnotType:
+    """Identify the type of a simplified diagram."""
+    pieces = [[_factor_type(factor, effort) for factor in factors(piece)] for piece in diagram.pieces()]
     every = [each for piece in pieces for each in piece]
     names: set[str] = set()
-    if 0 < prod(len(each.names) for each in every) <= _MAX_NAMES:
+    if 0 < prod(len(each.names) for each in every) <= effort.names:
         sums = [[_sum(chosen) for chosen in product(*(each.names for each in piece))] for piece in pieces]
         names = {" ⊔ ".join(sorted(parts, key=_order)) for parts in product(*sums)}
     evidence = dict.fromkeys(reason for each in every for reason in each.evidence)
@@ -146,17 +139,16 @@ def type_of_diagram(diagram: Diagram) -> KnotType:
     return KnotType(tuple(sorted(names, key=_order)), proved, diagram, tuple(evidence))
 
 
-def _simplest(curve: Curve) -> Diagram:
+def _simplest(curve: Curve, count: int) -> Diagram:
     """The diagram with the fewest crossings of several views, or one that is simple enough."""
-    best: Diagram | None = None
-    for view in views(curve, _VIEWS):
-        found = simplified(view)
-        best = found if best is None or found.crossings < best.crossings else best
-        if _is_enough(best):
-            return best
-    if best is None:
-        raise CurveError("strands are so near to each other that no view of the curve tells which one is in front")
-    return shuffled_down(best, _is_enough)
+    every = map(simplified, views(curve, count))
+    best = next(every)
+    while not _is_enough(best):
+        view = next(every, None)
+        if view is None:
+            return shuffled_down(best, _is_enough)
+        best = view if view.crossings < best.crossings else best
+    return best
 
 
 def _is_enough(diagram: Diagram) -> bool:
@@ -178,7 +170,7 @@ def _order(name: str) -> tuple[int, str]:
     return sum(map(crossing_number, name.split(" ⊔ "))), name
 
 
-def _factor_type(factor: Diagram) -> KnotType:
+def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
     """The type of a factor, by the table."""
     if not factor.crossings:
         return KnotType(("0_1",), True, factor, (NO_CROSSINGS,))
@@ -186,27 +178,33 @@ def _factor_type(factor: Diagram) -> KnotType:
     bracket = bracket_key(factor)
     if bracket is None:
         return KnotType((), False, factor, ())
-    names = types_with(bracket, min(factor.crossings, complete))
+    names, evidence = types_with(bracket, min(factor.crossings, complete)), [JONES]
     if is_least(factor):
         names = [name for name in names if crossing_number(name) == factor.crossings]
-    names, evidence = (_told_apart if len(factor.passes) == 1 else _links_told_apart)(factor, names)
-    return KnotType(tuple(names), factor.crossings <= complete, factor, (JONES, *evidence))
+
+    def compare(invariant: Callable[[Diagram], object], reason: str) -> None:
+        """Keep the names that have the factor's invariant, if it can be computed."""
+        found = invariant(factor)
+        if found is not None:
+            names[:] = [name for name in names if invariant_of(name, invariant) == found]
+            evidence.append(reason)
+
+    if len(factor.passes) > 1:
+        compare(_linking, LINKING)
+    else:
+        compare(alexander, ALEXANDER)
+        if len(names) > 1:
+            compare(signature, SIGNATURE)
+        if names and factor.crossings <= effort.doubled and (len(names) > 1 or factor.crossings > KNOTS_TO):
+            compare(_doubled, DOUBLED)
+    return KnotType(tuple(names), factor.crossings <= complete, factor, tuple(evidence))
 
 
-def _told_apart(knot: Diagram, names: list[str]) -> tuple[list[str], list[str]]:
-    """Those of the names that have the knot's other invariants, and which of these were needed."""
-    polynomial, evidence = alexander(knot), []
-    if polynomial is not None:
-        names, evidence = [name for name in names if alexander_of(name) == polynomial], [ALEXANDER]
-    if len(names) > 1:
-        signature = knot_signature(knot)
-        names, evidence = [name for name in names if signature_of(name) == signature], [*evidence, SIGNATURE]
-    doubled = doubled_bracket(knot) if names and knot.crossings <= _DOUBLED_TO else None
-    if doubled is not None and (len(names) > 1 or knot.crossings > KNOTS_TO):
-        names, evidence = [name for name in names if doubled_of(name) == key(doubled)], [*evidence, DOUBLED]
-    return names, evidence
+def _linking(link: Diagram) -> list[int]:
+    """Linking numbers without their signs, which orientations decide; sorted."""
+    return sorted(map(abs, link.linking_numbers))
 
 
-def _links_told_apart(link: Diagram, names: list[str]) -> tuple[list[str], list[str]]:
-    numbers = sorted(map(abs, link.linking_numbers))
-    return [name for name in names if linking_of(name) == numbers], [LINKING]
+def _doubled(knot: Diagram) -> Key | None:
+    found = doubled_bracket(knot)
+    return None if found is None else key(found)

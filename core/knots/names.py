@@ -7,14 +7,11 @@ from ..arguments import checked
 from ..curve import Curve
 from ..diagrams.codes import is_code
 from ..errors import CurveError, MobiusFlowError
-from .arcs import ARCS
 from .braids import Word, checked_word, connected_sum, mirror
-from .closures import braid_closure
-from .coded import coded_knot
-from .larger_tables import larger_name, larger_word
-from .planar import diagram_knot
-from .table import ALIASES, HARD_UNKNOTS, KNOTS, ROLFSEN
-from .torus import torus_knot
+from .closed_braids import braid_closure, torus_knot
+from .parametric import ARCS
+from .planar import coded_knot, diagram_knot
+from .table import ALIASES, HARD_UNKNOTS, KNOTS, ROLFSEN, larger_name, larger_word
 
 _TORUS = re.compile(r"(?:t|torus)\((?P<numbers>[^()#]*)(?P<end>\)?)")
 _BRAID = re.compile(  # braid(1,1), {1,1} as in KnotInfo, BR[2,{1,1}] as in the Knot Atlas
@@ -24,23 +21,22 @@ _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
 _HARD = {name.replace("-", ""): name for name in HARD_UNKNOTS}
-_MIRRORS = re.compile(r"(?:m\s*)+")
 _TABLE = {name.lower(): name for name in KNOTS}
 _WORDS = {**ALIASES, **ROLFSEN}
 
 
 class UnknownKnotError(MobiusFlowError):
-    """A knot name that means nothing; the message says which part of it is wrong, or gives close names."""
+    """A name that is not known; the message says which part of it is wrong, or suggests close names."""
 
 
 def knot_names() -> list[str]:
-    """The names of the table with its links, other words for them, the hard unknots, and arcs."""
+    """Names of the table's knots and links, other names for them, the hard unknots, and arcs."""
     return [*KNOTS, *(name.replace(" ", "-") for name in ALIASES), *HARD_UNKNOTS, *ARCS]
 
 
 @checked
 def knot(name: str, vertices: int | None = None) -> Curve:
-    """Make a knot or link from its name.
+    """Make a knot or link from its name, in any spelling.
 
     Names: the table's (``3_1`` to ``10_165``, ``L5a1``, also ``5^2_1``), the words of :data:`ALIASES` (``trefoil``,
     ``figure-eight``), those of larger tables (``K11n34``, ``L10a100``) where spherogram is installed, torus knots
@@ -48,30 +44,16 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, the diagrams of :data:`HARD_UNKNOTS`
     (``goeritz``), the open polygons of :data:`ARCS` (``overhand``), and codes of diagrams (``DT: [4 6 2]``,
     ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``, and lists in brackets as SnapPy and KnotInfo have them).
-    Letter case, spaces, hyphens and a last word "knot", "unknot" or "link" don't matter.
 
-    Parameters
-    ----------
-    name
-        The name.
-    vertices
-        Total number of vertices; by default so many that edges are shorter than strands are apart.
-
-    Raises
-    ------
-    UnknownKnotError
-        If the name means nothing; the message gives close names.
-    CurveError
-        If the vertices are too few or a number is not allowed.
+    ``vertices`` is the total number; by default edges are shorter than strands are apart.  Raises UnknownKnotError for
+    other names, and CurveError if the vertices are too few or a number is not allowed.
 
     Examples
     --------
-    >>> len(knot("figure-eight knot", 80))
-    80
     >>> knot("T(2,4)", 100).mesh.component_sizes
     (50, 50)
     """
-    name = str(name)  # a number is no name either, and is told so
+    name = str(name)  # a number is refused as other unknown names are
     squeezed = _squeezed(name)
     if (torus := _TORUS.fullmatch(squeezed)) is not None:
         return torus_knot(*_torus(torus, name), vertices)
@@ -80,36 +62,27 @@ def knot(name: str, vertices: int | None = None) -> Curve:
         return braid_closure(word, vertices, strands=strands)
     if is_code(name) and "#" not in name:
         return coded_knot(name, vertices)
-    by_itself = _unspaced(_plain(name))
+    by_itself = re.sub(r"[\s_-]", "", _plain(name))
     if by_itself in ARCS:
         return ARCS[by_itself](vertices)
-    hard = _HARD.get(by_itself)
-    if hard is not None:
-        return diagram_knot(HARD_UNKNOTS[hard], vertices)
+    if by_itself in _HARD:
+        return diagram_knot(HARD_UNKNOTS[_HARD[by_itself]], vertices)
     return braid_closure(braid_word(name), vertices)
 
 
 def table_name(name: str) -> tuple[str, bool]:
-    """The table's name of a knot or link that is in it, and whether its mirror image is meant; raises as `knot` does.
-
-    Examples
-    --------
-    >>> table_name("m Trefoil knot")
-    ('3_1', True)
-    """
+    """The table's name of a knot or link in it, and whether its mirror image is meant; raises as `knot` does."""
     part = _plain(str(name))
-    mirrors = _MIRRORS.match(part)
-    bare = part[mirrors.end() :] if mirrors else part
-    entry = _WORDS.get(bare, bare)
-    if (found := _TABLE.get(_squeezed(entry))) is None:
-        knot(name, None)  # which says what is wrong with names that mean nothing
+    bare, mirrored = _unmirrored(part)
+    if (found := _TABLE.get(_squeezed(_WORDS.get(bare, bare)))) is None:
+        knot(name)  # which says what is wrong with unknown names
         raise UnknownKnotError(f"{name[:60]!r} is a knot, but none of the table; give one of those, or m and one")
-    return found, mirrors is not None and bool(mirrors[0].count("m") % 2)
+    return found, mirrored
 
 
 @checked
 def braid_word(name: str) -> Word:
-    """Braid word of a name in the grammar of :func:`knot`; raises UnknownKnotError, or CurveError as `knot` does."""
+    """Braid word of a name in the grammar of :func:`knot`; raises as `knot` does."""
     word: Word = ()
     for part in _plain(name).split("#"):
         word = connected_sum(word, _prime_word(part.strip(), name))
@@ -131,15 +104,20 @@ def _prime_word(part: str, name: str) -> Word:
         return KNOTS[_TABLE[squeezed]]
     if (larger := larger_name(squeezed)) is not None:
         return larger_word(larger)
-    mirrors = _MIRRORS.match(part)
-    if mirrors is None or mirrors.end() == len(part):
+    bare, mirrored = _unmirrored(part)
+    if bare in ("", part):
         raise _unknown(name)
-    word = _prime_word(part[mirrors.end() :], name)  # no name begins with an m
-    return mirror(word) if mirrors[0].count("m") % 2 else word
+    word = _prime_word(bare, name)
+    return mirror(word) if mirrored else word
+
+
+def _unmirrored(part: str) -> tuple[str, bool]:
+    """A name without the letters m before it, with which no name begins, and whether there is an odd number of them."""
+    bare = part.lstrip("m ") if part.startswith("m") else part
+    return bare, part[: len(part) - len(bare)].count("m") % 2 == 1
 
 
 def _numbers(match: re.Match[str], name: str) -> Word:
-    """The numbers in the brackets of T(p,q) or a braid."""
     if not match["end"]:
         raise UnknownKnotError(f"{name[:60]!r} has no closing bracket; {_FORMS}")
     numbers = match["numbers"].split(",") if match["numbers"] else []
@@ -152,7 +130,6 @@ def _numbers(match: re.Match[str], name: str) -> Word:
 
 
 def _torus(match: re.Match[str], name: str) -> tuple[int, int]:
-    """p and q."""
     numbers = _numbers(match, name)
     if len(numbers) != 2:
         raise UnknownKnotError(f"{name[:60]!r} does not have two numbers; write T(p,q), such as T(2,5)")
@@ -160,7 +137,7 @@ def _torus(match: re.Match[str], name: str) -> tuple[int, int]:
 
 
 def _braid(match: re.Match[str], name: str) -> tuple[Word, int | None]:
-    """The letters and, where it is told, the number of strands."""
+    """The letters and, where it is given, the number of strands."""
     word = _numbers(match, name)
     if word and match[0].startswith("{") and sorted(word) == sorted({side * abs(k) for k in word for side in (1, -1)}):
         raise UnknownKnotError(f"{name[:60]!r} may be a braid or a Gauss code; write braid(...) or Gauss: ...")
@@ -189,10 +166,6 @@ def _torus_word(p: int, q: int) -> Word:
 
 def _squeezed(text: str) -> str:
     return re.sub(r"\s", "", text.lower())
-
-
-def _unspaced(text: str) -> str:
-    return re.sub(r"[\s_-]", "", text)
 
 
 def _plain(name: str) -> str:

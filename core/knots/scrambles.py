@@ -1,19 +1,23 @@
-"""Messy polygons of the same knot type, by random vertex moves that are each checked to be an isotopy."""
+"""Messy polygons of the same knot type, by random vertex moves that are each checked to be an isotopy.
+
+Moving vertex v to v' sweeps the triangles (a, v, v') and (v, v', b), where a and b are its neighbours. If no other edge
+comes near them, the polygons before and after are isotopic: this is the elementary move of combinatorial knot theory
+(Reidemeister, *Knotentheorie*, 1932).
+"""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arguments import checked
+from ..collision.planes import closest_chord
 from ..curve import Curve, check_closed
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .sweeps import angle_to_sector, triangle_distances
 
-_MIN_ANGLE = 0.2  # radians between neighbouring edges, so that edges never fold onto each other
 _MIN_GAP = 1e-6  # of the radius; rounding in the distances, at most 1e-8 of it, must stay far below the gap
+_TINY = 1e-300  # against division by 0
 
 
 @checked
@@ -24,41 +28,18 @@ def scramble(
     moves: int | None = None,
     reach: float | None = None,
     gap: float | None = None,
+    least_angle: float = 0.2,
 ) -> Curve:
     """Make a messy polygon of the same knot type with the same numbers of vertices.
 
-    Vertices move one at a time, straight and far, wherever the swept triangles are free of other edges; the
-    curve stays within the ball that held it.
+    Of closed polygons in space that don't touch, vertices move one at a time, straight and far, wherever the swept
+    triangles are free of other edges; the curve stays within the ball that held it.  The same ``seed`` gives the same
+    curve.  By default 20 ``moves`` are tried for every vertex, of at most half the ball's radius (``reach``), and keep
+    edges a twentieth of their mean length from others (``gap``, at least a millionth of the radius) and
+    ``least_angle``, in radians, from folding onto their neighbours.
 
-    Parameters
-    ----------
-    curve
-        Polygons in space that don't touch.
-    seed
-        The same seed gives the same curve.
-    moves
-        Number of moves tried, by default 20 for every vertex.
-    reach
-        Length of the longest move, in the curve's units; by default half the curve's radius.
-    gap
-        Distance that moving edges keep from others, at least a millionth of the curve's radius; by default a
-        twentieth of the mean edge length.
-
-    Raises
-    ------
-    CurveError
-        If the curve is not in space or a number is not allowed.
+    Raises CurveError if the curve is not in space or a number is not allowed.
     """
-    points = curve.vertices.copy()
-    for vertex, position in certified_moves(curve, seed, moves=moves, reach=reach, gap=gap):
-        points[vertex] = position
-    return curve.with_vertices(points)
-
-
-def certified_moves(
-    curve: Curve, seed: int, *, moves: int | None = None, reach: float | None = None, gap: float | None = None
-) -> Iterator[tuple[int, FloatArray]]:
-    """Give one after the other the vertices that :func:`scramble` moves, and where each moves to."""
     if curve.dimension != 3:
         raise CurveError(f"the curve has dimension {curve.dimension}; only curves in space can be scrambled")
     check_closed(curve, "scrambles")
@@ -73,62 +54,72 @@ def certified_moves(
         raise CurveError(f"moves is {moves} and reach {reach}; moves must be 0 or more and reach above 0")
     if not _MIN_GAP * radius <= gap < math.inf:
         raise CurveError(f"gap is {gap}; it must be at least {_MIN_GAP:g} of the curve's radius, {radius:g}")
-    return _moves(_Polygons.of(curve), np.random.default_rng(seed), moves, reach, gap, (center, radius))
-
-
-def _moves(
-    polygons: "_Polygons",
-    rng: np.random.Generator,
-    moves: int,
-    reach: float,
-    gap: float,
-    ball: tuple[FloatArray, float],
-) -> Iterator[tuple[int, FloatArray]]:
-    center, radius = ball
+    if not 0 < least_angle < math.pi:
+        raise CurveError(f"least_angle is {least_angle}; it must be above 0 and below π")
+    polygons = Polygons(curve.vertices.copy(), curve.mesh.anticycle, curve.mesh.heads, gap, least_angle)
+    rng = np.random.default_rng(seed)
     for _ in range(moves):
-        vertex = int(rng.integers(len(polygons.points)))
+        vertex = int(rng.integers(len(curve)))
         step = rng.normal(size=3)
         # Lengths spread over a decade: long moves get stuck first, short ones go on finding room.
         step *= reach * 10.0 ** -rng.random() / np.linalg.norm(step)
         position = polygons.points[vertex] + step
-        if np.linalg.norm(position - center) <= radius and polygons.can_move(vertex, position, gap):
+        if np.linalg.norm(position - center) <= radius and polygons.can_move(vertex, position):
             polygons.points[vertex] = position
-            yield vertex, position
+    return curve.with_vertices(polygons.points)
 
 
-@dataclass
-class _Polygons:
-    """Polygons under way: positions that change, and who is whose neighbour."""
+class Polygons(NamedTuple):
+    """Polygons under way: positions that change, the neighbours of each vertex, and what moves must keep."""
 
     points: FloatArray
     before: IntArray
     after: IntArray
+    gap: float
+    least_angle: float
 
-    @classmethod
-    def of(cls, curve: Curve) -> "_Polygons":
-        before = np.empty_like(curve.mesh.heads)
-        before[curve.mesh.heads] = curve.mesh.tails
-        return cls(curve.vertices.copy(), before, curve.mesh.heads)
-
-    def can_move(self, vertex: int, position: FloatArray, gap: float) -> bool:
-        """Whether the straight move of a vertex keeps its edges ``gap`` away from the others all the way."""
-        old, a, b = self.points[vertex], int(self.before[vertex]), int(self.after[vertex])
-        return all(
-            self._opens(pivot, old, position, beyond) and self._free(vertex, pivot, old, position, gap)
-            for pivot, beyond in ((a, int(self.before[a])), (b, int(self.after[b])))
-        )
-
-    def _opens(self, pivot: int, old: FloatArray, new: FloatArray, beyond: int) -> bool:
-        """Whether the edge that turns about ``pivot`` stays away from the next edge there."""
-        here = self.points[pivot]
-        return angle_to_sector(self.points[beyond] - here, old - here, new - here) >= _MIN_ANGLE
-
-    def _free(self, vertex: int, pivot: int, old: FloatArray, new: FloatArray, gap: float) -> bool:
-        """Whether the triangle swept by the edge from ``pivot`` to the vertex is free of edges beyond both."""
-        triangle = np.stack([self.points[pivot], old, new])
+    def can_move(self, vertex: int, position: FloatArray) -> bool:
+        """Whether the straight move of a vertex keeps its edges away from all others, and from the next ones open."""
+        old, a, b = self.points[vertex], self.before[vertex], self.after[vertex]
         tails, heads = self.points, self.points[self.after]
-        low, high = triangle.min(axis=0) - gap, triangle.max(axis=0) + gap
-        near = ((np.minimum(tails, heads) <= high) & (np.maximum(tails, heads) >= low)).all(axis=1)
-        own = [vertex, self.before[vertex], pivot, self.before[pivot]]
-        near[own] = False
-        return not near.any() or bool(triangle_distances(triangle, tails[near], heads[near]).min() >= gap)
+        for pivot, beyond in ((a, self.before[a]), (b, self.after[b])):
+            here = self.points[pivot]
+            if angle_to_sector(self.points[beyond] - here, old - here, position - here) < self.least_angle:
+                return False
+            triangle = np.stack([here, old, position])  # swept by the edge from the pivot to the vertex
+            low, high = triangle.min(axis=0) - self.gap, triangle.max(axis=0) + self.gap
+            near = ((np.minimum(tails, heads) <= high) & (np.maximum(tails, heads) >= low)).all(axis=1)
+            near[[vertex, a, pivot, self.before[pivot]]] = False
+            if near.any() and triangle_distances(triangle, tails[near], heads[near]).min() < self.gap:
+                return False
+        return True
+
+
+def triangle_distances(triangle: FloatArray, tails: FloatArray, heads: FloatArray) -> FloatArray:
+    """Distances of a triangle (3, 3) to segments (k, 3); shape (k,), 0 where a segment pierces it."""
+    a, b, c = triangle
+    edge = heads - tails
+    motion = np.stack(np.broadcast_arrays(tails - a, edge, b - a, c - a)).swapaxes(1, 2)
+    height = [(x - a) @ np.cross(b - a, c - a) for x in (tails, heads)]
+    turns = np.array([(np.cross(p - tails, q - tails) * edge).sum(axis=1) for p, q in ((a, b), (b, c), (c, a))])
+    pierced = (height[0] * height[1] < 0) & ((turns >= 0).all(axis=0) | (turns <= 0).all(axis=0))
+    return np.where(pierced, 0.0, np.linalg.norm(closest_chord(motion), axis=0))
+
+
+def angle_to_sector(direction: FloatArray, first: FloatArray, second: FloatArray) -> float:
+    """Least angle between a direction (3,) and those from ``first`` to ``second``, the short way; radians."""
+    least = min(_angle(direction, first), _angle(direction, second))
+    normal = np.cross(first, second)
+    size = np.sqrt(normal @ normal)
+    if size <= _TINY:
+        return least
+    after, before = np.cross(normal, first) @ direction, np.cross(second, normal) @ direction
+    if after < 0 or before < 0:
+        return least
+    height = abs(direction @ normal) / (size * np.sqrt(direction @ direction))
+    return float(np.arcsin(min(height, 1.0)))
+
+
+def _angle(u: FloatArray, v: FloatArray) -> float:
+    w = np.cross(u, v)
+    return float(np.arctan2(np.sqrt(w @ w), u @ v))

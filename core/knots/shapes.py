@@ -1,7 +1,7 @@
 """Smooth shapes of the table's knots and links, with evenly spread strands, stored as a few Fourier coefficients.
 
-The file ``shapes.npz`` is a build product, never edited by hand: ``tools/knot_shapes.py`` makes it from relaxations of
-the tangent-point energy, and proves that each polygon made here has the type its name says.
+``tools/knot_shapes.py`` makes ``shapes.npz`` from relaxations of the tangent-point energy, and proves that each polygon
+made here has the type its name says.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,11 +14,9 @@ import numpy as np
 
 from ..arguments import checked
 from ..curve import Curve
-from ..errors import CurveError
-from ..types import ComplexArray, FloatArray
-from .inscribed import equal_steps, is_isotopic
+from ..types import ComplexArray
+from .inscribed import equal_steps, is_isotopic, shares, too_few
 from .names import table_name
-from .rings import MAX_VERTICES, shares
 
 FILE = Path(__file__).with_name("shapes.npz")
 QUANTUM = 2.0**-13  # coefficients are stored as multiples of it, in 16 bits
@@ -29,10 +27,8 @@ _PER_MODE, _LEAST = 10, 64  # vertices of a component for each of its modes, and
 class Shape:
     """A smooth knot or link, about as wide as the interval from −1 to 1, lying flat and facing +z.
 
-    Parameters
-    ----------
-    coefficients
-        For each component c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, at nearly constant speed.
+    For each component there are coefficients c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, at
+    nearly constant speed.
     """
 
     coefficients: tuple[ComplexArray, ...]
@@ -44,7 +40,10 @@ class Shape:
 
     def polygon(self, sizes: Sequence[int]) -> Curve:
         """Inscribe a polygon with so many vertices on each component, at equal steps of t."""
-        parts = [_values(c, np.arange(n) / n) for c, n in zip(self.coefficients, sizes, strict=True)]
+        parts = []
+        for c, n in zip(self.coefficients, sizes, strict=True):
+            waves = np.exp(2j * np.pi * np.outer(np.arange(n) / n, np.arange(len(c))))
+            parts.append((waves @ c).real)
         return Curve.from_components(parts)
 
 
@@ -52,25 +51,12 @@ class Shape:
 def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """Make a knot or link of the table as a smooth curve with evenly spread strands.
 
-    It is at rest under the tangent-point energy, not the Möbius energy, of which it has up to 16 % (median 10 %) more
-    than the least known.
+    It is at rest under the tangent-point energy; its Möbius energy is up to 16 % (median 10 %) above the least known.
+    Handedness is the table's: 3_1 is the right-handed trefoil; an m before the name gives the mirror image in the plane
+    of the picture.  Names are spelt as for :func:`~mobius_flow.core.knots.knot`; ``vertices`` is the total number.
 
-    Handedness is the table's: 3_1 is the right-handed trefoil.  An m before the name gives the mirror image in the
-    plane of the picture.
-
-    Parameters
-    ----------
-    name
-        A name of the table or another word for one, as in :func:`~mobius_flow.core.knots.knot`.
-    vertices
-        Total number of vertices; by default so many that the curve looks smooth.
-
-    Raises
-    ------
-    UnknownKnotError
-        If no shape is stored for the name.
-    CurveError
-        If the vertices are too few to follow the strands, or too many for any use.
+    Raises UnknownKnotError if no shape is stored for the name, and CurveError if the vertices are too few to follow the
+    strands.
 
     Examples
     --------
@@ -79,9 +65,11 @@ def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     """
     entry, mirrored = table_name(name)
     shape = shapes()[entry]
-    curve = shape.polygon(shape.sizes)
+    curve = proved = shape.polygon(shape.sizes)
     if vertices is not None:
-        curve = _with_vertices(shape, curve, vertices)
+        curve = shape.polygon(shares(vertices, proved.component_lengths))
+        if not is_isotopic(proved, equal_steps(proved), curve, equal_steps(curve)):
+            raise too_few(vertices)
     return curve.with_vertices(curve.vertices * [1.0, 1.0, -1.0]) if mirrored else curve
 
 
@@ -96,37 +84,3 @@ def shapes() -> Mapping[str, Shape]:
     return MappingProxyType(
         {str(name): Shape(tuple(next(parts) for _ in range(count))) for name, count in zip(names, counts, strict=True)}
     )
-
-
-def rounded(shape: Shape) -> Shape:
-    """A shape as it is stored: coefficients are multiples of the quantum."""
-    return Shape(tuple(QUANTUM * np.round(c / QUANTUM) for c in shape.coefficients))
-
-
-def store(given: Mapping[str, Shape], path: Path = FILE) -> None:
-    """Write shapes, rounded."""
-    parts = [c for shape in given.values() for c in shape.coefficients]
-    values = np.concatenate(parts)
-    np.savez_compressed(
-        path,
-        names=np.array(list(given)),
-        components=np.array([len(shape.coefficients) for shape in given.values()], dtype=np.uint8),
-        modes=np.array([len(c) - 1 for c in parts], dtype=np.uint8),
-        coefficients=np.rint(np.stack([values.real, values.imag], axis=-1) / QUANTUM).astype(np.int16),
-    )
-
-
-def _with_vertices(shape: Shape, proved: Curve, vertices: int) -> Curve:
-    if vertices > MAX_VERTICES:
-        raise CurveError(f"{vertices} vertices are too many; at most {MAX_VERTICES} are allowed")
-    lengths = np.array([proved.edge_lengths[s].sum() for s in proved.mesh.slices])
-    curve = shape.polygon(shares(vertices, lengths))
-    if not is_isotopic(proved, equal_steps(proved), curve, equal_steps(curve)):
-        raise CurveError(f"{vertices} vertices are too few to follow the strands of this knot; give more")
-    return curve
-
-
-def _values(coefficients: ComplexArray, t: FloatArray) -> FloatArray:
-    """Points at parameters t of shape (n,); shape (n, 3)."""
-    waves = np.exp(2j * np.pi * np.outer(t, np.arange(len(coefficients))))
-    return np.asarray((waves @ coefficients).real)

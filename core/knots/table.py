@@ -1,34 +1,28 @@
-"""The named table, read from ``table.ini``: braid words of knots and links, codes of hard unknots, and other names."""
+"""The named table, read from ``table.ini``, and larger tables, where spherogram is installed, which has them."""
 
+import re
 from collections.abc import Mapping
 from configparser import ConfigParser
 from pathlib import Path
 from types import MappingProxyType
 
-from ..diagrams import PlanarCrossing as Crossing
+from ..diagrams import PlanarCrossing
+from ..errors import MobiusFlowError
 from .braids import Word
 
 FILE = Path(__file__).with_name("table.ini")
+_LARGER = re.compile(r"(?P<kind>[kl]?)(?P<crossings>[1-9]\d?)_?(?P<sort>[an])_?0*(?P<number>[1-9]\d{0,5})", re.ASCII)
+_OTHERWISE = 'give its code, such as "DT: [4 6 2]", "PD[X[1,5,2,4], ...]" or "Gauss: 1 -2 3 -1 2 -3"'
 
 
-def _file() -> ConfigParser:
-    """The file, with names as they are written there."""
-    parser = ConfigParser(delimiters="=", interpolation=None)
-    parser.optionxform = str  # type: ignore[assignment,method-assign]
-    parser.read_string(FILE.read_text(encoding="utf-8"))
-    return parser
+_FILE = ConfigParser(delimiters="=", interpolation=None)
+_FILE.optionxform = str  # type: ignore[assignment,method-assign]  # names are as they are written there
+_FILE.read_string(FILE.read_text(encoding="utf-8"))
 
 
 def _word(letters: str) -> Word:
     return tuple(map(int, letters.split()))
 
-
-def _code(edges: str) -> tuple[Crossing, ...]:
-    numbers = iter(_word(edges))
-    return tuple(zip(numbers, numbers, numbers, numbers, strict=True))
-
-
-_FILE = _file()
 
 KNOTS: Mapping[str, Word] = MappingProxyType({name: _word(letters) for name, letters in _FILE["braids"].items()})
 """Braid words of all prime knots to ten crossings and links to seven.
@@ -36,8 +30,8 @@ KNOTS: Mapping[str, Word] = MappingProxyType({name: _word(letters) for name, let
 Handedness is the word's, positive letters being right-handed crossings: 3_1 is the right-handed trefoil.
 """
 
-HARD_UNKNOTS: Mapping[str, tuple[Crossing, ...]] = MappingProxyType(
-    {name: _code(edges) for name, edges in _FILE["hard unknots"].items()}
+HARD_UNKNOTS: Mapping[str, tuple[PlanarCrossing, ...]] = MappingProxyType(
+    {name: tuple(zip(*[iter(_word(edges))] * 4, strict=True)) for name, edges in _FILE["hard unknots"].items()}
 )
 """Planar diagram codes of famous unknots that are hard to untangle, from 10 to 141 crossings."""
 
@@ -49,3 +43,32 @@ ROLFSEN: Mapping[str, str] = MappingProxyType(dict(_FILE["rolfsen"]))
 
 ALIASES: Mapping[str, str] = MappingProxyType(dict(_FILE["other names"]))
 """Other names for knots and links of the table, and for sums of them."""
+
+
+def larger_name(name: str) -> str | None:
+    """The name, such as K11n34, that is meant by one in small letters (``11n_34``); None if it is none of this form.
+
+    Hoste and Thistlethwaite number alternating and other ones apart, to fourteen crossings.
+    """
+    match = _LARGER.fullmatch(name)
+    if match is None:
+        return None
+    kind, crossings, sort, number = match.groups()
+    return f"{(kind or 'k').upper()}{crossings}{sort}{number}"
+
+
+def larger_word(name: str) -> Word:
+    """A braid word of a knot or link that `larger_name` names; raises MobiusFlowError if there is none, or no table.
+
+    Which mirror image is meant is spherogram's (and SnapPy's) choice.
+    """
+    try:
+        from spherogram import Link
+    except ImportError as error:
+        advice = f'try pip install spherogram (the extra "knots"), or {_OTHERWISE}'
+        raise MobiusFlowError(f"{name} is in larger tables than the one here; {advice}") from error
+    try:
+        link = Link(name)
+    except ValueError as error:
+        raise MobiusFlowError(f"no knot or link is called {name} in spherogram's tables; {_OTHERWISE}") from error
+    return tuple(map(int, link.braid_word()))

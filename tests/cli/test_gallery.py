@@ -12,7 +12,7 @@ from mobius_flow.addon.pictures import export
 from mobius_flow.cli import gallery, main
 from mobius_flow.cli.batch.table import Row
 from mobius_flow.core import Curve, MobiusFlowError, write_curve
-from mobius_flow.core.curve.bending import bending
+from mobius_flow.core.curve.measures import bending
 from shapes import half_circle, regular_polygon, torus_trefoil
 
 CURVES = {"round": regular_polygon(24), "knot": torus_trefoil(60), "knot-2": torus_trefoil(50)}

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Objective, OptionError, RelaxOptions, Status, Trajectory, minimize, relax
-from mobius_flow.core.curve.distances import arc_distance_of_pairs
+from mobius_flow.core.curve.distances import STRAND_RATIO, arc_distance_of_pairs
 from mobius_flow.core.curve.pins import Pins
-from mobius_flow.core.curve.refine import STRAND_RATIO, Resolution
+from mobius_flow.core.curve.refine import Resolution
 from mobius_flow.core.curve.remesh import (
     COLLAPSE,
     GRADING,

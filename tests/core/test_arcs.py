@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, RelaxOptions, Result, Status, minimize
+from mobius_flow.core.diagrams import linking_numbers, quick_invariants
 from mobius_flow.core.driver import Trajectory
 from mobius_flow.core.driver.interventions.links import split
 from mobius_flow.core.knots import knot_type, overhand
-from mobius_flow.core.knots.alexander import linking_numbers, signature
 from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.units import Units
 from mobius_flow.core.verify import verify
@@ -140,7 +140,7 @@ def test_random_mixtures(tmp_path: Path, seed: int) -> None:
 
 def test_what_only_closed_components_have() -> None:
     arc = opened(torus_trefoil(60), 0)
-    for function in (signature, linking_numbers):
+    for function in (quick_invariants, linking_numbers):
         with pytest.raises(CurveError, match=r"^component 1 is open; .* are for closed components$"):
             function(arc)
     assert knot_type(arc).names == ()

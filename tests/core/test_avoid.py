@@ -16,7 +16,7 @@ from mobius_flow.core import (
     relax,
 )
 from mobius_flow.core.collision import Contact
-from mobius_flow.core.curve.places import at_edges
+from mobius_flow.core.curve import at_edges
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.verify import verify

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Iterate, MoebiusEnergy, OptionError, RelaxOptions, Status, Trajectory, minimize
 from mobius_flow.core.constraints import Constraints
-from mobius_flow.core.curve.bending import bending
+from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.curve.moebius_map import moebius_image
 from mobius_flow.core.descent import Point, Step
 from mobius_flow.core.driver.interventions import balance

@@ -51,7 +51,7 @@ def test_a_saddle_has_its_index() -> None:
 
 def test_arcs_have_all_but_a_type() -> None:
     found = info(half_circle(60))
-    assert str(found.type) == "not told"
+    assert str(found.type) == "not identified"
     assert found.energies["moebius"] == pytest.approx(measure(half_circle(60), "moebius"))
     assert found.rest is not None
     assert found.thickness == pytest.approx(np.cos(np.pi / 120))
@@ -83,7 +83,7 @@ def test_what_takes_too_long_is_left_out(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_other_dimensions() -> None:
     flat = info(Curve(circle(30).vertices[:, :2]))
-    assert str(flat.type) == "not told"
+    assert str(flat.type) == "not identified"
     assert flat.writhe is None
     assert flat.thickness == pytest.approx(np.cos(np.pi / 30))
 

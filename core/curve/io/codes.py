@@ -11,11 +11,10 @@ from ...diagrams import Diagram, diagram_of, views
 from ...diagrams.codes import check_count, diagram_from_code, gauss_text, planar_text
 from ...diagrams.nested import CodeError
 from ...errors import CurveError, CurveFileError
-from ...knots.coded import drawn
+from ...knots.planar import drawn
 from ..curve import Curve, check_closed
 from . import xyz
-from .polygons import Polygon
-from .source import Source
+from .source import Polygon, Source
 
 _VIEWS = 4
 _EDGES = 4  # in a row of Knoodle's, before the sign
@@ -36,7 +35,7 @@ read_pd, read_dt, read_gauss = (partial(_read, kind) for kind in ("pd", "dt", "g
 
 
 def read_tsv(source: Source) -> list[Polygon]:
-    """Polygons of coordinates, or of a crossing in each line: its four edges, and 1 or -1 for its sign if it is told.
+    """Polygons of coordinates, or of a crossing in each line: its four edges, and 1 or -1 for its sign if it is given.
 
     Raises CurveFileError naming the line.
     """
@@ -65,11 +64,8 @@ def read_tsv(source: Source) -> list[Polygon]:
 
 
 def _polygons(curve: Curve) -> list[Polygon]:
-    return [Polygon(part.tolist(), _nowhere) for part in curve.components]
-
-
-def _nowhere(_vertex: int) -> None:
-    """No vertex of a drawing is in any line of the code."""
+    """Those of a drawing, whose vertices are in no line of the code."""
+    return [Polygon(part.tolist(), lambda _: None) for part in curve.components]
 
 
 def _written(text_of: Callable[[Diagram], str], curve: Curve, stream: TextIO) -> None:
@@ -77,9 +73,7 @@ def _written(text_of: Callable[[Diagram], str], curve: Curve, stream: TextIO) ->
     check_closed(curve, "codes of diagrams")
     if curve.dimension != 3:
         raise CurveError(f"codes are of curves in space, not of dimension {curve.dimension}; use .json")
-    found = min(views(curve, _VIEWS), key=lambda diagram: diagram.crossings, default=None)
-    if found is None:
-        raise CurveError("strands are so near to each other that no view of the curve tells which one is in front")
+    found = min(views(curve, _VIEWS), key=lambda diagram: diagram.crossings)
     stream.write(text_of(found) + "\n")
 
 

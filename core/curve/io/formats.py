@@ -14,22 +14,15 @@ from ...errors import CurveError, CurveFileError, reason_of, wrong_suffix
 from ...files import atomic_write
 from ..curve import Curve
 from . import codes, json_lists, obj, pdb, vect, xyz
-from .polygons import Polygon, assemble
-from .source import Source
+from .source import Polygon, Source, assemble
 
 
 @dataclass(frozen=True)
 class Format:
     """How one kind of file is read and written.
 
-    Parameters
-    ----------
-    description
-        A few words for help texts.
-    read
-        Turn the text into polygons; raises CurveFileError.
-    write
-        Write the curve to a text stream; raises CurveError if the format cannot hold it. None for what is only read.
+    ``description`` is for help texts; ``read`` raises CurveFileError; ``write`` raises CurveError if the format cannot
+    hold the curve, and is None for what is only read.
     """
 
     description: str
@@ -78,15 +71,7 @@ WRITTEN_FORMATS = [suffix for suffix, form in FORMATS.items() if form.write is n
 
 @dataclass(frozen=True, eq=False)
 class CurveFile:
-    """A curve as read, and the file around it.
-
-    Attributes
-    ----------
-    curve
-        The polygons, in the user's units.
-    source
-        The text, with its path and its hash.
-    """
+    """A curve as read, in the user's units, and the text around it, with its path and its hash."""
 
     curve: Curve
     source: Source
@@ -119,21 +104,9 @@ class CurveFile:
 
 
 def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream: BinaryIO | None = None) -> CurveFile:
-    """Read polygons and keep what errors that come later need.
+    """As `read_curve`, keeping what errors that come later need.
 
-    Parameters
-    ----------
-    path
-        The file, or a name for the stream.
-    form
-        The format; None leaves it to the suffix.
-    stream
-        Where to read instead of opening ``path``.
-
-    Raises
-    ------
-    CurveFileError
-        As `read_curve` does.
+    ``form`` None leaves the format to the suffix; a ``stream`` is read instead of opening ``path``.
     """
     path = Path(path)
     form = format_of(path) if form is None else form
@@ -144,44 +117,22 @@ def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream:
 
 @checked
 def read_curve(path: str | os.PathLike[str]) -> Curve:
-    """Read polygons, closed or open, from a file; the suffix tells the format (see :data:`FORMATS`).
+    """Read polygons, closed or open, from a file; the suffix determines the format (see :data:`FORMATS`).
 
-    The order of components and vertices is kept. A vertex at a component's end that repeats its first
-    vertex is dropped, with a note in the log.
-
-    Parameters
-    ----------
-    path
-        The file; coordinates are in the user's units.
-
-    Raises
-    ------
-    CurveFileError
-        If the file cannot be read or is not what its suffix says; the message names file, line and reason.
+    The order of components and vertices is kept. A vertex at a component's end that repeats its first vertex is
+    dropped, with a note in the log.  Raises CurveFileError if the file cannot be read or is not what its suffix says;
+    the message names file, line and reason.
     """
     return load_curve(path).curve
 
 
 @checked
 def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None = None) -> None:
-    """Write polygons to a file; the suffix tells the format (see :data:`FORMATS`) unless one is given.
+    """Write polygons to a file; the suffix determines the format (see :data:`FORMATS`) unless one is given.
 
-    Coordinates are written with all their digits: reading the file gives the same doubles. The file
-    appears whole or not at all.
-
-    Parameters
-    ----------
-    path
-        The file to make or to replace.
-    curve
-        The curve to write.
-    form
-        The format; None leaves it to the suffix.
-
-    Raises
-    ------
-    CurveFileError
-        If the suffix is unknown, the format cannot hold the curve, or the file cannot be written.
+    Coordinates are written with all their digits: reading the file gives the same doubles. The file appears whole or
+    not at all.  Raises CurveFileError if the suffix is unknown, the format cannot hold the curve, or the file cannot be
+    written.
     """
     path = Path(path)
     form = format_of(path) if form is None else form
@@ -195,7 +146,7 @@ def write_curve(path: str | os.PathLike[str], curve: Curve, form: Format | None 
 
 
 def format_of(path: Path) -> Format:
-    """The format that a suffix tells; a CurveFileError lists the known ones."""
+    """The format of a suffix; a CurveFileError lists the known ones."""
     try:
         return FORMATS[path.suffix.lower()]
     except KeyError:

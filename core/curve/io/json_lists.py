@@ -6,39 +6,33 @@ are not.
 """
 
 import json
+import re
 from functools import partial
 from typing import TextIO
 
 from ..curve import Curve
-from .json_position import Path, line_of
-from .polygons import Polygon
-from .source import Source
+from .source import Polygon, Source
+
+_Path = tuple[str | int, ...]  # keys and indices that lead from the top to a value
+
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"(?:\s*:)?|[\[\]{},]|[^\s\[\]{}:,"]+')  # a key with its colon is one
 
 
 def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line."""
     value = _parse(source)
-    at: Path = ()
+    at: _Path = ()
     flags: object = None
     if isinstance(value, dict):
         if "components" not in value:
             raise source.error('the object has no key "components"', 1)
         value, flags, at = value["components"], value.get("closed"), ("components",)
-    if isinstance(value, list) and value and isinstance(value[0], list) and _is_point(value[0]):
+    first = value[0] if isinstance(value, list) and value else None
+    if isinstance(first, list) and first and not any(isinstance(x, list | dict) for x in first):  # a point
         return [_polygon(source, value, at, *_flags(source, flags, 1))]
     parts = _items(source, value, at, "a list of components")
     closed = _flags(source, flags, len(parts))
     return [_polygon(source, part, (*at, k), closed[k]) for k, part in enumerate(parts)]
-
-
-def _flags(source: Source, flags: object, components: int) -> list[bool]:
-    """Whether each component is closed: all are if nothing is said."""
-    if flags is None:
-        return [True] * components
-    if isinstance(flags, list) and len(flags) == components and all(isinstance(flag, bool) for flag in flags):
-        return flags
-    reason = f'"closed" must be a list of true or false, one for each component, of which there are {components}'
-    raise source.error(reason, line_of(source.text, ("closed",)))
 
 
 def _parse(source: Source) -> object:
@@ -52,37 +46,42 @@ def _parse(source: Source) -> object:
         raise source.error(f"not a curve: {error}") from error
 
 
-def _is_point(value: list[object]) -> bool:
-    return bool(value) and not any(isinstance(x, list | dict) for x in value)
+def _flags(source: Source, flags: object, components: int) -> list[bool]:
+    if flags is None:
+        return [True] * components
+    if isinstance(flags, list) and len(flags) == components and all(isinstance(flag, bool) for flag in flags):
+        return flags
+    reason = f'"closed" must be a list of true or false, one for each component, of which there are {components}'
+    raise source.error(reason, _line_of(source.text, ("closed",)))
 
 
-def _items(source: Source, value: object, at: Path, wanted: str) -> list[object]:
+def _items(source: Source, value: object, at: _Path, wanted: str) -> list[object]:
     if not isinstance(value, list) or not value:
         found = "an empty list" if value == [] else _kind(value)
-        raise source.error(f"{found} where {wanted} is expected", line_of(source.text, at))
+        raise source.error(f"{found} where {wanted} is expected", _line_of(source.text, at))
     return value
 
 
-def _polygon(source: Source, value: object, at: Path, closed: bool) -> Polygon:
+def _polygon(source: Source, value: object, at: _Path, closed: bool) -> Polygon:
     points = _items(source, value, at, "a list of points")
     return Polygon(
         [_point(source, point, (*at, i)) for i, point in enumerate(points)],
-        lambda i: line_of(source.text, (*at, i)),
+        lambda i: _line_of(source.text, (*at, i)),
         closed,
     )
 
 
-def _point(source: Source, value: object, at: Path) -> tuple[float, ...]:
+def _point(source: Source, value: object, at: _Path) -> tuple[float, ...]:
     numbers = _items(source, value, at, "a point [x, y, z]")
     point = tuple(map(partial(_coordinate, source, at), numbers))
     if len(point) < 2:
-        raise source.error("a point with 1 coordinate; at least 2 are needed", line_of(source.text, at))
+        raise source.error("a point with 1 coordinate; at least 2 are needed", _line_of(source.text, at))
     return point
 
 
-def _coordinate(source: Source, at: Path, value: object) -> float:
+def _coordinate(source: Source, at: _Path, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise source.error(f"{_kind(value)} where a coordinate is expected", line_of(source.text, at))
+        raise source.error(f"{_kind(value)} where a coordinate is expected", _line_of(source.text, at))
     try:
         return float(value)
     except OverflowError:
@@ -91,10 +90,27 @@ def _coordinate(source: Source, at: Path, value: object) -> float:
 
 def _kind(value: object) -> str:
     """Name what was found, in the words of JSON."""
-    kinds: list[tuple[type, str]] = [(dict, "an object"), (list, "a list"), (str, "a string")]
-    if value is None or isinstance(value, bool):
-        return json.dumps(value)
-    return next((name for kind, name in kinds if isinstance(value, kind)), "a number")
+    kinds = {dict: "an object", list: "a list", str: "a string", int: "a number", float: "a number"}
+    return kinds.get(type(value)) or json.dumps(value)
+
+
+def _line_of(text: str, path: _Path) -> int | None:
+    """The line (from 1) where the value at a path starts, which Python's parser forgets; None if there is none."""
+    here: list[str | int] = []  # the key or index of the value under way in each open object or list
+    for match in _TOKEN.finditer(text):
+        token = match[0]
+        if token == ",":
+            here[-1] = here[-1] + 1 if isinstance(here[-1], int) else here[-1]
+        elif token in "]}":
+            here.pop()
+        elif token[-1] == ":":
+            here[-1] = token[1 : token.rindex('"')]
+        else:
+            if tuple(here) == path:
+                return text.count("\n", 0, match.start()) + 1
+            if token in "[{":
+                here.append(0 if token == "[" else "")
+    return None
 
 
 def write(curve: Curve, stream: TextIO) -> None:

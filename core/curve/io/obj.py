@@ -7,22 +7,28 @@ knows is ignored, and so are faces ``f``, but where an obstacle is read.
 """
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple, TextIO
 
 from ...errors import CurveError
 from ..curve import Curve
-from .chains import Chain, Link, chains
-from .polygons import Polygon
-from .source import Source, shown
+from .source import Polygon, Source, shown
 
 _log = logging.getLogger(__name__)
 
 _NAMES = "vt vn vp p o g s mg usemtl mtllib usemap maplib cstype deg bmat step parm trim hole scrv sp end con bevel"
 _RARE_NAMES = "c_interp d_interp lod shadow_obj trace_obj ctech stech surf curv2 call csh"
 _IGNORED = frozenset(f"{_NAMES} {_RARE_NAMES}".split())
+
+
+class Link(NamedTuple):
+    """An edge between two vertices, and the line that says so."""
+
+    tail: int
+    head: int
+    line: int
 
 
 class Face(NamedTuple):
@@ -35,22 +41,24 @@ class Face(NamedTuple):
 
 @dataclass
 class Content:
-    """What an OBJ file says; indices count from 0.
-
-    Attributes
-    ----------
-    points, lines
-        Vertices, and the line of each.
-    links
-        Edges of polylines.
-    faces
-        Not looked into: most readers do not want them.
-    """
+    """What an OBJ file says: vertices, the line of each, edges of polylines, and faces; indices count from 0."""
 
     points: list[tuple[float, ...]] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
     faces: list[Face] = field(default_factory=list)
+
+
+def read(source: Source) -> list[Polygon]:
+    """Read the polygons; raises CurveFileError naming the line."""
+    content = parsed(source)
+    if content.faces:
+        _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, len(content.faces))
+    points, lines = content.points, content.lines
+    return [
+        Polygon([points[i] for i in chain], [lines[i] for i in chain].__getitem__, closed, chain)
+        for chain, closed in _all_chains(source, content)
+    ]
 
 
 def parsed(source: Source) -> Content:
@@ -69,34 +77,31 @@ def check_known(source: Source, index: int, known: int, line: int) -> None:
         raise source.error(f"vertex {index + 1} does not exist; there are {known}", line)
 
 
-def read(source: Source) -> list[Polygon]:
-    """Read the polygons; raises CurveFileError naming the line."""
-    content = parsed(source)
-    if content.faces:
-        _log.warning("%s: %d faces (f) ignored; only polylines (l) are curves", source.path, len(content.faces))
-    return [_polygon(content, chain) for chain in _chains(source, content)]
+def index_of(source: Source, argument: str, line: int, known: int) -> int:
+    """The vertex, counted from 0, of an argument such as ``vertex`` or ``vertex/texture/normal``.
+
+    ``known`` is the number of vertices before it, from the last of which negative numbers count back.
+    """
+    index = source.integer(argument.partition("/")[0], line)
+    if index == 0 or index < -known:
+        raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)
+    return index - 1 if index > 0 else known + index
 
 
-def _polygon(content: Content, chain: Chain) -> Polygon:
-    points = [content.points[i] for i in chain.vertices]
-    return Polygon(points, lambda i: content.lines[chain.vertices[i]], chain.closed, chain.vertices)
-
-
-def _chains(source: Source, content: Content) -> list[Chain]:
+def _all_chains(source: Source, content: Content) -> list[tuple[list[int], bool]]:
     if content.links:
-        return chains(source, content.links)
+        return _chains(source, content.links)
     if content.faces:
         raise source.error("there are faces (f) but no polylines (l); export the curve as edges")
     if not content.points:
         raise source.error("no vertex (v) and no polyline (l) found")
-    _log.warning(
-        "%s: no polyline (l); all %d vertices are taken as one closed polygon", source.path, len(content.points)
-    )
-    return [Chain(list(range(len(content.points))), closed=True)]
+    count = len(content.points)
+    _log.warning("%s: no polyline (l); all %d vertices are taken as one closed polygon", source.path, count)
+    return [(list(range(count)), True)]
 
 
 def _statements(source: Source) -> Iterator[tuple[int, list[str]]]:
-    """Give the words of each statement and the number of its first line; a backslash continues a line."""
+    """The words of each statement and the number of its first line; a backslash continues a line."""
     words: list[str] = []
     first = 1
     for number, line in enumerate(source.lines, start=1):
@@ -119,7 +124,10 @@ def _take(source: Source, content: Content, words: list[str], line: int) -> None
         content.points.append(tuple(source.number(word, line) for word in arguments[:3]))
         content.lines.append(line)
     elif keyword == "l":
-        content.links += _links(source, arguments, line, len(content.points))
+        if len(arguments) < 2:
+            raise source.error("a polyline (l) needs at least two vertices", line)
+        indices = [index_of(source, argument, line, len(content.points)) for argument in arguments]
+        content.links += (Link(tail, head, line) for tail, head in pairwise(indices))
     elif keyword == "f":
         content.faces.append(Face(arguments, line, len(content.points)))
     elif keyword == "curv":
@@ -128,23 +136,43 @@ def _take(source: Source, content: Content, words: list[str], line: int) -> None
         raise source.error(f"{shown(keyword)} is no statement of the OBJ format", line)
 
 
-def _links(source: Source, arguments: list[str], line: int, known: int) -> Iterator[Link]:
-    """Turn ``l i j k ...`` into its edges."""
-    if len(arguments) < 2:
-        raise source.error("a polyline (l) needs at least two vertices", line)
-    indices = [index_of(source, argument, line, known) for argument in arguments]
-    return (Link(tail, head, line) for tail, head in pairwise(indices))
+def _chains(source: Source, links: Sequence[Link]) -> list[tuple[list[int], bool]]:
+    """Chains of vertices joined by edges, and whether each is closed.
 
-
-def index_of(source: Source, argument: str, line: int, known: int) -> int:
-    """The vertex, counted from 0, of an argument such as ``vertex`` or ``vertex/texture/normal``.
-
-    ``known`` is the number of vertices before it, from the last of which negative numbers count back.
+    Each closed chain starts at its smallest index and follows the direction of the edges there, so a file that lists
+    its polygon in order keeps that order. An open chain starts at the end with the smaller index.
     """
-    index = source.integer(argument.partition("/")[0], line)
-    if index == 0 or index < -known:
-        raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)
-    return index - 1 if index > 0 else known + index
+    at: dict[int, list[Link]] = {}
+    for link in links:
+        if link.tail == link.head:
+            raise source.error(f"an edge joins vertex {link.tail + 1} to itself", link.line)
+        for vertex in link[:2]:
+            at.setdefault(vertex, []).append(link)
+            if len(at[vertex]) > 2:
+                reason = f"a third edge meets vertex {vertex + 1}; curves don't branch, and edges are given once"
+                raise source.error(reason, link.line)
+    found = []
+    done: set[int] = set()
+    for vertex in sorted(at, key=lambda vertex: (len(at[vertex]), vertex)):
+        if vertex not in done:
+            chain = _walk(at, vertex)
+            done.update(chain)
+            found.append((chain, len(at[vertex]) == 2))
+    return sorted(found, key=lambda each: min(each[0]))
+
+
+def _walk(at: dict[int, list[Link]], start: int) -> list[int]:
+    """Follow the chain from a vertex to its end or round to the start."""
+    link = min(at[start], key=lambda link: (link.tail != start, link.head + link.tail))
+    chain, vertex = [start], link.head + link.tail - start
+    while vertex != start:
+        chain.append(vertex)
+        onward = [other for other in at[vertex] if other is not link]
+        if not onward:
+            break
+        link = onward[0]
+        vertex = link.head + link.tail - vertex
+    return chain
 
 
 def write(curve: Curve, stream: TextIO) -> None:

@@ -9,8 +9,7 @@ import logging
 from itertools import pairwise
 from math import dist
 
-from .polygons import Polygon
-from .source import Source
+from .source import Polygon, Source
 
 _ALPHA_CARBON = " CA "  # in columns 13 to 16; calcium begins one column before
 _APART = 4.5  # Å; neighbours are 3.8 apart, so that residues are missing in between

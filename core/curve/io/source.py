@@ -1,33 +1,29 @@
-"""The text of a curve file, and errors that point into it."""
+"""The text of a curve file, the polygons found in it, and errors that point to the line."""
 
 import hashlib
+import logging
+import math
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO
 
-from ...errors import CurveFileError, reason_of
+from ...errors import CurveError, CurveFileError, reason_of
+from ..curve import Curve
 
 MAX_BYTES = 16 << 20  # two hundred thousand vertices with all their digits
 MAX_LINES = 500_000
+MAX_DIMENSION = 16  # embeddedness is looked at in each of its planes
 _INTEGER = re.compile(r"[+-]?[0-9]+", re.ASCII)
 _MAX_DIGITS = 18  # digits; beyond that it is no count or index of anything in memory
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class Source:
-    """The text of one file.
-
-    Parameters
-    ----------
-    path
-        Where it comes from, for messages.
-    text
-        Its contents, with line ends as ``\\n``.
-    sha256
-        Of its bytes, in hexadecimal digits.
-    """
+    """The text of one file, with line ends as ``\\n``, and the hexadecimal hash of its bytes."""
 
     path: Path
     text: str = field(repr=False)
@@ -100,3 +96,74 @@ def _decode(path: Path, data: bytes) -> str:
         reason = f"not a text file in UTF-8 (byte 0x{data[nul]:02x} at position {nul})"
         raise CurveFileError(path, reason, data.count(b"\n", 0, nul) + 1)
     return text
+
+
+@dataclass(frozen=True)
+class Polygon:
+    """One component as found in a file.
+
+    ``line_of`` gives the line where the vertex of an index (from 0) was read; ``numbers`` is what the file counts its
+    vertices as, from 0, where these can be in another order than along the curve.  It is also closed if the last vertex
+    repeats the first.
+    """
+
+    points: Sequence[Sequence[float]]
+    line_of: Callable[[int], int | None]
+    closed: bool = True
+    numbers: Sequence[int] | None = None
+
+    @property
+    def repeats_first(self) -> bool:
+        """Whether the last vertex is at the first."""
+        return len(self.points) > 1 and list(self.points[0]) == list(self.points[-1])
+
+
+def assemble(source: Source, polygons: Sequence[Polygon]) -> Curve:
+    """Join the polygons of a file into one curve.
+
+    Raises CurveFileError if there is none, one has too few vertices, a coordinate is not finite, or dimensions differ
+    or are too many; the message names the component, the vertex and the line.
+    """
+    if not polygons:
+        raise source.error("no vertex found; give at least one polygon")
+    dimension = len(polygons[0].points[0]) if polygons[0].points else 0
+    if dimension > MAX_DIMENSION:
+        reason = f"vertices have {dimension} coordinates; there may be at most {MAX_DIMENSION}"
+        raise source.error(reason, polygons[0].line_of(0))
+    components = []
+    for number, polygon in enumerate(polygons, start=1):
+        _check_points(source, number, polygon, dimension)
+        components.append(_without_closing_point(source, number, polygon))
+    try:
+        return Curve.from_components(components, [each.closed or each.repeats_first for each in polygons])
+    except CurveError as error:
+        raise source.error(str(error)) from error
+
+
+def _check_points(source: Source, number: int, polygon: Polygon, dimension: int) -> None:
+    for i, point in enumerate(polygon.points):
+        if len(point) != dimension:
+            reason = f"component {number}, vertex {i + 1} has {len(point)} coordinates, the first vertex {dimension}"
+            raise source.error(reason, polygon.line_of(i))
+        if not all(map(math.isfinite, point)):
+            reason = f"component {number}, vertex {i + 1} is not finite: {list(point)}"
+            raise source.error(reason, polygon.line_of(i))
+
+
+def _without_closing_point(source: Source, number: int, polygon: Polygon) -> Sequence[Sequence[float]]:
+    """Drop a last vertex that repeats the first, and refuse what is then no polygon."""
+    points = polygon.points
+    if polygon.repeats_first:
+        _log.warning(
+            "%s: the last vertex of component %d repeats its first; dropped, since polygons close by themselves",
+            source.path,
+            number,
+        )
+        points = points[:-1]
+    closed = polygon.closed or polygon.repeats_first
+    if len(points) < (least := 3 if closed else 2):
+        count = "1 vertex" if len(points) == 1 else f"{len(points)} vertices"
+        kind = "a closed polygon" if closed else "an open polygon"
+        reason = f"component {number} has {count}; {kind} needs at least {least} different vertices"
+        raise source.error(reason, polygon.line_of(0) if points else None)
+    return points

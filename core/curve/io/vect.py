@@ -6,14 +6,12 @@ comment.
 Source: the Geomview manual, section "VECT".
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TextIO
 
 from ...errors import CurveError, CurveFileError
 from ..curve import Curve
-from .polygons import Polygon
-from .source import Source, shown
+from .source import Polygon, Source, shown
 
 
 @dataclass
@@ -26,7 +24,7 @@ class _Words:
 
     @property
     def left(self) -> int:
-        """How many words are left; a header that claims more is refused before anything is reserved."""
+        """How many words are left."""
         return len(self.words) - self.position
 
     def error(self, reason: str) -> CurveFileError:
@@ -34,7 +32,7 @@ class _Words:
         return self.source.error(reason, self.words[max(self.position, 1) - 1][1])
 
     def demand(self, count: int, what: str) -> None:
-        """Refuse a file that ends before ``count`` more words."""
+        """Refuse a file that ends before ``count`` more words, before anything is reserved for them."""
         if self.left < count:
             last = self.words[-1][1]
             raise self.source.error(f"the file is truncated: {count} {what} announced, {self.left} found", last)
@@ -42,21 +40,24 @@ class _Words:
     def integers(self, count: int, what: str) -> list[int]:
         """Take ``count`` whole numbers."""
         self.demand(count, what)
-        return [self.source.integer(*word) for word in self._take(count)]
+        return [self.source.integer(*self.take()) for _ in range(count)]
 
     def numbers(self, count: int) -> list[float]:
         """Take ``count`` numbers."""
-        return [self.source.number(*word) for word in self._take(count)]
+        return [self.source.number(*self.take()) for _ in range(count)]
 
-    def _take(self, count: int) -> Iterator[tuple[str, int]]:
-        for _ in range(count):
-            self.position += 1
-            yield self.words[self.position - 1]
+    def take(self) -> tuple[str, int]:
+        """Take one word."""
+        self.position += 1
+        return self.words[self.position - 1]
 
 
 def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line."""
-    words = _Words(source, _split(source))
+    numbered = enumerate(source.lines, start=1)
+    words = _Words(source, [(word, number) for number, line in numbered for word in line.partition("#")[0].split()])
+    if not words.left:
+        raise source.error("the file has comments only")
     _check_magic(words)
     polylines, vertices, colours = words.integers(3, "numbers of polylines, vertices and colours")
     if min(polylines, vertices, colours) < 0:
@@ -71,7 +72,12 @@ def read(source: Source) -> list[Polygon]:
         if size == 0:
             raise words.error(f"polyline {k} has no vertices; leave it out")
     words.demand(3 * vertices, "coordinates")
-    polygons = [_polygon(words, abs(size), closed=size < 0) for size in sizes]
+    polygons = []
+    for size in sizes:
+        lines = [line for _, line in words.words[words.position : words.position + 3 * abs(size) : 3]]
+        values = words.numbers(3 * abs(size))
+        points = list(zip(values[::3], values[1::3], values[2::3], strict=True))
+        polygons.append(Polygon(points, lines.__getitem__, closed=size < 0))
     words.demand(4 * colours, "colour values")
     words.numbers(4 * colours)
     if words.left:
@@ -79,30 +85,14 @@ def read(source: Source) -> list[Polygon]:
     return polygons
 
 
-def _split(source: Source) -> list[tuple[str, int]]:
-    lines = enumerate(source.lines, start=1)
-    words = [(word, number) for number, line in lines for word in line.partition("#")[0].split()]
-    if not words:
-        raise source.error("the file has comments only")
-    return words
-
-
 def _check_magic(words: _Words) -> None:
-    magic = words.words[0][0]
-    words.position = 1
+    magic = words.take()[0]
     if magic == "4VECT":
         raise words.error("VECT with four coordinates (4VECT) is not read; write three")
     if magic != "VECT":
         raise words.error(f"a VECT file starts with the word VECT, not {shown(magic)}")
     if words.left and words.words[1][0] == "BINARY":
         raise words.error("binary VECT is not read; write it as text")
-
-
-def _polygon(words: _Words, size: int, closed: bool) -> Polygon:
-    first = words.position
-    values = words.numbers(3 * size)
-    points = list(zip(values[::3], values[1::3], values[2::3], strict=True))
-    return Polygon(points, lambda i: words.words[first + 3 * i][1], closed)
 
 
 def write(curve: Curve, stream: TextIO) -> None:

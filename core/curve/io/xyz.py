@@ -7,30 +7,19 @@ and z other columns are ignored. Components are closed; the line ``# open`` begi
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import TextIO
 
 from ...errors import CurveError
 from ..curve import Curve
-from .polygons import Polygon
-from .source import Source
+from .source import Polygon, Source
 
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
 _OPEN = "open"  # the comment that begins an open component
 
 
-@dataclass
-class _Block:
-    """One component: its points and their lines."""
-
-    closed: bool
-    points: list[tuple[float, ...]] = field(default_factory=list)
-    lines: list[int] = field(default_factory=list)
-
-
 def read(source: Source) -> list[Polygon]:
     """Read the polygons; raises CurveFileError naming the line."""
-    blocks: list[_Block] = []
+    components: list[tuple[list[tuple[float, ...]], list[int], bool]] = []  # points, their lines, whether closed
     columns: int | None = None
     chosen: list[int] | None = None
     apart, closed = True, True
@@ -47,11 +36,11 @@ def read(source: Source) -> list[Polygon]:
         point = _point(source, words, number, columns, chosen)
         columns = len(words)
         if apart:
-            blocks.append(_Block(closed))
-        blocks[-1].points.append(point)
-        blocks[-1].lines.append(number)
+            components.append(([], [], closed))
+        components[-1][0].append(point)
+        components[-1][1].append(number)
         apart, closed = False, True
-    return [Polygon(block.points, block.lines.__getitem__, block.closed) for block in blocks]
+    return [Polygon(points, lines.__getitem__, closed) for points, lines, closed in components]
 
 
 def _named(words: list[str]) -> list[int] | None:

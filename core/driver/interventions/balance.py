@@ -10,9 +10,9 @@ from scipy.optimize import minimize
 from ...arguments import checked_fields, number
 from ...constraints import weighted_barycenter
 from ...curve import Curve
-from ...curve.bending import bending, bending_and_derivative
+from ...curve.measures import bending, bending_and_derivative
 from ...curve.moebius_map import moebius_image, moebius_pullback
-from ...curve.smooth import arc_lengths, periodic_spline, sample_parameters
+from ...curve.smooth import arc_lengths, cubic_spline, sample_parameters
 from ...descent import Leg, Point, Problem, Step
 from ...types import FloatArray
 from ..outcome import Outcome, Status
@@ -34,7 +34,7 @@ class MoebiusImages:
         self._curve, self._center = curve, _barycenter(curve)
         # the unit sphere passes through the curve: poles far away and in its middle are about as far from (1, 0)
         self._radius = float(np.sqrt(np.square(curve.vertices - self._center).sum(axis=1).mean()))
-        self._splines = [periodic_spline(self._unit(points)) for points in curve.components]
+        self._splines = [cubic_spline(self._unit(points)) for points in curve.components]
         self._fractions = [np.cumsum(lengths[s]) / lengths[s].sum() for s in curve.mesh.slices]
 
     def of_vertices(self, q: FloatArray) -> tuple[float, FloatArray]:

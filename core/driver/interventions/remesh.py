@@ -7,8 +7,8 @@ import numpy as np
 from ...arguments import checked_fields, number
 from ...collision import Contact, survives_rounding
 from ...curve import Curve
-from ...curve.distances import arc_distance_of_pairs
-from ...curve.refine import STRAND_RATIO, Resolution, affordable_pieces, subdivide
+from ...curve.distances import STRAND_RATIO, arc_distance_of_pairs
+from ...curve.refine import Resolution, affordable_pieces, subdivide
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
 from ...descent import Leg, NoStep, Problem, Step
 from ...energies.barrier import near_pairs

@@ -8,7 +8,7 @@ bpy = pytest.importorskip("bpy")
 from blender_scenes import add_curve, add_trefoil, contents, relax  # noqa: E402
 from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
 from mobius_flow.core import RelaxOptions, minimize  # noqa: E402
-from mobius_flow.core.curve.bending import bending  # noqa: E402
+from mobius_flow.core.curve.measures import bending  # noqa: E402
 from mobius_flow.core.knots import torus_knot  # noqa: E402
 
 OPS = bpy.ops.curve

@@ -18,7 +18,7 @@ from mobius_flow.cli.batch.job import Job
 from mobius_flow.cli.batch.table import Row
 from mobius_flow.core import MobiusFlowError, read_curve, write_curve
 from mobius_flow.core.collision.gap import thickness
-from mobius_flow.core.curve.writhe import writhe_and_crossings
+from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil

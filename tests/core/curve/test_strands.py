@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.curve import refine
-from mobius_flow.core.curve.distances import arc_distance_of_vertices
-from mobius_flow.core.curve.strands import nearest_strands
+from mobius_flow.core.curve.distances import arc_distance_of_vertices, nearest_strands
 from mobius_flow.core.knots import knot, overhand
 from shapes import hopf_link, regular_polygon
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, Mesh
-from mobius_flow.core.curve.writhe import writhe_and_crossings
+from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.diagrams import views
 from mobius_flow.core.knots import knot, smooth_knot
 
@@ -44,7 +44,7 @@ def test_both_are_means_over_views() -> None:
 def test_blocks_of_rows_make_no_difference(monkeypatch: pytest.MonkeyPatch) -> None:
     curve = smooth_knot("8_19", 130)
     together = writhe_and_crossings(curve)
-    monkeypatch.setattr("mobius_flow.core.curve.writhe._ROWS", 7)
+    monkeypatch.setattr("mobius_flow.core.curve.measures._ROWS", 7)
     assert writhe_and_crossings(curve) == pytest.approx(together, abs=1e-12)
 
 

@@ -7,9 +7,8 @@ import pytest
 from mobius_flow.core import CurveError
 from mobius_flow.core.diagrams import Diagram, diagram_of, jones, realized
 from mobius_flow.core.diagrams.codes import MAX_CROSSINGS, diagram_from_code, gauss_text, is_code
-from mobius_flow.core.diagrams.faces import Faces
 from mobius_flow.core.knots import KNOTS
-from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from mobius_flow.core.knots.braids import braid_diagram
 from spherogram import Link
 
 TREFOIL = {2: 1, 6: 1, 8: -1}
@@ -130,7 +129,7 @@ def test_codes_without_signs_are_realized_where_any_signs_are_planar() -> None:
         random.shuffle(word)
         cut = random.choice([0, 0, random.randint(1, 2 * count - 1)])
         passes = tuple(filter(None, (tuple(word[:cut]), tuple(word[cut:]))))
-        planar = [s for s in product((1, -1), repeat=count) if Faces(Diagram(passes, s)).is_planar]
+        planar = [s for s in product((1, -1), repeat=count) if Diagram(passes, s).is_planar]
         try:
             signs = realized(passes).signs
         except CurveError as error:
@@ -212,4 +211,4 @@ def test_mangled_codes_are_diagrams_or_one_sentence() -> None:
             diagram = diagram_from_code("".join(letters))
         except CurveError:
             continue
-        assert Faces(diagram).is_planar
+        assert diagram.is_planar

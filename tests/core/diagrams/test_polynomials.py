@@ -11,14 +11,14 @@ from mobius_flow.core.diagrams import (
     alexander,
     doubled_bracket,
     jones,
-    knot_signature,
     normalized_bracket,
+    signature,
     simplified,
     views,
 )
 from mobius_flow.core.diagrams.alexander import MAX_CROSSINGS
 from mobius_flow.core.knots import KNOTS, braid_word, knot
-from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from mobius_flow.core.knots.braids import braid_diagram
 from spherogram import Link
 
 _KNOWN = Path(__file__).parents[1] / "knots/known_knots.txt"
@@ -35,7 +35,7 @@ def test_invariants_of_the_table(name: str) -> None:
     assert alexander(diagram) == tuple(map(int, polynomial.split(",")))
     known = {2 * (int(lowest) + k): int(c) for k, c in enumerate(coefficients.split(",")) if c != "0"}
     assert jones(diagram) == known
-    assert knot_signature(diagram) == SIGNATURES.get(name, -2 * int(tau))
+    assert signature(diagram) == SIGNATURES.get(name, -2 * int(tau))
 
 
 @pytest.mark.parametrize("name", ["L2a1", "L5a1", "L6a4", "L7n2", "3_1#m4_1", "T(3,4)", "braid(1,1,3,3)", "braid(1,3)"])
@@ -59,7 +59,7 @@ def test_invariants_are_those_of_every_diagram(name: str) -> None:
         simple = simplified(diagram)
         assert alexander(diagram) == alexander(simple)
         assert jones(diagram) == jones(simple)
-        assert knot_signature(diagram) == knot_signature(simple)
+        assert signature(diagram) == signature(simple)
         assert doubled_bracket(diagram) == doubled_bracket(simple)
 
 
@@ -67,7 +67,7 @@ def test_mirror_images_have_mirrored_polynomials() -> None:
     left, right = (braid_diagram(braid_word(name)) for name in ("m6_2", "6_2"))
     for polynomial in (jones, doubled_bracket):
         assert polynomial(left) == {-power: c for power, c in polynomial(right).items()}
-    assert knot_signature(left) == -knot_signature(right)
+    assert signature(left) == -signature(right)
 
 
 def test_doubles_tell_what_the_jones_polynomial_does_not() -> None:
@@ -89,7 +89,7 @@ def test_circles() -> None:
     assert jones(CIRCLE) == {0: 1}
     assert jones(Diagram(((), ()), ())) == {1: -1, -1: -1}
     assert alexander(CIRCLE) == (1,)
-    assert knot_signature(CIRCLE) == 0
+    assert signature(CIRCLE) == 0
 
 
 def test_what_is_too_large_is_not_computed() -> None:

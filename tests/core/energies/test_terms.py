@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, OptionError, RelaxOptions, minimize
-from mobius_flow.core.curve.bending import bending
+from mobius_flow.core.curve.measures import bending
 from mobius_flow.core.energies import ENERGIES, TERMS, Bending, Term, Weighted, is_moebius_invariant
 from mobius_flow.core.taylor import derivative_slope
 from shapes import regular_polygon, torus_trefoil

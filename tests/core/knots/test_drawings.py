@@ -10,7 +10,7 @@ from knot_diagrams import pairwise_linking, simplified
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.collision import check_embedded
-from mobius_flow.core.diagrams.crossings import plane_crossings
+from mobius_flow.core.diagrams.projection import plane_crossings
 from mobius_flow.core.knots import Drawing, knot, torus_knot
 
 
@@ -81,7 +81,9 @@ def as_drawn(drawing: Drawing, changed: list[int]) -> None:
     size = np.ptp(drawing.curve.vertices)
     generic = lifted.vertices + 1e-7 * size * np.random.default_rng(1).normal(size=(len(lifted), 3))
     found = plane_crossings(lifted.mesh, generic)
-    first, second = (lifted.vertices[e] + at[:, None] * lifted.edge_vectors[e] for e, at in found.ends)
+    first, second = (
+        lifted.vertices[e] + at[:, None] * lifted.edge_vectors[e] for e, at in zip(found.edges, found.at, strict=True)
+    )
     assert len(first) == len(drawing.crossings)
     for number, crossing in enumerate(drawing.crossings, 1):
         k = int(np.linalg.norm(first[:, :2] - crossing, axis=1).argmin())

@@ -18,7 +18,7 @@ from mobius_flow.core.knots import (
     smooth_knot,
 )
 from mobius_flow.core.knots.catalogue import crossing_number
-from mobius_flow.core.knots.knot_type import ALEXANDER, DOUBLED, JONES, MAX_VERTICES, type_of_diagram
+from mobius_flow.core.knots.knot_type import ALEXANDER, DOUBLED, JONES, Effort, type_of_diagram
 from mobius_flow.core.knots.table import AMPHICHEIRAL, ROLFSEN
 
 # The one prime knot to ten crossings whose mirror image has the same invariants of all those that are computed.
@@ -100,8 +100,8 @@ def test_types_beyond_the_table_are_not_told() -> None:
         found = knot_type(knot(name))
         assert found.names == ()
         assert not found.proved
-        assert str(found) == "not told"
-        assert found.sentence.startswith(f"not told: Alexander polynomial {polynomial}")
+        assert str(found) == "not identified"
+        assert found.sentence.startswith(f"not identified: Alexander polynomial {polynomial}")
     assert found.diagram is not None
     assert found.diagram.crossings == 13
 
@@ -109,14 +109,14 @@ def test_types_beyond_the_table_are_not_told() -> None:
 @pytest.mark.parametrize(
     ("step", "dimension", "ends", "told"),
     [
-        (1, 3, (), "not told: the curve has 20,001 vertices, more than 20,000"),
+        (1, 3, (), "not identified: the curve has 20,001 vertices, more than 20,000"),
         (1000, 2, (), "none: only curves in space have a knot type, and this one is in dimension 2"),
         (1000, 3, (7,), "none: only closed curves have a knot type, and this one is open"),
         (1000, 3, (7, 14), "none: only closed curves have a knot type, and some parts of this one are open"),
     ],
 )
 def test_why_a_curve_has_no_type(step: int, dimension: int, ends: tuple[int, ...], told: str) -> None:
-    angle = np.linspace(0.0, 2.0 * np.pi, MAX_VERTICES + 1)
+    angle = np.linspace(0.0, 2.0 * np.pi, Effort().vertices + 1)
     circle = np.column_stack([np.cos(angle), np.sin(angle), np.sin(2 * angle)])[::step, :dimension]
     sizes = np.diff([0, *ends[:-1], len(circle)]).tolist()
     closed = [not ends] + [True] * (len(sizes) - 1)

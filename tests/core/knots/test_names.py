@@ -20,7 +20,7 @@ from mobius_flow.core.knots import (
     lissajous_knot,
     smooth_knot,
 )
-from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from mobius_flow.core.knots.braids import braid_diagram
 from spherogram import Link
 
 BRAIDS = ["{1,1,1}", "{1, 1, 1}", "BR[2, {1, 1, 1}]", "BR[{1,1,1}]", "br(2,(1,1,1))", "m{-1,-1,-1}"]

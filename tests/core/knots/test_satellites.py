@@ -6,8 +6,7 @@ from knot_diagrams import pairwise_linking
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
 from mobius_flow.core.knots import cable, double, smooth_knot, torus_knot
-from mobius_flow.core.knots.satellites import MAX_STRANDS
-from mobius_flow.core.knots.tubes import Tube
+from mobius_flow.core.knots.satellites import MAX_STRANDS, Tube
 from shapes import regular_polygon
 
 CIRCLE = regular_polygon(100)

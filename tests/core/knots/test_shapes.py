@@ -13,7 +13,7 @@ from knot_type import knot_invariants
 from mobius_flow.core import CurveError
 from mobius_flow.core.knots import ALIASES, KNOTS, UnknownKnotError, knot, smooth_knot
 from mobius_flow.core.knots.inscribed import equal_steps, is_isotopic
-from mobius_flow.core.knots.shapes import FILE, QUANTUM, Shape, shapes, store
+from mobius_flow.core.knots.shapes import FILE, shapes
 
 _LINES = (Path(__file__).parent / "known_knots.txt").read_text(encoding="utf-8").splitlines()
 KNOWN = {line.split()[0]: line.split()[1:] for line in _LINES if not line.startswith("#")}
@@ -116,15 +116,3 @@ def test_names_without_a_shape(name: str, said: str) -> None:
 def test_too_many_vertices() -> None:
     with pytest.raises(CurveError, match="too many"):
         smooth_knot("3_1", 10**9)
-
-
-def test_what_is_stored_is_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rng = np.random.default_rng(3)
-    parts = [QUANTUM * rng.integers(-9000, 9000, size=(n, 3, 2)) for n in (4, 2, 7)]
-    first, second, third = (part[..., 0] + 1j * part[..., 1] for part in parts)
-    store({"a": Shape((first, second)), "b": Shape((third,))}, tmp_path / "shapes.npz")
-    monkeypatch.setattr("mobius_flow.core.knots.shapes.FILE", tmp_path / "shapes.npz")
-    found = shapes.__wrapped__()
-    assert list(found) == ["a", "b"]
-    for got, given in zip((*found["a"].coefficients, *found["b"].coefficients), (first, second, third), strict=True):
-        assert np.array_equal(got, given)

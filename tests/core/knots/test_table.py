@@ -12,7 +12,7 @@ from knot_diagrams import pairwise_linking, simplified
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core.diagrams import diagram_of, normalized_bracket
 from mobius_flow.core.knots import ALIASES, KNOTS, knot
-from mobius_flow.core.knots.braid_diagrams import braid_diagram
+from mobius_flow.core.knots.braids import braid_diagram
 from mobius_flow.core.knots.table import ROLFSEN
 from spherogram import Link
 
