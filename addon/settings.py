@@ -36,8 +36,6 @@ def _set_quality(panel: Any, number: int) -> None:
 
 
 class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
-    """What the panel shows."""
-
     quality: EnumProperty(
         name="Quality",
         description="How near to the least energy the shape comes; sets some of the options in Expert",
@@ -54,8 +52,6 @@ class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
 
 
 class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
-    """Where the film goes, and what it looks like."""
-
     filepath: StringProperty(
         name="File",
         description="Where the film goes, an MP4; // is the directory of the open file",
@@ -71,8 +67,6 @@ class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
 
 
 class MobiusFlowSurroundings(bpy.types.PropertyGroup):
-    """What curves avoid."""
-
     avoid: PointerProperty(
         name="Avoid",
         description="Collection whose visible objects are never touched by curves that are relaxed",
@@ -98,8 +92,6 @@ def _show_first(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) 
 
 
 class MobiusFlowKnots(bpy.types.PropertyGroup):
-    """Which knot is picked."""
-
     group: EnumProperty(
         name="Group",
         description="Which knots are shown",
@@ -121,7 +113,6 @@ GROUPS_OF_SCENE = {
 
 
 def register() -> None:
-    """Give scenes the settings, whose classes are registered."""
     for name, cls in GROUPS_OF_SCENE.items():
         setattr(bpy.types.Scene, name, PointerProperty(type=cls))
 

@@ -82,7 +82,6 @@ class AddsKnot(Button, AddObjectHelper):
         return self.fit_bevel and (given("fit_bevel") or not given("thickness"))
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
-        """Show what says which knot it is."""
         raise NotImplementedError
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -134,15 +133,10 @@ class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
 
 def check_numbers(name: str) -> None:
     """Raise an OptionError for a torus knot or braid that would freeze the window."""
-    for number in re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))):
-        if int(number) > _MAX_TURNS:
-            raise OptionError(
-                Phrase(
-                    "{name} has a number beyond {most}, which is too much for a window; use smaller ones",
-                    name=name[:60],
-                    most=_MAX_TURNS,
-                )
-            )
+    numbers = map(int, re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))))
+    if max(numbers, default=0) > _MAX_TURNS:
+        sentence = "{name} has a number beyond {most}, which is too much for a window; use smaller ones"
+        raise OptionError(Phrase(sentence, name=name[:60], most=_MAX_TURNS))
 
 
 def found(_operator: bpy.types.Operator, _context: bpy.types.Context, _text: str) -> list[str]:

@@ -79,7 +79,6 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):
     def _add(
         self, context: bpy.types.Context, name: str, plane: DrawingPlane, drawing: "Drawing", lifted: Curve
     ) -> None:
-        """Add the knot, and the numbers as its children."""
         vertices = plane.raised(lifted.vertices)
         middle = vertices.mean(axis=0)
         obj = object_data_add(context, self.curve_data(name, vertices - middle, lifted))

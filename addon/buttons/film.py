@@ -88,7 +88,6 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
     }
 
     def act(self, context: bpy.types.Context) -> None:
-        """Render it in this call."""
         self.filming = Filming(context.scene, *self.wanted(context), self.overwrite)
         self.filming.render()
         self._report_film()

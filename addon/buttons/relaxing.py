@@ -61,7 +61,6 @@ class Relaxing(Listening, Button):
         return self.begin(context)
 
     def begin(self, context: bpy.types.Context) -> set[str]:
-        """Start a live run and its event loop."""
         try:
             values = self.values(context)
             run = Run(self.session(context, values), Refresh(values["view_every"]))
@@ -165,7 +164,6 @@ class CURVE_OT_mobius_flow_leave_saddle(Relaxing, bpy.types.Operator):
         return {"CANCELLED"} if self._at_minimum(context) else super().execute(context)
 
     def begin(self, context: bpy.types.Context) -> set[str]:
-        """Start the run, if there is anything to leave."""
         return {"CANCELLED"} if self._at_minimum(context) else super().begin(context)
 
     def _at_minimum(self, context: bpy.types.Context) -> bool:

@@ -139,7 +139,6 @@ def show(_operator: Button, context: bpy.types.Context) -> None:
 
 
 def _select(data: bpy.types.Curve, spot: Spot) -> None:
-    """Select the nearest points of a curve, and no others."""
     points = [point for spline in data.splines for point in control_points(spline)]
     chosen = at(np.array([point.co[:3] for point in points]), spot.points)
     for point, wanted in zip(points, chosen.tolist(), strict=True):

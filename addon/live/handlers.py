@@ -1,7 +1,6 @@
 """What happens to a live relaxation when a file is loaded or saved, or somebody undoes."""
 
 from collections.abc import Callable
-from functools import wraps
 from typing import Any
 
 import bpy
@@ -13,50 +12,7 @@ from .modal import clear_status
 from .run import Run
 
 
-def _during_run(handle: Callable[[Run], None]) -> Any:
-    """Call a handler with the run that is going on, if there is one."""
-
-    @wraps(handle)
-    def handler(*_: Any) -> None:
-        if run := registry.current():
-            handle(run)
-
-    return persistent(handler)
-
-
-@_during_run
-def _load_pre(run: Run) -> None:
-    run.cancel(Phrase("A file was loaded; the relaxation of {names} has ended", names=run.name))
-
-
-@persistent  # type: ignore[untyped-decorator]
-def _load_post(*_: Any) -> None:
-    registry.forget()  # it was about another file
-
-
-@_during_run
-def _undo_pre(run: Run) -> None:
-    _before(run, registry.history.others)
-
-
-@_during_run
-def _redo_pre(run: Run) -> None:
-    _before(run, registry.history.undone)
-
-
-@_during_run
-def _undo_post(run: Run) -> None:
-    registry.history.undo()
-    run.preview.put_forward()
-
-
-@_during_run
-def _redo_post(run: Run) -> None:
-    registry.history.undo(-1)
-    run.preview.put_forward()
-
-
-def _before(run: Run, others: int) -> None:
+def _before_undo(run: Run, others: int) -> None:
     """The curve must be as undo knows it; unless something else is undone or done again, the run is over."""
     if others and run.endures:
         run.preview.set_aside()
@@ -64,34 +20,49 @@ def _before(run: Run, others: int) -> None:
         run.cancel(Phrase("Undone; the relaxation of {names} has ended", names=run.name))
 
 
-@_during_run
-def _save_pre(run: Run) -> None:
+def _after_undo(run: Run, count: int) -> None:
+    registry.history.undo(count)
+    run.preview.put_forward()
+
+
+def _before_saving(run: Run) -> None:
     """A file holds curves as they were or with all their keys, and nothing in between."""
     run.complete()
     if not run.state.over:
         run.preview.set_aside()
 
 
-@_during_run
-def _save_post(run: Run) -> None:
-    run.preview.put_forward()
+def _with_run(handle: Callable[[Run], None]) -> Any:
+
+    def handler(*_: Any) -> None:
+        if run := registry.current():
+            handle(run)
+
+    return persistent(handler)
 
 
-_HANDLERS = {
-    "load_pre": _load_pre,
+@persistent  # type: ignore[untyped-decorator]
+def _load_post(*_: Any) -> None:
+    registry.forget()  # it was about another file
+
+
+HANDLERS = {
+    "load_pre": _with_run(
+        lambda run: run.cancel(Phrase("A file was loaded; the relaxation of {names} has ended", names=run.name))
+    ),
     "load_post": _load_post,
-    "undo_pre": _undo_pre,
-    "redo_pre": _redo_pre,
-    "undo_post": _undo_post,
-    "redo_post": _redo_post,
-    "save_pre": _save_pre,
-    "save_post": _save_post,
-    "save_post_fail": _save_post,
+    "undo_pre": _with_run(lambda run: _before_undo(run, registry.history.others)),
+    "redo_pre": _with_run(lambda run: _before_undo(run, registry.history.undone)),
+    "undo_post": _with_run(lambda run: _after_undo(run, 1)),
+    "redo_post": _with_run(lambda run: _after_undo(run, -1)),
+    "save_pre": _with_run(_before_saving),
+    "save_post": _with_run(lambda run: run.preview.put_forward()),
+    "save_post_fail": _with_run(lambda run: run.preview.put_forward()),
 }
 
 
 def register() -> None:
-    for name, handler in _HANDLERS.items():
+    for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
 
 
@@ -102,5 +73,5 @@ def unregister() -> None:
     registry.forget()
     if bpy.app.timers.is_registered(clear_status):
         bpy.app.timers.unregister(clear_status)
-    for name, handler in _HANDLERS.items():
+    for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)

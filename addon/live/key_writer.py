@@ -30,7 +30,6 @@ class KeyWriter:
         self._pieces: Iterator[None] | None = None
 
     def start(self) -> None:
-        """Begin to choose and prove the keys; all iterates are in the session."""
         self._thread.start()
 
     def abandon(self) -> None:

@@ -87,7 +87,6 @@ def clear_status() -> None:
 
 
 def status_line(run: Run) -> str:
-    """What the status bar says."""
     if run.waits:
         return iface_("{names}: waiting for the render", names=run.name)
     if run.state is State.FINISHING:
@@ -126,7 +125,6 @@ class Listening:
     loop: Loop | None = None
 
     def listen(self, context: bpy.types.Context, run: Run) -> set[str]:
-        """Start the event loop of a run."""
         self.loop = Loop(run, context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}

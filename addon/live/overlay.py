@@ -82,7 +82,6 @@ class _Style:
 
     @property
     def pale(self) -> Colour:
-        """Halfway from the ground to the words."""
         return [0.5 * (a + b) for a, b in zip(self.ground[:3], self.words[:3], strict=True)]
 
 

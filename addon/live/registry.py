@@ -76,5 +76,4 @@ def shown(obj: "bpy.types.Object | None") -> "Run | None":
 
 
 def forget() -> None:
-    """Forget the last run."""
     _latest.clear()

@@ -91,14 +91,12 @@ class Curves:
         return idle(context) or (self.of(objects) if objects else _no_curve(context))
 
     def of(self, objects: Sequence["bpy.types.Object"]) -> Refusal | None:
-        """The first refusal of some curve objects."""
         several = len(objects) > 1
         checks = [check for check in self.checks if several or not check.together]
         return next((refusal for obj in objects for check in checks if (refusal := check.refusal(obj))), None)
 
 
 def first(context: "bpy.types.Context", requirements: Sequence[Requirement]) -> Refusal | None:
-    """The first refusal of several requirements."""
     return next((refusal for each in requirements if (refusal := each(context))), None)
 
 

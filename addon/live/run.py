@@ -5,8 +5,7 @@ The curves themselves move; what they were is put back unless the run is to be k
 
 import math
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -32,12 +31,12 @@ _SLICE = 0.02  # seconds of taking in iterates at a time
 
 
 class State(Enum):
-    RUNNING = "running"
-    PAUSED = "paused"
-    FINISHING = "finishing"
-    DONE = "done"
-    CANCELLED = "cancelled"
-    LOST = "lost"
+    RUNNING = Phrase("Running")
+    PAUSED = Phrase("Paused")
+    FINISHING = Phrase("Finishing")
+    DONE = Phrase("Done")
+    CANCELLED = Phrase("Cancelled")
+    LOST = Phrase("Lost")
 
     @property
     def over(self) -> bool:
@@ -86,12 +85,10 @@ class Run:
 
     @property
     def name(self) -> str:
-        """The names of the objects, as messages show them."""
         return self.group.title
 
     @property
     def avoided(self) -> tuple[str, ...]:
-        """The names of what they avoid."""
         return self._session.surroundings.names
 
     @cached_property
@@ -140,11 +137,8 @@ class Run:
         self._keys.start()
 
     def cancel(self, message: str = _CANCELLED) -> None:
-        """Put the curve back as it was."""
         if not self.state.over:
-            self._close(State.CANCELLED, message)
-            self.preview.put_back()
-            self._left = Imprint(self.group.objects)
+            self._close(State.CANCELLED, message, self.preview.put_back)
 
     @property
     def recoverable(self) -> bool:
@@ -161,31 +155,23 @@ class Run:
 
     def tick(self) -> None:
         """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
-        if self.state.over or self.waits:
-            return
-        with self._failing():
+        if not (self.state.over or self.waits):
+            self._advance()
+
+    def complete(self) -> None:
+        """Write the rest of keys whose writing has begun: a file that is saved must not hold half of them."""
+        if self.state is State.FINISHING and self._keys.has_begun:
+            self._advance(math.inf)
+
+    def _advance(self, seconds: float | None = None) -> None:
+        """Take in some iterates, or write keys for so long, by default a moment; end the run if that fails."""
+        try:
             if reason := self._session.lost():
                 self._lose(reason)
             elif self.state is State.RUNNING:
                 self._take()
             elif self.state is State.FINISHING:
-                self._write(self._keys.advance())
-
-    def complete(self) -> None:
-        """Write the rest of keys whose writing has begun: a file that is saved must not hold half of them."""
-        if self.state is not State.FINISHING or not self._keys.has_begun:
-            return
-        with self._failing():
-            if reason := self._session.lost():
-                self._lose(reason)
-            else:
-                self._write(self._keys.advance(math.inf))
-
-    @contextmanager
-    def _failing(self) -> Iterator[None]:
-        """End the run if what is done in it fails."""
-        try:
-            yield
+                self._write(self._keys.advance(seconds))
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:
@@ -233,13 +219,11 @@ class Run:
             self._refresh.shown()
 
     def _write(self, report: Report | None) -> None:
-        """Take in what was done, once all keys are written."""
         self.report = report
         if report is not None:
             assert self.last is not None, "it was kept"
             self.trouble = self.group.spots(report.outcome.place, self.last.curve)
             self._close(State.DONE, report.sentence)
-            self._left = Imprint(self.group.objects)
 
     def _fail(self, message: str, place: Place | None = None) -> None:
         self.failed = True
@@ -249,13 +233,14 @@ class Run:
     def _lose(self, reason: Phrase) -> None:
         """End because of what somebody did to an object; what else there is is put back."""
         ended = Phrase("{reason}; the relaxation has ended", reason=reason)
-        self._close(State.LOST, ended)
-        if more := self.preview.put_back():
+        if more := self._close(State.LOST, ended, self.preview.put_back):
             self.message = Phrase("{ended}, {more}", ended=ended, more=more)
-        self._left = Imprint(self.group.objects)
 
-    def _close(self, state: State, message: str) -> None:
+    def _close(self, state: State, message: str, clear: Callable[[], Phrase | None] = lambda: None) -> Phrase | None:
         self.state, self.message = state, message
         self._worker.close()
         self._keys.abandon()
         self.on_end()
+        cleared = clear()
+        self._left = Imprint(self.group.objects)
+        return cleared

@@ -33,20 +33,15 @@ def follow(
 ) -> "bpy.types.Object":
     """Add a camera that sees the whole tube in every frame, and keep the floor just below it.
 
-    Parameters
-    ----------
-    collection, size
-        Where the camera belongs, and the width and height of its pictures, in any unit.
-    stage, floor
-        Where the curve is shown; the floor is at the height of the stage's middle.
-    points, radii, frames
-        Vertices, (n, 3), radius of the tube and scene frame of every key.
+    ``size`` is that of its pictures, in any unit; the floor is at the height of the stage's middle; points are the
+    vertices, (n, 3), of every key.
     """
     axes = _view_axes(stage)
     camera = _camera(collection, stage, axes)
     every = np.arange(np.floor(frames[0]), np.ceil(frames[-1]) + 1)
     seen = [(p - stage.middle) @ axes.T for p in points]
-    eyes = _eyes(seen, radii, _slopes(size) / _MARGIN, frames, every)
+    slopes = 0.5 * _SENSOR / _LENS * np.array(size) / max(size)  # tangents of half the angles of view
+    eyes = _eyes(seen, radii, slopes / _MARGIN, frames, every)
     heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - _LIFT * radii
     lows = -_calm(-np.interp(every, frames, heights))
     _move(camera, stage.middle + eyes @ axes, every)
@@ -70,11 +65,6 @@ def _camera(collection: "bpy.types.Collection", stage: Stage, axes: FloatArray) 
     camera = add(collection, "Camera", data)
     place(camera, stage.middle + axes[2], stage.middle, stage.axes[2])
     return camera
-
-
-def _slopes(size: tuple[float, float]) -> FloatArray:
-    """Tangents of half the horizontal and vertical angle of view."""
-    return np.asarray(0.5 * _SENSOR / _LENS * np.array(size) / max(size))
 
 
 def _eyes(

@@ -49,12 +49,11 @@ class Origin:
         return cls(location, scale)
 
     def link(self, mesh: Mesh) -> Link:
-        """All components of a curve in one object here."""
         return Link((Placement(self.scale * np.eye(3), self.location),), (len(mesh.component_sizes),))
 
 
 def spatial(vertices: FloatArray) -> FloatArray:
-    """Put planar vertices into space; shape (n, 3)."""
+    """Vertices of a curve in the plane or in space, shape (n, 3)."""
     return np.pad(vertices, ((0, 0), (0, 3 - vertices.shape[1])))
 
 
@@ -65,13 +64,7 @@ def check_dimension(curve: Curve) -> None:
 
 
 def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
-    """Collect the iterates of a run in the numbers that Blender will store.
-
-    Raises
-    ------
-    MobiusFlowError
-        If the curve is not in the plane or in space, or keyframes cannot follow its changes of mesh.
-    """
+    """Collect the iterates of a run in the numbers that Blender will store; raises MobiusFlowError if it cannot."""
     start = iterates[0].curve
     check_dimension(start)
     origin = Origin.of(spatial(start.vertices))

@@ -49,21 +49,8 @@ LOOKS = {
 class Filming(Reel):
     """One film of the frames that a scene plays, in the size of its renders, through its camera.
 
-    Parameters
-    ----------
-    scene
-        What is filmed; it stays as it is.
-    path
-        The file, with Blender's ``//`` for the directory of the open file; ``.mp4`` is added to a name without suffix.
-    look
-        One of `LOOKS`.
-    overwrite
-        Whether a file that is there may be replaced.
-
-    Raises
-    ------
-    MobiusFlowError
-        If the film cannot be made; the message says why.
+    The scene stays as it is. In the path, Blender's ``//`` is the directory of the open file, and ``.mp4`` is added to
+    a name without suffix. Raises MobiusFlowError if the film cannot be made.
     """
 
     def __init__(self, scene: "bpy.types.Scene", path: str, look: str = "SCENE", overwrite: bool = False) -> None:

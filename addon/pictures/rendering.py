@@ -72,7 +72,6 @@ def look_plain(scene: "bpy.types.Scene") -> None:
 
 
 def skip_frames(scene: "bpy.types.Scene") -> None:
-    """Render every second frame only, for as long a film."""
     scene.frame_step, scene.render.fps = 2, FRAME_RATE // 2
 
 

@@ -29,19 +29,9 @@ def set_up(
 ) -> "bpy.types.Collection":
     """Put a camera, lights and a floor around curve objects for as long as they move; a stage there was is replaced.
 
-    Parameters
-    ----------
-    scene
-        Where the objects are; the camera's pictures have the shape of its renders.
-    objects
-        Curve objects, their transforms evaluated.
-    use_camera, use_world
-        Whether the scene is rendered by the stage's camera and under its sky, instead of those that it has.
-
-    Raises
-    ------
-    CurveError
-        If splines cannot be read, or are a single point; nothing has changed then.
+    The objects' transforms are evaluated. ``use_camera`` and ``use_world`` say whether the scene is rendered by the
+    stage's camera and under its sky, instead of its own. Raises CurveError if splines cannot be read, or are a single
+    point; nothing has changed then.
     """
     motion = WorldMotion.of(scene, objects)
     ground = stage.Stage.around(motion.points, stage.level_axes(motion.points[-1]))
@@ -80,7 +70,6 @@ def strike(scene: "bpy.types.Scene") -> None:
 
 
 def own_stage(scene: "bpy.types.Scene") -> "bpy.types.Collection | None":
-    """The collection of a scene's stage, if there is one."""
     return next((each for each in scene.collection.children_recursive if STAGE in each), None)
 
 
@@ -118,7 +107,6 @@ def _sky() -> "bpy.types.World":
 
 
 def _shape(scene: "bpy.types.Scene") -> tuple[float, float]:
-    """Width and height of a scene's pictures."""
     render = scene.render
     return render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
 

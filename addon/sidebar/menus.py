@@ -21,8 +21,6 @@ _OPERATORS = (
 
 
 class VIEW3D_MT_mobius_flow(bpy.types.Menu):
-    """All that can be done with curves that are there"""
-
     bl_idname = "VIEW3D_MT_mobius_flow"
     bl_label = "Möbius Flow"
 
@@ -37,8 +35,6 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):
 
 
 class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):
-    """Knots to add: common ones, the whole table, and families."""
-
     bl_label = "Knot"
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -59,7 +55,6 @@ class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):
 
 
 def search(layout: bpy.types.UILayout, _context: bpy.types.Context) -> None:
-    """Offer the list of the whole table."""
     column = layout.column()
     column.operator_context = "INVOKE_DEFAULT"
     operator(column, "pick_knot", text="Search...", icon="VIEWZOOM")
