@@ -7,9 +7,9 @@ def main() -> int:
     """Run the command line and return its exit status."""
     try:
         # relative, so that it is the same program however the package is called
-        from .cli.process import run
+        from .cli.main import process
 
-        return run()
+        return process()
     except KeyboardInterrupt:  # in the moment before signals are handled
         print("mobius-flow: interrupted", file=sys.stderr)
         return 130

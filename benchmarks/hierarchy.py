@@ -10,7 +10,6 @@ import sys
 from collision import CURVES, best
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy
-from mobius_flow.core.hierarchy.energy import LEAF, THETA
 
 MOST_DENSE = 10_000
 
@@ -24,11 +23,11 @@ def main(sizes: list[int]) -> None:
 
 
 def line(curve: Curve, repetitions: int) -> str:
-    blocks = BlockList.of(curve, THETA, LEAF)
+    blocks = BlockList.of(curve, HierarchicalMoebiusEnergy.theta, HierarchicalMoebiusEnergy.leaf)
     energy = HierarchicalMoebiusEnergy(blocks)
     sizes = [len(blocks.first) / len(curve), len(blocks.i) / len(curve)]
     times = [
-        best(lambda: BlockList.of(curve, THETA, LEAF), repetitions),
+        best(lambda: BlockList.of(curve, HierarchicalMoebiusEnergy.theta, HierarchicalMoebiusEnergy.leaf), repetitions),
         best(lambda: energy.value(curve), repetitions),
         best(lambda: energy.value_and_derivative(curve), repetitions),
     ]

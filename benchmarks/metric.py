@@ -14,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 from hard_curves import chain_of_rings, graded_trefoil
 from mobius_flow.core import Curve
-from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.constraints import Constraints
 from mobius_flow.core.curve import refine
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
 from mobius_flow.core.knots import knot, torus_knot
@@ -42,14 +42,17 @@ def timed(function: Callable[[], _Value]) -> tuple[float, _Value]:
 
 def line(curve: Curve) -> str:
     """All times of one curve."""
-    constraints, load = ConstraintDerivative.at(curve), np.sin(3 * curve.vertices) * curve.edge_lengths[:, None]
+    constraints, load = (
+        Constraints.of(curve).derivative(curve),
+        np.sin(3 * curve.vertices) * curve.edge_lengths[:, None],
+    )
     build, inner = timed(lambda: moebius_inner_product(curve))
     product, _ = timed(lambda: inner.apply(load))
     model, _ = timed(lambda: replace(inner).model)
     space = inner.tangent_space(constraints)
     gradient, _ = timed(lambda: space.gradient(load))
     error = constraints.apply(np.sin(3 * curve.vertices))
-    residual, targets = 1e-3 * error / np.abs(error).max(), Constraints(curve.edge_lengths, weighted_barycenter(curve))
+    residual, targets = 1e-3 * error / np.abs(error).max(), Constraints.of(curve)
     large, _ = timed(lambda: space.pseudo_inverse(error))
     small, _ = timed(lambda: space.restoration(targets, curve, residual))
     times = "".join(f"{value:10.1f}" for value in (build, product, model, gradient, large, small))

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 
 from mobius_flow.cli import options as relax_options
-from mobius_flow.cli.provenance import environment
+from mobius_flow.cli.options import environment
 from mobius_flow.core import MobiusFlowError
 from step_costs import ASYMPTOTIC, Machine, Row, exponents, speed
 

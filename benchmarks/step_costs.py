@@ -18,7 +18,7 @@ from mobius_flow.core.descent.methods import METRIC_STEPS
 from mobius_flow.core.descent.step import leg
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
-from mobius_flow.core.energies.near_pairs import near_pairs
+from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy
 from mobius_flow.core.system.threads import BLAS
 

@@ -11,7 +11,7 @@ import time
 from contextlib import ExitStack
 
 from mobius_flow.core import RelaxOptions, Task, relax
-from mobius_flow.core.driver.hops import hopping
+from mobius_flow.core.driver.hopping import hopping
 from mobius_flow.core.driver.loop import Relaxation
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run

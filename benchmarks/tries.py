@@ -13,9 +13,8 @@ from dataclasses import replace
 import numpy as np
 from hops import CASES
 from mobius_flow.core import Curve, RelaxOptions, minimize
-from mobius_flow.core.driver.hops.hopping import GAIN
-from mobius_flow.core.driver.hops.motions import MOTIONS, Motion
-from mobius_flow.core.driver.hops.trial import trial
+from mobius_flow.core.driver.hopping import Hops, trial
+from mobius_flow.core.driver.motions import MOTIONS, Motion
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.driver.run import Run
 
@@ -26,7 +25,7 @@ STEPS = 250  # down the other energy
 def leads_lower(curve: Curve, options: RelaxOptions, motion: Motion, seed: int) -> bool:
     """Whether one motion from a curve at rest, and a relaxation, end lower; not where numbers fail on the way."""
     run = Run(start_problem(curve, options), curve, options)
-    below = (1.0 - GAIN) * run.iterate.energy
+    below = (1.0 - Hops.gain) * run.iterate.energy
     try:
         return trial(run, motion, np.random.default_rng(seed), below).run.iterate.energy < below
     except np.linalg.LinAlgError:

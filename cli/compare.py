@@ -1,26 +1,24 @@
-"""``mobius-flow compare``: what several methods make of a curve, like Figures 1 and 3 of [RS21]."""
+"""``mobius-flow compare`` and ``methods``: what several methods make of a curve, like Figures 1 and 3 of [RS21]."""
 
 import argparse
 import csv
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 
 from ..core import METHODS, MobiusFlowError
-from ..core.curve.io import FORMATS
 from ..core.driver.compare import History, compare
-from ..core.errors import OptionError, OutputError, counted, wrong_suffix
-from ..core.system.files import atomic_write
+from ..core.errors import OptionError, counted, wrong_suffix
 from . import curves, signals
 from . import options as relax_options
-from .comparison import write_figure, write_strip
-from .figures import figure_class
-from .places import check_places
-from .recovery import kept
+from .figures import figure_class, write_figure, write_strip
+from .places import check_places, kept, writing
+from .streams import emit
 
+Writer = Callable[[Path, Sequence[History]], None]
 _EPILOG = """\
 examples:
   mobius-flow compare knot.txt --methods lbfgs,flow-moebius,flow-l2 --time-limit 20 -o figure.png
@@ -37,45 +35,35 @@ are done are written all the same
 """
 
 
-def add_to(parser: argparse.ArgumentParser) -> None:
-    """Describe the subcommand."""
+def add_compare(parser: argparse.ArgumentParser) -> None:
+    """Describe ``compare``."""
     parser.description = "Compare methods on a curve: energy and gradient against iterations and seconds."
     parser.epilog = _EPILOG
-    parser.add_argument(
-        "input", metavar="IN", help=f"polygons, closed or open: {', '.join(FORMATS)}, or - for standard input"
-    )
-    curves.add_format(parser)
+    curves.add_input(parser, "polygons, closed or open")
     parser.add_argument(
         "--methods", metavar="A,B,…", help=f"names, comma separated (default: all: {','.join(METHODS)})"
     )
-    parser.add_argument(
-        "--time-limit",
-        type=float,
-        default=30.0,
-        metavar="SECONDS",
-        help="limit per method, in seconds of processor time, all threads together (default: 30)",
-    )
-    parser.add_argument(
-        "--strip",
-        metavar="K,K,…",
-        help="instead of graphs, draw the curves after these numbers of iterations, one row per method",
-    )
+    limit = "limit per method, in seconds of processor time, all threads together (default: 30)"
+    parser.add_argument("--time-limit", type=float, default=30.0, metavar="SECONDS", help=limit)
+    strip = "instead of graphs, draw the curves after these numbers of iterations, one row per method"
+    parser.add_argument("--strip", metavar="K,K,…", help=strip)
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help=f"figure or table: {', '.join(WRITERS)}")
     relax_options.add_to(parser, without=("method", "time_limit"))
     relax_options.add_task(parser)
+    parser.set_defaults(run=_compare)
 
 
-def run(options: argparse.Namespace) -> int:
-    """Compare, write the figure or table, and print one line per method."""
+def _compare(options: argparse.Namespace) -> int:
+    """Write the figure or table, and print one line per method."""
     suffix = Path(options.output).suffix.lower()
     if suffix not in WRITERS:
         raise OptionError(f"{options.output}: {wrong_suffix(options.output, WRITERS, 'outputs')}")
-    stages = [] if options.strip is None else _numbers(options.strip)
-    writer = partial(write_strip, stages) if stages else WRITERS[suffix]
-    if stages and WRITERS[suffix] is not write_figure:
+    writer, stages = WRITERS[suffix], [] if options.strip is None else _numbers(options.strip)
+    if stages and writer is not write_figure:
         raise OptionError(f"{options.output}: a strip is a picture; let OUT end in .png or .svg, or leave --strip out")
-    if WRITERS[suffix] is write_figure:
+    if writer is write_figure:
         figure_class("or write .csv or .json")
+        writer = partial(write_strip, stages) if stages else writer
     names = list(METHODS) if options.methods is None else [name.strip() for name in options.methods.split(",")]
     check_places(relax_options.inputs(options), {"OUT": options.output})
     file = curves.read(options.input, options.format)
@@ -86,45 +74,46 @@ def run(options: argparse.Namespace) -> int:
         planned = compare(task, names, wanted, options.time_limit, stages)
         options.notes.show()
         runs, ended_by = _collected(planned)
-    if runs:
-        failures = kept(options.output, lambda path: _write(path, writer, runs))
-        if failures:
-            raise MobiusFlowError(failures[0])
+    if runs and (failures := kept(options.output, lambda path: _write(path, writer, runs))):
+        raise MobiusFlowError(failures[0])
     if ended_by is not None:
         raise ended_by
     return 0
 
 
+def add_methods(parser: argparse.ArgumentParser) -> None:
+    """Describe ``methods``."""
+    parser.description = "List the descent methods: name, a tab, what it is; those for comparison come last."
+    parser.epilog = "exit status: 0"
+    parser.set_defaults(run=_methods)
+
+
+def _methods(_options: argparse.Namespace) -> int:
+    emit("\n".join(f"{name}\t{method.sentence}" for name, method in METHODS.items()))
+    return 0
+
+
 def _numbers(text: str) -> list[int]:
     """The iterations of a strip, in ascending order."""
-    words = [word.strip() for word in text.split(",")]
-    wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and len(word) < 10)), None)
-    if wrong is not None:
-        raise OptionError(f"strip has {wrong!r:.40}; give numbers of iterations, such as 0,10,50")
-    return sorted(set(map(int, words)))
+    numbers = relax_options.listed(text, 0, "strip has {}; give numbers of iterations, such as 0,10,50")
+    return sorted(set(numbers))
 
 
-def _collected(planned: Iterator[History]) -> tuple[list[History], BaseException | None]:
+def _collected(planned: Generator[History, None, None]) -> tuple[list[History], BaseException | None]:
     """The runs that were finished, and what ended them before all were."""
     runs: list[History] = []
     try:
-        for result in planned:
-            signals.hold()
+        for result in signals.interruptible(planned):
             runs.append(result)
             print(_line(result), file=sys.stderr, flush=True)
-            signals.allow()
     except (KeyboardInterrupt, MemoryError) as error:
         return runs, error
-    signals.hold()
     return runs, None
 
 
-def _write(path: str, writer: Callable[[Path, Sequence[History]], None], runs: Sequence[History]) -> None:
-    try:
-        with atomic_write(path) as temporary:
-            writer(temporary, runs)
-    except (OSError, ValueError) as error:
-        raise OutputError(path, error) from error
+def _write(path: str, writer: Writer, runs: Sequence[History]) -> None:
+    with writing(path) as temporary:
+        writer(temporary, runs)
 
 
 def _line(run: History) -> str:
@@ -149,9 +138,4 @@ def _write_csv(path: Path, runs: Sequence[History]) -> None:
             table.writerows([run.method, run.status, k, *values, int(k in run.fallback)] for k, values in rows)
 
 
-WRITERS: Mapping[str, Callable[[Path, Sequence[History]], None]] = {
-    ".png": write_figure,
-    ".svg": write_figure,
-    ".csv": _write_csv,
-    ".json": _write_json,
-}
+WRITERS: Mapping[str, Writer] = {".png": write_figure, ".svg": write_figure, ".csv": _write_csv, ".json": _write_json}

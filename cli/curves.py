@@ -17,26 +17,29 @@ INPUT, OUTPUT = "standard input", "standard output"
 MAX_VERTICES = 200_000  # of curves that any command takes
 
 
+def add_input(parser: argparse.ArgumentParser, what: str, name: str = "input", nargs: str | None = None) -> None:
+    """Add the argument for curves that are read, and their format."""
+    text = f"{what}: {', '.join(FORMATS)}, or - for standard input"
+    parser.add_argument(name, metavar="IN", nargs=nargs, help=text)
+    add_format(parser)
+
+
 def add_format(parser: argparse.ArgumentParser, suffixes: Iterable[str] = FORMATS) -> None:
-    """Add the option that tells what the suffix does not."""
+    """Add the option for what suffixes leave open."""
     names = [suffix[1:] for suffix in suffixes]
-    parser.add_argument(
-        "--format",
-        metavar="F",
-        choices=names,
-        help=f"what - and files without a known suffix hold: {', '.join(names)} (default for -: txt)",
-    )
+    text = f"format of - and of files without a known suffix: {', '.join(names)} (default for -: txt)"
+    parser.add_argument("--format", metavar="F", choices=names, help=text)
 
 
 def format_for(path: str, name: str | None) -> Format:
-    """The format that a file's suffix or else ``--format`` tells; raises CurveFileError if neither does."""
+    """The format by a file's suffix or else ``--format``; raises CurveFileError if neither says."""
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS and name is None and path != STREAM:
-        raise CurveFileError(path, wrong_suffix(path, FORMATS, "curve files") + unless_told(path))
+        raise CurveFileError(path, wrong_suffix(path, FORMATS, "curve files") + or_format(path))
     return FORMATS.get(suffix) or FORMATS[f".{name or 'txt'}"]
 
 
-def unless_told(path: str) -> str:
+def or_format(path: str) -> str:
     """What else to do about a file's unknown suffix."""
     return "" if os.path.isdir(path) else ", others need --format"
 
@@ -51,8 +54,18 @@ def read(path: str, name: str | None = None) -> CurveFile:
     return load_curve(INPUT, form, sys.stdin.buffer)
 
 
+@contextmanager
+def measured(path: str, name: str | None) -> Iterator[Curve]:
+    """A curve that is not too large to be looked at; errors about it name its file and line."""
+    file = read(path, name)
+    with refusals(file):
+        if len(file.curve) > MAX_VERTICES:
+            raise CurveError(f"the curve has {len(file.curve)} vertices; at most {MAX_VERTICES} are allowed here")
+        yield file.curve
+
+
 def write(path: str, curve: Curve, name: str | None = None) -> None:
-    """Write a curve; raises MobiusFlowError, or BrokenPipeError where nobody reads standard output."""
+    """Write a curve; raises MobiusFlowError, or BrokenPipeError where standard output is a closed pipe."""
     form = format_for(path, name)
     if path != STREAM:
         write_curve(path, curve, form)
@@ -66,7 +79,7 @@ def write(path: str, curve: Curve, name: str | None = None) -> None:
 def check_regular(path: str | os.PathLike[str]) -> None:
     """Raise a CurveFileError unless there is a regular file: a pipe might never end."""
     if not os.path.isfile(path):
-        raise CurveFileError(os.fspath(path), "cannot be read: it is missing, or no regular file")
+        raise CurveFileError(os.fspath(path), "cannot be read: it is missing, or not a regular file")
 
 
 @contextmanager

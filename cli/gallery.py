@@ -12,14 +12,13 @@ from pathlib import Path
 
 from ..addon.pictures import export
 from ..core import Curve, MobiusFlowError, Status, read_curve
-from ..core.driver.balance import balanced
-from ..core.errors import OutputError, wrong_suffix
-from ..core.system.files import atomic_write
+from ..core.driver.interventions.balance import balanced
+from ..core.errors import wrong_suffix
 from .batch.job import CSV, CURVE, folder_name
 from .batch.table import FAILED
 from .curves import check_regular
 from .figures import figure_class
-from .places import check_place
+from .places import check_place, writing
 from .progress import bar
 
 SIZE = 300  # pixels of a picture's side
@@ -38,16 +37,17 @@ exit status: 0; 2 where there are no results, something is not installed, or OUT
 """
 
 
-def add_to(parser: argparse.ArgumentParser) -> None:
-    """Describe the subcommand."""
+def add_gallery(parser: argparse.ArgumentParser) -> None:
+    """Describe ``gallery``."""
     parser.description, parser.epilog = "Show all results of a batch on one page.", _EPILOG
     parser.add_argument("results", metavar="RESULTS", help="directory that mobius-flow batch wrote to")
     parser.add_argument("-o", "--output", required=True, metavar="OUT.png", help="the page")
+    parser.set_defaults(run=_run)
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A result: where its curve is, what it is called, and whether its Möbius images are at rest as well."""
+    """A result: where its curve is, its title, and whether its Möbius images are at rest as well."""
 
     curve: Path
     title: str
@@ -59,7 +59,7 @@ class Shown:
         return balanced(curve) if self.free and curve.mesh.all_closed else curve
 
 
-def run(options: argparse.Namespace) -> int:
+def _run(options: argparse.Namespace) -> int:
     """Render every result, and put the pictures on a page."""
     if Path(options.output).suffix.lower() != ".png":
         raise MobiusFlowError(f"{options.output}: {wrong_suffix(options.output, ['.png'], 'galleries')}")
@@ -69,11 +69,11 @@ def run(options: argparse.Namespace) -> int:
     shown = _results(Path(options.results))
     with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
         pictures = [Path(room, f"{k}.png") for k in range(len(shown))]
-        progress = bar(total=len(shown), unit=" pictures") if sys.stderr.isatty() else None
-        for each, picture in zip(shown, pictures, strict=True):
-            export.write_picture(picture, each.look(), SIZE, SIZE)
-            if progress is not None:
-                progress.update()
+        with bar(sys.stderr.isatty(), total=len(shown), unit=" pictures") as progress:
+            for each, picture in zip(shown, pictures, strict=True):
+                export.write_picture(picture, each.look(), SIZE, SIZE)
+                if progress is not None:
+                    progress.update()
         _write_page(options.output, [each.title for each in shown], pictures)
     return 0
 
@@ -117,8 +117,5 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path]) -> N
     for axes, title, picture in zip(grid, titles, pictures, strict=False):
         axes.imshow(imread(picture))
         axes.set_title(title, fontsize=10, parse_math=False)
-    try:
-        with atomic_write(path) as temporary:
-            figure.savefig(temporary, dpi=SIZE / INCHES, bbox_inches="tight")
-    except OSError as error:
-        raise OutputError(path, error) from error
+    with writing(path) as temporary:
+        figure.savefig(temporary, dpi=SIZE / INCHES, bbox_inches="tight")

@@ -1,19 +1,28 @@
-"""``mobius-flow info``: what kind of knot a curve is, and its measures."""
+"""``mobius-flow info`` and ``mobius-flow energy``: what kind of knot a curve is, its measures, and its energies."""
 
 import argparse
 import json
 from collections.abc import Iterator, Mapping
 
 from ..core import CurveError
-from ..core.curve.io import FORMATS
+from ..core.checks import check_known
+from ..core.energies import ENERGIES
 from ..core.errors import counted
 from ..core.info import Info, info
 from ..core.knots import KnotType
+from ..core.measure import measure
 from . import curves
 from .streams import emit
 
-_WIDTH = 24  # columns of names
-_EPILOG = """\
+_MEASURES = ("length", "thickness", "ropelength", "writhe", "average_crossing_number")
+_ENERGY_EPILOG = """\
+examples:
+  mobius-flow energy knot.txt
+  mobius-flow knot figure-eight - | mobius-flow energy - --json
+
+exit status: 0, or 2 on bad input or bad options
+"""
+_INFO_EPILOG = """\
 examples:
   mobius-flow info knot.txt
   mobius-flow info start.obj relaxed.obj --json
@@ -30,40 +39,50 @@ exit status: 0, or 2 on bad input or bad options
 """
 
 
-def add_to(parser: argparse.ArgumentParser) -> None:
-    """Describe the subcommand."""
-    parser.description, parser.epilog = "Identify the knot type of curves, and measure them.", _EPILOG
-    parser.add_argument(
-        "inputs", metavar="IN", nargs="+", help=f"curves: {', '.join(FORMATS)}, or - for standard input"
-    )
-    curves.add_format(parser)
+def add_energy(parser: argparse.ArgumentParser) -> None:
+    """Describe ``energy``."""
+    parser.description, parser.epilog = "Print the energy of a curve.", _ENERGY_EPILOG
+    curves.add_input(parser, "curve")
+    parser.add_argument("--energy", default="moebius", metavar="NAME", help=f"one of {', '.join(ENERGIES)}")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.set_defaults(run=_energy)
+
+
+def _energy(options: argparse.Namespace) -> int:
+    check_known("energy", options.energy, ENERGIES)  # before a large file is read
+    with curves.measured(options.input, options.format) as curve:
+        value = measure(curve, options.energy)
+    emit(json.dumps({"name": options.energy, "energy": value}) if options.json else repr(value))
+    return 0
+
+
+def add_info(parser: argparse.ArgumentParser) -> None:
+    """Describe ``info``."""
+    parser.description, parser.epilog = "Identify the knot type of curves, and measure them.", _INFO_EPILOG
+    curves.add_input(parser, "curves", "inputs", "+")
     parser.add_argument("--json", action="store_true", help="print JSON, a list if there are several inputs")
+    parser.set_defaults(run=_info)
 
 
-def run(options: argparse.Namespace) -> int:
-    """Print what there is to say about each curve."""
+def _info(options: argparse.Namespace) -> int:
     if options.inputs.count(curves.STREAM) > 1:
         raise CurveError("standard input can be read once only; give - once")
     for path in options.inputs:
         curves.format_for(path, options.format)  # before what takes time
-    found = [(path, _info(path, options.format)) for path in options.inputs]
+    found = []
+    for path in options.inputs:
+        with curves.measured(path, options.format) as curve:
+            found.append((path, info(curve)))
     if options.json:
-        described = [as_json(path, each) for path, each in found]
+        described = [_as_json(path, each) for path, each in found]
         emit(json.dumps(described if len(described) > 1 else described[0]))
     else:
-        emit("\n\n".join("\n".join(_lines(path, each)) for path, each in found))
+        rows = ((path, *(f"  {name:24}{value}" for name, value in _rows(each))) for path, each in found)
+        emit("\n\n".join(map("\n".join, rows)))
     return 0
 
 
-def _info(path: str, name: str | None) -> Info:
-    file = curves.read(path, name)
-    with curves.refusals(file):
-        if len(file.curve) > curves.MAX_VERTICES:
-            raise CurveError(f"the curve has {len(file.curve)} vertices; at most {curves.MAX_VERTICES} are looked at")
-        return info(file.curve)
-
-
-def as_json(path: str, found: Info) -> Mapping[str, object]:
+def _as_json(path: str, found: Info) -> Mapping[str, object]:
     """All of it by names that scripts can rely on; null for what is not known."""
     rest = found.rest
     return {
@@ -72,11 +91,7 @@ def as_json(path: str, found: Info) -> Mapping[str, object]:
         "vertices": list(found.components),
         "type": _type_as_json(found.type),
         "energies": {**found.energies, "objective": rest and rest.objective},
-        "length": found.length,
-        "thickness": found.thickness,
-        "ropelength": found.ropelength,
-        "writhe": found.writhe,
-        "average_crossing_number": found.average_crossing_number,
+        **{name: getattr(found, name) for name in _MEASURES},
         "edges": {
             "shortest": found.shortest_edge,
             "longest": found.longest_edge,
@@ -104,12 +119,6 @@ def _type_as_json(found: KnotType) -> Mapping[str, object]:
     }
 
 
-def _lines(path: str, found: Info) -> Iterator[str]:
-    yield path
-    for name, value in _rows(found):
-        yield f"  {name:{_WIDTH}}{value}"
-
-
 def _rows(found: Info) -> Iterator[tuple[str, str]]:
     sizes = f" ({', '.join(map(str, found.components))} vertices)"
     yield "components", f"{counted(len(found.components), 'component')}{sizes}"
@@ -121,11 +130,8 @@ def _rows(found: Info) -> Iterator[tuple[str, str]]:
     if found.rest is not None:
         yield "objective", _number(found.rest.objective)
         yield "gradient", f"{found.rest.gradient_norm:.3g} ({found.rest.sentence})"
-    yield "length", _number(found.length)
-    yield "thickness", _number(found.thickness)
-    yield "ropelength", _number(found.ropelength)
-    yield "writhe", _number(found.writhe)
-    yield "average crossing number", _number(found.average_crossing_number)
+    for name in _MEASURES:
+        yield name.replace("_", " "), _number(getattr(found, name))
     longest, shortest = found.longest_edge, found.shortest_edge
     yield "edges", f"{shortest:.6g} to {longest:.6g}, ratio {longest / shortest:.4g}"
     yield "gap between edges", _number(found.gap)

@@ -28,31 +28,26 @@ exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
 """
 
 
-def add_to(parser: argparse.ArgumentParser) -> None:
-    """Describe the subcommand."""
+def add_knot(parser: argparse.ArgumentParser) -> None:
+    """Describe ``knot``."""
     parser.description, parser.epilog = "Write a named knot as a curve.", _EPILOG
-    parser.add_argument(
-        "name",
-        metavar="NAME",
-        help='such as 3_1, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)", a code, "DT: [4 6 2]", or, with the '
-        "extra knots, K11n34",
+    text = (
+        'such as 3_1, goeritz, hopf, overhand, "T(3,5)", "braid(1,-2,1,-2)", a code, "DT: [4 6 2]", or, with the extra '
+        "knots, K11n34"
     )
+    parser.add_argument("name", metavar="NAME", help=text)
     parser.add_argument("output", metavar="OUT", help=f"curve: {', '.join(WRITTEN_FORMATS)}, or - for standard output")
     curves.add_format(parser, WRITTEN_FORMATS)
-    parser.add_argument(
-        "--vertices",
-        type=int,
-        metavar="N",
-        help=f"number of vertices, at most {curves.MAX_VERTICES} (default: enough for edges to be shorter than the "
-        "gaps between strands)",
+    default = "enough for edges to be shorter than the gaps between strands"
+    text = f"number of vertices, at most {curves.MAX_VERTICES} (default: {default})"
+    parser.add_argument("--vertices", type=int, metavar="N", help=text)
+    text = (
+        "a smooth curve for a knot of the table, with strands evenly spread by the tangent-point energy: a start near "
+        "a minimum of the Möbius energy, but not a minimum (default: woven)"
     )
-    parser.add_argument(
-        "--smooth",
-        action="store_true",
-        help="a smooth curve for a knot of the table, with strands evenly spread by the tangent-point energy: a start "
-        "near a minimum of the Möbius energy, but not a minimum (default: woven)",
-    )
+    parser.add_argument("--smooth", action="store_true", help=text)
     parser.add_argument("--list", action=_List, nargs=0, help="print the names, one per line, and exit")
+    parser.set_defaults(run=_run)
 
 
 class _List(argparse.Action):
@@ -63,8 +58,7 @@ class _List(argparse.Action):
         parser.exit()
 
 
-def run(options: argparse.Namespace) -> int:
-    """Make the knot and write it."""
+def _run(options: argparse.Namespace) -> int:
     curves.format_for(options.output, options.format)
     check_place(options.output)
     try:

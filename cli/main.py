@@ -4,11 +4,24 @@ This module imports nothing that takes time: what a subcommand needs is imported
 """
 
 import sys
+import warnings
 from collections.abc import Sequence
 
 from . import signals, streams
 
-FINE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, signals.INTERRUPTED
+FAILED, BAD_INPUT = 1, 2
+
+
+def process() -> int:
+    """Run the command line as a process of its own, with its streams, signals and warnings."""
+    signals.leave_at_once()
+    streams.mend()
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")  # they are for programmers; what users should know is logged
+    try:
+        return main()
+    finally:
+        signals.hold()  # all is written: a signal now changes nothing
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -18,8 +31,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SystemExit as ended:
         return int(ended.code or 0)
     except KeyboardInterrupt as interrupt:
-        return _end(str(interrupt) or "interrupted", INTERRUPTED)
-    except BrokenPipeError:  # the reader of our output has left, and needs no sentence
+        return _end(str(interrupt) or "interrupted", signals.INTERRUPTED)
+    except BrokenPipeError:  # the downstream pipe was closed, which needs no sentence
         return FAILED
     except MemoryError:
         return _end("there is not enough memory for this; use fewer vertices", FAILED)
@@ -28,11 +41,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str] | None) -> int:
-    from .notes import Notes
     from .parser import parse
 
     options = parse(arguments)
-    with Notes() as notes, signals.raised():
+    with streams.Notes() as notes, signals.raised():
         options.notes = notes
         status = int(options.run(options))
         if not getattr(options, "quiet", False):
@@ -51,7 +63,7 @@ def explained(error: Exception) -> tuple[str, int]:
     if isinstance(error, streams.OutputStreamError):
         return str(error), BAD_INPUT
     if isinstance(error, ImportError | SyntaxError):
-        return f"a Python module that is needed cannot be loaded: {error}", FAILED
+        return f"a required Python module cannot be loaded: {error}", FAILED
     if isinstance(error, OSError):
         name = "" if error.filename is None else f"{error.filename}: "
         return f"{name}{error.strerror or error}", BAD_INPUT
@@ -63,4 +75,4 @@ def explained(error: Exception) -> tuple[str, int]:
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
     place = "" if trace is None else f" ({trace.tb_frame.f_code.co_filename}, line {trace.tb_lineno})"
-    return f"an error of the program, please report it: {type(error).__name__}: {error}{place}", FAILED
+    return f"internal error, please report it: {type(error).__name__}: {error}{place}", FAILED

@@ -1,13 +1,19 @@
-"""The options of a relaxation, shared by the subcommands that run one."""
+"""The options and the task of a relaxation, shared by the subcommands that run one, and their record in results."""
 
 import argparse
+import platform
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+import numpy
+import scipy
+
+from .. import __version__
 from ..core import RelaxOptions, Task, read_obstacle
 from ..core.curve.io import CurveFile
 from ..core.errors import OptionError
 from ..core.option import Option, declared
+from ..core.system.threads import THREADS
 
 _OFFERED, _SHORT = "offered", "shorthands"  # names of the options, and the shorthands that are given, in a namespace
 
@@ -57,11 +63,16 @@ def task(arguments: argparse.Namespace, file: CurveFile) -> Task:
 
 def pinned(text: str) -> tuple[int, ...]:
     """Indices of vertices that are counted from 1, with commas between."""
+    return tuple(number - 1 for number in listed(text, 1, "{} is no vertex to pin; give numbers from 1, such as 12,40"))
+
+
+def listed(text: str, least: int, refusal: str) -> list[int]:
+    """Whole numbers with commas between; raises OptionError, which names the first word that is none."""
     words = [word.strip() for word in text.split(",")]
-    wrong = next((word for word in words if not (word.isascii() and word.isdecimal() and int(word[:20]) > 0)), None)
-    if wrong is not None:
-        raise OptionError(f"{wrong!r:.40} is no vertex to pin; give numbers from 1, such as 12,40")
-    return tuple(int(word[:20]) - 1 for word in words)
+    for word in words:
+        if not (word.isascii() and word.isdecimal() and least <= int(word[:20])):
+            raise OptionError(refusal.format(f"{word!r:.40}"))
+    return [int(word[:20]) for word in words]
 
 
 def inputs(arguments: argparse.Namespace) -> dict[str, str]:
@@ -108,3 +119,19 @@ def _help(option: Option) -> str:
         return f"{option.help}; may be given several times"
     choices = f"; one of {', '.join(option.choices)}" if option.choices else ""
     return f"{option.help}{choices} (default: {option.automatic or option.default})"
+
+
+def provenance(options: Mapping[str, object], name: str, sha256: str | None) -> dict[str, object]:
+    """Where a result comes from: enough to make it again, bit for bit with the same libraries and BLAS threads."""
+    return {"options": options, "input": {"name": name, "sha256": sha256}, **environment()}
+
+
+def environment() -> dict[str, object]:
+    """The version, the BLAS threads and the libraries, as plain values."""
+    return {
+        "version": __version__,
+        "blas_threads": THREADS,
+        "python": platform.python_version(),
+        "numpy": numpy.__version__,
+        "scipy": scipy.__version__,
+    }

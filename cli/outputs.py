@@ -14,59 +14,31 @@ from ..core.errors import wrong_suffix
 from . import curves
 from .progress import show_frames
 
-Writer = Callable[[str, Result, Sequence[Iterate], bool], None]
+Writer = Callable[[str, Result, Sequence[Iterate], bool], object]
 
 
 @dataclass(frozen=True)
 class Output:
-    """One kind of output.
+    """One kind of output."""
 
-    Parameters
-    ----------
-    write
-        Writes it; the last argument is whether progress may be shown.
-    admit
-        Raises a MobiusFlowError if it cannot hold a curve.
-    needs_iterates
-        Whether it shows the whole run.
-    check
-        Raises a MobiusFlowError if something it needs is not installed.
-    """
-
-    write: Writer
-    admit: Callable[[Curve], None]
-    needs_iterates: bool = False
-    check: Callable[[], None] = lambda: None
+    write: Writer  # the last argument is whether progress may be shown
+    admit: Callable[[Curve], object]  # raises a MobiusFlowError if it cannot hold a curve
+    is_scene: bool = False  # which needs Blender's module, and shows the whole run
 
 
-def _curve_output(name: str | None, form: Format) -> Output:
-    def write(path: str, result: Result, _iterates: Sequence[Iterate], _shown: bool) -> None:
-        curves.write(path, result.curve, name)
+def _curve_output(form: Format, name: str | None = None) -> Output:
+    return Output(lambda path, result, *_: curves.write(path, result.curve, name), form.text)
 
+
+def _scene_output(write: Callable[[str, Sequence[Iterate], bool], object]) -> Output:
     def admit(curve: Curve) -> None:
-        form.text(curve)
+        film.check_dimension(curve)
+        check_closed(curve, "scenes, films and pictures")
 
-    return Output(write, admit)
-
-
-def _blender_output(write: Writer) -> Output:
-    # the function is looked up when it is called, as all of export's
-    return Output(write, _admit_to_blender, needs_iterates=True, check=lambda: export.require_blender())
+    return Output(lambda path, _, iterates, shown: write(path, iterates, shown), admit, is_scene=True)
 
 
-def _admit_to_blender(curve: Curve) -> None:
-    film.check_dimension(curve)
-    check_closed(curve, "scenes, films and pictures")
-
-
-def _blender_writer(function: str) -> Writer:
-    def write(path: str, _result: Result, iterates: Sequence[Iterate], _shown: bool) -> None:
-        getattr(export, function)(path, iterates)
-
-    return write
-
-
-def _write_movie(path: str, _result: Result, iterates: Sequence[Iterate], shown: bool) -> None:
+def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool) -> None:
     try:
         export.write_movie(path, iterates, show_frames if shown else None)
     except KeyboardInterrupt:
@@ -76,11 +48,11 @@ def _write_movie(path: str, _result: Result, iterates: Sequence[Iterate], shown:
 
 
 OUTPUTS: Mapping[str, Output] = MappingProxyType(
-    {suffix: _curve_output(None, FORMATS[suffix]) for suffix in WRITTEN_FORMATS}
+    {suffix: _curve_output(FORMATS[suffix]) for suffix in WRITTEN_FORMATS}
     | {
-        ".blend": _blender_output(_blender_writer("write_blend")),
-        ".mp4": _blender_output(_write_movie),
-        ".png": _blender_output(_blender_writer("write_still")),
+        ".blend": _scene_output(lambda path, iterates, _: export.write_blend(path, iterates)),
+        ".mp4": _scene_output(_write_movie),
+        ".png": _scene_output(lambda path, iterates, _: export.write_still(path, iterates)),
     }
 )
 
@@ -93,14 +65,14 @@ def output_for(path: str, name: str | None = None) -> Output:
     MobiusFlowError
         If the suffix is unknown and no format named, or Blender's module is needed and missing.
     """
-    suffix = Path(path).suffix
-    if suffix.lower() not in OUTPUTS:
-        if name is None and path != curves.STREAM and suffix.lower() not in FORMATS:
-            raise MobiusFlowError(f"{path}: {wrong_suffix(path, OUTPUTS, 'outputs')}{curves.unless_told(path)}")
-        return _curve_output(name, curves.format_for(path, name))
-    output = OUTPUTS[suffix.lower()]
-    output.check()
-    return output
+    suffix = Path(path).suffix.lower()
+    if suffix not in OUTPUTS:
+        if name is None and path != curves.STREAM and suffix not in FORMATS:
+            raise MobiusFlowError(f"{path}: {wrong_suffix(path, OUTPUTS, 'outputs')}{curves.or_format(path)}")
+        return _curve_output(curves.format_for(path, name), name)
+    if OUTPUTS[suffix].is_scene:
+        export.require_blender()
+    return OUTPUTS[suffix]
 
 
 def admit(output: Output, path: str, curve: Curve) -> None:

@@ -2,23 +2,23 @@
 
 import argparse
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any, NoReturn
 
 from .. import __version__
 from .streams import emit, one_line
 
-COMMANDS = {
-    "relax": "relax a curve",
-    "batch": "relax many curves, on all cores or a cluster",
-    "gallery": "show the results of a batch",
-    "energy": "print the energy of a curve",
-    "info": "identify the knot type of curves, and measure them",
-    "verify": "check a trajectory for contact",
-    "compare": "compare descent methods on a curve",
-    "knot": "write a named knot",
-    "methods": "list the descent methods",
+COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it does
+    "relax": ("relax", "relax a curve"),
+    "batch": ("batch", "relax many curves, on all cores or a cluster"),
+    "gallery": ("gallery", "show the results of a batch"),
+    "energy": ("info", "print the energy of a curve"),
+    "info": ("info", "identify the knot type of curves, and measure them"),
+    "verify": ("verify", "check a trajectory for contact"),
+    "compare": ("compare", "compare descent methods on a curve"),
+    "knot": ("knot", "write a named knot"),
+    "methods": ("compare", "list the descent methods"),
 }
 BAD_OPTIONS = 2
 _EPILOG = """\
@@ -41,8 +41,8 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, **arguments: Any) -> None:
         super().__init__(allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **arguments)
-        self.register("type", int, _whole_number)
-        self.register("type", float, _number)
+        self.register("type", int, _read(int, "a whole number"))
+        self.register("type", float, _read(float, "a number"))
 
     def error(self, message: str) -> NoReturn:
         """End with one line."""
@@ -76,45 +76,40 @@ class Parser(argparse.ArgumentParser):
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
-            raise argparse.ArgumentError(action, f"{value!r} is unknown; {closest(value, action.choices)}")
+            from ..core.errors import choice
+
+            known = choice(str(value), map(str, action.choices))
+            raise argparse.ArgumentError(action, f"{value!r} is unknown; {known}")
 
 
 class Command(Parser):
-    """The parser of a subcommand, whose module has ``add_to(parser)`` and ``run(options)``."""
+    """The parser of a subcommand, which is loaded before its arguments are parsed."""
 
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Load the subcommand before its arguments are parsed."""
-        module = import_module(f".{self.prog.rpartition(' ')[2]}", __package__)
-        module.add_to(self)
-        self.set_defaults(run=module.run)
+        """Load, and parse."""
+        add_to(self, self.prog.rpartition(" ")[2])
         return super().parse_known_args(args, namespace)
 
 
-def _whole_number(text: str) -> int:
-    try:
-        return int(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r:.60} is not a whole number") from None
+def add_to(parser: argparse.ArgumentParser, name: str) -> None:
+    """Describe a subcommand, and let ``run`` be the function that carries it out."""
+    getattr(import_module(f".{COMMANDS[name][0]}", __package__), f"add_{name}")(parser)
 
 
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r:.60} is not a number") from None
+def _read(kind: Callable[[str], Any], meaning: str) -> Callable[[str], Any]:
+    def read(text: str) -> Any:
+        try:
+            return kind(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text!r:.60} is not {meaning}") from None
 
-
-def closest(name: object, known: Iterable[Any]) -> str:
-    """What can be chosen instead of an unknown name."""
-    from ..core.errors import choice
-
-    return choice(str(name), map(str, known))
+    return read
 
 
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """Parse the command line; ``run`` of the result is the subcommand's function. Raises SystemExit."""
+    """Parse the command line. Raises SystemExit."""
     top = Parser(
         prog="mobius-flow",
         description="Relax and untangle knotted curves by their Möbius energy, never through themselves.",
@@ -122,7 +117,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     top.add_argument("--version", action="version", version=f"mobius-flow {__version__}")
     subparsers = top.add_subparsers(dest="command", metavar="COMMAND", title="commands", parser_class=Command)
-    for name, summary in COMMANDS.items():
+    for name, (_, summary) in COMMANDS.items():
         subparsers.add_parser(name, help=summary)
     found = top.parse_args(arguments)
     if found.command is None:

@@ -1,30 +1,30 @@
-"""Where results go, looked at before hours of work are put into them."""
+"""Where results go, checked before hours of work are put into them; what cannot be written there is kept elsewhere."""
 
 import os
 import secrets
+import shutil
 import stat
 import sys
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
 from itertools import combinations, product
 from pathlib import Path
 
 from ..core import MobiusFlowError
 from ..core.errors import OutputError
-from ..core.system.files import status_of
+from ..core.system.files import atomic_write, status_of
 from .curves import DEVICE, OUTPUT, STREAM
 
 Identity = tuple[int | str, ...]
+Write = Callable[[str], None]
 
 
 def check_places(inputs: Mapping[str, str], outputs: Mapping[str, str | None]) -> None:
     """Raise a MobiusFlowError unless all outputs can be written and are files of their own.
 
-    Parameters
-    ----------
-    inputs
-        The path of each, by what it is on the command line.
-    outputs
-        The path of each, by its name on the command line; those that are None are not wanted.
+    Keys are what paths are called on the command line; outputs that are None are not wanted.
     """
     wanted = {name: path for name, path in outputs.items() if path is not None}
     for path in wanted.values():
@@ -95,3 +95,55 @@ def _identity(path: str, stream: int) -> Identity | None:
         return None  # a missing input, which has its own sentence
     regular = stat.S_ISREG(found.st_mode) or stat.S_ISFIFO(found.st_mode)
     return (found.st_dev, found.st_ino) if regular else None
+
+
+@contextmanager
+def writing(path: str) -> Iterator[Path]:
+    """Give a temporary path whose file takes its place in the end, whole; an OutputError says why it cannot."""
+    try:
+        with atomic_write(path) as temporary:
+            yield temporary
+    except (OSError, ValueError) as error:
+        raise OutputError(path, error) from error
+
+
+def kept(path: str, write: Write, rescue: Write | None = None, name: str | None = None) -> list[str]:
+    """Write a result; where that fails keep it in a temporary directory, and return the sentences that say so.
+
+    It is kept there where it is interrupted, too; the sentence is then that of the KeyboardInterrupt, which goes on.
+
+    Parameters
+    ----------
+    path
+        Where it should be.
+    write
+        Writes it to a path.
+    rescue, name
+        Another way to write it, and a file name, for the temporary directory: a curve instead of a film.
+    """
+    keep = partial(_elsewhere, rescue or write, os.path.basename(name or path))
+    try:
+        write(path)
+    except KeyboardInterrupt as interrupt:
+        raise KeyboardInterrupt(keep(f"{path} is not written")) from interrupt
+    except MobiusFlowError as error:
+        return [keep(str(error))]
+    except OSError as error:
+        return [keep(f"{path}: cannot be written: {error.strerror or error}")]
+    except MemoryError:
+        return [keep(f"{path}: there is not enough memory to write it")]
+    return []
+
+
+def _elsewhere(write: Write, name: str, reason: str) -> str:
+    """Write to a temporary directory; return the reason for that, and the place if it could be done."""
+    try:
+        place = Path(tempfile.mkdtemp(prefix="mobius-flow-"), name)
+    except OSError:
+        return reason
+    try:
+        write(str(place))
+    except (MobiusFlowError, OSError, MemoryError):
+        shutil.rmtree(place.parent, ignore_errors=True)
+        return reason
+    return f"{reason} (the result is kept as {place})"

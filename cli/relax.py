@@ -3,39 +3,21 @@
 import argparse
 import json
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from typing import NamedTuple
 
-from ..core import (
-    Iterate,
-    MobiusFlowError,
-    Obstacle,
-    Outcome,
-    RelaxOptions,
-    Result,
-    Status,
-    Task,
-    Trajectory,
-    relax,
-    write_curve,
-)
-from ..core.curve.io import FORMATS
-from ..core.driver import Relaxation, finish
-from ..core.errors import OptionError, OutputError, counted
-from ..core.system.files import atomic_write
+from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
+from ..core.driver import finish
+from ..core.errors import OptionError, counted
 from . import curves, signals
 from . import options as relax_options
-from .notes import Notes
 from .outputs import OUTPUTS, Output, admit, output_for
-from .places import check_places, is_file
-from .progress import Progress
-from .provenance import provenance
-from .recovery import Write, kept
+from .places import Write, check_places, is_file, kept, writing
+from .progress import Progress, bar
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 KEYED = ("auto", "fixed", "finer")  # meshes that keyframes can follow
-_DESCRIPTION = "Relax a curve: lower its energy without changing its knot type."
 _EPILOG = """\
 examples:
   mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
@@ -59,28 +41,21 @@ An output that cannot be written in the end is saved in a temporary directory, w
 """
 
 
-def add_to(parser: argparse.ArgumentParser) -> None:
-    """Describe the subcommand."""
-    parser.description, parser.epilog = _DESCRIPTION, _EPILOG
-    parser.add_argument(
-        "input", metavar="IN", help=f"polygons, closed or open: {', '.join(FORMATS)}, or - for standard input"
-    )
-    parser.add_argument(
-        "output", metavar="OUT", help=f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
-    )
-    curves.add_format(parser)
-    parser.add_argument(
-        "--report", type=_extra, metavar="R.json", help="write a report of the run as JSON; - is standard output"
-    )
-    parser.add_argument(
-        "--trajectory",
-        type=_extra,
-        metavar="T.npz",
-        help="write the certified path, for mobius-flow verify; - is standard output",
-    )
+def add_relax(parser: argparse.ArgumentParser) -> None:
+    """Describe ``relax``."""
+    parser.description, parser.epilog = "Relax a curve: lower its energy without changing its knot type.", _EPILOG
+    curves.add_input(parser, "polygons, closed or open")
+    text = f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
+    parser.add_argument("output", metavar="OUT", help=text)
+    for name, metavar, text in (
+        ("--report", "R.json", "write a report of the run as JSON; - is standard output"),
+        ("--trajectory", "T.npz", "write the certified path, for mobius-flow verify; - is standard output"),
+    ):
+        parser.add_argument(name, type=_extra, metavar=metavar, help=text)
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
     relax_options.add_task(parser)
+    parser.set_defaults(run=_run)
 
 
 def _extra(path: str) -> str:
@@ -88,16 +63,14 @@ def _extra(path: str) -> str:
     return curves.DEVICE if path == curves.STREAM else path
 
 
-def run(options: argparse.Namespace) -> int:
+def _run(options: argparse.Namespace) -> int:
     """Relax, write every requested output, and return the exit status."""
     output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
-    if output.needs_iterates:
+    if output.is_scene:
         if wanted.mesh not in KEYED:
-            raise OptionError(
-                f"{options.output}: keyframes cannot follow mesh={wanted.mesh!r}; "
-                "leave --mesh out, or write a curve file"
-            )
+            reason = f"keyframes cannot follow mesh={wanted.mesh!r}; leave --mesh out, or write a curve file"
+            raise OptionError(f"{options.output}: {reason}")
         wanted = wanted.keyed
     outputs = {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
     check_places(relax_options.inputs(options), outputs)
@@ -105,10 +78,11 @@ def run(options: argparse.Namespace) -> int:
     with curves.refusals(file):
         task = relax_options.task(options, file)
     admit(output, options.output, file.curve)
-    origin = provenance(wanted, task, file)
+    respected = {"pins": task.pins, "pin_tangents": task.pin_tangents, "avoid": [each.name for each in task.obstacles]}
+    origin = relax_options.provenance(vars(wanted) | respected, str(file.source.path), file.source.sha256)
     with curves.refusals(file):
         result, iterates = _relax(task, wanted, output, options)
-    _write_all(options, output, result, iterates, origin)
+    _write_all(_jobs(options, output, result, iterates, origin))
     if not options.quiet:
         print(_summary(result), file=sys.stderr)
     return EXIT_STATUS[result.status]
@@ -119,63 +93,52 @@ def _relax(
 ) -> tuple[Result, list[Iterate]]:
     """Run to the end or an interrupt. Signals interrupt steps only: neither what is recorded nor the end is lost."""
     iterates: list[Iterate] = []
-    recorded = output.needs_iterates or options.trajectory is not None
-    notes: Notes = options.notes
+    recorded = output.is_scene or options.trajectory is not None
     relaxation = relax(task, wanted)
     signals.hold()
-    with Progress(wanted, shown=not options.quiet and sys.stderr.isatty()) as progress:
+    progress = Progress(wanted)
+    with bar(_shown(options), total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}") as shown:
 
         def on_iterate(iterate: Iterate) -> None:
             if recorded:
                 iterates.append(iterate)
             if iterate.index == 0 and not options.quiet:
-                notes.show()  # the curve is accepted: there will be no refusal
-            progress.update(iterate)
+                options.notes.show()  # the curve is accepted: there will be no refusal
+            progress.update(shown, iterate)
 
-        return finish(_interruptible(relaxation), task, wanted, on_iterate), iterates
+        return finish(signals.interruptible(relaxation), task, wanted, on_iterate), iterates
 
 
-def _interruptible(relaxation: Relaxation) -> Relaxation:
-    """The same, interrupted by signals while it computes, and only then."""
-    while True:
-        signals.allow()
-        try:
-            iterate = next(relaxation)
-        except StopIteration as end:
-            signals.hold()
-            outcome: Outcome = end.value
-            return outcome
-        signals.hold()
-        yield iterate
+def _shown(options: argparse.Namespace) -> bool:
+    return not options.quiet and sys.stderr.isatty()
 
 
 class _Job(NamedTuple):
-    """A result to be written; see `kept`. Those that may take long, or never end, can be interrupted, and come last."""
+    """A result to be written; see `kept`."""
 
     path: str
     write: Write
     rescue: Write | None = None
     name: str | None = None
-    interruptible: bool = False
+    slow: bool = False  # may take long, or never end: it can be interrupted, and comes last
 
-    def begin(self, path: str) -> None:
-        """Write, and let signals interrupt it if it takes long."""
-        if self.interruptible:
+    def begin(self, interrupted: bool, path: str) -> None:
+        """Write; what takes long is not begun after an interrupt."""
+        if self.slow and interrupted:
+            raise KeyboardInterrupt
+        if self.slow:
             signals.allow()
         self.write(path)
 
 
-def _write_all(
-    options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
-) -> None:
+def _write_all(jobs: Iterable[_Job]) -> None:
     """Write report, trajectory and curve or scene: the others are written all the same where one cannot be."""
     failures: list[str] = []
     interrupted = False
-    for job in sorted(_jobs(options, output, result, iterates, origin), key=lambda job: job.interruptible):
+    for job in sorted(jobs, key=lambda job: job.slow):
         signals.hold()
         try:
-            write = _give_up if interrupted and job.interruptible else job.begin
-            failures += kept(job.path, write, job.rescue or job.write, job.name)
+            failures += kept(job.path, partial(job.begin, interrupted), job.rescue or job.write, job.name)
         except KeyboardInterrupt as interrupt:
             interrupted = True
             failures.append(str(interrupt))
@@ -186,44 +149,30 @@ def _write_all(
     signals.allow()
 
 
-def _give_up(_path: str) -> None:
-    """What takes long is not begun after an interrupt."""
-    raise KeyboardInterrupt
-
-
 def _jobs(
     options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
 ) -> Iterator[_Job]:
-    for path, write in (
-        (options.report, lambda path: _write_report(path, result, origin)),
-        (options.trajectory, lambda path: _trajectory(iterates, origin, result.task.obstacles).save(path)),
-    ):
-        if path is not None:
-            yield _Job(path, write, interruptible=not is_file(path))
-    shown = not options.quiet and sys.stderr.isatty()
-    job = _Job(options.output, lambda path: output.write(path, result, iterates, shown))
-    if output.needs_iterates:  # a film takes a minute
+    def save_trajectory(path: str) -> None:
+        trajectory = Trajectory(origin, result.task.obstacles)
+        for iterate in iterates:
+            trajectory.add(iterate)
+        trajectory.save(path)
+
+    extras = (options.report, partial(_write_report, result, origin)), (options.trajectory, save_trajectory)
+    yield from (_Job(path, write, slow=not is_file(path)) for path, write in extras if path is not None)
+    job = _Job(options.output, lambda path: output.write(path, result, iterates, _shown(options)))
+    if output.is_scene:  # a film takes a minute
         plain = partial(write_curve, curve=result.curve)
-        yield job._replace(rescue=plain, name=f"{options.output}.obj", interruptible=True)
+        yield job._replace(rescue=plain, name=f"{options.output}.obj", slow=True)
     else:
         name = f"curve.{options.format or 'txt'}" if options.output == curves.STREAM else None
-        yield job._replace(name=name, interruptible=not is_file(options.output))
+        yield job._replace(name=name, slow=not is_file(options.output))
 
 
-def _trajectory(iterates: list[Iterate], origin: Mapping[str, object], obstacles: Sequence[Obstacle]) -> Trajectory:
-    trajectory = Trajectory(origin, obstacles)
-    for iterate in iterates:
-        trajectory.add(iterate)
-    return trajectory
-
-
-def _write_report(path: str, result: Result, origin: Mapping[str, object] | None = None) -> None:
-    text = json.dumps(result.report() | dict(origin or {}), indent=1) + "\n"
-    try:
-        with atomic_write(path) as temporary:
-            temporary.write_text(text, encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise OutputError(path, error) from error
+def _write_report(result: Result, origin: Mapping[str, object], path: str) -> None:
+    text = json.dumps(result.report() | dict(origin), indent=1) + "\n"
+    with writing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def _summary(result: Result) -> str:

@@ -10,9 +10,11 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from types import FrameType
-from typing import Any
+from typing import Any, TypeVar, cast
+
+_Item, _Result = TypeVar("_Item"), TypeVar("_Result")
 
 INTERRUPTED = 130
 _NUMBERS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
@@ -39,6 +41,19 @@ def allow() -> None:
     _State.mode = _RAISE
     if _State.waiting:
         _interrupt()
+
+
+def interruptible(work: Generator[_Item, None, _Result]) -> Generator[_Item, None, _Result]:
+    """The same items, interrupted by signals while they are computed, and only then."""
+    while True:
+        allow()
+        try:
+            item = next(work)
+        except StopIteration as end:
+            hold()
+            return cast(_Result, end.value)
+        hold()
+        yield item
 
 
 @contextlib.contextmanager

@@ -2,13 +2,14 @@
 
 import contextlib
 import io
+import logging
 import os
 import sys
-from typing import TextIO
+from typing import Any, Self, TextIO
 
 
 class OutputStreamError(Exception):
-    """Standard output does not take what is written."""
+    """Standard output cannot be written."""
 
 
 def mend() -> None:
@@ -27,26 +28,20 @@ def mend() -> None:
 
 
 def emit(text: str) -> None:
-    """Print to standard output, at once; raises OutputStreamError, or BrokenPipeError if its reader has left."""
+    """Print to standard output, at once; raises OutputStreamError, or BrokenPipeError if the pipe is closed."""
     try:
         print(text, flush=True)
-    except BrokenPipeError:
-        discard_output()
-        raise
     except OSError as error:
-        discard_output()
+        with contextlib.suppress(OSError, ValueError):  # what is left goes nowhere, so that Python's exit is quiet
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if isinstance(error, BrokenPipeError):
+            raise
         reason = "it is closed" if isinstance(error, io.UnsupportedOperation) else error.strerror or error
         raise OutputStreamError(f"standard output cannot be written: {reason}") from error
 
 
-def discard_output() -> None:
-    """Send what is still to be written to standard output nowhere, so that Python's exit is quiet."""
-    with contextlib.suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
 def one_line(text: str) -> str:
-    """A sentence in which names with line ends, or what no terminal can show, are written with backslashes."""
+    """A sentence in which line ends in names, and what no terminal can show, are written with backslashes."""
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
@@ -62,3 +57,32 @@ def _forgiving(stream: TextIO | None) -> TextIO:
     encoding = "utf-8" if stream is None else stream.encoding
     file = io.BufferedWriter(_ForgivingFile(2, "w", closefd=False))  # type: ignore[type-var]
     return io.TextIOWrapper(file, encoding=encoding, errors="backslashreplace", line_buffering=True)
+
+
+class Notes(logging.Handler):
+    """Collects the library's warnings while it is entered: a refusal is one line, without what was noted before it."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self._lines: list[str] = []
+        self._shown = False
+
+    def __enter__(self) -> Self:
+        logging.getLogger().addHandler(self)
+        return self
+
+    def __exit__(self, *_error: Any) -> None:
+        logging.getLogger().removeHandler(self)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep a line, or print it."""
+        self._lines.append(one_line(f"mobius-flow: {record.getMessage()}"))
+        if self._shown:
+            self.show()
+
+    def show(self) -> None:
+        """Print what has been collected, and from now on what is logged at once."""
+        self._shown = True
+        for line in self._lines:
+            print(line, file=sys.stderr)
+        self._lines.clear()

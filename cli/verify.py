@@ -35,15 +35,15 @@ exit status:
 """
 
 
-def add_to(parser: argparse.ArgumentParser) -> None:
-    """Describe the subcommand."""
+def add_verify(parser: argparse.ArgumentParser) -> None:
+    """Describe ``verify``."""
     parser.description, parser.epilog = "Check a trajectory for contact, independently of the run.", _EPILOG
     parser.add_argument("trajectory", metavar="T.npz", help="as written by relax --trajectory, or - for standard input")
     parser.add_argument("--json", action="store_true", help="print the verdict as JSON")
+    parser.set_defaults(run=_run)
 
 
-def run(options: argparse.Namespace) -> int:
-    """Print the verdict; exit status 0 if the trajectory is free of contact, 1 if not."""
+def _run(options: argparse.Namespace) -> int:
     with _seekable(options.trajectory) as path, leg_progress(sys.stderr.isatty()) as progress:
         verdict = verify(path, progress)
     emit(json.dumps(_plain(verdict)) if options.json else str(verdict))
@@ -52,11 +52,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _plain(verdict: Verdict) -> dict[str, object]:
     """The verdict with edges and the obstacle counted as in its reason, from 1."""
-    counted = {
-        "edges": verdict.edges and [edge + 1 for edge in verdict.edges],
-        "obstacle": None if verdict.obstacle is None else verdict.obstacle + 1,
-    }
-    return asdict(verdict) | counted
+    edges = verdict.edges and [edge + 1 for edge in verdict.edges]
+    obstacle = None if verdict.obstacle is None else verdict.obstacle + 1
+    return asdict(verdict) | {"edges": edges, "obstacle": obstacle}
 
 
 @contextmanager

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 from .arguments import checked
 from .collision import check_embedded, check_gap, minimal_gap
-from .collision.thickness import thickness
+from .collision.gap import thickness
 from .curve import Curve
 from .curve.writhe import writhe_and_crossings
 from .descent import Point
 from .driver import RelaxOptions
+from .driver.interventions.saddle import stability
 from .driver.prepare import start_problem
-from .driver.stability import stability
-from .driver.termination import gradient_bound
+from .driver.run import gradient_bound
 from .knots import KnotType, knot_type
 from .measure import MAX_VERTICES as PAIRS_UP_TO
 from .measure import measure
@@ -56,7 +56,7 @@ class Rest:
             return "not at rest"
         if self.index is None:
             return "at rest; the Hessian is too ill-conditioned to tell a minimum from a saddle"
-        return f"at rest at {f'a saddle with index {self.index}' if self.index else 'a minimum'}"
+        return f"at rest at {f'a saddle of index {self.index}' if self.index else 'a minimum'}"
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Info:
     energies
         By the names of :data:`ENERGIES`.
     thickness
-        See :func:`~mobius_flow.core.collision.thickness.thickness`.
+        See :func:`~mobius_flow.core.collision.gap.thickness`.
     writhe, average_crossing_number
         See :func:`~mobius_flow.core.curve.writhe.writhe_and_crossings`.
     gap

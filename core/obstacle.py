@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from .arguments import checked
 from .errors import CurveError
+from .messages import OBSTACLE, Message
 from .types import BoolArray, FloatArray, IntArray, frozen, real
 
 NAMELESS = "obstacle"
@@ -71,9 +72,9 @@ class Obstacle:
         return hashlib.blake2b(b"".join(parts)).digest()
 
     @property
-    def title(self) -> str:
+    def title(self) -> Message:
         """What sentences call it."""
-        return self.name if self.name == NAMELESS else f"obstacle {self.name}"
+        return Message(NAMELESS) if self.name == NAMELESS else Message(OBSTACLE, name=self.name)
 
     @cached_property
     def corners(self) -> FloatArray:

@@ -13,6 +13,7 @@ from .collision import check_clear, check_embedded, check_gap, survives_rounding
 from .curve import Curve, refine
 from .curve.pins import NO_PINS, Pins
 from .errors import CurveError, CurveOptionError, OptionError
+from .messages import Message
 from .obstacle import Obstacle
 from .units import check_units
 
@@ -107,8 +108,9 @@ def check_refined(curve: Curve, refined: Curve, obstacles: Sequence[Obstacle]) -
         for all that matters.
     """
     if len(refined) > len(curve) and not survives_rounding(refined, obstacles):
-        raise CurveError(
-            "the curve is so far from the origin, or has strands so near to each other, that there are too few digits "
-            "for vertices to be inserted; move it nearer to the origin, or its strands apart"
+        digits = (
+            "the curve is too far from the origin, or its strands are too close, to be refined in double precision; "
+            "move it closer to the origin, or its strands apart"
         )
+        raise CurveError(Message(digits))
     check_gap(refined)

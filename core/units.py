@@ -7,6 +7,7 @@ import numpy as np
 from .curve import Curve
 from .curve.places import at_vertices
 from .errors import CurveError
+from .messages import VERTEX, Message
 from .obstacle import Obstacle
 from .types import FloatArray, frozen
 
@@ -22,13 +23,13 @@ def check_units(curve: Curve) -> None:
     k = int(sizes.argmax())
     if sizes[k] > MAX_COORDINATE:
         place = ", ".join(f"{x:.6g}" for x in curve.vertices[k])
-        reason = f"vertex {k + 1}, ({place}), has a coordinate beyond {MAX_COORDINATE:g}; use a larger unit of length"
-        raise CurveError(reason, at_vertices(curve, k))
+        vertex = Message(VERTEX, number=k + 1)
+        far = "{vertex}, ({place}), has a coordinate beyond {largest:g}; use a larger unit of length"
+        raise CurveError(Message(far, vertex=vertex, place=place, largest=MAX_COORDINATE), at_vertices(curve, k))
     width = float(np.ptp(curve.vertices, axis=0).max())
     if 0 < width < 1 / MAX_COORDINATE:
-        raise CurveError(
-            f"the curve is only {width:.3g} wide, less than {1 / MAX_COORDINATE:g}; use a smaller unit of length"
-        )
+        small = "the curve is only {width:.3g} wide, less than {least:g}; use a smaller unit of length"
+        raise CurveError(Message(small, width=width, least=1 / MAX_COORDINATE))
 
 
 def centred(curve: Curve) -> Curve:
@@ -62,10 +63,8 @@ class Units:
         vertices = self.from_user(obstacle.vertices)
         reach = float(np.abs(vertices).max())
         if reach > MAX_REACH:
-            raise CurveError(
-                f"{obstacle.title} reaches some {reach:.0e} times as far as the curve is long; "
-                "cut off what is far away, or leave it out"
-            )
+            far = "{obstacle} reaches some {reach:.0e} times the curve's length; cut off distant parts, or leave it out"
+            raise CurveError(Message(far, obstacle=obstacle.title, reach=reach))
         return Obstacle(vertices, obstacle.faces, obstacle.name)
 
     def to_user(self, vertices: FloatArray) -> FloatArray:

@@ -24,8 +24,7 @@ def lagrangian_hessian_matrix(point: Point) -> FloatArray:
     ell, mesh, constraints = point.curve.edge_lengths, point.problem.mesh, point.tangent_space.constraints
     n, m = point.vertices.shape
     tau = point.curve.edge_vectors / ell[:, None]
-    along = np.einsum("ij,ij->i", constraints.forces(point.multipliers)[mesh.tails], point.curve.midpoints)
-    weight = constraints.tensions(point.multipliers) / ell**2 + along / ell
+    weight = constraints.loads(point.multipliers)[0] / ell**2
     matrix = point.problem.objective.hessian(point.curve).reshape(n, m, n, m)
     blocks = weight[:, None, None] * (np.eye(m) - 2.0 * tau[:, :, None] * tau[:, None, :])
     by_vertices = matrix.transpose(0, 2, 1, 3)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 from mobius_flow.addon.buttons.relaxing import CURVE_OT_mobius_flow_relax
-from mobius_flow.addon.curves.snapshot import Snapshot
+from mobius_flow.addon.curves.splines import Splines
 from mobius_flow.addon.properties import SETTINGS
 from processes import PATIENCE
 
@@ -73,8 +73,8 @@ class Operator:
 
 
 def restored(obj, before):
-    after = Snapshot.of(obj.data)
-    for old, new in zip(before._splines, after._splines, strict=True):
+    after = Splines.of(obj.data)
+    for old, new in zip(before.each, after.each, strict=True):
         assert (old.type, old.count, old.settings) == (new.type, new.count, new.settings)
         assert all(np.array_equal(old.points[name], new.points[name]) for name in old.points)
 

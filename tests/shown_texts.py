@@ -8,13 +8,17 @@ from mobius_flow.addon import registration
 from mobius_flow.core.knots import KNOTS
 
 ADDON = Path(registration.__file__).parent
+CORE = ADDON.parent / "core"
 _MARKS = {
     "Check": 0,
     "Condition": 0,
-    "Phrase": 0,
+    "Message": 0,
+    "adding": 0,
     "iface_": 0,
     "rpt_": 0,
     "sentence": 2,
+    "stalled": 0,
+    "stalling": 0,
     "tip_": 0,
     "value": 1,
 }  # what is called with a text, and as which argument
@@ -67,9 +71,8 @@ def _items(each):
 
 def sentences(*paths):
     """Templates of what is said, which are marked, and labels that buttons are given where they are drawn."""
-    return {
-        text for path in paths or sorted(ADDON.rglob("*.py")) for text in _marked(ast.parse(path.read_text("utf-8")))
-    }
+    paths = paths or [*ADDON.rglob("*.py"), *CORE.rglob("*.py")]
+    return {text for path in paths for text in _marked(ast.parse(path.read_text("utf-8")))}
 
 
 def _marked(tree):

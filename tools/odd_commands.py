@@ -33,7 +33,7 @@ PATIENCE = 20.0  # seconds
 MEMORY = 1 << 30  # bytes of resident memory
 LIMITS = {resource.RLIMIT_AS: 6 << 30, resource.RLIMIT_FSIZE: 1 << 28, resource.RLIMIT_CORE: 0}
 RESULTS = ("out", "r.json", "t.npz", "c.", "k", "x", "film.", "directory.")  # how the names of outputs begin
-UNFORGIVABLE = (b"Traceback", b"Exception ignored", b"an error of the program", b"Fatal Python error")
+UNFORGIVABLE = (b"Traceback", b"Exception ignored", b"internal error", b"Fatal Python error")
 
 
 @dataclass

@@ -5,11 +5,11 @@ import io
 import json
 import random
 import re
-from importlib import import_module
 from math import cos, pi, sin
 from pathlib import Path
 
 import numpy as np
+from mobius_flow.cli.parser import add_to
 
 ENDLESS = ["--tolerance", "1e-30", "--max-iterations", "1000000"]
 SLOW = ["--method", "flow-l2", *ENDLESS]
@@ -91,7 +91,7 @@ COMMANDS = ("relax", "energy", "info", "knot", "compare", "verify", "methods")
 def options_of(command: str) -> list[str]:
     """What the help of a command lists."""
     parser = argparse.ArgumentParser()
-    import_module(f"mobius_flow.cli.{command}").add_to(parser)
+    add_to(parser, command)
     return re.findall(r"^  (?:-\w, )?(--[\w-]+)", parser.format_help(), re.MULTILINE)
 
 

@@ -33,7 +33,6 @@ def weights(root: Path) -> dict[str, object]:
         "median function": statistics.median(functions),
         f"functions over {LONG} lines": sum(n > LONG for n in functions),
         "numeric constants of modules": sum(map(_constants, trees)),
-        "regular expressions over messages": sum("glossary" in path.name for path in files),
         "rooms": len(rooms),
         "arrows between rooms": sum(map(len, rooms.values())),
         "tests: files": len(list((root / "tests").rglob("*.py"))),

@@ -7,11 +7,11 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from ...core import Curve, OptionError
+from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves import bevel
 from ..curves.exchange import new_curve_data, write_points
 from ..engine.knot_list import labels, name_of
-from ..engine.phrase import Phrase
 from ..live.requirements import Condition
 from ..pictures.materials import colour_components
 from .button import Button
@@ -21,11 +21,11 @@ _MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a 
 _MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
 
 
-def check_length(label: Phrase, value: float) -> None:
+def check_length(label: Message, value: float) -> None:
     """Raise an OptionError for what Blender lets through but is no number."""
     if not value <= _MAX_NUMBER:
         sentence = "{label} is {value:g}; it must be a number up to {most:g}"
-        raise OptionError(Phrase(sentence, label=label, value=value, most=_MAX_NUMBER))
+        raise OptionError(Message(sentence, label=label, value=value, most=_MAX_NUMBER))
 
 
 class AddsKnot(Button, AddObjectHelper):
@@ -74,8 +74,8 @@ class AddsKnot(Button, AddObjectHelper):
         return data
 
     def check_lengths(self) -> None:
-        check_length(Phrase("Size"), self.size)
-        check_length(Phrase("Thickness"), self.thickness)
+        check_length(Message("Size"), self.size)
+        check_length(Message("Thickness"), self.thickness)
 
     def _fits(self) -> bool:
         given = self.properties.is_property_set
@@ -136,7 +136,7 @@ def check_numbers(name: str) -> None:
     numbers = map(int, re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))))
     if max(numbers, default=0) > _MAX_TURNS:
         sentence = "{name} has a number beyond {most}, which is too much for a window; use smaller ones"
-        raise OptionError(Phrase(sentence, name=name[:60], most=_MAX_TURNS))
+        raise OptionError(Message(sentence, name=name[:60], most=_MAX_TURNS))
 
 
 def found(_operator: bpy.types.Operator, _context: bpy.types.Context, _text: str) -> list[str]:

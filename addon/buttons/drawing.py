@@ -8,10 +8,10 @@ from bpy.props import BoolProperty, BoolVectorProperty, FloatProperty, IntProper
 from bpy_extras.object_utils import object_data_add
 
 from ...core import Curve, CurveError
+from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_link
 from ..engine.drawing_plane import DrawingPlane
-from ..engine.phrase import Phrase
 from ..live.requirements import Condition, selected_curves
 from ..translations import iface_, rpt_
 from .adding import OBJECT_MODE, AddsKnot
@@ -105,24 +105,24 @@ def _read(objects: list[bpy.types.Object]) -> Curve:
         for spline in obj.data.splines:
             if not spline.use_cyclic_u:
                 sentence = "'{name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)"
-                raise CurveError(Phrase(sentence, name=obj.name))
+                raise CurveError(Message(sentence, name=obj.name))
     return read_link(objects)[0]
 
 
-def _description(curve: Curve, crossings: int) -> tuple[str, Phrase]:
+def _description(curve: Curve, crossings: int) -> tuple[str, Message]:
     """A name for a drawn knot, and what can be said of it."""
     from ...core.knots import knot_type
 
     found = knot_type(curve)
-    told = Phrase("{count} crossings", count=crossings) if crossings != 1 else Phrase("1 crossing")
+    told = Message("{count} crossings", count=crossings) if crossings != 1 else Message("1 crossing")
     if found.proved and found.names == ("0_1",):
-        return "Drawn Unknot", Phrase("{crossings}: it is not knotted", crossings=told)
+        return "Drawn Unknot", Message("{crossings}: it is not knotted", crossings=told)
     if not found.names:
         return "Drawn Knot", told
-    known = Phrase("one of {knots}", knots=", ".join(found.names)) if len(found.names) > 1 else found.names[0]
+    known = Message("one of {knots}", knots=", ".join(found.names)) if len(found.names) > 1 else found.names[0]
     name = "Drawn Knot" if len(found.names) > 1 else f"Drawn {found.names[0]}"
     sentence = "{crossings}: {knots}, proved" if found.proved else "{crossings}: perhaps {knots}, not proved"
-    return name, Phrase(sentence, crossings=told, knots=known)
+    return name, Message(sentence, crossings=told, knots=known)
 
 
 def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: FloatArray, size: float) -> None:

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable
 import bpy
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves import copying, mending
-from ..engine.phrase import Phrase
 from ..live.checks import needing
 from ..live.requirements import Refusal, Remedy, convertible, idle, selected_curves
 from .button import Button
@@ -17,7 +17,7 @@ class _Mending(Button):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> Refusal | None:
-        return idle() or (None if any(cls.concerned(context)) else Refusal(Phrase("Nothing selected needs that")))
+        return idle() or (None if any(cls.concerned(context)) else Refusal(Message("Nothing selected needs that")))
 
     @classmethod
     def concerned(cls, context: bpy.types.Context) -> Iterable[bpy.types.Object]:

@@ -8,6 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ...core import Curve
 from ...core.collision import check_embedded
+from ...core.messages import Message
 from ..curves import bevel, tube_mesh
 from ..curves.exchange import stretch
 from ..curves.outputs import put_beside
@@ -15,9 +16,8 @@ from ..curves.recorded import Recorded, in_world
 from ..curves.smooth_curve import smooth_objects
 from ..curves.units import length
 from ..engine.cubic_spline import FEWEST
-from ..engine.in_between import places_between
-from ..engine.phrase import Phrase
 from ..engine.smooth_fit import SmoothFit
+from ..engine.tube_mesh import places_between
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
 from ..live.checks import READABLE
@@ -88,7 +88,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
     }
 
     def act(self, context: bpy.types.Context) -> None:
-        check_length(Phrase("Radius"), self.radius)
+        check_length(Message("Radius"), self.radius)
         super().act(context)
 
     def read(self, obj: bpy.types.Object) -> Recorded:
@@ -166,7 +166,7 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
 
     def _report(self, objects: _Objects, fit: SmoothFit) -> None:
         scene = bpy.context.scene
-        said = Phrase(
+        said = Message(
             "{names}: {count} points, at most {error} off",
             names=named([obj.name for obj in objects]),
             count=sum(map(len, fit.points)),
@@ -177,5 +177,5 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
             return
         if np.isfinite(fit.gap):
             gap = length(scene, fit.gap)
-            said = Phrase("{made}, where strands are only {gap} apart", made=said, gap=gap)
+            said = Message("{made}, where strands are only {gap} apart", made=said, gap=gap)
         self.report({"WARNING"}, rpt_("{made}; NOT proved to be the same knot, so give it more Points", made=said))

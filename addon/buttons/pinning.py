@@ -4,9 +4,9 @@ import bpy
 import numpy as np
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ...core.types import BoolArray
 from ..curves import bake, mending, neighbours, pins, surroundings
-from ..engine.phrase import Phrase
 from ..engine.words import named
 from ..live.checks import PINNABLE, closable
 from ..live.requirements import Condition, avoided, curves_at_hand, idle, selected_curves
@@ -53,7 +53,7 @@ class CURVE_OT_mobius_flow_pin(_Pinning, bpy.types.Operator):
 
     bl_label = "Pin Selected Points"
     needs = (_EDITED, PINNABLE)
-    nothing = Phrase("No points are selected; select some to pin")
+    nothing = Message("No points are selected; select some to pin")
     points = staticmethod(pins.selected)
 
 
@@ -62,7 +62,7 @@ class CURVE_OT_mobius_flow_pin_ends(_Pinning, bpy.types.Operator):
 
     bl_label = "Pin Ends"
     needs = (PINNABLE,)
-    nothing = Phrase("All splines are closed and have no ends; select an open one")
+    nothing = Message("All splines are closed and have no ends; select an open one")
     points = staticmethod(pins.ends)
 
 
@@ -82,10 +82,10 @@ def _all(spline: bpy.types.Spline) -> BoolArray:
 
 def _report_count(operator: Button, context: bpy.types.Context) -> None:
     objects = curves_at_hand(context)
-    said = Phrase("Points that are pinned: {count}", count=sum(pins.count(obj.data) for obj in objects))
+    said = Message("Points that are pinned: {count}", count=sum(pins.count(obj.data) for obj in objects))
     if baked := [obj.name for obj in objects if bake.is_baked(obj.data)]:
         sentence = "{pinned}; Continue minds that, Bake Again begins with {names} as pinned before"
-        said = Phrase(sentence, pinned=said, names=named(baked))
+        said = Message(sentence, pinned=said, names=named(baked))
     operator.report({"INFO"}, rpt_(said))
 
 

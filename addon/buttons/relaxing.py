@@ -7,18 +7,18 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 
 from ...core import MobiusFlowError, Task
+from ...core.messages import Message
 from ..curves import bake
 from ..curves.baked_keys import BakedKeys
 from ..curves.pins import pinned_vertices
 from ..curves.session import Session
 from ..curves.surroundings import Surroundings
-from ..engine.phrase import Phrase
 from ..engine.rest import Rest
 from ..engine.words import named
 from ..live import registry
 from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
 from ..live.modal import Listening, tell, unseen
-from ..live.preview import Refresh
+from ..live.refresh import Refresh
 from ..live.requirements import Condition, avoided, selected_curves
 from ..live.run import Run
 from ..properties import SETTINGS, relax_options, settings
@@ -189,6 +189,6 @@ def _rest(context: bpy.types.Context, values: dict[str, Any]) -> Rest:
     return Rest.of(task, relax_options({**values, "balance": False}))
 
 
-def _described(context: bpy.types.Context, rest: Rest) -> Phrase:
+def _described(context: bpy.types.Context, rest: Rest) -> Message:
     names = named([obj.name for obj in selected_curves(context)])
-    return Phrase("{names}: {rest}", names=names, rest=rest.words)
+    return Message("{names}: {rest}", names=names, rest=rest.words)

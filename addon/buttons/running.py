@@ -6,10 +6,10 @@ import bpy
 import numpy as np
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves import sampling
-from ..curves.snapshot import control_points
-from ..engine.phrase import Phrase
-from ..engine.spots import Spot, at
+from ..curves.splines import control_points
+from ..engine.placement import Spot, at
 from ..live import registry
 from ..live.checks import RELAXABLE
 from ..live.modal import Listening, tell_end
@@ -125,7 +125,7 @@ def show(_operator: Button, context: bpy.types.Context) -> None:
     spots = {obj: spot for obj, spot in run.spots.items() if obj.visible_get()}
     if not spots:
         sentence = "The curve is hidden, or not in this view layer; make it visible first"
-        raise MobiusFlowError(Phrase(sentence))
+        raise MobiusFlowError(Message(sentence))
     if context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
     for obj in context.view_layer.objects:

@@ -3,10 +3,10 @@
 import bpy
 from bpy.props import EnumProperty
 
+from ...core.messages import Message
 from ..curves import turned
 from ..curves.fitting import fit_tubes
 from ..curves.resized import keep_size
-from ..engine.phrase import Phrase
 from ..engine.size import Measure
 from ..engine.words import named
 from ..live.checks import CLEARABLE, FITTABLE, PAINTABLE, RELAXABLE, UNEDITED
@@ -18,9 +18,9 @@ from .button import Button, button
 
 _KEYS = {"FIRST": 0, "LAST": -1}
 _KEPT = {
-    Measure.LENGTH: Phrase("The length"),
-    Measure.BOX: Phrase("The bounding box"),
-    Measure.RADIUS: Phrase("The radius"),
+    Measure.LENGTH: Message("The length"),
+    Measure.BOX: Message("The bounding box"),
+    Measure.RADIUS: Message("The radius"),
 }
 _CAMERA = Condition("The scene has no camera; add one first", lambda context: context.scene.camera is None)
 
@@ -45,7 +45,7 @@ class CURVE_OT_mobius_flow_keep_size(Button, bpy.types.Operator):
         keys = keep_size(objects, measure, _KEYS[self.reference])
         kept = "{measure} of {names} stays at all {count} keys"
         names = named([obj.name for obj in objects])
-        _report(self, Phrase(kept, measure=_KEPT[measure], names=names, count=len(keys.frames)), keys.unproved)
+        _report(self, Message(kept, measure=_KEPT[measure], names=names, count=len(keys.frames)), keys.unproved)
 
 
 @button("Lay Flat", RELAXABLE)
@@ -62,10 +62,10 @@ def face_camera(operator: Button, context: bpy.types.Context) -> None:
 
 def _report_turn(operator: Button, unproved: int) -> None:
     if unproved:
-        _report(operator, Phrase("The curves were turned"), unproved)
+        _report(operator, Message("The curves were turned"), unproved)
 
 
-def _report(operator: Button, what: Phrase, unproved: int) -> None:
+def _report(operator: Button, what: Message, unproved: int) -> None:
     """Say what was done, and whether the animation is proved still."""
     if unproved:
         one, several = (

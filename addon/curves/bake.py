@@ -1,4 +1,4 @@
-"""What a curve that was keyed here remembers: how it was before, kept in a custom property, so in the file too."""
+"""What a curve that was keyed here remembers, in a custom property: the keys, and the curve data that it was before."""
 
 import hashlib
 from collections.abc import Sequence
@@ -12,19 +12,25 @@ from ..engine.timing import Timing
 from . import keyframes
 from .exchange import key_points
 from .fcurves import count_own
-from .snapshot import Snapshot, shape
+from .splines import Splines, shape
 
 if TYPE_CHECKING:
     import bpy
 
 _RECORD = "mobius_flow_bake"  # custom property of curve data
+_BEVEL = ("bevel_depth", "bevel_resolution", "use_fill_caps")
 
 
-def remember(data: "bpy.types.Curve", original: Snapshot, timing: Timing) -> None:
+def remember(data: "bpy.types.Curve", before: "bpy.types.Curve", timing: Timing) -> None:
     """Note on curve data that has just been keyed how it was before; nothing is noted on data without keys."""
     if _animated(data) is not None:
-        data[_RECORD] = {"original": original.to_values(), "holds": [timing.hold_start, timing.hold_end]}
+        data[_RECORD] = {"original": before, "holds": [timing.hold_start, timing.hold_end]}
         update(data, timing)
+
+
+def original(data: "bpy.types.Curve") -> "bpy.types.Curve":
+    """What baked curve data was before."""
+    return data[_RECORD]["original"]
 
 
 def update(data: "bpy.types.Curve", timing: Timing) -> None:
@@ -53,7 +59,7 @@ def scale_bevel(data: "bpy.types.Curve", factor: float) -> None:
 def is_baked(data: "bpy.types.Curve") -> bool:
     """Whether a curve has the keys that were written here, and neither others nor other points."""
     record = data.get(_RECORD)
-    return record is not None and list(record["fingerprint"]) == _fingerprint(data)
+    return record is not None and record["original"] is not None and list(record["fingerprint"]) == _fingerprint(data)
 
 
 def was_baked(data: "bpy.types.Curve") -> bool:
@@ -94,17 +100,20 @@ def clear(obj: "bpy.types.Object") -> None:
 
     A bevel that was changed since the keys were written stays, and so do the materials that splines were given.
     """
+    import bpy
+
     data = obj.data
-    record = data[_RECORD]
-    original, bevel_depth = Snapshot.from_values(record["original"]), record["bevel_depth"]
+    before, bevel_depth = original(data), data[_RECORD]["bevel_depth"]
     slots = [spline.material_index for spline in data.splines]
     forget(obj)
-    if data.bevel_depth == bevel_depth:
-        original.restore(data)
-    else:
-        original.restore_splines(data)
+    Splines.of(before).fill(data)
     for spline, slot in zip(data.splines, slots, strict=True):
         spline.material_index = slot
+    if data.bevel_depth == bevel_depth:
+        for name in _BEVEL:
+            setattr(data, name, getattr(before, name))
+    if not before.users:
+        bpy.data.curves.remove(before)
 
 
 def forget(obj: "bpy.types.Object") -> None:

@@ -9,8 +9,8 @@ import numpy as np
 from ...core import Curve, MobiusFlowError
 from ...core.collision import is_free
 from ...core.curve import Mesh
+from ...core.messages import Message
 from ...core.types import FloatArray
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame, Link, Placement
 from ..engine.words import named
 from . import bake
@@ -54,7 +54,7 @@ class BakedKeys:
         keys = [keyed_points(obj.data) for obj in objects]
         if len({len(each) for each in keys}) > 1:
             title = named([obj.name for obj in objects])
-            raise MobiusFlowError(Phrase("{names} were not baked together; select one of them at a time", names=title))
+            raise MobiusFlowError(Message("{names} were not baked together; select one of them at a time", names=title))
         self.frames: list[Frame] = [np.concatenate(each) for each in zip(*keys, strict=True)]
 
     @property

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from . import bake
 from .deforming import deforms
-from .snapshot import Snapshot
+from .splines import Splines
 
 if TYPE_CHECKING:
     import bpy
@@ -25,7 +25,7 @@ def still_copy(obj: "bpy.types.Object") -> "bpy.types.Object":
     shown = _shown(copy)
     copy.data = obj.data.copy()
     _strip(copy)
-    shown.restore_splines(copy.data)
+    shown.fill(copy.data)
     bpy.context.view_layer.update()
     if copy.matrix_world != world:  # what was taken away held it there
         _put(copy, world)
@@ -56,7 +56,7 @@ def _put(obj: "bpy.types.Object", world: "mathutils.Matrix") -> None:
     obj.data.transform(obj.matrix_world.inverted_safe() @ world)
 
 
-def _shown(obj: "bpy.types.Object") -> Snapshot:
+def _shown(obj: "bpy.types.Object") -> Splines:
     """The splines as keys and modifiers leave them; the modifiers are told to work on the splines themselves."""
     import bpy
 
@@ -66,7 +66,7 @@ def _shown(obj: "bpy.types.Object") -> Snapshot:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     evaluated = obj.evaluated_get(depsgraph)
     try:
-        return Snapshot.of(evaluated.to_curve(depsgraph, apply_modifiers=True))
+        return Splines.of(evaluated.to_curve(depsgraph, apply_modifiers=True))
     finally:
         evaluated.to_curve_clear()
 

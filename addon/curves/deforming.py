@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 
 if TYPE_CHECKING:
     import bpy
@@ -34,13 +34,13 @@ _DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}  # types of parenting
 _MOVING_NODES = {"GeometryNodeSetPosition", "GeometryNodeSetCurveHandlePositions"}
 
 
-def what_deforms(obj: "bpy.types.Object") -> Phrase | None:
+def what_deforms(obj: "bpy.types.Object") -> Message | None:
     """Say what may move an object's points, of all that is shown, or return None if nothing does."""
     if obj.parent and obj.parent_type in _DEFORMING_PARENTS:
-        return Phrase("The parent of '{name}'", name=obj.name)
+        return Message("The parent of '{name}'", name=obj.name)
     shown = (each for each in obj.modifiers if each.show_viewport or each.show_render)
     first = next((each for each in shown if deforms(each)), None)
-    return Phrase("The modifier '{modifier}' of '{name}'", modifier=first.name, name=obj.name) if first else None
+    return Message("The modifier '{modifier}' of '{name}'", modifier=first.name, name=obj.name) if first else None
 
 
 def deforms(modifier: "bpy.types.Modifier") -> bool:

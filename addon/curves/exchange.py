@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core import Curve, CurveError, Mesh
+from ...core.messages import Message
 from ...core.types import FloatArray
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame, Link, Placement
 from . import sampling
 
@@ -48,7 +48,7 @@ def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
         bad = np.flatnonzero(~(np.abs(frame) < _FAR).all(axis=1))
         if bad.size:
             raise CurveError(
-                Phrase(
+                Message(
                     "Point {point} of spline {spline} of '{name}' is not finite, or further away than anything; "
                     "repair or delete it",
                     point=bad[0] + 1,

@@ -7,8 +7,9 @@ import numpy as np
 
 from ...core import Curve, CurveError
 from ...core.collision import check_embedded
+from ...core.messages import Message
 from ...core.types import FloatArray
-from ..engine.glossary import in_blenders_words, spline_names
+from ..engine.words import in_blenders_words, spline_names
 from . import bevel
 from .exchange import stretch
 from .recorded import Recorded, in_world
@@ -41,7 +42,7 @@ def fit_tubes(objects: Sequence["bpy.types.Object"]) -> float:
     return float(radii[-1])
 
 
-def _check_apart(link: Curve, splines: Sequence[str]) -> None:
+def _check_apart(link: Curve, splines: Sequence[Message]) -> None:
     """Raise a CurveError, which names the splines, if a link touches itself."""
     try:
         check_embedded(link)

@@ -1,26 +1,23 @@
 """The curve objects that are relaxed together as one link; a single object is a group of one."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Curve, Obstacle
+from ...core import Curve
 from ...core.curve import Mesh
 from ...core.errors import Place
+from ...core.messages import Message
 from ...core.types import FloatArray
-from ..engine.glossary import in_blenders_words, spline_names
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
-from ..engine.phrase import Phrase
-from ..engine.placement import Frame
-from ..engine.spots import Spot, spots
-from ..engine.words import named
+from ..engine.placement import Frame, Spot, spots
+from ..engine.words import in_blenders_words, named, spline_names
 from .exchange import read_link, spline_points
 from .member import Member
 from .pins import pinned_vertices
-from .snapshot import outside_edit_mode
 
 if TYPE_CHECKING:
     import bpy
@@ -32,8 +29,8 @@ class Group:
     Parameters
     ----------
     objects
-        Curve objects that `checks.refusal` has nothing against, their transforms evaluated. Baked ones are set aside,
-        and what is relaxed stands in for them until `settle` or `restore`.
+        Curve objects that `checks.refusal` has nothing against, their transforms evaluated. They show stand-ins until
+        all is written, or until `discard`.
     continues
         Whether baked curves are relaxed on from the ends of their animations, and not from how they were before.
 
@@ -54,13 +51,14 @@ class Group:
 
     def __init__(self, objects: Sequence["bpy.types.Object"], continues: bool = False) -> None:
         self.continues = continues
-        self._members: list[Member] = []
+        self._members = [Member(obj, continues) for obj in objects]
+        self._shown: tuple[Curve, Frame] | None = None
         try:
-            for obj in objects:
-                self._members.append(Member(obj, continues))
+            for member in self._members:
+                member.begin()
             self.curve, self.link = read_link(objects)
         except BaseException:
-            self.restore()
+            self.discard()
             raise
 
     @property
@@ -82,9 +80,9 @@ class Group:
         """One of the objects, by its number among those that there were; None if it is gone."""
         return self._members[number].object
 
-    def told(self, sentence: str, avoided: Sequence[Obstacle] = ()) -> str:
+    def told(self, message: str) -> str:
         """What the core says of the link and of what it avoids, with the splines named by their objects."""
-        return in_blenders_words(sentence, spline_names(self.names, self.link.counts), avoided)
+        return in_blenders_words(message, spline_names(self.names, self.link.counts))
 
     def spots(self, place: Place | None, curve: Curve) -> list[Spot]:
         """Where on the objects a place is on the link, or on the same with other vertices."""
@@ -99,11 +97,6 @@ class Group:
         """Whether any of the objects is drawn as a tube that is to be fitted."""
         return any(member.fits(options) for member in self._members)
 
-    @property
-    def rebakes(self) -> bool:
-        """Whether baked curves are set aside."""
-        return any(member.rebakes for member in self._members)
-
     def equals(self, other: "Group") -> bool:
         """Whether the same polygons are stored in the same places, bit for bit."""
         pairs = zip(self.link.placements, other.link.placements, strict=False)
@@ -114,7 +107,7 @@ class Group:
             and all(one.equals(another) for one, another in pairs)
         )
 
-    def lost(self, alone: bool = True) -> Phrase | None:
+    def lost(self, alone: bool = True) -> Message | None:
         """Say what somebody did to one of the objects that makes going on impossible.
 
         What is proved of a single one holds wherever it goes, if it is ``alone``, and avoids nothing.
@@ -122,7 +115,7 @@ class Group:
         reason = next((reason for member in self._members if (reason := member.lost())), None)
         if reason is None and not (alone and len(self._members) == 1):
             moved = next((member for member in self._members if member.moved), None)
-            reason = Phrase("'{name}' was moved against the others", name=moved.name) if moved else None
+            reason = Message("'{name}' was moved against the others", name=moved.name) if moved else None
         return reason
 
     @property
@@ -135,16 +128,35 @@ class Group:
         """The splines' vertices as Blender stores them; shape (n, 3)."""
         return np.concatenate([spline_points(spline) for obj in self.objects for spline in obj.data.splines])
 
+    def show(self, start: Curve, frame: Frame) -> None:
+        """Move all points; shape (n, 3), each object's own coordinates.
+
+        ``start`` is the start with as many vertices.
+        """
+        if self._shown is None or self._shown[0].mesh != start.mesh:
+            self.make_polygons(start)
+        self._shown = start, frame
+        for member, vertices in zip(self._members, self.link.slices(start.mesh), strict=True):
+            member.move(frame[vertices])
+
     def make_polygons(self, refined: Curve) -> None:
         """Give all splines the points of the refined link; where they are is left open."""
         pieces = zip(self._members, self.link.split(self.curve), self.link.split(refined), strict=True)
-        for member, original, part in pieces:
-            member.make_polygons(original, part)
+        for member, drawn, part in pieces:
+            member.make_polygons(drawn, part)
 
-    def show(self, mesh: Mesh, frame: Frame) -> None:
-        """Move all points; shape (n, 3), each object's own coordinates."""
-        for member, vertices in zip(self._members, self.link.slices(mesh), strict=True):
-            member.show(frame[vertices])
+    def hide(self) -> None:
+        """Show the originals for a moment, because the file is being saved or something is undone."""
+        for member in self._members:
+            member.hide()
+
+    def resume(self) -> None:
+        """Show after `hide` what was shown before."""
+        for member in self._members:
+            member.resume()
+        if self._shown is not None:
+            shown, self._shown = self._shown, None
+            self.show(*shown)
 
     def writing(
         self, mesh: Mesh, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None
@@ -154,26 +166,29 @@ class Group:
             own = None if radii is None else radii / scale
             yield from member.writing(keys.part(vertices), frames, options, own)
         for member in self._members:
-            member.settle(options)
+            member.keep(options)
 
-    def restore(self) -> bool:
-        """Put back what was there, but for what somebody else deleted or changed; return whether all is as it was."""
-        with outside_edit_mode(self.objects), ExitStack() as everything:
+    def discard(self) -> bool:
+        """Show the originals for good, unless somebody else changed something; return whether all is as it was."""
+        with _outside_edit_mode(self.objects), ExitStack() as everything:
             restored: list[bool] = []
-
-            def restore(member: Member) -> None:
-                restored.append(member.restore())
-
-            for member in self._members:  # each of them, even if one cannot be put back
-                everything.callback(restore, member)
+            for member in self._members:  # each of them, even if one fails
+                everything.callback(lambda member=member: restored.append(member.discard()))
         return all(restored)
 
-    def set_aside(self) -> None:
-        """Put all curves back for a moment, because the file is being saved."""
-        for member in self._members:
-            member.set_aside()
 
-    def put_forward(self) -> None:
-        """Go on after `set_aside`; where points are is left open."""
-        for member in self._members:
-            member.put_forward()
+@contextmanager
+def _outside_edit_mode(objects: Sequence["bpy.types.Object"]) -> Iterator[None]:
+    """Change curves of which some may just have been opened for editing: close them, and open them again afterwards."""
+    import bpy
+
+    mode = next((obj.mode for obj in objects if obj.mode != "OBJECT"), "OBJECT")
+    if mode == "OBJECT":
+        yield
+        return
+    bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        yield
+    finally:
+        bpy.ops.object.mode_set(mode=mode)
+        bpy.ops.ed.undo_push(message="Relaxation Ended")

@@ -62,6 +62,34 @@ def _remove_shape_keys(obj: "bpy.types.Object") -> None:
         bpy.data.batch_remove([keys for keys in bpy.data.shape_keys if keys.session_uid == uid])
 
 
+def remove(data: "bpy.types.Curve") -> None:
+    """Remove curve data that no object has any more, with its keys and the actions that nothing else uses."""
+    import bpy
+
+    bare = bpy.data.objects.new(data.name, data)  # Blender removes keys for objects only
+    erase(bare)
+    bpy.data.objects.remove(bare)
+    bpy.data.curves.remove(data)
+
+
+def names(data: "bpy.types.Curve") -> dict[str, str]:
+    """The names of curve data, of its shape keys, and of their action or its own."""
+    return {kind: block.name for kind, block in _blocks(data).items()}
+
+
+def rename(data: "bpy.types.Curve", wanted: dict[str, str]) -> None:
+    """Give curve data and its keys names that are free now."""
+    for kind, block in _blocks(data).items():
+        block.name = wanted.get(kind, block.name)
+
+
+def _blocks(data: "bpy.types.Curve") -> "dict[str, bpy.types.ID]":
+    owner = data.shape_keys or data
+    action = owner.animation_data.action if owner.animation_data else None
+    blocks = {"curve": data, "keys": data.shape_keys, "action": action}
+    return {kind: block for kind, block in blocks.items() if block is not None}
+
+
 def output_of(data: "bpy.types.Curve") -> Output | None:
     """As what the keys are written that curve data has already, or None if it has none."""
     if data.shape_keys:

@@ -1,31 +1,39 @@
-"""One of the curve objects that are relaxed together: found again whatever it is called, and put back as it was."""
+"""One of the curve objects that are relaxed together: during a run it shows a stand-in for its curve data.
+
+The original is not touched until all is written, its keys included: to end a run without a result is to show it again.
+The stand-in refers to it in a custom property, so that it is neither purged nor missing in an undo step or an automatic
+save. Where such a file is opened or such a step is undone to, `show_originals` shows it again.
+"""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...core import Curve
+from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame, Placement
 from . import bake, bevel, keyframes
 from .deforming import what_deforms
 from .exchange import write_points
-from .snapshot import Snapshot, shape
-from .stand_in import StandIn, found
+from .fcurves import own_action
+from .reference import Reference
+from .splines import Splines, shape
 
 if TYPE_CHECKING:
     import bpy
 
+_MARK = "mobius_flow_stand_in"  # custom property of stand-ins
+
 
 class Member:
-    """A curve object of a run; nothing of it is touched until that is asked for, but a baked curve is set aside.
+    """A curve object of a run.
 
     Parameters
     ----------
     obj
-        A curve object that `checks.refusal` has nothing against.
+        A curve object that `checks.refusal` has nothing against; nothing of it is touched before `begin`.
     continues
         Whether a baked curve is relaxed on from the end of its animation, and not from how it was before.
     """
@@ -33,35 +41,40 @@ class Member:
     def __init__(self, obj: "bpy.types.Object", continues: bool = False) -> None:
         self.name = obj.name
         self.keyed = False  # whether keys are being written, or are written
-        self._stand_in = StandIn(obj, continues) if bake.is_baked(obj.data) else None
-        self._plain, self._fitted = bevel.can_fit(obj.data), bevel.is_fitted(obj.data)
-        self._uid = obj.session_uid
+        self._continues, self._baked = continues, bake.is_baked(obj.data)
+        self._object, self._original = Reference(obj), Reference(obj.data)
+        self._stand_in: Reference | None = None
         self._placement = Placement.from_matrix(obj.matrix_world)
-        self._snapshot = Snapshot.of(obj.data)
-        self._identify(obj.data)
 
-    def _identify(self, data: "bpy.types.Curve") -> None:
-        self._data_uid, self._data_name, self._shape = data.session_uid, data.name, shape(data)
-        self._shapes = [self._shape]  # those that it has had in this run
+    def begin(self) -> None:
+        """Show a stand-in: the curve that the relaxation begins with."""
+        obj, original = self.object, self._original.get()
+        assert obj is not None, "whoever begins looks for it first"
+        self._show(original.copy())
+        if self._baked and self._continues:
+            bake.forget(obj)
+            write_points(obj.data, keyframes.end_of(original))
+        elif self._baked:
+            bake.clear(obj)
+        self._shape = shape(obj.data)
+        self._splines = Splines.of(obj.data)
+        self._plain, self._fitted = bevel.can_fit(obj.data), bevel.is_fitted(obj.data)
+
+    def _show(self, data: "bpy.types.Curve") -> None:
+        original = self._original.get()
+        data[_MARK] = {"original": original, "name": data.name}  # copies have the mark too, but another name
+        self._stand_in, self._shape = Reference(data), shape(data)
+        self._object.get().data = data
 
     @property
     def object(self) -> "bpy.types.Object | None":
         """The object, whatever its name is now; None if it is gone."""
-        import bpy
-
-        return found(bpy.data.objects, self.name, self._uid)
+        return self._object.get()
 
     @property
     def data(self) -> "bpy.types.Curve | None":
-        """The curve data, even if the object is gone."""
-        import bpy
-
-        return found(bpy.data.curves, self._data_name, self._data_uid)
-
-    @property
-    def rebakes(self) -> bool:
-        """Whether a baked curve is set aside."""
-        return self._stand_in is not None
+        """The stand-in, even if the object is gone."""
+        return self._stand_in.get() if self._stand_in else None
 
     @property
     def moved(self) -> bool:
@@ -73,48 +86,47 @@ class Member:
         """Whether the tube is to be fitted: it was before, or somebody asks for it."""
         return self._plain and options.fit_bevel and (self._fitted or options.any_bevel)
 
-    def make_polygons(self, original: Curve, refined: Curve) -> None:
-        """Give the splines the points of the refined curve, unless they are lost; where points are is left open."""
-        if self.lost():
-            return
-        try:
-            self._snapshot.make_polygons(self.data, original, refined)
-        finally:
+    def make_polygons(self, drawn: Curve, refined: Curve) -> None:
+        """Give the stand-in the points of the refined curve, unless it is lost; where points are is left open."""
+        if not self.lost():
+            self._splines.polygons(drawn, refined).fill(self.data)
             self._shape = shape(self.data)
-            self._shapes.append(self._shape)
 
-    def show(self, points: Frame) -> None:
+    def move(self, points: Frame) -> None:
         """Move the points, unless they are lost; shape (n, 3), the object's coordinates."""
         if not self.lost():
             write_points(self.data, points)
 
-    def lost(self) -> Phrase | None:
+    def lost(self) -> Message | None:
         """Say what somebody did to the curve that makes going on impossible."""
         obj, data = self.object, self.data
-        if obj is None or data is None or not obj.users_scene:
-            return Phrase("'{name}' was deleted", name=self.name)
-        self.name, self._data_name = obj.name, data.name
-        if obj.data != data:
-            return Phrase("'{name}' was given other curve data", name=self.name)
+        if obj is None or not obj.users_scene:
+            return Message("'{name}' was deleted", name=self.name)
+        self.name = obj.name
+        if data is None or obj.data != data:
+            return Message("'{name}' was given other curve data", name=self.name)
         if obj.mode != "OBJECT":
-            return Phrase("'{name}' is being edited", name=self.name)
+            return Message("'{name}' is being edited", name=self.name)
         if shape(data) != self._shape:
             counts = [each.count for each in shape(data)] != [each.count for each in self._shape]
             changed = "Points of '{name}' were added or removed" if counts else "Splines of '{name}' were changed"
-            return Phrase(changed, name=self.name)
+            return Message(changed, name=self.name)
         if self._foreign_keys(data):
-            return Phrase("'{name}' was given shape keys", name=self.name)
+            return Message("'{name}' was given shape keys", name=self.name)
         deformer = what_deforms(obj)
-        return Phrase("{deformer} moves its points", deformer=deformer) if deformer else None
+        return Message("{deformer} moves its points", deformer=deformer) if deformer else None
+
+    def _foreign_keys(self, data: "bpy.types.Curve") -> bool:
+        """Whether somebody gave the curve shape keys: they fit the points it has now."""
+        return data.shape_keys is not None and not self.keyed
 
     def writing(self, keys: Keys, frames: FloatArray, options: KeyOptions, radii: FloatArray | None) -> Iterator[None]:
         """Write keys in short pieces; ``radii`` are those of the tube in the object's units, (keys,)."""
         obj = self.object
         assert obj is not None, "whoever writes looks for it first"
         self.keyed = True
-        if self._stand_in is not None:
-            self._stand_in.take_keys(obj)
-            self._identify(obj.data)
+        if self._baked and self._continues:
+            self._take_keys()
         relative = None
         if radii is not None and self.fits(options):
             depth = obj.data.bevel_depth
@@ -123,54 +135,82 @@ class Member:
             relative = radii / radii[-1]
         yield from keyframes.writing(obj, keys, frames, keyframes.output_of(obj.data) or options.output, relative)
 
-    def settle(self, options: KeyOptions) -> None:
-        """Make what was written final: nothing can be put back after this."""
-        data = self.data
+    def _take_keys(self) -> None:
+        """Make the stand-in a copy of the original with its keys, to be added to."""
+        preview, data = self.data, self._original.get().copy()
+        own_action(data.shape_keys or data)
+        self._show(data)
+        keyframes.remove(preview)
+
+    def keep(self, options: KeyOptions) -> None:
+        """Make what was written final: the stand-in takes over the names and the users of the original.
+
+        What was relaxed is kept by the record of the bake; without one, only undo brings it back.
+        """
+        data, original = self.data, self._original.get()
         assert data is not None, "it was written a moment ago"
-        if self._stand_in is not None:
-            self._stand_in.replace(data)
-        if self._stand_in is not None and self._stand_in.continues:
+        start = bake.original(original) if self._baked else original
+        names, original.name = keyframes.names(original), f"{original.name} Original"
+        del data[_MARK]
+        original.use_fake_user, data.use_fake_user = False, original.use_fake_user
+        original.user_remap(data)
+        if self._baked and self._continues:
             bake.update(data, options.timing)
         else:
-            bake.remember(data, self._snapshot, options.timing)
+            bake.remember(data, start, options.timing)
+        if not original.users:
+            keyframes.remove(original)
+        keyframes.rename(data, names)
 
-    def restore(self) -> bool:
-        """Put back what was there, even if the object is gone and its data is not, unless someone else changed it.
+    def discard(self) -> bool:
+        """Show the original again, and remove the stand-in unless someone else changed it.
 
         Return whether the object is as it was.
         """
-        data, obj = self.data, self.object
-        if data is None or shape(data) != self._shape or self._foreign_keys(data):
+        obj, data, original = self.object, self.data, self._original.get()
+        if data is not None and (shape(data) != self._shape or self._foreign_keys(data)):
+            del data[_MARK]
+            original.use_fake_user = True  # whoever changed it may want that too
             return False
-        owned = obj is not None and obj.data == data
-        if self._stand_in is not None:
-            self._stand_in.put_back(obj if owned else None, data)
-            return owned
-        if owned and self.keyed:
-            keyframes.erase(obj)
-        self._snapshot.restore(data)
-        return owned
+        if data is not None:
+            _show_original(data)
+        return obj is not None and obj.data == original
 
-    def set_aside(self) -> None:
-        """Put the curve back for a moment, unless it is lost or being keyed."""
-        if self.keyed or self.lost():
+    def hide(self) -> None:
+        """Show the original for a moment, because the file is being saved or something is undone."""
+        if not self.keyed and not self.lost():
+            self.object.data = self._original.get()
+
+    def resume(self) -> None:
+        """Show the stand-in again after `hide`; undo may have removed it, or brought another one back."""
+        original, data = self._original.get(), self.data
+        for other in _stand_ins():
+            if other != data and other[_MARK]["original"] == original:
+                _show_original(other)
+        if self.object is None or self.object.data not in (original, data):
             return
-        if self._stand_in is not None:
-            self._stand_in.step_aside(self.object)
+        if data is None:
+            self.begin()
         else:
-            self._snapshot.restore(self.data)
-            self._shape = shape(self.data)
+            self._show(data)
 
-    def put_forward(self) -> None:
-        """Go on after `set_aside`, and after undo since then; where the points are is left open."""
-        obj, data = self.object, self.data
-        if obj is None or data is None:
-            return
-        if self._stand_in is not None and obj.data == self._stand_in.baked:
-            self._stand_in.step_forward(obj, data)
-        if shape(data) in self._shapes:
-            self._shape = shape(data)
 
-    def _foreign_keys(self, data: "bpy.types.Curve") -> bool:
-        """Whether somebody gave the curve shape keys: they fit the points it has now."""
-        return data.shape_keys is not None and not self.keyed
+def show_originals() -> None:
+    """Show all originals that are hidden by stand-ins in the file, when no run is going on."""
+    for data in _stand_ins():
+        if not data.is_editmode:
+            _show_original(data)
+
+
+def _stand_ins() -> "list[bpy.types.Curve]":
+    import bpy
+
+    return [data for data in bpy.data.curves if _MARK in data and data[_MARK]["name"] == data.name]
+
+
+def _show_original(data: "bpy.types.Curve") -> None:
+    """Let the original have the users of its stand-in, which goes."""
+    original = data.pop(_MARK)["original"]
+    if original is not None:
+        data.user_remap(original)
+        keyframes.remove(data)

@@ -8,7 +8,7 @@ from ...core import Curve
 from . import sampling
 from .copying import select_instead
 from .exchange import closed, write_points
-from .snapshot import Snapshot
+from .splines import Splines
 
 if TYPE_CHECKING:
     import bpy
@@ -57,7 +57,7 @@ def to_poly(obj: "bpy.types.Object") -> None:
     """
     frames = sampling.sampled(obj)
     drawn = Curve.from_components([frame.astype(np.float64) for frame in frames], closed(obj.data))
-    Snapshot.of(obj.data).make_polygons(obj.data, drawn, drawn)
+    Splines.of(obj.data).polygons(drawn, drawn).fill(obj.data)
     write_points(obj.data, np.concatenate(frames))
 
 

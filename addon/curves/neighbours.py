@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...core.messages import Message
 from ...core.types import FloatArray
-from ..engine.phrase import Phrase
 from ..engine.words import named
 from .surfaces import SOLID
 
@@ -19,14 +19,14 @@ _MARGIN = 0.1  # of the diagonal of the curves' box
 
 def warning(
     context: "bpy.types.Context", objects: Sequence["bpy.types.Object"], avoided: Sequence["bpy.types.Object"] = ()
-) -> Phrase | None:
+) -> Message | None:
     """Name what is visible near curve objects, and neither one of them nor avoided by them, or return None."""
     if not (found := near(context, objects, avoided)):
         return None
     names = named([obj.name for obj in found])
     if len(found) > 1:
-        return Phrase("{names} nearby are neither selected nor avoided, and may be crossed", names=names)
-    return Phrase("{names} nearby is neither selected nor avoided, and may be crossed", names=names)
+        return Message("{names} nearby are neither selected nor avoided, and may be crossed", names=names)
+    return Message("{names} nearby is neither selected nor avoided, and may be crossed", names=names)
 
 
 def near(

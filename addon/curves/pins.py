@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...core import CurveError, Mesh
+from ...core.messages import Message
 from ...core.types import BoolArray, IntArray
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from .sampling import kind
-from .snapshot import control_points
+from .splines import control_points, coordinates, read
 
 if TYPE_CHECKING:
     import bpy
@@ -74,10 +74,7 @@ def ends(spline: "bpy.types.Spline") -> BoolArray:
 
 def selected(spline: "bpy.types.Spline") -> BoolArray:
     """The points of a spline that are selected in Edit Mode; (points,)."""
-    points = control_points(spline)
-    found = np.empty(len(points), dtype=bool)
-    points.foreach_get("select_control_point" if spline.type == "BEZIER" else "select", found)
-    return found
+    return read(control_points(spline), "select_control_point" if spline.type == "BEZIER" else "select", dtype=bool)
 
 
 def count(data: "bpy.types.Curve") -> int:
@@ -87,14 +84,8 @@ def count(data: "bpy.types.Curve") -> int:
 
 def places(data: "bpy.types.Curve") -> Frame:
     """Coordinates of all pinned points; shape (k, 3)."""
-    found = [np.empty((0, 3), dtype=np.float32)]
-    for spline in data.splines:
-        if (chosen := marked(spline)).any():
-            points, width = control_points(spline), 3 if spline.type == "BEZIER" else 4
-            coordinates = np.empty(width * len(points), dtype=np.float32)
-            points.foreach_get("co", coordinates)
-            found.append(coordinates.reshape(-1, width)[chosen, :3])
-    return np.concatenate(found)
+    found = [coordinates(spline)[chosen] for spline in data.splines if (chosen := marked(spline)).any()]
+    return np.concatenate([np.empty((0, 3), dtype=np.float32), *found])
 
 
 def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None:
@@ -115,7 +106,7 @@ def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None
             "Spline {number} of '{name}' is a {kind} spline, of which only the ends can be pinned; "
             "convert it to Poly first (Edit Mode, Curve > Set Spline Type > Poly)"
         )
-        raise CurveError(Phrase(sentence, number=number + 1, name=obj.name, kind=kind(spline)))
+        raise CurveError(Message(sentence, number=number + 1, name=obj.name, kind=kind(spline)))
 
 
 def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[int, ...]:
@@ -146,10 +137,7 @@ def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[
 
 
 def _weights(spline: "bpy.types.Spline") -> Frame:
-    points = control_points(spline)
-    weights = np.empty(len(points), dtype=np.float32)
-    points.foreach_get(_MARK, weights)
-    return weights
+    return read(control_points(spline), _MARK)
 
 
 def _mark(spline: "bpy.types.Spline", chosen: BoolArray, weight: float) -> None:

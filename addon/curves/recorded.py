@@ -9,9 +9,8 @@ import numpy as np
 from ...core import Curve
 from ...core.curve import Mesh
 from ...core.types import FloatArray
-from ..engine.in_between import interpolated
+from ..engine.interpolation import along, interpolated
 from ..engine.placement import Placement
-from ..engine.refinement import along
 from . import bake
 from .exchange import closed, key_points, key_radii, read_splines
 from .fcurves import fcurves_of

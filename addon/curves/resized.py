@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core import MobiusFlowError
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 from ..engine.size import Measure, Size
 from . import pins
 from .baked_keys import BakedKeys
@@ -26,7 +26,7 @@ def keep_size(objects: Sequence["bpy.types.Object"], measure: Measure, reference
         If the objects were not baked together, or points of them are pinned.
     """
     if any(pins.count(obj.data) for obj in objects):
-        raise MobiusFlowError(Phrase("Scaling would move pinned points; unpin them first"))
+        raise MobiusFlowError(Message("Scaling would move pinned points; unpin them first"))
     keys = BakedKeys(objects)
     curves = keys.curves
     size = Size.of(measure, curves[reference])

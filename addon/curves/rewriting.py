@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ...core.types import FloatArray
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from . import bake
 from .exchange import key_points, key_radii, write_points
@@ -29,7 +29,7 @@ def keyed_points(data: "bpy.types.Curve") -> list[Frame]:
         return [key_points(block) for block in data.shape_keys.key_blocks]
     columns = [_keys_of(curve)[:, 1] for curve in coordinate_curves(data)]
     if len({len(column) for column in columns}) > 1:
-        raise MobiusFlowError(Phrase("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
+        raise MobiusFlowError(Message("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
     return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
 
 

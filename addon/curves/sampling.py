@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core import CurveError
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 from ..engine.placement import Frame
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def questions(objects: Sequence["bpy.types.Object"]) -> list[str]:
     smooth = [obj for obj in objects if smooth_splines(obj.data)]
     lines = [_question(obj) for obj in smooth[:_MAX_QUESTIONS]]
     more = len(smooth) - len(lines)
-    return [*lines, Phrase("{count} more objects have smooth splines too", count=more)] if more else lines
+    return [*lines, Message("{count} more objects have smooth splines too", count=more)] if more else lines
 
 
 def _question(obj: "bpy.types.Object") -> str:
@@ -40,13 +40,13 @@ def _question(obj: "bpy.types.Object") -> str:
     points = sum(len(points) for points, spline in zip(sampled(obj), obj.data.splines, strict=True) if spline in smooth)
     if len(smooth) == 1:
         one = "'{name}' has a {kind} spline; it becomes a polygon of {points} points"
-        return Phrase(one, name=obj.name, kind=kinds[0], points=points)
+        return Message(one, name=obj.name, kind=kinds[0], points=points)
     several = "'{name}' has {count} {kinds} splines; they become polygons of {points} points in all"
-    return Phrase(several, name=obj.name, count=len(smooth), kinds=_joined(kinds), points=points)
+    return Message(several, name=obj.name, count=len(smooth), kinds=_joined(kinds), points=points)
 
 
 def _joined(kinds: Sequence[str]) -> str:
-    return Phrase("{names} and {last}", names=kinds[0], last=kinds[1]) if len(kinds) > 1 else kinds[0]
+    return Message("{names} and {last}", names=kinds[0], last=kinds[1]) if len(kinds) > 1 else kinds[0]
 
 
 def sampled(obj: "bpy.types.Object") -> list[Frame]:
@@ -60,7 +60,7 @@ def sampled(obj: "bpy.types.Object") -> list[Frame]:
     loops = _drawn(obj.data)
     if len(loops) != len(obj.data.splines):
         raise CurveError(
-            Phrase(
+            Message(
                 "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first",
                 name=obj.name,
             )
@@ -68,7 +68,7 @@ def sampled(obj: "bpy.types.Object") -> list[Frame]:
     for k, (loop, spline) in enumerate(zip(loops, obj.data.splines, strict=True), 1):
         if len(loop) < (3 if spline.use_cyclic_u else 2):
             raise CurveError(
-                Phrase(
+                Message(
                     "Spline {number} of '{name}' is drawn with only {count} points; "
                     "raise its Resolution U, or give it more points",
                     number=k,

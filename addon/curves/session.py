@@ -27,12 +27,11 @@ from ...core import (
 )
 from ...core.collision import is_free
 from ...core.curve import Mesh
+from ...core.messages import Message, Sentence
 from ...core.types import FloatArray
-from ..engine.glossary import as_phrase
 from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
 from ..engine.obstacles import in_common_space
-from ..engine.phrase import Phrase
 from ..engine.placement import Frame
 from ..engine.size import Measure, Size
 from ..engine.words import named
@@ -87,7 +86,7 @@ class Report:
     avoided: tuple[str, ...]
 
     @property
-    def sentence(self) -> Phrase:
+    def sentence(self) -> Message:
         """The same in words."""
         told: dict[str, Any] = {
             "names": named(self.names),
@@ -95,23 +94,23 @@ class Report:
             "proof": self._proof,
         }
         if self.keys == 1:
-            return Phrase("{names} {outcome}; {proof}", **told)
+            return Message("{names} {outcome}; {proof}", **told)
         told |= {"count": self.keys - self.continues, "frame": self.last_frame}
         if self.continues and told["count"] == 1:
-            return Phrase("{names} {outcome}; 1 new key up to frame {frame:g}, {proof}", **told)
+            return Message("{names} {outcome}; 1 new key up to frame {frame:g}, {proof}", **told)
         if self.continues:
-            return Phrase("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **told)
-        return Phrase("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **told)
+            return Message("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **told)
+        return Message("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **told)
 
     @property
-    def _proof(self) -> Phrase:
+    def _proof(self) -> Message:
         if not self.certified:
-            return Phrase("NOT proved free of contact everywhere")
+            return Message("NOT proved free of contact everywhere")
         # nothing but the curves that were relaxed, and what they avoid, is looked at
-        alone = Phrase("proved free of contact with itself")
-        whom = alone if len(self.names) == 1 else Phrase("proved free of contact with themselves and each other")
-        whom = Phrase("{proof}, and with {avoided}", proof=whom, avoided=named(self.avoided)) if self.avoided else whom
-        return Phrase("{proof}, before modifiers", proof=whom) if self.modified else whom
+        alone = Message("proved free of contact with itself")
+        whom = alone if len(self.names) == 1 else Message("proved free of contact with themselves and each other")
+        whom = Message("{proof}, and with {avoided}", proof=whom, avoided=named(self.avoided)) if self.avoided else whom
+        return Message("{proof}, before modifiers", proof=whom) if self.modified else whom
 
     @property
     def clean(self) -> bool:
@@ -148,7 +147,7 @@ class Session:
     Attributes
     ----------
     group
-        The objects; baked ones are set aside until the session's end or `Group.restore`.
+        The objects, which show stand-ins until the session's end or `Group.discard`.
     options
         The requested options, with what is pinned and what is avoided.
     surroundings
@@ -179,7 +178,7 @@ class Session:
             self.task = self._task(held)
             self.options = self._fitting(options)
         except BaseException:
-            self.group.restore()
+            self.group.discard()
             raise
         self._motion = Motion(self.group.link, self.group.stored if continues else None)
         self._size: Size | None = None
@@ -201,7 +200,7 @@ class Session:
     def _fitting(self, options: RelaxOptions) -> RelaxOptions:
         """The requested options; raises OptionError if they do not go with the task."""
         if self.task.obstacles and options.balance:
-            raise OptionError(Phrase("Balance does not go with what is avoided; leave it out, or avoid nothing"))
+            raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
         if self.group.continues:  # the keys that are there have as many points as the curves have now
             return replace(options, vertices=len(self.group.curve), mesh="fixed")
         return options
@@ -217,11 +216,11 @@ class Session:
         try:
             prepared = self._relaxed()
             if reason := self.lost():
-                raise MobiusFlowError(Phrase("{reason} during the relaxation; nothing was written", reason=reason))
+                raise MobiusFlowError(Message("{reason} during the relaxation; nothing was written", reason=reason))
             for _ in self.writing(prepared):
                 pass
         except BaseException:
-            self.group.restore()
+            self.group.discard()
             raise
         return self.report(prepared)
 
@@ -241,7 +240,7 @@ class Session:
         """What is avoided, in the common space."""
         return in_common_space(self.task.obstacles, self.group.link)
 
-    def lost(self) -> Phrase | None:
+    def lost(self) -> Message | None:
         """Say what somebody did to one of the objects, or to what they avoid, that makes going on impossible."""
         return self.group.lost(alone=not self.task.obstacles) or self.surroundings.lost()
 
@@ -249,13 +248,11 @@ class Session:
         """The core's error in Blender's words; those about options use the names that options have."""
         if isinstance(error, OptionError):
             return error
-        sentence = self.group.told(str(error), self.task.obstacles)
-        return CurveError(sentence[:1].upper() + sentence[1:], error.place)
+        return CurveError(Sentence("{reason}", reason=self.group.told(str(error))), error.place)
 
     def end(self, outcome: Outcome) -> None:
         """Take in how the relaxation ended."""
-        message = self.group.told(outcome.message, self.task.obstacles)
-        self.outcome = replace(outcome, message=as_phrase(message.rstrip(".")))
+        self.outcome = replace(outcome, clauses=tuple(map(self.group.told, outcome.clauses)))
 
     def take(self, iterate: Iterate) -> None:
         """Take in an iterate."""
@@ -288,21 +285,21 @@ class Session:
         beside = self._avoided
         return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh), beside) for key in shown])
 
-    def take_up(self) -> None:
-        """Go on after `Group.restore` with curves that are still what they were when the session began.
+    def reopen(self) -> None:
+        """Go on after `Group.discard` with curves that are still what they were when the session began.
 
         Raises
         ------
         MobiusFlowError
             If they are not.
         """
-        changed = Phrase("{names} changed since the relaxation ended; relax anew", names=self.group.title)
+        changed = Message("{names} changed since the relaxation ended; relax anew", names=self.group.title)
         objects = self.group.objects
         if len(objects) < len(self.group.names) or self.surroundings.lost():
             raise MobiusFlowError(changed)
         group = Group(objects, self.group.continues)
         if not group.equals(self.group):
-            group.restore()
+            group.discard()
             raise MobiusFlowError(changed)
         self.group = group
 

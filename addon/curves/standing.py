@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 from .deforming import nodes_of
 from .fcurves import fcurves_of
 from .ingredients import ingredients, metaballs
@@ -30,33 +30,33 @@ _SHAPING = ("modifiers", "pose")  # beginnings of paths of F-curves of an object
 _CHANGING_NODES = {"GeometryNodeInputSceneTime", "GeometryNodeSimulationInput"}
 
 
-def unsteady(avoided: Iterable["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> Phrase | None:
+def unsteady(avoided: Iterable["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> Message | None:
     """Say what of objects that are avoided, or of curves that avoid them, does not stay as it is, or return None."""
     avoided = list(avoided)
     moving = next((said for obj in avoided if (said := unsteady_object(obj, relaxed))), None)
     return moving or (next((said for obj in relaxed if (said := _unsteady_curve(obj))), None) if avoided else None)
 
 
-def unsteady_object(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> Phrase | None:
+def unsteady_object(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> Message | None:
     """Say why an object cannot be avoided, since it does not stand still, or return None if it does."""
     mover = what_changes(obj, relaxed)
     sentence = (
         "'{name}' is moved by {mover}, and what is avoided must stand still; "
         "remove that, or leave it out of what is avoided"
     )
-    return Phrase(sentence, name=obj.name, mover=mover) if mover else None
+    return Message(sentence, name=obj.name, mover=mover) if mover else None
 
 
-def _unsteady_curve(obj: "bpy.types.Object") -> Phrase | None:
+def _unsteady_curve(obj: "bpy.types.Object") -> Message | None:
     mover = what_moves(obj)
     sentence = (
         "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
         "remove that, or avoid nothing"
     )
-    return Phrase(sentence, name=obj.name, mover=mover) if mover else None
+    return Message(sentence, name=obj.name, mover=mover) if mover else None
 
 
-def what_changes(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"] = ()) -> Phrase | None:
+def what_changes(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"] = ()) -> Message | None:
     """Say what may move an object or change its shape, or return None if nothing does.
 
     What its shape is made with may be relaxed, or move or change itself.
@@ -66,14 +66,14 @@ def what_changes(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"] 
 
 def _changed(
     obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"], seen: "set[bpy.types.ID]"
-) -> Phrase | None:
+) -> Message | None:
     seen.add(obj)
     return what_moves(obj) or next(_changes(obj, relaxed, seen), None)
 
 
 def _changes(
     obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"], seen: "set[bpy.types.ID]"
-) -> Iterator[Phrase]:
+) -> Iterator[Message]:
     """Reasons why a shape may change, but for what was seen already."""
 
     def changing(blocks: "Iterable[bpy.types.ID]") -> bool:
@@ -81,16 +81,16 @@ def _changes(
         return any(_changed(each, relaxed, seen) if each.id_type == "OBJECT" else _is_animated(each) for each in found)
 
     if obj in relaxed:
-        yield Phrase("the relaxation itself")
+        yield Message("the relaxation itself")
     if any(map(_is_animated, (obj, obj.data, getattr(obj.data, "shape_keys", None)))):
-        yield Phrase("animation of its shape")
+        yield Message("animation of its shape")
     if obj.pose is not None and any(not each.mute for bone in obj.pose.bones for each in bone.constraints):
-        yield Phrase("a constraint")
+        yield Message("a constraint")
     if obj.data is not None and changing(chain(ingredients(obj.data), metaballs(obj))):
-        yield Phrase("an object that its shape is made with")
+        yield Message("an object that its shape is made with")
     for modifier in obj.modifiers:
         if modifier.show_viewport and (_is_changing(modifier) or changing(ingredients(modifier))):
-            yield Phrase("the modifier '{modifier}'", modifier=modifier.name)
+            yield Message("the modifier '{modifier}'", modifier=modifier.name)
 
 
 def _is_animated(block: "bpy.types.ID | None") -> bool:

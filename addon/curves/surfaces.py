@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..engine.obstacles import Surface
-from ..engine.phrase import Phrase
 from ..engine.placement import Placement
 from .standing import unsteady_object
 
@@ -54,9 +54,9 @@ def surfaces(
 def _check_shown(obj: "bpy.types.Object") -> None:
     """Refuse an object that is hidden, or whose shape is just being changed."""
     if not obj.visible_get():
-        raise MobiusFlowError(Phrase("'{name}' is hidden; show it first, or leave it out", name=obj.name))
+        raise MobiusFlowError(Message("'{name}' is hidden; show it first, or leave it out", name=obj.name))
     if obj.mode != "OBJECT":
-        raise MobiusFlowError(Phrase("'{name}' is being edited; go back to Object Mode first", name=obj.name))
+        raise MobiusFlowError(Message("'{name}' is being edited; go back to Object Mode first", name=obj.name))
 
 
 def _check(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> None:
@@ -75,7 +75,7 @@ def _check_kind(obj: "bpy.types.Object", shown: str) -> None:
         kind = obj.bl_rna.properties["type"].enum_items[shown].name
         sentence = "'{name}' is of type {type}, which cannot be avoided; convert it to a mesh, or leave it out"
         beside = "'{name}' shows a {type} too, which cannot be avoided; convert it to a mesh, or leave it out"
-        raise MobiusFlowError(Phrase(sentence if shown == obj.type else beside, name=obj.name, type=kind))
+        raise MobiusFlowError(Message(sentence if shown == obj.type else beside, name=obj.name, type=kind))
 
 
 def _surface(instance: "bpy.types.DepsgraphObjectInstance") -> Surface | None:

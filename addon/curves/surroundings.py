@@ -6,10 +6,10 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from ...core import MobiusFlowError, Obstacle
+from ...core.messages import Message
 from ..engine.obstacles import obstacles
-from ..engine.phrase import Phrase
 from ..engine.placement import Placement
-from .stand_in import found
+from .reference import Reference
 from .standing import unsteady
 from .surfaces import WITHOUT_SHAPE, surfaces
 
@@ -43,7 +43,7 @@ def add(scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "bpy
         scene.collection.children.link(settings.avoid)
     if settings.avoid.library or settings.avoid.override_library:
         sentence = "'{name}' is linked from another file; choose another collection to avoid"
-        raise MobiusFlowError(Phrase(sentence, name=settings.avoid.name))
+        raise MobiusFlowError(Message(sentence, name=settings.avoid.name))
     for obj in objects:
         settings.avoid.objects.link(obj)
     return settings.avoid
@@ -53,21 +53,18 @@ def add(scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "bpy
 class _Place:
     """Where an object was."""
 
-    name: str
-    uid: int
+    reference: Reference
     placement: Placement
 
-    def lost(self) -> Phrase | None:
+    def lost(self) -> Message | None:
         """Say what somebody did to the object."""
-        import bpy
-
-        obj = found(bpy.data.objects, self.name, self.uid)
+        obj = self.reference.get()
         if obj is None or not obj.users_scene:
-            return Phrase("'{name}' was deleted", name=self.name)
+            return Message("'{name}' was deleted", name=self.reference.name)
         if obj.mode != "OBJECT":
-            return Phrase("'{name}' is being edited", name=obj.name)
+            return Message("'{name}' is being edited", name=obj.name)
         if not Placement.from_matrix(obj.matrix_world).equals(self.placement):
-            return Phrase("'{name}' was moved against the others", name=obj.name)
+            return Message("'{name}' was moved against the others", name=obj.name)
         return None
 
 
@@ -100,15 +97,15 @@ class Surroundings:
             raise MobiusFlowError(reason)
         shown = surfaces(bpy.context.evaluated_depsgraph_get(), others, relaxed) if others else []
         each = (obstacles(obj.name, pieces) for obj, pieces in zip(others, shown, strict=True))
-        places = (_Place(obj.name, obj.session_uid, Placement.from_matrix(obj.matrix_world)) for obj in others)
+        places = (_Place(Reference(obj), Placement.from_matrix(obj.matrix_world)) for obj in others)
         return cls(tuple(chain.from_iterable(each)), tuple(places))
 
     @property
     def names(self) -> tuple[str, ...]:
         """The objects' names."""
-        return tuple(place.name for place in self._places)
+        return tuple(place.reference.name for place in self._places)
 
-    def lost(self) -> Phrase | None:
+    def lost(self) -> Message | None:
         """Say what somebody did to one of the objects that makes what was proved of them pointless."""
         return next((reason for place in self._places if (reason := place.lost())), None)
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core import Curve, MobiusFlowError
+from ...core.messages import Message
 from ...core.types import FloatArray
-from ..engine.phrase import Phrase
 from ..engine.turning import Turn, orthonormal
 from . import bake
 from .baked_keys import BakedKeys
@@ -57,12 +57,12 @@ def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
     return BakedKeys(objects).unproved if proved else 0
 
 
-def _obstacles(obj: "bpy.types.Object", objects: Sequence["bpy.types.Object"], turn: Turn) -> Iterator[Phrase]:
+def _obstacles(obj: "bpy.types.Object", objects: Sequence["bpy.types.Object"], turn: Turn) -> Iterator[Message]:
     """Say why an object cannot be turned."""
     if mover := what_moves(obj):
-        yield Phrase("'{name}' is moved by {mover}", name=obj.name, mover=mover)
+        yield Message("'{name}' is moved by {mover}", name=obj.name, mover=mover)
     elif obj.parent and not any(each in objects for each in _ancestors(obj)) and _shears(obj, turn):
-        yield Phrase("'{name}' would change its shape, as its parent's scale is uneven", name=obj.name)
+        yield Message("'{name}' would change its shape, as its parent's scale is uneven", name=obj.name)
 
 
 def _shears(obj: "bpy.types.Object", turn: Turn) -> bool:
@@ -74,11 +74,11 @@ def _shears(obj: "bpy.types.Object", turn: Turn) -> bool:
     return not np.allclose(columns.T @ columns, np.eye(3), atol=_SQUARE)
 
 
-def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: Phrase) -> int:
+def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: Message) -> int:
     if len(objects) > 1 or not bake.is_baked(objects[0].data):
-        raise MobiusFlowError(Phrase("{why}; remove that, or bake it and turn it alone", why=why))
+        raise MobiusFlowError(Message("{why}; remove that, or bake it and turn it alone", why=why))
     if bake.is_edited(objects[0].data):
-        raise MobiusFlowError(Phrase("{why}, and its keys were edited; undo one or the other", why=why))
+        raise MobiusFlowError(Message("{why}, and its keys were edited; undo one or the other", why=why))
     keys = BakedKeys(objects)
     keys.rewrite([turn.of(curve) for curve in keys.curves])
     return keys.unproved

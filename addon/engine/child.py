@@ -19,12 +19,12 @@ def main() -> None:
     """Do the job that comes in through the standard input; send what comes out through the standard output."""
     _load_package(Path(__file__).resolve().parents[2])
     wire = importlib.import_module(f"{_PACKAGE}.addon.engine.wire")
-    job = importlib.import_module(f"{_PACKAGE}.addon.engine.job")
+    worker = importlib.import_module(f"{_PACKAGE}.addon.engine.worker")
     message = wire.read(sys.stdin.buffer)
     threading.Thread(target=_end_with_blender, daemon=True).start()
     with contextlib.suppress(BrokenPipeError), os.fdopen(os.dup(1), "wb") as out:
         os.dup2(2, 1)  # whatever a library prints must not get in between
-        for reply in job.messages(message):
+        for reply in worker.messages(message):
             wire.write(out, reply)
     os._exit(0)  # the thread still reads
 

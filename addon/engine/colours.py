@@ -1,4 +1,6 @@
-"""Colours, linear RGB: one for each component, and a ramp for values."""
+"""Colours: linear RGB for components and values, and colours on the screen that can be read, whatever the theme."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,6 +16,8 @@ PALETTE = (
 )
 _FLAT = 0.65  # exponent that makes colours as bright without a sky as they are in Cycles' light
 _RAMP = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))  # sRGB of viridis, low to high
+Colour = Sequence[float]  # red, green and blue from 0 to 1, as on the screen; more is not looked at
+_ENOUGH = 3.0  # contrast of lines, after WCAG 2.1
 _EXTREMES = (2.0, 98.0)  # per cent of the values between which the ramp runs: a few corners must not flatten the rest
 
 
@@ -44,3 +48,19 @@ def on_screen(light: FloatArray) -> FloatArray:
 def flatly_lit(tint: FloatArray) -> FloatArray:
     """A material's colour for where its light is plain: in Workbench, and in small pictures."""
     return np.asarray(tint**_FLAT)
+
+
+def luminance(colour: Colour) -> float:
+    """Relative luminance, from 0 for black to 1 for white (WCAG 2.1)."""
+    return float(linear(np.asarray(colour[:3], dtype=np.float64)) @ [0.2126, 0.7152, 0.0722])
+
+
+def contrast(one: Colour, other: Colour) -> float:
+    """Contrast of two colours, from 1 to 21 (WCAG 2.1)."""
+    dark, light = sorted([luminance(one), luminance(other)])
+    return (light + 0.05) / (dark + 0.05)
+
+
+def legible(wanted: Colour, ground: Colour) -> Colour:
+    """The wanted colour, or black or white if it cannot be told from the ground."""
+    return max((wanted, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), key=lambda each: min(contrast(each, ground), _ENOUGH))

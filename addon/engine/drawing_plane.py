@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core import Curve, CurveError
+from ...core.messages import Message
 from ...core.types import FloatArray
-from .phrase import Phrase
 
 _FLAT = 0.05  # of a drawing's size: how far its points may lie from a plane
 _LEVEL = 0.999  # cosine of the tilt below which the plane counts as level
@@ -42,7 +42,7 @@ class DrawingPlane:
         normal = axes[2] * (1.0 if axes[2][np.abs(axes[2]).argmax()] > 0 else -1.0)
         size = float(np.ptp(points @ axes[:2].T, axis=0).max())
         if float(np.abs(points @ normal).max()) > _FLAT * size:
-            raise CurveError(Phrase("The drawing is not flat; draw it in a plane, or scale it flat along its normal"))
+            raise CurveError(Message("The drawing is not flat; draw it in a plane, or scale it flat along its normal"))
         if normal[2] > _LEVEL:
             return cls(np.array([0.0, 0.0, origin[2]]), np.eye(3))
         across = np.cross([0.0, 0.0, 1.0], normal)

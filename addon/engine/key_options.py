@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from ...core import OptionError
-from .phrase import Phrase
+from ...core.messages import Message
 from .size import Measure
 from .timing import Timing
 
@@ -58,4 +58,4 @@ class KeyOptions:
         """Raise an OptionError if keys are scaled: that moves pins, and proofs beside others hold at one size only."""
         if self.keep_size is not Measure.LENGTH:
             sentence = "Only the length can be kept where something is pinned or avoided; set Keep to Length"
-            raise OptionError(Phrase(sentence))
+            raise OptionError(Message(sentence))

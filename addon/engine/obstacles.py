@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core import CurveError, Obstacle
+from ...core.messages import Message
 from ...core.types import FloatArray, IntArray
-from .phrase import Phrase
 from .placement import Frame, Link, Placement
 
 _FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
@@ -69,7 +69,7 @@ def obstacles(name: str, surfaces: Sequence[Surface]) -> Iterator[Obstacle]:
     found = [np.concatenate([a + k for a, k in zip(kind, ends, strict=False)]) for kind in kinds if any(map(len, kind))]
     if not found:
         raise CurveError(
-            Phrase("'{name}' shows neither faces nor edges; leave it out of what is avoided", name=name),
+            Message("'{name}' shows neither faces nor edges; leave it out of what is avoided", name=name),
         )
     for simplices in found:
         used, corners = np.unique(simplices, return_inverse=True)
@@ -80,7 +80,7 @@ def obstacles(name: str, surfaces: Sequence[Surface]) -> Iterator[Obstacle]:
 def _check(name: str, points: FloatArray) -> None:
     if not (np.abs(points) < _FAR).all():
         sentence = "A point of '{name}' is not finite, or further away than anything; repair or delete it"
-        raise CurveError(Phrase(sentence, name=name))
+        raise CurveError(Message(sentence, name=name))
 
 
 def in_common_space(avoid: Iterable[Obstacle], link: Link) -> tuple[Obstacle, ...]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.types import FloatArray, IntArray
-from .target import Target
+from .rest import Target
 
 _DECADE = 10.0  # ratio of energies from which they are drawn on a logarithmic scale
 _ROOM = 0.06  # of the height, kept free above and below

@@ -1,10 +1,14 @@
-"""Where a relaxed curve has come to rest: at a minimum of the energy, or at a saddle."""
+"""Where a relaxation leads: the least energy that there can be, and whether it has come to rest at a minimum."""
 
 from dataclasses import dataclass, replace
 
 from ...core import Curve, CurveError, RelaxOptions, Status, Task, minimize
-from .phrase import Phrase
+from ...core.knots.alexander import TRIVIAL, signature
+from ...core.messages import Message
 
+CIRCLE = 4.0  # Möbius energy of the round circle, the least of any closed curve: Freedman, He and Wang (1994)
+SEGMENT = 0.0  # that of the straight segment, the least of any arc
+_MOST = 2000  # vertices of a curve whose type is looked at: a tenth of a second
 MAX_POINTS = 1500  # some ten seconds
 _ITERATIONS = 100  # that lead from points rounded to Blender's numbers back to a critical point
 
@@ -36,7 +40,7 @@ class Rest:
         task = Task.of(curve)
         if len(task.curve) > MAX_POINTS:
             raise CurveError(
-                Phrase(
+                Message(
                     "The curves have {count} points; minimum or saddle is told up to {most}",
                     count=len(task.curve),
                     most=MAX_POINTS,
@@ -46,11 +50,40 @@ class Rest:
         result = minimize(task, options)
         index = result.outcome.negative_eigenvalues
         if result.status is Status.ITERATION_LIMIT:
-            return cls(None, Phrase("not at rest yet; press Continue first"))
+            return cls(None, Message("not at rest yet; press Continue first"))
         if index is None:
             return cls(None, result.message)
         if not index:
-            return cls(0, Phrase("at a minimum, no small motion lowers the energy"))
+            return cls(0, Message("at a minimum, no small motion lowers the energy"))
         if index == 1:
-            return cls(1, Phrase("at a saddle, one way leads down; press Leave Saddle"))
-        return cls(index, Phrase("at a saddle, {count} independent ways lead down; press Leave Saddle", count=index))
+            return cls(1, Message("at a saddle, one way leads down; press Leave Saddle"))
+        return cls(index, Message("at a saddle, {count} independent ways lead down; press Leave Saddle", count=index))
+
+
+@dataclass(frozen=True)
+class Target:
+    """A least energy, and what has it."""
+
+    energy: float
+    label: Message
+
+
+def target_of(curve: Curve | Task, options: RelaxOptions) -> Target | None:
+    """What the energy of a curve goes down to at the least; None if nothing useful is known.
+
+    A closed component has at least the energy of a circle, which a knotted one is far from: a curve whose Alexander
+    polynomial shows that it is knotted has no target. An arc has at least that of a segment, which it comes near to
+    where its ends are free. Pins and obstacles keep curves far above that.
+    """
+    task = Task.of(curve)
+    if options.energy != "moebius" or options.terms or task.pins or task.obstacles:
+        return None
+    curve = task.curve
+    closed = curve.mesh.closed
+    if closed == (False,):
+        return Target(SEGMENT, Message("straight = {energy:g}", energy=SEGMENT))
+    if len(closed) > 1:
+        floor = CIRCLE * sum(closed)
+        return Target(floor, Message("floor = {energy:g}", energy=floor))
+    knotted = len(curve) <= _MOST and signature(curve).alexander != (TRIVIAL,)
+    return None if knotted else Target(CIRCLE, Message("circle = {energy:g}", energy=CIRCLE))

@@ -10,13 +10,13 @@ from enum import Enum
 import numpy as np
 
 from ...core import OptionError
+from ...core.messages import Message
 from ...core.types import FloatArray
-from .phrase import Phrase
 
 LAST_FRAME = 1_048_574  # of any scene; up to it, 32-bit numbers tell a sixteenth of a frame apart
 FRAMES_PER_ITERATE = (0.1, 10_000.0)
-_BY_ITERATE = Phrase("Start Frame, Frames/Iterate or Max Iterations")  # what the last frame depends on
-_BY_LENGTH = Phrase("Start Frame or Length")
+_BY_ITERATE = Message("Start Frame, Frames/Iterate or Max Iterations")  # what the last frame depends on
+_BY_LENGTH = Message("Start Frame or Length")
 _EVENNESS = 0.85  # share of distance in an even motion; the rest leaves the last, small steps some frames too
 
 
@@ -117,7 +117,7 @@ class Timing:
     def __post_init__(self) -> None:
         if not abs(self.start_frame) <= LAST_FRAME:  # not a number is refused too
             raise OptionError(
-                Phrase(
+                Message(
                     "Start Frame is {frame:.12g}; it must be from {first} to {last}",
                     frame=self.start_frame,
                     first=-LAST_FRAME,
@@ -127,7 +127,7 @@ class Timing:
         low, high = FRAMES_PER_ITERATE
         if not low <= self.frames_per_iterate <= high:
             raise OptionError(
-                Phrase(
+                Message(
                     "Frames/Iterate is {value:g}; it must be from {low:g} to {high:g}",
                     value=self.frames_per_iterate,
                     low=low,
@@ -135,10 +135,10 @@ class Timing:
                 )
             )
         if min(self.hold_start, self.hold_end) < 0:
-            raise OptionError(Phrase("Hold at Start and Hold at End must be 0 frames or more"))
+            raise OptionError(Message("Hold at Start and Hold at End must be 0 frames or more"))
         if self.pace is not Pace.ITERATE and self.length < 2 + self.hold_start + self.hold_end:
             raise OptionError(
-                Phrase(
+                Message(
                     "Length is {length} frames, which leaves none to move in; "
                     "it must be at least {least}, or the holds shorter",
                     length=self.length,
@@ -152,7 +152,7 @@ class Timing:
         last = end + self.hold_end
         if last > LAST_FRAME:
             raise OptionError(
-                Phrase(
+                Message(
                     "The animation would go on to frame {frame:.0f}, but Blender's last is {last}; "
                     "give a smaller {what}",
                     frame=last,

@@ -1,12 +1,23 @@
-"""The surface of a tube around polygons in motion: rings of as many vertices at every key, in the same order."""
+"""The surface of a tube around polygons in motion: rings of as many vertices at every key, in the same order.
+
+Rings neither jump nor twist more than they must. Their normals are carried along the curve by parallel transport;
+carried once round a closed curve they come back turned by the holonomy, and the angle that is missing is spread evenly
+over the length. In a motion that angle may grow beyond half a turn: the self-linking number of the framed curve is a
+whole number, so it cannot change without a jump, and whatever writhe the curve loses its framing gains as twist
+(Călugăreanu, White, Fuller). The last key has the least. Along an arc nothing has to close, and normals do not twist.
+"""
 
 import numpy as np
 
 from ...core.curve import Mesh
 from ...core.types import FloatArray, IntArray
-from .ribbon import edges_around, normals, tangents, unit
+from .interpolation import interpolated
 
+_TINY = float(np.finfo(np.float64).tiny)
+_TURNS = np.array([-1.0, 0.0, 1.0])  # more or less than at the next key
 _LONGEST_MITRE = 2.0  # at corners sharper than 120° rings do not reach as far out as the edges' cylinders meet
+_COSINE = float(np.cos(np.radians(30.0)))  # of the angle from key to key, which costs 3 % of the radius halfway
+_HALVINGS = 5
 
 
 def rings(points: FloatArray, radii: FloatArray, mesh: Mesh, sides: int) -> FloatArray:
@@ -45,6 +56,35 @@ def caps(mesh: Mesh, sides: int) -> IntArray:
     return np.asarray(both.reshape(-1, sides))
 
 
+def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
+    """Places among keys, 2.5 halfway between the third and the fourth, between which tangents turn by 30° at most.
+
+    Straight lines between two rings make the tube thinner. No gap is halved more than five times: what turns through
+    itself is never smooth.
+
+    Parameters
+    ----------
+    points
+        Vertices of polygons at every key, (keys, n, 3).
+    mesh
+        Their connectivity.
+    """
+    places = np.arange(len(points), dtype=np.float64)
+    for _ in range(_HALVINGS):
+        far = _least_cosines(interpolated(points, places), mesh) < _COSINE
+        if not far.any():
+            break
+        places = np.sort(np.concatenate([places, 0.5 * (places[:-1] + places[1:])[far]]))
+    return places
+
+
+def _least_cosines(points: FloatArray, mesh: Mesh) -> FloatArray:
+    """Cosines of the largest angles that tangents turn by from each key to the next; (keys - 1,)."""
+    pieces = zip(mesh.slices, mesh.closed, strict=True)
+    tau = np.concatenate([tangents(points[:, s], closed) for s, closed in pieces], axis=1)
+    return np.asarray(np.einsum("kni,kni->kn", tau[:-1], tau[1:]).min(axis=1))
+
+
 def _rings(points: FloatArray, radii: FloatArray, sides: int, closed: bool) -> FloatArray:
     """The rings of one component; (keys, n, sides, 3)."""
     tau, u = tangents(points, closed), normals(points, closed)
@@ -60,3 +100,103 @@ def _mitred(circle: FloatArray, before: FloatArray, after: FloatArray) -> FloatA
     stretch = np.minimum(1.0 / np.maximum(cosine, 1.0 / _LONGEST_MITRE), _LONGEST_MITRE) - 1.0
     outward = unit(after - before)
     return np.asarray(circle + (circle @ outward[..., None]) * (stretch[..., None] * outward)[:, :, None, :])
+
+
+def tangents(points: FloatArray, closed: bool = True) -> FloatArray:
+    """Unit tangents at the vertices of polygons, halfway between those of their edges; (..., n, 3) to same."""
+    before, after = edges_around(points, closed)
+    return unit(before + after)
+
+
+def edges_around(points: FloatArray, closed: bool) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors along the edges before and after each vertex; at an end of an arc twice that of its only edge."""
+    if closed:
+        after = unit(np.roll(points, -1, axis=-2) - points)
+        return np.roll(after, 1, axis=-2), after
+    along = unit(np.diff(points, axis=-2))
+    return np.concatenate([along[..., :1, :], along], axis=-2), np.concatenate([along, along[..., -1:, :]], axis=-2)
+
+
+def normals(points: FloatArray, closed: bool = True) -> FloatArray:
+    """Unit normals at the vertices of one polygon in motion, the same turned as little as possible later.
+
+    Parameters
+    ----------
+    points
+        Vertices at every key, (keys, n, 3).
+    closed
+        Whether it is closed.
+
+    Returns
+    -------
+    array (keys, n, 3)
+    """
+    tau = tangents(points, closed)
+    bare = _transported(tau)
+    share = _shares_of_length(points) if closed else np.zeros(points.shape[:2])  # of what is missing at the end
+    angles = -_holonomy(bare, tau)[:, None] * share
+    normal = np.empty_like(bare)
+    normal[-1] = turned(bare[-1], tau[-1], angles[-1])
+    turns = 0.0
+    for k in range(len(points) - 2, -1, -1):
+        wanted = carried(normal[k + 1], tau[k + 1], tau[k])
+        missing = signed_angle(turned(bare[k], tau[k], angles[k]), wanted, tau[k])
+        turns, offset = _closest(missing, share[k], turns)
+        normal[k] = turned(bare[k], tau[k], angles[k] + 2 * np.pi * turns * share[k] + offset)
+    return normal
+
+
+def carried(normal: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Turn normals by the least rotation that takes unit tangents ``start`` to ``end``; all of shape (..., 3)."""
+    along = _dot(normal, end) / np.maximum(1.0 + _dot(start, end), _TINY)
+    moved = normal - along[..., None] * (start + end)
+    return unit(moved - _dot(moved, end)[..., None] * end)
+
+
+def turned(normal: FloatArray, tau: FloatArray, angle: FloatArray) -> FloatArray:
+    """Turn normals about unit tangents by angles; shapes (..., 3), (..., 3), (...)."""
+    return np.asarray(np.cos(angle)[..., None] * normal + np.sin(angle)[..., None] * np.cross(tau, normal))
+
+
+def signed_angle(start: FloatArray, end: FloatArray, tau: FloatArray) -> FloatArray:
+    """Angles about unit tangents from one normal to the other, in [−π, π]; (..., 3) to (...)."""
+    return np.asarray(np.arctan2(_dot(np.cross(tau, start), end), _dot(start, end)))
+
+
+def unit(vectors: FloatArray) -> FloatArray:
+    """Vectors of length 1; (..., 3) to the same."""
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), _TINY))
+
+
+def _transported(tau: FloatArray) -> FloatArray:
+    """Normals carried along from the first vertex, each by the least rotation from tangent to tangent."""
+    bare = np.empty_like(tau)
+    axis = np.eye(3)[np.abs(tau[:, 0]).argmin(axis=-1)]  # never along the tangent
+    bare[:, 0] = unit(np.cross(tau[:, 0], axis))
+    for i in range(1, tau.shape[1]):
+        bare[:, i] = carried(bare[:, i - 1], tau[:, i - 1], tau[:, i])
+    return bare
+
+
+def _holonomy(bare: FloatArray, tau: FloatArray) -> FloatArray:
+    """Angles by which normals are turned when they come back to the first vertex; (keys,)."""
+    return signed_angle(bare[:, 0], carried(bare[:, -1], tau[:, -1], tau[:, 0]), tau[:, 0])
+
+
+def _shares_of_length(points: FloatArray) -> FloatArray:
+    """Which part of the length lies before each vertex; (keys, n, 3) to (keys, n)."""
+    lengths = np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=-1)
+    passed = np.cumsum(lengths, axis=1)
+    return np.asarray((passed - lengths) / passed[:, -1:])
+
+
+def _closest(missing: FloatArray, share: FloatArray, turns: float) -> tuple[float, float]:
+    """Whole turns over the length, and an angle for all normals, that leave least of angles that are missing; (n,)."""
+    candidates = turns + _TURNS
+    means = np.exp(1j * (missing - 2 * np.pi * candidates[:, None] * share)).mean(axis=1)
+    best = int(np.abs(means).argmax())
+    return float(candidates[best]), float(np.angle(means[best]))
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("...i,...i->...", a, b))

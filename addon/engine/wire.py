@@ -23,16 +23,17 @@ from ...core import (
     Task,
 )
 from ...core.errors import Place
+from ...core.messages import Message
 from ...core.types import FloatArray
 from .placement import Link, Placement
 
-Message = tuple[dict[str, Any], list[FloatArray]]
+Packet = tuple[dict[str, Any], list[FloatArray]]
 
 _LENGTH = struct.Struct("!Q")
 _VALUES = tuple(field.name for field in fields(Iterate) if field.name not in ("curve", "path"))
 
 
-def write(stream: IO[bytes], message: Message) -> None:
+def write(stream: IO[bytes], message: Packet) -> None:
     """Write a message and flush."""
     header, arrays = message
     text = json.dumps({**header, "shapes": [a.shape for a in arrays]}).encode()
@@ -41,7 +42,7 @@ def write(stream: IO[bytes], message: Message) -> None:
     stream.flush()
 
 
-def read(stream: IO[bytes]) -> Message:
+def read(stream: IO[bytes]) -> Packet:
     """Read a message; EOFError if there is no whole one any more."""
     header = json.loads(_exactly(stream, _LENGTH.unpack(_exactly(stream, _LENGTH.size))[0]))
     arrays = []
@@ -58,7 +59,7 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
     return data
 
 
-def pack_job(task: Task, options: RelaxOptions, link: Link) -> Message:
+def pack_job(task: Task, options: RelaxOptions, link: Link) -> Packet:
     """What the worker is asked to do."""
     header = {**_pack_mesh(task.curve.mesh), "options": asdict(options), "counts": link.counts}
     header |= {
@@ -72,7 +73,7 @@ def pack_job(task: Task, options: RelaxOptions, link: Link) -> Message:
     return header, [task.curve.vertices, linear, origins, *obstacles]
 
 
-def unpack_job(message: Message) -> tuple[Task, RelaxOptions, Link]:
+def unpack_job(message: Packet) -> tuple[Task, RelaxOptions, Link]:
     """The inverse of `pack_job`."""
     header, (vertices, linear, origins, *arrays) = message
     link = Link(tuple(map(Placement, linear, origins)), tuple(header["counts"]))
@@ -94,14 +95,14 @@ def _unpack_mesh(header: dict[str, Any]) -> Mesh:
     return Mesh(tuple(header["sizes"]), tuple(header["closed"]))
 
 
-def pack_iterate(iterate: Iterate, proved: Sequence[str]) -> Message:
+def pack_iterate(iterate: Iterate, proved: Sequence[str]) -> Packet:
     """One iterate, and the motions known to be free of contact, by their `digest`."""
     header = {name: getattr(iterate, name) for name in _VALUES}
     header |= {**_pack_mesh(iterate.curve.mesh), "proved": list(proved)}
     return header, [iterate.curve.vertices, *iterate.path]
 
 
-def unpack_iterate(message: Message) -> tuple[Iterate, list[str]]:
+def unpack_iterate(message: Packet) -> tuple[Iterate, list[str]]:
     """The inverse of `pack_iterate`."""
     header, (vertices, *path) = message
     values = {name: header[name] for name in _VALUES}
@@ -110,28 +111,45 @@ def unpack_iterate(message: Message) -> tuple[Iterate, list[str]]:
     return Iterate(curve=curve, path=tuple(path), **values), header["proved"]
 
 
-def pack_outcome(outcome: Outcome) -> Message:
+def pack_outcome(outcome: Outcome) -> Packet:
     """How the relaxation ended, after the last iterate."""
-    return {"outcome": asdict(outcome) | {"status": outcome.status.value}}, []
+    clauses = list(map(_pack_message, outcome.clauses))
+    return {"outcome": asdict(outcome) | {"status": outcome.status.value, "clauses": clauses}}, []
 
 
-def unpack_outcome(message: Message) -> Outcome:
+def unpack_outcome(message: Packet) -> Outcome:
     """The inverse of `pack_outcome`."""
     values = message[0]["outcome"]
-    return Outcome(**values | {"status": Status(values["status"]), "place": _place(values["place"])})
+    values |= {"status": Status(values["status"]), "place": _place(values["place"])}
+    return Outcome(**values | {"clauses": tuple(map(_unpack_message, values["clauses"]))})
 
 
-def pack_error(error: MobiusFlowError) -> Message:
+def pack_error(error: MobiusFlowError) -> Packet:
     """Why a job cannot be done."""
     place = error.place if isinstance(error, CurveError) else None
-    header = {"error": str(error), "place": None if place is None else asdict(place)}
+    header = {"error": _pack_message(str(error)), "place": None if place is None else asdict(place)}
     return header | {"of_option": isinstance(error, OptionError)}, []
 
 
-def unpack_error(message: Message) -> MobiusFlowError:
+def unpack_error(message: Packet) -> MobiusFlowError:
     """The inverse of `pack_error`, as far as Blender tells errors apart."""
     header = message[0]
-    return OptionError(header["error"]) if header["of_option"] else CurveError(header["error"], _place(header["place"]))
+    sentence = _unpack_message(header["error"])
+    return OptionError(sentence) if header["of_option"] else CurveError(sentence, _place(header["place"]))
+
+
+def _pack_message(fact: Any) -> Any:
+    """A message or one of its facts as JSON has it."""
+    if not isinstance(fact, Message):
+        return fact
+    return {"template": fact.template, "facts": {name: _pack_message(value) for name, value in fact.facts.items()}}
+
+
+def _unpack_message(packed: Any) -> Any:
+    """The inverse of `_pack_message`."""
+    if not isinstance(packed, dict):
+        return packed
+    return Message(packed["template"], **{name: _unpack_message(fact) for name, fact in packed["facts"].items()})
 
 
 def _place(values: dict[str, Any] | None) -> Place | None:

@@ -1,20 +1,49 @@
-"""Names of objects in sentences."""
+"""Names of objects in sentences, and Blender's words for parts of curves."""
 
 from collections.abc import Sequence
 
-from .phrase import Phrase
+from ...core.messages import COMPONENT, EDGE, EDGES, OBSTACLE, VERTEX, VERTEX_COUNT, VERTICES, Message
 
 _MAX_NAMES = 3
+_WORDS = {
+    EDGE: Message("segment {number}"),
+    EDGES: Message("segments {first} and {second}"),
+    OBSTACLE: Message("'{name}'"),
+    VERTEX: Message("point {number}"),
+    VERTEX_COUNT: Message("{count} points"),
+    VERTICES: Message("points {first} and {second}"),
+}
 
 
 def named(names: Sequence[str]) -> str:
     """Join names, such as 'A', 'B' and 'C'; of many the first, and how many more there are."""
     if len(names) > _MAX_NAMES + 1:
         first, count = ", ".join(map(_quoted, names[:_MAX_NAMES])), len(names) - _MAX_NAMES
-        return Phrase("{names} and {count} more", names=first, count=count)
+        return Message("{names} and {count} more", names=first, count=count)
     *others, last = map(_quoted, names)
-    return Phrase("{names} and {last}", names=", ".join(others), last=last) if others else last
+    return Message("{names} and {last}", names=", ".join(others), last=last) if others else last
 
 
 def _quoted(name: str) -> str:
     return f"'{name}'"
+
+
+def spline_names(objects: Sequence[str], counts: Sequence[int]) -> list[Message]:
+    """Names of all splines of some objects, of which each has so many."""
+    return [
+        Message("spline {number} of '{name}'", number=k, name=name)
+        for name, count in zip(objects, counts, strict=True)
+        for k in range(1, count + 1)
+    ]
+
+
+def in_blenders_words(message: str, splines: Sequence[Message]) -> str:
+    """What the core says, to somebody who sees objects; ``splines`` are the names of the components in turn."""
+
+    def word(said: Message) -> Message:
+        if said.template == COMPONENT:
+            number: int = said.facts["number"]
+            return splines[number - 1]
+        return Message(_WORDS[said.template], **said.facts) if said.template in _WORDS else said
+
+    return message.reworded(word) if isinstance(message, Message) else message

@@ -1,4 +1,8 @@
-"""Blender's end of the worker: starts it, takes in its iterates without ever waiting, and ends it at once."""
+"""Both ends of the worker: what it does in its process, and how Blender starts it, takes in its iterates and ends it.
+
+The worker yields the driver's iterates, with proofs for the motions that Blender's own numbers make of them. Blender
+never waits for it, and ends it at once.
+"""
 
 import contextlib
 import inspect
@@ -8,6 +12,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import IO
 
@@ -15,18 +20,45 @@ import numpy as np
 import scipy
 import threadpoolctl
 
-from ...core import Iterate, MobiusFlowError, Outcome, RelaxOptions, Task
+from ...core import Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
 from ...core.collision import is_free
 from ...core.curve import Mesh
+from ...core.messages import Message
 from ...core.types import FloatArray
 from . import wire
-from .job import messages
+from .motion import frames_of
 from .obstacles import in_common_space
-from .phrase import Phrase
-from .placement import Link
+from .placement import Frame, Link
 
 _AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the worker waits too: that is how it pauses
 _PATIENCE = 0.1  # seconds between looks at whether anybody still wants the next iterate
+
+
+def messages(job: wire.Packet) -> Iterator[wire.Packet]:
+    """Yield the iterates of a job as messages, or one message with the reason why it cannot be done."""
+    task, options, link = wire.unpack_job(job)
+    obstacles = in_common_space(task.obstacles, link)
+    last: Frame | None = None
+    try:
+        run = WithOutcome(relax(task, options))
+        for iterate in run:
+            frames = frames_of(link, iterate)
+            proved = _proved(iterate, link, [*([] if last is None else [last]), *frames], obstacles)
+            yield wire.pack_iterate(iterate, proved)
+            last = frames[-1]
+        assert run.outcome is not None, "the loop is through"
+        yield wire.pack_outcome(run.outcome)
+    except MobiusFlowError as error:
+        yield wire.pack_error(error)
+
+
+def _proved(iterate: Iterate, link: Link, frames: list[Frame], obstacles: tuple[Obstacle, ...]) -> list[str]:
+    """Names of the motions from frame to frame that are free of contact, in the common space."""
+    mesh = iterate.curve.mesh
+    if any(len(frame) != mesh.size for frame in frames):
+        return []
+    common = [link.to_common(mesh, frame) for frame in frames]
+    return [wire.digest(a, b) for a, b in pairwise(common) if is_free(mesh, a, b, obstacles)]
 
 
 class WorkerError(MobiusFlowError):
@@ -48,7 +80,7 @@ class Worker:
         self._job = wire.pack_job(task, options, link)
         self._obstacles = in_common_space(task.obstacles, link)
         self._proved: set[str] = set()
-        self._queue: queue.Queue[wire.Message | None] = queue.Queue(_AHEAD)
+        self._queue: queue.Queue[wire.Packet | None] = queue.Queue(_AHEAD)
         self._closed = threading.Event()
         self.process = _start()
         self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
@@ -67,7 +99,7 @@ class Worker:
         except queue.Empty:
             return None
         if message is None:
-            raise WorkerError(Phrase("The computation ended unexpectedly; perhaps memory ran out"))
+            raise WorkerError(Message("The computation ended unexpectedly; perhaps memory ran out"))
         if "error" in message[0]:
             raise wire.unpack_error(message)
         if "outcome" in message[0]:
@@ -104,10 +136,10 @@ class Worker:
         finally:
             self._close_streams()
 
-    def _messages(self) -> Iterable[wire.Message]:
+    def _messages(self) -> Iterable[wire.Packet]:
         return messages(self._job) if self.process is None else _replies(self.process, self._job)
 
-    def _put(self, message: wire.Message | None) -> bool:
+    def _put(self, message: wire.Packet | None) -> bool:
         while not self._closed.is_set():
             try:
                 self._queue.put(message, timeout=_PATIENCE)
@@ -122,7 +154,7 @@ class Worker:
                 stream.close()
 
 
-def _replies(process: "subprocess.Popen[bytes]", job: wire.Message) -> Iterator[wire.Message]:
+def _replies(process: "subprocess.Popen[bytes]", job: wire.Packet) -> Iterator[wire.Packet]:
     to_worker, from_worker = _pipes(process)
     wire.write(to_worker, job)
     while True:

@@ -6,58 +6,60 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from ..engine.phrase import Phrase
+from ...core.messages import Message
+from ..curves.member import show_originals
 from . import registry
 from .modal import clear_status
 from .run import Run
 
 
+def _forget() -> None:
+    """What is known is about another file, which may have been saved automatically during a run."""
+    registry.forget()
+    show_originals()
+
+
 def _before_undo(run: Run, others: int) -> None:
     """The curve must be as undo knows it; unless something else is undone or done again, the run is over."""
     if others and run.endures:
-        run.preview.set_aside()
+        run.group.hide()
     else:
-        run.cancel(Phrase("Undone; the relaxation of {names} has ended", names=run.name))
+        run.cancel(Message("Undone; the relaxation of {names} has ended", names=run.name))
 
 
 def _after_undo(run: Run, count: int) -> None:
     registry.history.undo(count)
-    run.preview.put_forward()
+    run.group.resume()
 
 
 def _before_saving(run: Run) -> None:
     """A file holds curves as they were or with all their keys, and nothing in between."""
     run.complete()
     if not run.state.over:
-        run.preview.set_aside()
+        run.group.hide()
 
 
-def _with_run(handle: Callable[[Run], None]) -> Any:
-
+def _handler(handle: Callable[[Run], None], otherwise: Callable[[], None] = lambda: None) -> Any:
     def handler(*_: Any) -> None:
-        if run := registry.current():
-            handle(run)
+        run = registry.current()
+        handle(run) if run else otherwise()
 
     return persistent(handler)
 
 
-@persistent  # type: ignore[untyped-decorator]
-def _load_post(*_: Any) -> None:
-    registry.forget()  # it was about another file
-
-
+# after undo without a run, Blender may have gone back to the middle of one that is over
 HANDLERS = {
-    "load_pre": _with_run(
-        lambda run: run.cancel(Phrase("A file was loaded; the relaxation of {names} has ended", names=run.name))
+    "load_pre": _handler(
+        lambda run: run.cancel(Message("A file was loaded; the relaxation of {names} has ended", names=run.name))
     ),
-    "load_post": _load_post,
-    "undo_pre": _with_run(lambda run: _before_undo(run, registry.history.others)),
-    "redo_pre": _with_run(lambda run: _before_undo(run, registry.history.undone)),
-    "undo_post": _with_run(lambda run: _after_undo(run, 1)),
-    "redo_post": _with_run(lambda run: _after_undo(run, -1)),
-    "save_pre": _with_run(_before_saving),
-    "save_post": _with_run(lambda run: run.preview.put_forward()),
-    "save_post_fail": _with_run(lambda run: run.preview.put_forward()),
+    "load_post": _handler(lambda _run: _forget(), _forget),
+    "undo_pre": _handler(lambda run: _before_undo(run, registry.history.others)),
+    "redo_pre": _handler(lambda run: _before_undo(run, registry.history.undone)),
+    "undo_post": _handler(lambda run: _after_undo(run, 1), show_originals),
+    "redo_post": _handler(lambda run: _after_undo(run, -1), show_originals),
+    "save_pre": _handler(_before_saving),
+    "save_post": _handler(lambda run: run.group.resume()),
+    "save_post_fail": _handler(lambda run: run.group.resume()),
 }
 
 
@@ -69,7 +71,7 @@ def register() -> None:
 def unregister() -> None:
     """End what is running, and listen no more."""
     if run := registry.current():
-        run.cancel(Phrase("Möbius Flow was disabled; all is as it was"))
+        run.cancel(Message("Möbius Flow was disabled; all is as it was"))
     registry.forget()
     if bpy.app.timers.is_registered(clear_status):
         bpy.app.timers.unregister(clear_status)

@@ -4,8 +4,8 @@ from typing import Any
 
 import bpy
 
+from ...core.messages import Message
 from ..curves.session import Report
-from ..engine.phrase import Phrase
 from ..translations import iface_, rpt_
 from . import registry
 from .run import Run, State
@@ -69,7 +69,7 @@ class Loop:
     def abandon(self) -> None:
         """Blender is closing the window of the run, or its file."""
         self._abandoned = True
-        self.run.cancel(Phrase("The window was closed; all is as it was"))
+        self.run.cancel(Message("The window was closed; all is as it was"))
 
     def _show(self, context: bpy.types.Context) -> None:
         self._shown = self._visible()
@@ -91,11 +91,11 @@ def status_line(run: Run) -> str:
         return iface_("{names}: waiting for the render", names=run.name)
     if run.state is State.FINISHING:
         return iface_("{names}: proving and writing keys   |   Esc: put all back", names=run.name)
-    where = Phrase("starting")
+    where = Message("starting")
     if run.last is not None:
-        where = Phrase("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
+        where = Message("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
     if run.state is State.PAUSED:
-        where = Phrase("paused at {where}", where=where)
+        where = Message("paused at {where}", where=where)
     return iface_("{names}: {where}   |   Enter: keep this shape   |   Esc: put all back", names=run.name, where=where)
 
 
@@ -157,19 +157,19 @@ def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = F
     """Say what was done, and whether the scene shows all of it."""
     hidden = unseen(scene, report.scene_range)
     clean = report.clean and not failed and hidden is None
-    sentence = Phrase("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
+    sentence = Message("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
     operator.report({"INFO"} if clean else {"WARNING"}, rpt_(sentence))
 
 
-def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Phrase | None:
+def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Message | None:
     """Say that a scene does not play all frames of an animation, and what helps, or return None if it does."""
     if animation is None or (scene.frame_start <= animation[0] and animation[1] <= scene.frame_end):
         return None
     first, last = animation
-    helps = Phrase("press Set Scene Range to see all of it")
+    helps = Message("press Set Scene Range to see all of it")
     if first < scene.bl_rna.properties["frame_start"].hard_min:
-        helps = Phrase("no scene plays negative frames, so bake again with a later Start Frame")
-    return Phrase(
+        helps = Message("no scene plays negative frames, so bake again with a later Start Frame")
+    return Message(
         "The scene plays frames {start} to {end} only, the animation has {first} to {last}: {helps}",
         start=scene.frame_start,
         end=scene.frame_end,

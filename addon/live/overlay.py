@@ -14,7 +14,7 @@ from gpu_extras.batch import batch_for_shader
 
 from ...core.types import FloatArray
 from ..curves import pins
-from ..engine.contrast import Colour, legible
+from ..engine.colours import Colour, legible
 from ..engine.plot import dashes, plot
 from ..translations import iface_
 from . import registry

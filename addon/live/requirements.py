@@ -6,8 +6,8 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves.surroundings import avoidable
-from ..engine.phrase import Phrase
 from . import registry
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class Remedy(Enum):
 class Refusal:
     """Why something cannot be done and what helps, in one sentence, and the remedy that does so by itself, if any."""
 
-    sentence: Phrase
+    sentence: Message
     remedy: Remedy | None = None
 
 
@@ -56,7 +56,7 @@ class Check:
         if not (found := self.failure(obj)):
             return None
         values = found if isinstance(found, Mapping) else {self.field: found}
-        return Refusal(Phrase(self.sentence, name=obj.name, **values), self.remedy)
+        return Refusal(Message(self.sentence, name=obj.name, **values), self.remedy)
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Condition:
     fails: Callable[["bpy.types.Context"], bool]
 
     def __call__(self, context: "bpy.types.Context") -> Refusal | None:
-        return Refusal(Phrase(self.sentence)) if self.fails(context) else None
+        return Refusal(Message(self.sentence)) if self.fails(context) else None
 
 
 def selected_curves(context: "bpy.types.Context") -> list["bpy.types.Object"]:
@@ -109,20 +109,20 @@ def require(*refusals: Refusal | None) -> None:
 def idle(_context: "bpy.types.Context | None" = None) -> Refusal | None:
     """Require that nothing is being relaxed."""
     run = registry.current()
-    return Refusal(Phrase("{names} is being relaxed; stop that first", names=run.name)) if run else None
+    return Refusal(Message("{names} is being relaxed; stop that first", names=run.name)) if run else None
 
 
 def _no_curve(context: "bpy.types.Context") -> Refusal:
     """Say what is wrong with the active object where no curve is selected; hiding deselects."""
     obj = context.active_object
     if obj is not None and obj.type == "CURVE" and not obj.visible_get():
-        return Refusal(Phrase("'{name}' is hidden; show it first", name=obj.name))
+        return Refusal(Message("'{name}' is hidden; show it first", name=obj.name))
     if obj is None or obj.type == "CURVE" or not obj.select_get():
-        return Refusal(Phrase("Select a curve object first"))
+        return Refusal(Message("Select a curve object first"))
     kind = obj.bl_rna.properties["type"].enum_items[obj.type].name
     sentence = "'{name}' is of type {type}; select a curve object, or convert it with Object > Convert > Curve"
     return Refusal(
-        Phrase(sentence, name=obj.name, type=kind),
+        Message(sentence, name=obj.name, type=kind),
         Remedy.TO_CURVE if obj.mode == "OBJECT" and convertible(context) else None,
     )
 
@@ -146,5 +146,5 @@ def avoided(context: "bpy.types.Context", name: str | None = None) -> list["bpy.
 
     collection = context.scene.mobius_flow_surroundings.avoid if name is None else bpy.data.collections.get(name)
     if name and collection is None:
-        raise MobiusFlowError(Phrase("There is no collection '{name}' to avoid", name=name))
+        raise MobiusFlowError(Message("There is no collection '{name}' to avoid", name=name))
     return list(avoidable(collection, selected_curves(context)))

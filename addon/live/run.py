@@ -12,31 +12,31 @@ from typing import TYPE_CHECKING
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.errors import Place
+from ...core.messages import Message
 from ..curves.group import Group
-from ..curves.imprint import Imprint
 from ..curves.session import Report, Session
-from ..engine.phrase import Phrase
-from ..engine.spots import Spot
-from ..engine.target import Target, target_of
+from ..curves.splines import digest
+from ..engine.placement import Spot
+from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
 from .key_writer import KeyWriter
-from .preview import Preview, Refresh
+from .refresh import Refresh
 
 if TYPE_CHECKING:
     import bpy
 
-_CANCELLED = Phrase("Cancelled; all is as it was")
+_CANCELLED = Message("Cancelled; all is as it was")
 _SLICE = 0.02  # seconds of taking in iterates at a time
 
 
 class State(Enum):
-    RUNNING = Phrase("Running")
-    PAUSED = Phrase("Paused")
-    FINISHING = Phrase("Finishing")
-    DONE = Phrase("Done")
-    CANCELLED = Phrase("Cancelled")
-    LOST = Phrase("Lost")
+    RUNNING = Message("Running")
+    PAUSED = Message("Paused")
+    FINISHING = Message("Finishing")
+    DONE = Message("Done")
+    CANCELLED = Message("Cancelled")
+    LOST = Message("Lost")
 
     @property
     def over(self) -> bool:
@@ -66,17 +66,13 @@ class Run:
         self.shown: Iterate | None = None
         self.energies: list[float] = []
         self.trouble: list[Spot] = []
-        self._left: Imprint | None = None  # what the objects were at its end
+        self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self._session, self._refresh = session, refresh
         try:
             self._worker = Worker(self._session.task, self._session.options, self.group.link)
         except BaseException:
-            self.group.restore()
+            self.group.discard()
             raise
-        self._prepare()
-
-    def _prepare(self) -> None:
-        self.preview = Preview(self.group)
         self._keys = KeyWriter(self._session, self._worker.is_free)
 
     @property
@@ -98,7 +94,9 @@ class Run:
 
     def concerns(self, obj: "bpy.types.Object | None") -> bool:
         """Whether it is about an object: always while it goes on, and afterwards if the object is as it was left."""
-        return self._left is None or self._left.fits(obj)
+        if self._left is None:
+            return True
+        return obj is not None and obj.type == "CURVE" and self._left.get(obj.session_uid) == digest(obj.data)
 
     @property
     def spots(self) -> dict["bpy.types.Object", Spot]:
@@ -114,7 +112,7 @@ class Run:
     @property
     def endures(self) -> bool:
         """Whether it can go on from wherever undo puts the curves."""
-        return self.state in (State.RUNNING, State.PAUSED) and not self.group.rebakes
+        return self.state in (State.RUNNING, State.PAUSED)
 
     def toggle_pause(self) -> None:
         """Show no more iterates, or go on; meanwhile the worker fills its queue and then waits too."""
@@ -126,19 +124,19 @@ class Run:
         if self.state not in (State.RUNNING, State.PAUSED):
             return
         if self.last is None:
-            self.cancel(Phrase("Stopped before anything had moved"))
+            self.cancel(Message("Stopped before anything had moved"))
             return
         self._show()
         if self._session.outcome is None:
-            reason = reason or Phrase("stopped after {count} iterations", count=self.last.index)
-            self._session.outcome = Outcome(Status.INTERRUPTED, reason)
+            reason = reason or Message("stopped after {count} iterations", count=self.last.index)
+            self._session.outcome = Outcome(Status.INTERRUPTED, (reason,))
         self.state = State.FINISHING
         self._worker.close()
         self._keys.start()
 
     def cancel(self, message: str = _CANCELLED) -> None:
         if not self.state.over:
-            self._close(State.CANCELLED, message, self.preview.put_back)
+            self._close(State.CANCELLED, message)
 
     @property
     def recoverable(self) -> bool:
@@ -147,8 +145,8 @@ class Run:
 
     def recover(self) -> None:
         """Keep what a cancelled run had reached; raises MobiusFlowError if the curves have changed since."""
-        self._session.take_up()
-        self._prepare()
+        self._session.reopen()
+        self._keys = KeyWriter(self._session, self._worker.is_free)
         self.state, self.message, self.failed, self.shown = State.RUNNING, "", False, None
         self.trouble, self._left = [], None
         self.keep()
@@ -175,9 +173,9 @@ class Run:
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:
-            self._fail(Phrase("Memory ran out; all is as it was"))
+            self._fail(Message("Memory ran out; all is as it was"))
         except Exception:
-            self._fail(Phrase("Something went wrong; all is as it was"))
+            self._fail(Message("Something went wrong; all is as it was"))
             raise
 
     def _take(self) -> None:
@@ -214,7 +212,7 @@ class Run:
 
     def _show(self) -> None:
         if self.last is not None and self.last is not self.shown:
-            self.preview.show(self._session.start, self._session.frame)
+            self.group.show(self._session.start, self._session.frame)
             self.shown = self.last
             self._refresh.shown()
 
@@ -223,24 +221,27 @@ class Run:
         if report is not None:
             assert self.last is not None, "it was kept"
             self.trouble = self.group.spots(report.outcome.place, self.last.curve)
-            self._close(State.DONE, report.sentence)
+            self._close(State.DONE, report.sentence, discard=False)
 
     def _fail(self, message: str, place: Place | None = None) -> None:
         self.failed = True
         self.trouble = self.group.spots(place, self.group.curve)
         self.cancel(message)
 
-    def _lose(self, reason: Phrase) -> None:
+    def _lose(self, reason: Message) -> None:
         """End because of what somebody did to an object; what else there is is put back."""
-        ended = Phrase("{reason}; the relaxation has ended", reason=reason)
-        if more := self._close(State.LOST, ended, self.preview.put_back):
-            self.message = Phrase("{ended}, {more}", ended=ended, more=more)
+        ended = Message("{reason}; the relaxation has ended", reason=reason)
+        restored = self._close(State.LOST, ended)
+        more = Message("and every curve is as it was") if restored else Message("and the others are as they were")
+        if restored or len(self.group.names) > 1:
+            self.message = Message("{ended}, {more}", ended=ended, more=more)
 
-    def _close(self, state: State, message: str, clear: Callable[[], Phrase | None] = lambda: None) -> Phrase | None:
+    def _close(self, state: State, message: str, discard: bool = True) -> bool:
+        """End, putting the curves back or not; return whether all are as they were."""
         self.state, self.message = state, message
         self._worker.close()
         self._keys.abandon()
         self.on_end()
-        cleared = clear()
-        self._left = Imprint(self.group.objects)
-        return cleared
+        restored = discard and self.group.discard()
+        self._left = {obj.session_uid: digest(obj.data) for obj in self.group.objects}
+        return restored

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...core import MobiusFlowError
 from ...core.errors import OutputError, choice
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 from . import rendering, stage, staging
 from .movie import Reel, copied, sweep
 from .rendering import is_rendering
@@ -71,7 +71,7 @@ class Filming(Reel):
             raise OutputError(self.path, error) from error
         except OSError as error:
             sentence = "{path}: Blender did not render the film to its end; is the disk full?"
-            raise MobiusFlowError(Phrase(sentence, path=self.path)) from error
+            raise MobiusFlowError(Message(sentence, path=self.path)) from error
 
     def start(self) -> None:
         """Begin to render in Blender's own window; raises MobiusFlowError."""
@@ -86,16 +86,16 @@ def target(path: str) -> Path:
     import bpy
 
     if not path.strip():
-        raise MobiusFlowError(Phrase("The film has no name; give it a file"))
+        raise MobiusFlowError(Message("The film has no name; give it a file"))
     if path.startswith("//") and not bpy.data.filepath:
         sentence = "Save your file first, since the film is to lie beside it, or choose another place"
-        raise MobiusFlowError(Phrase(sentence))
+        raise MobiusFlowError(Message(sentence))
     found = Path(bpy.path.abspath(path)).absolute()
     if found.is_dir():
-        raise MobiusFlowError(Phrase("{path} is a directory; name a file in it", path=found))
+        raise MobiusFlowError(Message("{path} is a directory; name a file in it", path=found))
     if found.suffix and found.suffix.lower() != SUFFIX:
         sentence = "{name} does not end in {suffix}, as films do here; give it another name"
-        raise MobiusFlowError(Phrase(sentence, name=found.name, suffix=SUFFIX))
+        raise MobiusFlowError(Message(sentence, name=found.name, suffix=SUFFIX))
     return found if found.suffix else found.with_suffix(SUFFIX)
 
 
@@ -104,16 +104,16 @@ def _check(scene: "bpy.types.Scene", path: Path, overwrite: bool) -> None:
     render = scene.render
     sides = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]
     if is_rendering():
-        raise MobiusFlowError(Phrase("Blender is rendering; wait until it is done, or stop it with Esc"))
+        raise MobiusFlowError(Message("Blender is rendering; wait until it is done, or stop it with Esc"))
     if scene.camera is None:
-        raise MobiusFlowError(Phrase("The scene has no camera; press Set Up Stage first, or add one"))
+        raise MobiusFlowError(Message("The scene has no camera; press Set Up Stage first, or add one"))
     if any(side % 2 for side in sides):
         sentence = "Frames are {width} × {height} pixels, but films want even numbers of them"
-        raise MobiusFlowError(Phrase(sentence, width=sides[0], height=sides[1]))
+        raise MobiusFlowError(Message(sentence, width=sides[0], height=sides[1]))
     if path.exists() and not overwrite:
         sentence = "{path} is there already; give the film another name, or let it be overwritten"
-        raise MobiusFlowError(Phrase(sentence, path=path))
+        raise MobiusFlowError(Message(sentence, path=path))
     if not path.parent.is_dir():
-        raise MobiusFlowError(Phrase("{path} is no directory; choose another place for the film", path=path.parent))
+        raise MobiusFlowError(Message("{path} is no directory; choose another place for the film", path=path.parent))
     if not os.access(path if path.exists() else path.parent, os.W_OK):
-        raise MobiusFlowError(Phrase("{path} cannot be written; choose another place for the film", path=path))
+        raise MobiusFlowError(Message("{path} cannot be written; choose another place for the film", path=path))

@@ -7,8 +7,8 @@ import numpy as np
 
 from ...core.knots import smooth_knot
 from ...core.types import FloatArray
+from ..engine.knot_list import thumbnail
 from ..engine.placement import Frame
-from ..engine.thumbnail import thumbnail
 
 if TYPE_CHECKING:
     import bpy.utils.previews

@@ -2,13 +2,13 @@
 
 import bpy
 
+from ...core.messages import Message
 from ..curves import bake, bevel, pins
 from ..curves.exchange import stretch
 from ..curves.standing import unsteady
 from ..curves.units import length
 from ..engine.key_options import Output
 from ..engine.knot_list import labels
-from ..engine.phrase import Phrase
 from ..engine.size import Measure
 from ..engine.timing import Pace
 from ..engine.words import named
@@ -27,7 +27,7 @@ def _gallery(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.template_icon_view(picked, "knot", show_labels=True, scale=7.0, scale_popup=4.0)
     within = layout.row(align=True)
     label = labels().get(picked.knot, "")
-    add = operator(within, "pick_knot", text=iface_("Add {knot}", knot=Phrase(label)), icon="ADD")
+    add = operator(within, "pick_knot", text=iface_("Add {knot}", knot=Message(label)), icon="ADD")
     add.knot, add.mirror = label, picked.mirror
     within.prop(picked, "mirror", text="", icon="MOD_MIRROR")
 
@@ -58,10 +58,10 @@ def _avoided(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         return
     found = avoided(context)
     if not found:
-        sentence(layout, context, Phrase("Nothing in it is visible"))
+        sentence(layout, context, Message("Nothing in it is visible"))
     elif not unsteady(found, selected_curves(context)):
         names = named([obj.name for obj in found])
-        sentence(layout, context, Phrase("Curves never touch {names}", names=names))
+        sentence(layout, context, Message("Curves never touch {names}", names=names))
 
 
 class VIEW3D_PT_mobius_flow_surroundings(SubPanel, bpy.types.Panel):
@@ -100,7 +100,7 @@ class VIEW3D_PT_mobius_flow_animation(SubPanel, bpy.types.Panel):
 
 def _keep_size(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     measure = context.scene.mobius_flow.keep_size
-    text = iface_("Keep {measure}", measure=Phrase(Measure[measure].value))
+    text = iface_("Keep {measure}", measure=Message(Measure[measure].value))
     operator(layout, "keep_size", text=text, icon="FULLSCREEN_EXIT").measure = measure
 
 
@@ -116,11 +116,11 @@ class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
 def _radius(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Show how thick the first curve is drawn, and whose choice that is."""
     for obj in selected_curves(context)[:1]:
-        text = Phrase("None")
+        text = Message("None")
         if depth := obj.data.bevel_depth:
             radius = length(context.scene, depth * stretch(obj))
             fitted = bevel.is_fitted(obj.data)
-            text = Phrase("{radius} (fitted)" if fitted else "{radius} (your own)", radius=radius)
+            text = Message("{radius} (fitted)" if fitted else "{radius} (your own)", radius=radius)
         value(layout, "Radius", text)
 
 

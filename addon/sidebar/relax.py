@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import bpy
 
+from ...core.messages import Message
 from ..buttons.presets import VIEW3D_PT_mobius_flow_presets
 from ..curves import neighbours
 from ..curves.standing import unsteady
 from ..curves.units import length
-from ..engine.phrase import Phrase
 from ..engine.quality import QUALITIES
 from ..engine.words import named
 from ..live import registry
@@ -54,10 +54,10 @@ def _warning(layout: bpy.types.UILayout, context: bpy.types.Context, objects: Se
         operator(layout, "avoid", icon="ADD")
 
 
-def _state(run: Run) -> Phrase:
+def _state(run: Run) -> Message:
     if run.waits:
-        return Phrase("Waiting for the render")
-    return Phrase("Failed") if run.failed and run.state is State.CANCELLED else run.state.value
+        return Message("Waiting for the render")
+    return Message("Failed") if run.failed and run.state is State.CANCELLED else run.state.value
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -74,8 +74,8 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         value(box, "Iteration", f"{run.last.index}")
         value(box, "Step", f"{run.last.step_size:.3g}")
         proved = run.last.certified if run.report is None else run.report.certified
-        whom = Phrase("with itself") if len(run.group.names) == 1 else Phrase("among themselves")
-        value(box, "Free of contact", whom if proved else Phrase("not proved"))
+        whom = Message("with itself") if len(run.group.names) == 1 else Message("among themselves")
+        value(box, "Free of contact", whom if proved else Message("not proved"))
         if run.avoided:
             value(box, "Avoided", named(run.avoided))
     if run.report is not None and run.report.radius is not None:

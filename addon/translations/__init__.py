@@ -17,7 +17,7 @@ import bpy
 from bpy.app import translations
 from bpy.app.translations import pgettext_iface, pgettext_rpt, pgettext_tip
 
-from ..engine.phrase import Phrase
+from ...core.messages import Message
 from .po import Table, read_po
 
 CONTEXT = "Möbius Flow"  # of all but tooltips, which Blender looks for in no context
@@ -39,7 +39,7 @@ def rpt_(template: str, **values: Any) -> str:
 
 
 def _said(gettext: Callable[[str, str], str], template: str, values: dict[str, Any]) -> str:
-    phrase = template if isinstance(template, Phrase) else Phrase(template, **values)
+    phrase = template if isinstance(template, Message) else Message(template, **values)
     return phrase.said(lambda text: gettext(text, CONTEXT))
 
 

@@ -1,14 +1,9 @@
 """``mobius-flow batch``: relax tables of knots, on all cores of one machine or on a cluster."""
 
 import argparse
-import os
 
-from ...core.errors import OptionError
 from .. import options as relax_options
-from ..streams import emit
-from .job import CSV
 
-_DESCRIPTION = "Relax many curves, each in a folder of its own, and write one table of the results."
 _EPILOG = """\
 examples:
   mobius-flow batch 3_1..7_7 -o results --starts 3
@@ -32,43 +27,26 @@ exit status:
 """
 
 
-def add_to(parser: argparse.ArgumentParser) -> None:
-    """Describe the subcommand."""
-    parser.description, parser.epilog = _DESCRIPTION, _EPILOG
-    parser.add_argument(
-        "inputs",
-        metavar="INPUT",
-        nargs="+",
-        help="curve files, directories of them, patterns, names of knots, ranges of the table such as 3_1..8_21",
-    )
+def add_batch(parser: argparse.ArgumentParser) -> None:
+    """Describe ``batch``."""
+    parser.description = "Relax many curves, each in a folder of its own, and write one table of the results."
+    parser.epilog = _EPILOG
+    text = "curve files, directories of them, patterns, names of knots, ranges of the table such as 3_1..8_21"
+    parser.add_argument("inputs", metavar="INPUT", nargs="+", help=text)
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="directory of the results")
     parser.add_argument("--starts", type=int, default=1, metavar="K", help="runs per input (default: 1)")
-    parser.add_argument(
-        "--extrapolate",
-        action="store_true",
-        help="also estimate the smooth curve's energy, from two more runs, with edges halved twice: as much work again",
-    )
-    parser.add_argument(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="address of a running Dask scheduler (default: use all cores of this machine)",
-    )
+    text = "also estimate the smooth curve's energy, from two more runs, with edges halved twice: as much work again"
+    parser.add_argument("--extrapolate", action="store_true", help=text)
+    text = "address of a running Dask scheduler (default: use all cores of this machine)"
+    parser.add_argument("--scheduler", metavar="ADDRESS", help=text)
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
     relax_options.add_task(parser)
+    parser.set_defaults(run=_run)
 
 
-def run(options: argparse.Namespace) -> int:
-    """Relax everything that is not finished, write the table, and print a line about it."""
-    if not options.output:
-        raise OptionError("output is empty; name the directory of the results")
-    if options.starts < 1:
-        raise OptionError(f"starts is {options.starts}; it must be 1 or more")
-    wanted = relax_options.from_arguments(options)
+def _run(options: argparse.Namespace) -> int:
     from .campaign import campaign
 
-    table = campaign(options, wanted)
-    if not options.quiet:
-        why = f"; {os.path.join(options.output, CSV)} says why" if any(row.failed for row in table.rows) else ""
-        emit(table.summary() + why)
+    campaign(options)
     return 0

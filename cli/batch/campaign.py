@@ -1,41 +1,34 @@
 """A batch from its inputs to its table."""
 
 import argparse
+import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
-from ...core import RelaxOptions
-from ...core.errors import OutputError
+from ...core.errors import OptionError, OutputError
+from .. import options as relax_options
 from .. import signals
-from ..options import pinned
 from ..places import check_place
-from ..progress import WithBar
+from ..progress import bar
+from ..streams import emit
 from . import cluster
 from .folder import check_replaceable, finished, sweep
-from .inputs import inputs
-from .job import CSV, PARQUET, Job, jobs
+from .job import CSV, PARQUET, Job, inputs, jobs
 from .table import Row, Table, check_tables
 
 
-class _Progress(WithBar):
-    """A bar of the runs that are done, with the number of those that failed, and the time left."""
-
-    _failed = 0
-
-    def show(self, row: Row) -> None:
-        """Count a run that has ended."""
-        self._failed += row.failed
-        if self._bar is not None:
-            self._bar.set_postfix_str(f"{self._failed} failed", refresh=False)
-            self._bar.update()
-
-
-def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
-    """Do the runs that are not finished; the table is written in the end, also of an interrupted batch."""
+def campaign(options: argparse.Namespace) -> None:
+    """Do the runs that are not finished, write the table, also of an interrupted batch, and print a line about it."""
+    if not options.output:
+        raise OptionError("output is empty; name the directory of the results")
+    if options.starts < 1:
+        raise OptionError(f"starts is {options.starts}; it must be 1 or more")
+    wanted = relax_options.from_arguments(options)
     cluster.require(options.scheduler)
     directory = Path(options.output).resolve()
-    pins = [pin for text in options.pins for pin in pinned(text)]
+    pins = [pin for text in options.pins for pin in relax_options.pinned(text)]
     still = {"avoid": options.avoid, "pins": pins, "pin_tangents": options.pin_tangents}
     planned = jobs(inputs(options.inputs), options.starts, directory, wanted, still, options.extrapolate)
     rows = _found(planned)
@@ -45,7 +38,10 @@ def campaign(options: argparse.Namespace, wanted: RelaxOptions) -> Table:
         _run(left, rows, directory, options)
     else:
         Table(rows.values()).save(directory)
-    return Table(rows.values())
+    if not options.quiet:
+        failed = any(row.failed for row in rows.values())
+        why = f"; {os.path.join(options.output, CSV)} says why" if failed else ""
+        emit(Table(rows.values()).summary() + why)
 
 
 def _found(planned: Iterable[Job]) -> dict[Job, Row]:
@@ -71,14 +67,21 @@ def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argpar
     shown = not options.quiet and sys.stderr.isatty()
     with (
         cluster.submitting(options.scheduler) as submit,
-        _Progress(shown, total=len(left), unit="run", smoothing=0.1) as progress,
+        bar(shown, total=len(left), unit="run", smoothing=0.1) as progress,
     ):
         try:
             for job, row in cluster.rows(submit, left):
                 rows[job] = row
-                progress.show(row)
+                _show(progress, rows)
         finally:
             signals.hold()  # the table is neither lost nor halved
             rows |= _found(job for job in left if job not in rows)  # whose rows were still on their way
             Table(rows.values()).save(directory)
     sweep(directory)
+
+
+def _show(progress: Any, rows: Mapping[Job, Row]) -> None:
+    """Count another run that has ended, and all that failed."""
+    if progress is not None:
+        progress.set_postfix_str(f"{sum(row.failed for row in rows.values())} failed", refresh=False)
+        progress.update()

@@ -1,22 +1,95 @@
-"""One run of a batch: what it starts from, and where its results go."""
+"""The runs of a batch: what the words of its command line stand for, and where the results of each run go."""
 
+import glob
 import hashlib
 import json
 import math
+import os
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ... import __version__
 from ...core import MobiusFlowError, RelaxOptions
+from ...core.curve.io import FORMATS
 from ...core.curve.io.source import MAX_BYTES
-from .inputs import Input
+from ...core.diagrams.codes import is_code
+from ...core.knots import KNOTS, knot
+from ...core.knots.names import table_name
 
 CURVE, REPORT, TRAJECTORY = "curve.txt", "report.json", "trajectory.npz"
 STILL = ("avoid", "pins", "pin_tangents")  # options of a task, beside those of its relaxation
 CSV, PARQUET = "results.csv", "results.parquet"
+_FORMULA = tuple("=+-@\t\r\n＝＋－＠")  # what begins one in a spreadsheet
+
+
+class Input(NamedTuple):
+    """A curve to start from: what its results are called, and its file; None for a knot that is made by its name."""
+
+    name: str
+    file: Path | None = None
+
+
+def inputs(words: Iterable[str]) -> list[Input]:
+    """The inputs that words stand for, in their order, none twice; a MobiusFlowError names words without a meaning."""
+    found = dict.fromkeys(each for word in words for each in _meant(word))
+    if not found:
+        raise MobiusFlowError("there is nothing to relax: name a file, a directory or a knot")
+    return list(found)
+
+
+def _meant(word: str) -> Iterator[Input]:
+    """Paths that exist come first, so that a file may be called like a knot."""
+    if os.path.isdir(word):
+        yield from _in_directory(Path(word))
+    elif os.path.lexists(word):
+        yield _of_file(Path(word))
+    elif glob.has_magic(word) and (paths := sorted(glob.glob(word, recursive=True))):
+        for path in map(Path, paths):
+            yield from _in_directory(path) if path.is_dir() else [_of_file(path)]
+    elif is_code(word):
+        raise MobiusFlowError(f"{word[:60]}: codes name no folder; put it in a file that ends in .pd, .dt or .gauss")
+    elif glob.has_magic(word):
+        raise MobiusFlowError(f"{word}: matches no file")
+    elif os.path.dirname(word) or Path(word).suffix.lower() in FORMATS:
+        raise MobiusFlowError(f"{word}: there is no such file")
+    elif ".." in word:
+        yield from map(Input, _range(word))
+    else:
+        knot(word)  # which says what is wrong with names that mean nothing
+        yield Input(word.strip())
+
+
+def _of_file(path: Path) -> Input:
+    """Results are called as the file; bytes that are no text are shown in hexadecimal, as tables have text only."""
+    name = path.stem if path.stem.strip(".") else path.name  # nothing but dots is another directory
+    return Input(as_text(os.fsencode(name).decode(errors="backslashreplace")), Path(os.path.abspath(path)))
+
+
+def as_text(text: str) -> str:
+    """What no spreadsheet takes for a formula, and runs."""
+    return f"_{text}" if text.startswith(_FORMULA) else text
+
+
+def _in_directory(directory: Path) -> Iterator[Input]:
+    paths = sorted(each for each in directory.iterdir() if each.suffix.lower() in FORMATS)
+    if not paths:
+        raise MobiusFlowError(f"{directory}: holds no curve files; they end in {', '.join(FORMATS)}")
+    yield from map(_of_file, paths)
+
+
+def _range(word: str) -> list[str]:
+    """The table's names from one to another, in its order."""
+    table = list(KNOTS)
+    first, last = (table_name(end) for end in word.split("..", 1))
+    low, high = table.index(first[0]), table.index(last[0])
+    if first[1] or last[1]:
+        raise MobiusFlowError(f"{word}: the table has no mirror images; name them one by one")
+    if low > high:
+        raise MobiusFlowError(f"{word}: {last[0]} comes before {first[0]} in the table; swap them")
+    return table[low : high + 1]
 
 
 @dataclass(frozen=True)
@@ -79,26 +152,18 @@ def jobs(
     made = []
     obstacles = {str(Path(path).resolve()): _hash(Path(path)) for path in still["avoid"]}
     values = {**vars(options), **still, "avoid": obstacles}
-    for each in inputs:
-        sha256 = None if each.file is None else _hash(each.file)
+    for name, path in inputs:
+        sha256, file = (None, None) if path is None else (_hash(path), str(path))
         for start in range(1, starts + 1):
-            folder = directory / folder_name(each.name, start)
-            scrambled = None if start == 1 else options.seed + start
-            file = None if each.file is None else str(each.file)
-            made.append(Job(each.name, start, scrambled, file, sha256, str(folder), values, extrapolate))
-    _check_folders(made)
-    return made
-
-
-def _check_folders(made: Iterable[Job]) -> None:
-    """Case does not tell folders apart everywhere, and the tables are in the same directory."""
-    count = Counter(job.folder.casefold() for job in made)
+            folder = str(directory / folder_name(name, start))
+            seed = None if start == 1 else options.seed + start
+            made.append(Job(name, start, seed, file, sha256, folder, values, extrapolate))
+    count = Counter(job.folder.casefold() for job in made)  # case does not tell folders apart everywhere
     for job in made:
-        name = Path(job.folder).name
-        if count[job.folder.casefold()] > 1 or name.casefold() in (CSV, PARQUET):
-            raise MobiusFlowError(
-                f"{job.file or job.name}: its results would not be the only ones in {name}; rename it"
-            )
+        own = Path(job.folder).name
+        if count[job.folder.casefold()] > 1 or own.casefold() in (CSV, PARQUET):  # where the tables are
+            raise MobiusFlowError(f"{job.file or job.name}: its results would not be the only ones in {own}; rename it")
+    return made
 
 
 def _hash(path: Path) -> str | None:

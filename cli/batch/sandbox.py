@@ -1,25 +1,30 @@
 """Runs in child processes, one for each thread that asks, so that what hangs, crashes or is killed is only one.
 
-A child lives on from run to run: it takes half a second to import NumPy and SciPy.
+A child lives on from run to run, since NumPy and SciPy take half a second to import. It runs this module: a line of
+JSON for each job in, one for its row out, until there is no parent.
 """
 
 import json
+import os
+import queue
 import signal
 import subprocess
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from weakref import WeakSet
 
 from ...core import MobiusFlowError
-from . import child
+from ...core.errors import OutputError
 from .job import Job
 from .table import Row
 
 PATIENCE, GRACE = 2.0, 60.0  # of its time limit, and seconds: a run that takes more hangs, and is killed
+_READY, _REFUSED = "ready", "refused"
 _own = threading.local()
 _open: "WeakSet[Sandbox]" = WeakSet()
 _closed = threading.Event()
@@ -35,7 +40,7 @@ class Sandbox:
     def __init__(self) -> None:
         try:
             self._process = subprocess.Popen(
-                [sys.executable, "-P", "-m", child.__name__],  # modules in the working directory are not its own
+                [sys.executable, "-P", "-m", __name__],  # modules in the working directory are not its own
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
@@ -70,8 +75,8 @@ class Sandbox:
             return Row.failure(job, f"stopped after {seconds:g} s, long after its time limit")
         finally:
             watchdog.cancel()
-        if child.REFUSED in answer:
-            raise MobiusFlowError(answer[child.REFUSED])
+        if _REFUSED in answer:
+            raise MobiusFlowError(answer[_REFUSED])
         return Row(**answer)
 
     def close(self) -> None:
@@ -102,6 +107,15 @@ class Sandbox:
         return answer
 
 
+def _ended(code: int) -> str:
+    """How a process ended."""
+    if code >= 0:
+        return f"ended with status {code}"
+    with suppress(ValueError):
+        return f"was killed by {signal.Signals(-code).name}"
+    return f"was killed by signal {-code}"
+
+
 def run(job: Job) -> Row:
     """Do a run in the child of this thread; raises as `Sandbox.run` does."""
     box: Sandbox | None = getattr(_own, "box", None)
@@ -122,11 +136,30 @@ def closed() -> Iterator[None]:
         _closed.clear()
 
 
-def _ended(code: int) -> str:
-    """How a process ended."""
-    if code >= 0:
-        return f"ended with status {code}"
-    try:
-        return f"was killed by {signal.Signals(-code).name}"
-    except ValueError:
-        return f"was killed by signal {-code}"
+def _serve() -> None:
+    """Answer jobs for ever; only the end of standard input ends it."""
+    lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
+    os.dup2(2, 1)  # what libraries print is no answer
+    warnings.simplefilter("ignore")
+    threading.Thread(target=_listen, args=(lines,), daemon=True).start()
+    from .single import relaxed
+
+    print(_READY, file=answers)
+    while True:
+        try:
+            answer = vars(relaxed(Job(**json.loads(lines.get()))))
+        except OutputError as error:
+            answer = {_REFUSED: f"{error}; once that is fixed, give the same command again to go on"}
+        print(json.dumps(answer), file=answers)
+
+
+def _listen(lines: "queue.SimpleQueue[str]") -> None:
+    """Take lines in; the parent's end, also a sudden one, is noticed at once and ends the work under way."""
+    for line in sys.stdin:
+        lines.put(line)
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    _serve()

@@ -8,19 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ... import __version__
-from ...core import (
-    Curve,
-    CurveError,
-    MobiusFlowError,
-    RelaxOptions,
-    Result,
-    Task,
-    Trajectory,
-    minimize,
-    read_obstacle,
-)
+from ...core import Curve, CurveError, MobiusFlowError, RelaxOptions, Result, Task, Trajectory, minimize, read_obstacle
 from ...core.collision import check_embedded
-from ...core.collision.thickness import thickness
+from ...core.collision.gap import thickness
 from ...core.curve.io import FORMATS, CurveFile, load_curve
 from ...core.curve.writhe import writhe_and_crossings
 from ...core.errors import OutputError
@@ -31,7 +21,7 @@ from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves
 from ..main import explained
-from ..provenance import environment
+from ..options import provenance
 from ..streams import one_line
 from .folder import new_folder, write_report, write_text
 from .job import CURVE, STILL, TRAJECTORY, Job
@@ -60,7 +50,7 @@ def _relaxed(job: Job) -> Row:
     file = None if job.file is None else _load(job.file)
     if file is not None:
         job = replace(job, sha256=file.source.sha256)  # of what is really relaxed
-    origin = {"options": job.options, "input": {"name": job.file or job.name, "sha256": job.sha256}, **environment()}
+    origin = provenance(job.options, job.file or job.name, job.sha256)
     with nullcontext() if file is None else curves.refusals(file):
         task = _task(job, file)
         trajectory = Trajectory(origin, task.obstacles)

@@ -15,8 +15,7 @@ from ...core import MobiusFlowError, RelaxOptions
 from ...core.errors import OutputError, counted
 from ...core.system.files import atomic_write
 from ..streams import one_line
-from .inputs import as_text
-from .job import CSV, PARQUET, Job, sha256_of
+from .job import CSV, PARQUET, Job, as_text, sha256_of
 
 FAILED = "failed"
 _MARK = b"mobius-flow batch"  # in the Parquet file's metadata: SHA-256 of the CSV beside it, and of the one before

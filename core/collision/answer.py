@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from ..messages import EDGE, EDGES, Message
+
 
 class Limit(Enum):
     """What ends a free motion."""
@@ -16,22 +18,18 @@ class Limit(Enum):
 
 @dataclass(frozen=True)
 class Contact:
-    """What is in the way of a motion.
+    """What is in the way of a motion."""
 
-    Attributes
-    ----------
-    edges
-        The two edges that meet, or the one that meets an obstacle.
-    obstacle
-        What sentences call it; None if edges meet.
-    """
+    edges: tuple[int, ...]  # the two edges that meet, or the one that meets an obstacle
+    obstacle: str | None = None  # what sentences call it; None if edges meet
 
-    edges: tuple[int, ...]
-    obstacle: str | None = None
-
-    def __str__(self) -> str:
+    @property
+    def message(self) -> Message:
+        """The two, as sentences call them."""
         first, *second = (edge + 1 for edge in self.edges)
-        return f"edge {first} and {self.obstacle}" if self.obstacle else f"edges {first} and {second[0]}"
+        if self.obstacle is None:
+            return Message(EDGES, first=first, second=second[0])
+        return Message("{edge} and {obstacle}", edge=Message(EDGE, number=first), obstacle=self.obstacle)
 
 
 @dataclass(frozen=True)
@@ -43,15 +41,11 @@ class FreeMotion:
     time
         No two non-neighbour edges, and no edge and obstacle, meet at any time t in [0, time], unless time is 0; 1 if
         the whole motion is free. If two meet, this is at most 2 % before the contact.
-    contact
-        What limits it, None if nothing does.
-    limit
-        The reason.
     """
 
     time: float
-    contact: Contact | None = None
-    limit: Limit = Limit.NONE
+    contact: Contact | None = None  # what limits it, None if nothing does
+    limit: Limit = Limit.NONE  # the reason
 
     @property
     def pair(self) -> tuple[int, int] | None:

@@ -1,12 +1,18 @@
-"""Trees of boxes over moving edges and still triangles: which of them can come near each other, and when."""
+"""Trees of boxes over moving edges and still triangles: which of them can come near each other, and when.
+
+These trees are complete, so that children need no table and all leaves are on one level, which `ClusterTree` is not: a
+search of a few milliseconds would spend a good part of them on telling leaves from others.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from ..curve import Mesh
-from ..curve.ordering import component_order
+from ..curve.ordering import component_order, z_order
+from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 from .planes import UNDERFLOW
 
@@ -22,19 +28,17 @@ Test = Callable[["Level", IntArray, "Level", IntArray], BoolArray]
 class Level:
     """Boxes of one level at the start and at the end of a leg.
 
-    Attributes
-    ----------
-    upper, flipped
-        Shape (2, 2m, boxes): at the two times, the upper bounds of (x, −x), and of (−x, x). A vertex that moves
-        linearly from one box to the other is at time t in the box interpolated between them. Boxes that stand still
-        may have shape (1, 2m, boxes).
-    leaves
-        Whether a box holds a single simplex.
+    A vertex that moves linearly from one box to the other is at time t in the box interpolated between them.  Boxes
+    that stand still may have shape (1, 2m, boxes).
     """
 
-    upper: FloatArray
-    flipped: FloatArray
-    leaves: bool
+    upper: FloatArray  # upper bounds of (x, −x) at the two times; shape (2, 2m, boxes)
+    flipped: FloatArray  # the same of (−x, x)
+    leaves: bool  # whether a box holds a single simplex
+
+    @classmethod
+    def of(cls, upper: FloatArray, leaves: bool) -> "Level":
+        return cls(upper, np.roll(upper, upper.shape[1] // 2, axis=1), leaves)
 
     def gaps(self, a: IntArray, other: "Level", b: IntArray) -> FloatArray:
         """Signed gaps to boxes ``b`` of another level from boxes ``a``, which move, along ±each axis at both times.
@@ -48,40 +52,30 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class BoxTree:
-    """Boxes over contiguous ranges of simplices, neighbours in order being near in space, halved from level to level.
+    """Boxes over contiguous ranges of simplices, neighbours in order being near in space, halved level by level."""
 
-    Attributes
-    ----------
-    order
-        Edge, or triangle, at each position of the finest level; shape (k,).
-    corners
-        Vertices of the simplex at each position; shape (2, k) for edges, (3, k) for triangles.
-    levels
-        From the coarsest to single simplices.
-    """
-
-    order: IntArray
-    corners: IntArray
-    levels: tuple[Level, ...]
+    order: IntArray  # edge, or triangle, at each position of the finest level; shape (k,)
+    corners: IntArray  # vertices of the simplex at each position; shape (2, k) for edges, (3, k) for triangles
+    levels: tuple[Level, ...]  # from the coarsest to single simplices
 
     @classmethod
     def build(cls, mesh: Mesh, start: FloatArray, end: FloatArray) -> "BoxTree":
-        """Build the tree of one leg; ``start`` and ``end`` have shape (m, n) and entries of at most 1 in size."""
+        """The tree of one leg; ``start`` and ``end`` have shape (m, n) and entries of at most 1 in size."""
         order = component_order(mesh, start)
         return cls.over(order, np.stack([mesh.tails[order], mesh.heads[order]]), np.stack([start, end]))
 
     @classmethod
     def over(cls, order: IntArray, corners: IntArray, points: FloatArray) -> "BoxTree":
-        """Build a tree over simplices; ``points``, shape (2 or 1, m, n), are all vertices at both times, or at all.
+        """A tree over simplices; ``points``, shape (2 or 1, m, n), are all vertices at both times, or at all.
 
         Boxes are wider than what they hold by a number that counts only where scaling has cost digits.
         """
         ends = [points[..., vertices] for vertices in corners]
         upper = _padded(np.concatenate([np.maximum.reduce(ends), -np.minimum.reduce(ends)], axis=1) + UNDERFLOW)
-        levels = [_level(upper, leaves=True)]
+        levels = [Level.of(upper, leaves=True)]
         while upper.shape[2] > _ROOTS:
             upper = _padded(np.maximum(upper[..., 0::2], upper[..., 1::2]))
-            levels.append(_level(upper, leaves=False))
+            levels.append(Level.of(upper, leaves=False))
         return cls(order, corners, tuple(reversed(levels)))
 
     def pairs(self, near: Test) -> Iterator[tuple[IntArray, IntArray]]:
@@ -144,11 +138,6 @@ def contact_window(gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     return enter * (1 - _SLACK), leave * (1 + _SLACK)
 
 
-def _level(upper: FloatArray, leaves: bool) -> Level:
-    m = upper.shape[1] // 2
-    return Level(upper, np.concatenate([upper[:, m:], upper[:, :m]], axis=1), leaves)
-
-
 def _padded(upper: FloatArray) -> FloatArray:
     """Boxes with an empty one added if their number is odd, so that they merge two by two."""
     if upper.shape[2] % 2 == 0:
@@ -162,3 +151,29 @@ def _halved(a: IntArray, b: IntArray, first: bool, second: bool) -> tuple[IntArr
     right = 2 * b + np.array([[0], [1]]) if second else b[None]
     left, right = np.broadcast_arrays(left[:, None], right[None])
     return left.ravel(), right.ravel()
+
+
+@dataclass(frozen=True, eq=False)
+class StillTriangles:
+    """The simplices of several obstacles; a segment is a triangle two of whose vertices coincide."""
+
+    obstacles: tuple[Obstacle, ...]
+    vertices: FloatArray  # of all obstacles, in the user's units; shape (k, 3)
+    tree: BoxTree  # over the triangles in units of two to the power of the exponent
+
+    def obstacle_of(self, triangle: int) -> Obstacle:
+        """The obstacle that a triangle, counted over all obstacles, belongs to."""
+        ends = np.cumsum([len(each.faces) for each in self.obstacles])
+        return self.obstacles[int(np.searchsorted(ends, triangle, side="right"))]
+
+
+@lru_cache(maxsize=8)
+def still_triangles(obstacles: tuple[Obstacle, ...], exponent: int) -> StillTriangles:
+    """The triangles of some obstacles, coordinates of which are at most two to the power of ``exponent``."""
+    vertices = np.concatenate([each.vertices for each in obstacles])
+    first = np.cumsum([0, *(len(each.vertices) for each in obstacles)])
+    numbered = zip(obstacles, first[:-1], strict=True)
+    corners = np.concatenate([each.faces[:, [0, 1, -1]] + k for each, k in numbered]).T
+    points = np.ldexp(vertices.T, -exponent, order="C")
+    order = z_order(points[:, corners].mean(axis=1))
+    return StillTriangles(obstacles, vertices, BoxTree.over(order, corners[:, order], points[None]))

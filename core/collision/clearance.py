@@ -1,4 +1,4 @@
-"""How near a curve is to obstacles: those that it touches, pierces, or comes too near to are refused."""
+"""How near a curve is to obstacles, which must not touch it, and whether it survives the rounding of new vertices."""
 
 from collections.abc import Iterator, Sequence
 
@@ -7,16 +7,24 @@ import numpy as np
 from ..curve import Curve
 from ..curve.places import at_edges
 from ..errors import CurveError
+from ..messages import EDGE, Message
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
-from .boxes import BoxTree, Level
-from .chords import closest_chord
+from .boxes import BoxTree, Level, still_triangles
 from .embedded import meeting_point, numbered, written
 from .exact import first_contact
 from .exact_triangle import EDGES, crossing
-from .gap import MIN_GAP, squared_gaps
-from .planes import Separation, relative_motion
-from .still import still_triangles
+from .gap import MIN_GAP, folds, minimal_gap, scaled_points, squared_gaps, squared_segment_distances
+from .planes import Separation, closest_chord, relative_motion
+
+# Bound of the rounding errors of tail + t (head − tail), in units of the last place of the largest coordinate: one each
+# of the difference, which may be twice as large, and of the product, and half a one of the sum.  That of t itself only
+# moves the vertex along its edge.
+UNITS = 2.5
+
+PIERCES = Message("{component}: {edge} pierces {obstacle} at {place}; move one of them away")
+TOUCHES = Message("{component}: {edge} touches {obstacle} at {place}; move one of them away")
+TOO_NEAR = Message("{component}: {edge} comes too near to {obstacle} at {place}; move one of them away")
 
 
 def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
@@ -38,7 +46,9 @@ def check_clear(curve: Curve, obstacles: Sequence[Obstacle]) -> None:
     for edge, corners, obstacle in _near(curve, obstacles, MIN_GAP * curve.length):
         what, where = _meeting(corners)
         component, k = numbered(curve.mesh, edge)
-        reason = f"component {component}: edge {k} {what} {obstacle.title} at {written(where)}; move one of them away"
+        reason = Message(
+            what, component=component, edge=Message(EDGE, number=k), obstacle=obstacle.title, place=written(where)
+        )
         raise CurveError(reason, at_edges(curve, (edge,), where))
 
 
@@ -82,8 +92,30 @@ def _meeting(corners: FloatArray) -> tuple[str, FloatArray]:
     """What an edge does to a triangle near it, and where; ``corners`` has shape (5, 3)."""
     s = crossing(corners[0], corners[1], corners[2:])
     if s is not None:
-        return ("pierces" if 0 < s < 1 else "touches"), corners[0] + s * (corners[1] - corners[0])
+        return (PIERCES if 0 < s < 1 else TOUCHES), corners[0] + s * (corners[1] - corners[0])
     touched = [four for four in (corners[[0, 1, *ends]] for ends in EDGES) if first_contact(four, four) is not None]
     if touched:
-        return "touches", meeting_point(touched[0])
-    return "comes too near to", np.asarray(corners[:2].mean(axis=0))
+        return TOUCHES, meeting_point(touched[0])
+    return TOO_NEAR, np.asarray(corners[:2].mean(axis=0))
+
+
+def survives_rounding(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> bool:
+    """Whether vertices that lie on edges but for rounding can move onto these without any contact.
+
+    Then the curve with them and the curve without them are isotopic: no point moves by more than r, the rounding, and
+    what must not meet, edges that are no neighbours and `folds`, is more than 2 r apart, and obstacles, which the curve
+    does not touch, more than r from it (and a bit, for the rounding of that distance). In more than three dimensions
+    there is nothing to keep.
+    """
+    if curve.dimension > 3:
+        return True
+    rounding = UNITS * np.spacing(np.abs(curve.vertices).max()) * np.sqrt(curve.dimension)
+    nearest = min(minimal_gap(curve)[0], _fold_gap(curve))
+    return bool(nearest > 2.1 * rounding) and clears(curve, obstacles, float(1.1 * rounding))
+
+
+def _fold_gap(curve: Curve) -> float:
+    """The smallest distance of a vertex from the segment that it must not lie on; infinite if there is none."""
+    points, unit = scaled_points(curve)
+    squares = squared_segment_distances(points, folds(curve.mesh))
+    return float(np.ldexp(np.sqrt(np.min(squares, initial=np.inf)), unit))

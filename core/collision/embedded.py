@@ -7,15 +7,20 @@ import numpy as np
 from ..curve import Curve, Mesh
 from ..curve.places import at_edges, at_vertices
 from ..errors import CurveError
+from ..messages import COMPONENT, EDGE, EDGES, VERTEX, VERTICES, Message
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, corners
-from .chords import closest_chord
 from .exact import first_contact
 from .gap import near_edges, scaled_points
-from .planes import ROUNDING, Separation, relative_motion
+from .planes import ROUNDING, Separation, closest_chord, relative_motion
 
 MIN_SPACING = 2.0**-48  # of neighbours, relative to the curve's size; nearer ones are the same up to rounding
 
+TOUCHING = Message("{edges} touch or cross near {place}; move the strands apart")
+DOUBTFUL = Message(
+    "{edges}, near {place}, and thousands of others are so close that rounding hides whether they touch; "
+    "move the strands apart"
+)
 _DECISIONS = 2000  # exact ones, about a second: strands that need more are refused by `check_gap`, if not here
 
 
@@ -45,11 +50,13 @@ def _check_repeated(curve: Curve) -> None:
     if same.size:
         tail, head = int(tails[same[0]]), int(heads[same[0]])
         (component, j), (_, k) = numbered_vertex(curve.mesh, tail), numbered_vertex(curve.mesh, head)
-        raise CurveError(
-            f"component {component}: vertices {j} and {k} are the same point "
-            f"{written(curve.vertices[tail])}; remove one of them",
-            at_vertices(curve, tail, head),
+        reason = Message(
+            "{component}: {vertices} are the same point {place}; remove one of them",
+            component=component,
+            vertices=Message(VERTICES, first=j, second=k),
+            place=written(curve.vertices[tail]),
         )
+        raise CurveError(reason, at_vertices(curve, tail, head))
 
 
 def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
@@ -67,19 +74,21 @@ def _check_doubled_back(curve: Curve, points: FloatArray) -> None:
         i, j = int(after[bad[0]]), int(before[bad[0]])
         vertex = int(mesh.tails[i])
         (component, k), (_, previous), (_, place) = numbered(mesh, i), numbered(mesh, j), numbered_vertex(mesh, vertex)
-        raise CurveError(
-            f"component {component}: edge {k} doubles back on edge {previous} at vertex {place}, "
-            f"{written(curve.vertices[vertex])}; move or remove that vertex",
-            at_vertices(curve, vertex),
+        reason = Message(
+            "{component}: {edge} doubles back on {previous} at {vertex}, {place}; move or remove it",
+            component=component,
+            edge=Message(EDGE, number=k),
+            previous=Message(EDGE, number=previous),
+            vertex=Message(VERTEX, number=place),
+            place=written(curve.vertices[vertex]),
         )
+        raise CurveError(reason, at_vertices(curve, vertex))
 
 
 def _check_crossings(curve: Curve, points: FloatArray) -> None:
     touching = _touching_pairs if curve.dimension <= 3 else _coinciding_pairs
     for i, j in touching(curve, points):
-        where = meeting_point(curve.vertices[corners(curve.mesh, i, j)])
-        reason = f"{_names(curve.mesh, i, j)} touch or cross near {written(where)}; move the strands apart"
-        raise CurveError(reason, at_edges(curve, (i, j), where))
+        raise _refusal(TOUCHING, curve, i, j)
 
 
 def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
@@ -89,12 +98,7 @@ def _touching_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int
         if first_contact(ends, ends) is not None:
             yield i, j
         if count == _DECISIONS:
-            where = meeting_point(ends)
-            reason = (
-                f"{_names(curve.mesh, i, j)}, near {written(where)}, and thousands of others are so near to each other "
-                "that rounding hides whether they touch; move the strands apart"
-            )
-            raise CurveError(reason, at_edges(curve, (i, j), where))
+            raise _refusal(DOUBTFUL, curve, i, j)
 
 
 def _coinciding_pairs(curve: Curve, points: FloatArray) -> Iterator[tuple[int, int]]:
@@ -132,23 +136,28 @@ def meeting_point(ends: FloatArray) -> FloatArray:
     return np.asarray(x[np.linalg.norm(x - y0 - r[:, None] * f, axis=1).argmin()])
 
 
-def numbered(mesh: Mesh, edge: int) -> tuple[int, int]:
-    """Component of an edge and its number there, both from 1."""
+def numbered(mesh: Mesh, edge: int) -> tuple[Message, int]:
+    """Component of an edge, as messages name it, and its number there, from 1."""
     c = int(mesh.edge_component[edge])
-    return c + 1, edge - int(mesh.edge_offsets[c]) + 1
+    return Message(COMPONENT, number=c + 1), edge - int(mesh.edge_offsets[c]) + 1
 
 
-def numbered_vertex(mesh: Mesh, vertex: int) -> tuple[int, int]:
+def numbered_vertex(mesh: Mesh, vertex: int) -> tuple[Message, int]:
     """The same of a vertex."""
     c = int(mesh.component[vertex])
-    return c + 1, vertex - int(mesh.offsets[c]) + 1
+    return Message(COMPONENT, number=c + 1), vertex - int(mesh.offsets[c]) + 1
 
 
-def _names(mesh: Mesh, i: int, j: int) -> str:
-    (c, p), (d, q) = numbered(mesh, i), numbered(mesh, j)
+def _refusal(template: str, curve: Curve, i: int, j: int) -> CurveError:
+    """The sentence about two edges and the place where they meet."""
+    (c, p), (d, q) = numbered(curve.mesh, i), numbered(curve.mesh, j)
     if c == d:
-        return f"component {c}: edges {p} and {q}"
-    return f"edge {p} of component {c} and edge {q} of component {d}"
+        edges = Message("{component}: {edges}", component=c, edges=Message(EDGES, first=p, second=q))
+    else:
+        one, other = Message(EDGE, number=p), Message(EDGE, number=q)
+        edges = Message("{edge} of {component} and {other} of {another}", edge=one, component=c, other=other, another=d)
+    where = meeting_point(curve.vertices[corners(curve.mesh, i, j)])
+    return CurveError(Message(template, edges=edges, place=written(where)), at_edges(curve, (i, j), where))
 
 
 def written(position: FloatArray) -> str:

@@ -182,7 +182,6 @@ def _crosses_in_plane(motion: Motion) -> bool:
 
 
 def _volume(motion: Motion) -> Polynomial:
-    """det(D, e, f)."""
     D, e, f = motion
     return _dot(D, _normal(e, f))
 

@@ -1,15 +1,16 @@
-"""Distances between edges that are no neighbours: the smallest one, and those too small to compute with."""
+"""Distances between edges that are not neighbours, folds of neighbours, and the thickness that follows from both."""
 
 from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..curve import Curve
+from ..curve import Curve, Mesh
+from ..curve.distances import arc_distance_of_points
 from ..errors import CurveError, Place
+from ..messages import Message
 from ..types import BoolArray, FloatArray, IntArray
 from .boxes import BoxTree, Level, corners
-from .chords import closest_chord
-from .planes import relative_motion
+from .planes import closest_chord, relative_motion
 
 MIN_GAP = 1e-11  # relative to the curve's length; at half of that, energies are wrong by percents
 ENDS_ONLY = 1e-3  # of the longer edge: midpoints further apart than that don't feel that the edges are near
@@ -55,11 +56,60 @@ def check_gap(curve: Curve) -> None:
             k = int(np.where(near, squares, np.inf).argmin())
             point = curve.vertices[curve.mesh.tails[i[k]]]
             gap, place = np.ldexp(np.sqrt(squares[k]), unit), ", ".join(f"{x:.6g}" for x in point)
-            raise CurveError(
-                f"strands are only {gap:.2g} apart near ({place}), less than {MIN_GAP:g} of the curve's "
-                "length, which is too near to compute their energy; move them apart",
-                Place((), tuple(point.tolist())),
+            near = (
+                "strands are only {gap:.2g} apart near ({place}), less than {least:g} of the curve's length: too close "
+                "to compute their energy; move them apart"
             )
+            raise CurveError(
+                Message(near, gap=float(gap), place=place, least=MIN_GAP), Place((), tuple(point.tolist()))
+            )
+
+
+def thickness(curve: Curve) -> float:
+    """Thickness: the radius of the thickest tube around a polygon that neither kinks nor touches itself.
+
+    The smaller of two numbers (Rawdon, *Experimental Mathematics* 12, 2003): the least bending radius, and half the
+    least distance of points that are further apart along the curve than half a circle of that radius is long.
+    Ropelength is the length divided by the thickness.
+    """
+    bend = float(bending_radii(curve).min())
+    points, unit = scaled_points(curve)
+    best = float(np.ldexp(2.0 * bend, -unit)) ** 2 if np.isfinite(bend) else np.inf
+    best = min(best, 4.0 * len(points))  # of coordinates within ±1
+
+    def bound() -> float:
+        return best
+
+    for i, j, squares in near_edges(curve, points, bound):
+        # Points just half a circle apart are two radii apart or more (Schur's theorem).  So where the closest points of
+        # two edges are nearer along the curve, none of the others can count for less than the bending radius.
+        s, t = closest_points(curve, i, j)
+        squares = squares[arc_distance_of_points(curve, i, s, j, t) >= np.pi * bend]
+        best = min(best, float(squares.min(initial=np.inf)))
+    return min(bend, 0.5 * float(np.ldexp(np.sqrt(best), unit)))
+
+
+def bending_radii(curve: Curve) -> FloatArray:
+    """At each vertex the radius of the circle that touches both edges, the shorter one at its middle; shape (n,)."""
+    ell, tau = curve.edge_lengths, curve.edge_vectors / curve.edge_lengths[:, None]
+    before = curve.mesh.previous
+    sine, cosine = np.linalg.norm(tau - tau[before], axis=1), np.linalg.norm(tau + tau[before], axis=1)
+    with np.errstate(divide="ignore"):
+        return np.asarray(0.5 * np.minimum(ell, ell[before]) * cosine / sine)  # ½ min(ℓ, ℓ') / tan(θ/2)
+
+
+def closest_points(curve: Curve, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray]:
+    """The closest points of edges ``i`` and ``j``, as lengths from their tails, elementwise.
+
+    Of parallel edges side by side they are one of many closest pairs.
+    """
+    mesh, ell = curve.mesh, curve.edge_lengths
+    e, f = curve.edge_vectors[i] / ell[i, None], curve.edge_vectors[j] / ell[j, None]
+    D = curve.vertices[mesh.tails[i]] - curve.vertices[mesh.tails[j]]
+    ef, De, Df = (np.einsum("pm,pm->p", *pair) for pair in ((e, f), (D, e), (D, f)))
+    s = ((ef * Df - De) / np.maximum(1.0 - ef * ef, np.finfo(np.float64).eps)).clip(0.0, ell[i])
+    t = (ef * s + Df).clip(0.0, ell[j])
+    return (ef * t - De).clip(0.0, ell[i]), t
 
 
 def scaled_points(curve: Curve) -> tuple[FloatArray, int]:
@@ -117,3 +167,27 @@ def _some_gap(curve: Curve, points: FloatArray) -> tuple[float, tuple[int, int] 
     squares = squared_segment_distances(points, corners(mesh, i, j))
     k = int(np.argmin(squares))
     return float(squares[k]), (int(i[k]), int(j[k]))
+
+
+def folds(mesh: Mesh) -> IntArray:
+    """Where a polygon may stop being embedded although no two of its non-neighbour edges meet.
+
+    When two neighbour edges fold onto each other, an end of one of them lies on the other: the end that they do not
+    share, where another edge begins.  This one then meets the edge that it lies on, and is no neighbour of it, but for
+    two cases.  In a triangle it is the neighbour on the other side; and at the end of an arc there is none.  The same
+    is true where an edge shrinks to a point.  So a polygon is embedded if no two non-neighbour edges meet, no vertex of
+    a triangle lies on the opposite edge, and no end of an arc lies on the edge after its neighbour, or, if that is the
+    other end, on that.
+
+    Returns
+    -------
+    Vertices and the segments that they must not lie on, as the ends x₀ = x₁ and y₀, y₁; shape (4, folds).  Segments
+    begin at the tails of their edges.
+    """
+    triangles = mesh.offsets[:-1][np.asarray(mesh.closed) & (np.asarray(mesh.component_sizes) == 3)]
+    after, before = mesh.heads[mesh.outgoing], mesh.tails[mesh.incoming]
+    first, last = mesh.ends.T
+    u = np.concatenate([triangles, triangles + 1, triangles + 2, first])
+    forward = np.stack([u, u, after[u], after[after[u]]])
+    backward = np.stack([last, last, before[before[last]], before[last]])
+    return np.concatenate([forward, backward], axis=1)

@@ -9,12 +9,11 @@ from ..curve import Mesh
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 from .answer import Contact, FreeMotion, Limit
-from .boxes import BoxTree, Level, contact_window
+from .boxes import BoxTree, Level, contact_window, still_triangles
 from .exact import first_contact
 from .exact_triangle import first_contact_with_triangle
-from .folds import folds
-from .march import march
-from .still import still_triangles
+from .gap import folds
+from .planes import march
 
 _BATCH = 1 << 13  # pairs marched together, so that their arrays stay in the cache
 _SHARPNESS = 0.985  # a time proved up to this part of a known contact time is near enough to it
@@ -71,21 +70,11 @@ def _search(
 
 
 class _Candidates(NamedTuple):
-    """Pairs of edges, or of edges and still triangles, that can meet before the limit.
+    """Pairs of edges, or of edges and still triangles, that can meet before the limit."""
 
-    Attributes
-    ----------
-    vertices
-        x₀, x₁, y₀, y₁, and y₂ of triangles; shape (4 or 5, pairs).
-    names
-        Numbers of the edges, or of edge and triangle; shape (2, pairs).
-    reached
-        Times up to which the pairs are surely free; shape (pairs,).
-    """
-
-    vertices: IntArray
-    names: IntArray
-    reached: FloatArray
+    vertices: IntArray  # x₀, x₁, y₀, y₁, and y₂ of triangles; shape (4 or 5, pairs)
+    names: IntArray  # numbers of the edges, or of edge and triangle; shape (2, pairs)
+    reached: FloatArray  # times up to which the pairs are surely free; shape (pairs,)
 
 
 class _Search:

@@ -1,8 +1,8 @@
-"""Moving segments, and the proof by a separating plane that one does not meet another, or a triangle, for a while.
+"""Moving segments, and the proof by separating planes that one does not meet another, or a triangle, for a while.
 
-A segment x₀ + s e and a segment y₀ + r f, or a triangle y₀ + r f + q g, whose vertices move linearly in time. For a
-*fixed* direction n the numbers ⟨n, x_i(t) − y_j(t)⟩ at the four, or six, pairs of vertices are linear in t; if all are
-positive at two times, a plane orthogonal to n separates the two at every time between.
+A segment x₀ + s e and a segment y₀ + r f, or a triangle y₀ + r f + q g, D = x₀ − y₀, whose vertices move linearly in
+time. For a *fixed* direction n the numbers ⟨n, x_i(t) − y_j(t)⟩ at the four, or six, pairs of vertices are linear in t;
+if all are positive at two times, a plane orthogonal to n separates the two at every time between.
 """
 
 import numpy as np
@@ -14,6 +14,49 @@ from ..types import BoolArray, FloatArray, IntArray
 # three, this bound's own evaluation a few: below 16 u. Twice that is taken.
 ROUNDING = 32 * 2.0**-53
 UNDERFLOW = 1e-300  # products below 2^-1022 lose absolute, not relative accuracy
+_TINY = np.finfo(np.float64).tiny
+_PARALLEL = 1e-14  # sin² of the angle below which a cross product is mostly rounding
+_ROUNDS = 20
+_PATIENCE = 1 / 3  # so many pairs per round done are not worth another round: the exact decision is as quick
+_SHORT = 0.01  # a step that adds less than this part of the time reached calls for the exact decision
+_SHARE = 1 - 2.0**-6  # part of the way to the plane's own contact that a step goes, to stay apart for the next plane
+
+
+def march(start: FloatArray, end: FloatArray, vertices: IntArray, reached: FloatArray, limit: float) -> FloatArray:
+    """Prove each pair free of contact from plane to plane, for as long as planes make good progress.
+
+    Parameters
+    ----------
+    start, end
+        Vertices of the leg, shape (m, n), entries of at most 1 in size.
+    vertices
+        The pairs' vertices x₀, x₁, y₀, y₁, shape (4, pairs), and y₂ of triangles, shape (5, pairs).
+    reached
+        Times up to which the pairs are known to be free, shape (pairs,).
+    limit
+        Time beyond which nothing is asked.
+
+    Returns
+    -------
+    reached
+        The new times, at least ``limit`` where nothing stands in the way.
+    """
+    reached = reached.copy()
+    active = np.flatnonzero(reached < limit)
+    motion = relative_motion(start, end, vertices[:, active])
+    size = np.abs(motion).sum(axis=1)
+    t = reached[active]
+    for k in range(_ROUNDS):
+        if active.size <= _PATIENCE * k:
+            break
+        planes = Separation(motion, size, closest_chord(at_time(motion, t)))
+        further = np.minimum(t + _SHARE * planes.time_left(t), 1.0)
+        moved = planes.proves(t) & planes.proves(further)
+        further = np.where(moved, further, t)
+        reached[active] = further
+        go_on = moved & (further < limit) & (further - t > _SHORT * further)
+        active, motion, size, t = active[go_on], motion[..., go_on], size[..., go_on], further[go_on]
+    return reached
 
 
 def relative_motion(start: FloatArray, end: FloatArray, vertices: IntArray) -> FloatArray:
@@ -39,14 +82,8 @@ def at_time(values: FloatArray, t: FloatArray) -> FloatArray:
 class Separation:
     """The linear functions ⟨n, x_i − y_j⟩ of each pair for fixed directions, lowered by their rounding errors.
 
-    Parameters
-    ----------
-    motion
-        As `relative_motion` gives it, shape (2, 3 or 4, m, pairs).
-    size
-        Sum of the absolute values of its vectors at both times, shape (2, m, pairs).
-    direction
-        The directions n, shape (m, pairs).
+    ``motion`` is as `relative_motion` gives it, ``size`` the sum of its vectors' absolute values at both times, shape
+    (2, m, pairs), ``direction`` n, shape (m, pairs).
     """
 
     def __init__(self, motion: FloatArray, size: FloatArray, direction: FloatArray) -> None:
@@ -65,3 +102,68 @@ class Separation:
         with np.errstate(divide="ignore", invalid="ignore"):
             left = np.where(fall > 0, at_time(self.values, t) / fall, np.inf)
         return np.asarray(left.min(axis=0))
+
+
+def closest_chord(motion: FloatArray) -> FloatArray:
+    """Return the vector from the closest point of y to the closest point of x: the normal of a plane that may separate.
+
+    ``motion`` holds D, e, f, and g for triangles, at one time, shape (3 or 4, m, pairs); the result has shape
+    (m, pairs). It is 0 where segments in the plane cross, and of no use where a segment pierces a triangle. No proof
+    depends on its accuracy.
+    """
+    if len(motion) == 3:
+        return _to_segment(*motion)
+    D, e, f, g = motion
+    edges = [np.concatenate(each, axis=1) for each in ((D, D, D - f), (e, e, e), (f, g, g - f))]
+    to_edges = np.split(_to_segment(*edges), 3, axis=1)
+    return _shortest(np.stack([*to_edges, _to_face(D, f, g), _to_face(D + e, f, g)]))
+
+
+def _to_segment(D: FloatArray, e: FloatArray, f: FloatArray) -> FloatArray:
+    """From the closest point of a segment to that of the other; 0 where segments in the plane cross."""
+    ee, ef, ff = (_dot(u, v) for u, v in ((e, e), (e, f), (f, f)))
+    De, Df = _dot(D, e), _dot(D, f)
+    # The nearest point of the other edge to each of the four end points.
+    r = np.stack([Df, Df + ef]) / np.maximum(ff, _TINY)
+    s = np.stack([-De, ef - De]) / np.maximum(ee, _TINY)
+    s, r = s.clip(0.0, 1.0), r.clip(0.0, 1.0)
+    chords = np.empty((4, *D.shape))
+    chords[0] = D - r[0] * f
+    chords[1] = D + e - r[1] * f
+    chords[2] = D + s[0] * e
+    chords[3] = D - f + s[1] * e
+    chord = _shortest(chords)
+    sine = ee * ff - ef * ef
+    s, r = ef * Df - ff * De, ee * Df - ef * De
+    inner = (sine > _PARALLEL * ee * ff) & (s > 0) & (s < sine) & (r > 0) & (r < sine)
+    if inner.any():
+        chord[:, inner] = _along(_cross(e[:, inner], f[:, inner]), D[:, inner]) if len(D) == 3 else 0.0
+    return chord
+
+
+def _to_face(D: FloatArray, f: FloatArray, g: FloatArray) -> FloatArray:
+    """From the foot of x₀ in a triangle to x₀; D, no shorter than the chord, where the foot is not in the triangle."""
+    normal = _cross(f, g)
+    whole = _dot(normal, normal)
+    r, q = _dot(_cross(D, g), normal), _dot(_cross(f, D), normal)
+    inside = (whole > _PARALLEL * _dot(f, f) * _dot(g, g)) & (r > 0) & (q > 0) & (r + q < whole)
+    return np.where(inside, _along(normal, D), D)
+
+
+def _shortest(chords: FloatArray) -> FloatArray:
+    """The shortest of several vectors of each pair; shapes (k, m, pairs) -> (m, pairs)."""
+    nearest = np.einsum("kmp,kmp->kp", chords, chords).argmin(axis=0)
+    return np.asarray(np.take_along_axis(chords, nearest[None, None], axis=0)[0])
+
+
+def _dot(u: FloatArray, v: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("mp,mp->p", u, v))
+
+
+def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
+    return np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
+
+
+def _along(normal: FloatArray, D: FloatArray) -> FloatArray:
+    """The part of D along a normal: a good direction even where the difference of close points is mostly rounding."""
+    return np.asarray(normal * (_dot(normal, D) / np.maximum(_dot(normal, normal), _TINY)))

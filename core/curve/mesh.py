@@ -228,7 +228,7 @@ class Mesh:
 
     def at_tails(self, values: FloatArray, elsewhere: FloatArray | float = 0.0) -> FloatArray:
         """Values of the edges at the vertices where they begin, others where an arc ends; (edges, …) to (n, …)."""
-        placed = np.empty((self.size, *values.shape[1:]))
+        placed = np.empty((self.size, *values.shape[1:]), np.result_type(values, np.float64))
         placed[...] = elsewhere
         placed[self.tails] = values
         return placed

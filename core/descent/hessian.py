@@ -1,9 +1,11 @@
-"""Products with second derivatives: of the objective, and of the Lagrangian on the constraint manifold."""
+"""Products with second derivatives, of the objective and of the Lagrangian, and Newton's direction by means of them."""
 
 from collections.abc import Callable
 
 import numpy as np
 
+from ..deadline import check_time
+from ..saddle import TangentSpace
 from ..types import FloatArray
 from .problem import Point
 
@@ -21,28 +23,70 @@ def energy_hessian(point: Point) -> LinearMap:
 
 
 def lagrangian_hessian(point: Point) -> LinearMap:
-    """v ↦ (D²E − Σ λ_I D²Φ_I) v on tangent vectors v, with λ from (41)."""
+    """v ↦ (D²E − Σ λ_k D²Φ_k) v on tangent vectors v, with λ from (41).
+
+    Rows are functions Φ(P, s) of vertices and logarithms s of edge lengths.  As ds = 0 along tangent vectors,
+    D²Φ (v, ·) = ∂²_P Φ (v, ·) + ∂_s Φ · D²s (v, ·).
+    """
     of_energy = energy_hessian(point)
-    ell, mesh = point.curve.edge_lengths, point.problem.mesh
+    ell, mesh, constraints = point.curve.edge_lengths, point.problem.mesh, point.tangent_space.constraints
     tau = point.curve.edge_vectors / ell[:, None]
-    weight = _curvature_weights(point)[:, None]
+    weight = (constraints.loads(point.multipliers)[0] / ell**2)[:, None]
 
     def apply(v: FloatArray) -> FloatArray:
         # D² log ℓ (v, ·) = (Δv − 2 ⟨τ, Δv⟩ τ)/ℓ²
         dv = v[mesh.heads] - v[mesh.tails]
         bend = weight * (dv - 2.0 * np.einsum("ij,ij->i", tau, dv)[:, None] * tau)
-        return of_energy(v) - mesh.scatter(-bend, bend)
+        image = of_energy(v) - mesh.scatter(-bend, bend)
+        for block, multipliers in constraints.of_blocks(point.multipliers):
+            image = image - block.curvature(multipliers, v)
+        return image
 
     return apply
 
 
-def _curvature_weights(point: Point) -> FloatArray:
-    """The factor of |Δv_I|² in Σ λ D²Φ (v, v) for tangent v, of which ⟨τ_I, Δv_I⟩ = 0; shape (edges,).
+def projected_conjugate_gradient(
+    operator: LinearMap, right: FloatArray, space: TangentSpace, tolerance: float, max_iterations: int
+) -> FloatArray:
+    """Solve ⟨operator w − right, v⟩ = 0 for all tangent v, for tangent w, preconditioned by the metric.
 
-    D² log ℓ_I has the factor 1/ℓ_I², D²(Σ ℓ_I m_I) = Σ m_I D²ℓ_I the factor m_I/ℓ_I.  The barycenter's multipliers
-    vanish if it is that of the whole curve, because the energy does not change under translations.
+    Steihaug's rule: on a direction of negative curvature the iteration ends with what it has (the first time with
+    that direction's steepest-descent step), so the result is a direction of descent of the quadratic model.
+
+    Parameters
+    ----------
+    operator
+        Symmetric, (n, m) to (n, m).
+    right
+        Covector, shape (n, m).
+    space
+        Projects and preconditions; its norm measures the residual.
+    tolerance
+        Relative residual at which to stop.
     """
-    ell, constraints = point.curve.edge_lengths, point.tangent_space.constraints
-    forces = constraints.forces(point.multipliers)[point.curve.mesh.tails]
-    along = np.einsum("ij,ij->i", forces, point.curve.midpoints)
-    return np.asarray(constraints.tensions(point.multipliers) / ell**2 + along / ell)
+    w = np.zeros_like(right)
+    residual = right.copy()
+    z = space.gradient(residual)[0]
+    square = float(np.sum(residual * z))
+    bound = tolerance**2 * square
+    direction = z
+    for _ in range(max_iterations):
+        if not square > bound:
+            break
+        check_time()
+        image = operator(direction)
+        curvature = float(np.sum(direction * image))
+        if curvature <= 0.0:
+            return w if np.any(w) else direction
+        step = square / curvature
+        w = w + step * direction
+        residual = residual - step * image
+        z = space.gradient(residual)[0]
+        square, last = float(np.sum(residual * z)), square
+        direction = z + (square / last) * direction
+    return w
+
+
+def newton_direction(point: Point, hessian: LinearMap, tolerance: float, max_iterations: int = 200) -> FloatArray:
+    """Tangent w with (D²L w + DE) orthogonal to the tangent space, by projected conjugate gradients."""
+    return projected_conjugate_gradient(hessian, -point.derivative, point.tangent_space, tolerance, max_iterations)

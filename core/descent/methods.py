@@ -6,13 +6,11 @@ from types import MappingProxyType
 from typing import Protocol
 
 from ..metrics import METRICS, Metric
-from .constrained import Constrained
 from .directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
-from .penalised import Penalised
-from .problem import Geometry, Point
+from .geometries import Constrained, Geometry, Penalised
+from .problem import Point
 from .searches import Accelerated, Armijo, BackwardEuler, LineSearch, TrustRegion, WeakWolfe
-from .state import State
-from .step import NoStep, Step
+from .step import NoStep, State, Step
 
 _CONSTRAINED = Constrained()
 _GRADIENTS = "projected fractional Sobolev gradients"

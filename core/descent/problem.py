@@ -1,15 +1,15 @@
 """What is minimised, in which metric, on which set: values at a point are computed once, on demand."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from ..collision import FreeMotion, Limit, free_motion
-from ..constraints import Constraints, Parts, weighted_barycenter
+from ..constraints import Block, Constraints
 from ..curve import Curve, Mesh
 from ..curve.pins import Pins
 from ..deadline import check_time
@@ -21,34 +21,11 @@ from ..saddle import TangentSpace
 from ..types import FloatArray
 from ..units import Units
 
+if TYPE_CHECKING:
+    from .geometries import Geometry
 
-class Geometry(Protocol):
-    """The set that iterates lie on, its tangent spaces, and the ways from these back to the set."""
 
-    @property
-    def prescribes(self) -> bool:
-        """Whether lengths and barycenters are prescribed, so that there are multipliers and a residual."""
-
-    def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
-        """What is minimised on the set, and its derivative, shape (n, m)."""
-
-    def tangent_space(self, problem: "Problem", curve: Curve, inner: InnerProduct) -> TangentSpace:
-        """Where directions at a curve lie, with the metric there."""
-
-    def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
-        """How far a curve is from the set; shape (rows of the constraints,)."""
-
-    def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
-        """The point of the set, or of a level of the residual, that vertices near it are led to; None if too far.
-
-        ``space`` has the metric of the way; its constraints are those of the base point.
-        """
-
-    def transport(self, point: "Point", u: FloatArray) -> FloatArray:
-        """A vector of another tangent space moved to that of a point; shape (n, m)."""
-
-    def weighted(self, penalty: float) -> "Geometry":
-        """The same with another weight α of length errors; an OptionError if there is none."""
+NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
 
 
 class Solver(Protocol):
@@ -89,7 +66,7 @@ class Problem:
     metric: Metric
     constraints: Constraints
     units: Units
-    geometry: Geometry
+    geometry: "Geometry"
     solver: Solver
     obstacles: tuple[Obstacle, ...] = ()
 
@@ -101,8 +78,8 @@ class Problem:
         pins: Pins,
         obstacles: tuple[Obstacle, ...],
         solver: Solver,
-        geometry: Geometry,
-        parts: Parts | None = None,
+        geometry: "Geometry",
+        blocks: Sequence[Block] | None = None,
     ) -> "Problem":
         """The problem that begins with a curve, whose lengths are to become some others, all in the user's units.
 
@@ -113,8 +90,7 @@ class Problem:
         """
         units, solver = Units.of(curve), solver.on(curve)
         own = curve.with_vertices(units.from_user(curve.vertices))
-        barycenter = weighted_barycenter(own, parts, pins.vertices)
-        constraints = Constraints(lengths / units.scale, barycenter, parts, pins)
+        constraints = replace(Constraints.of(own, pins, blocks), lengths=lengths / units.scale)
         objective = solver.objective(map(units.obstacle_from_user, obstacles))
         return cls(curve.mesh, objective, solver.metric, constraints, units, geometry, solver, obstacles)
 
@@ -137,7 +113,7 @@ class Problem:
         """
         pins, held = self.constraints.pins.on(curve), self.constraints
         lengths = curve.edge_lengths if lengths is None else lengths
-        problem = Problem.of(curve, lengths, pins, self.obstacles, self.solver, self.geometry, held.parts)
+        problem = Problem.of(curve, lengths, pins, self.obstacles, self.solver, self.geometry, held.blocks)
         constraints = replace(problem.constraints, grown=held.grown)
         return replace(problem, constraints=constraints).at_curve(curve)
 
@@ -188,9 +164,6 @@ class Problem:
         return free_motion(self.mesh, start, end, self.obstacles)
 
 
-NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
-
-
 class Point:
     """A polygon with the values that methods ask for, each computed at most once.
 
@@ -222,12 +195,16 @@ class Point:
         point = Point(problem, self.vertices, self.placed)
         return point.with_metric_of(self, 0) if problem.metric is self.problem.metric else point
 
+    def changing(self, **changes: Any) -> "Point":
+        """The same polygon in its problem with some fields replaced, but for the mesh."""
+        return self.within(replace(self.problem, **changes))
+
     @property
     def anchored(self) -> "Point":
         """The same polygon, where approximations of the objective are those for itself: for a search from here."""
         objective = self.problem.objective.frozen_at(self.curve)
         same = objective is self.problem.objective
-        return self if same else self.within(replace(self.problem, objective=objective))
+        return self if same else self.changing(objective=objective)
 
     def with_metric_of(self, other: "Point", steps: int = 1) -> "Point":
         """The same point in the metric of another one, if that is built, so many steps ago, and its own is not."""

@@ -3,12 +3,23 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..collision import Contact, FreeMotion
+from ..messages import Message
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from .problem import Point, Problem
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What a method remembers between steps: its own memory, None at the start, and the last accepted step size."""
+
+    memory: Any = None
+    last_step: float = np.inf
 
 
 class Leg(NamedTuple):
@@ -134,5 +145,6 @@ class NoStep:
     def because(cls, limited_by: Contact | None) -> "NoStep":
         """The usual two reasons: contact, or an energy that does not go down any more."""
         if limited_by is None:
-            return cls("no step along the direction lowers the energy by a measurable amount")
-        return cls(f"{limited_by} are so near to each other that no step is free of contact", limited_by)
+            return cls(Message("no step along the search direction lowers the energy measurably"))
+        close = Message("{contact} are so close that no step is free of contact", contact=limited_by.message)
+        return cls(close, limited_by)

@@ -1,11 +1,10 @@
 """The driver: options and a curve in, proved iterates and an outcome out; its decisions are `interventions`."""
 
-from .iterate import Iterate
 from .loop import Relaxation, WithOutcome
 from .options import RelaxOptions
 from .outcome import Outcome, Status
 from .relax import Result, finish, minimize, relax
-from .trajectory import Trajectory
+from .trajectory import Iterate, Trajectory
 
 __all__ = [
     "Iterate",

@@ -12,12 +12,12 @@ from ..descent import METHODS, Problem
 from ..errors import OptionError, choice
 from ..system.threads import BLAS
 from ..task import Task
-from .iterate import Iterate
 from .loop import WithOutcome, within
 from .options import RelaxOptions
 from .prepare import start_problem
 from .relax import relax
 from .solver import check_size
+from .trajectory import Iterate
 
 
 @dataclass(frozen=True)

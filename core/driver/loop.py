@@ -8,15 +8,12 @@ from ..arguments import checked
 from ..curve.places import at_edges
 from ..deadline import TimeIsUp, TimeLimit
 from ..descent import NoStep, Step
-from .events import Change, Event, Start
-from .interventions import INTERVENTIONS, Intervention
-from .interventions.check_accuracy import with_errors
+from .interventions import INTERVENTIONS
+from .interventions.fallback import with_errors
 from .interventions.grow import with_growth
-from .iterate import Iterate
-from .outcome import DEGENERATE, Outcome, out_of_time, stalled
-from .rises import Rises
-from .run import Run
-from .termination import at_limit, termination
+from .outcome import Outcome, degenerate, out_of_time, stalled
+from .run import Change, Event, Intervention, Run, Start
+from .trajectory import Iterate
 
 Relaxation = Generator[Iterate, None, Outcome]
 
@@ -41,7 +38,7 @@ class WithOutcome:
 
 
 def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
-    """The same until the time is up, also in the middle of a step; what others do between iterates does not count."""
+    """The same until the time is up, also in the middle of a step; time between iterates does not count."""
     while True:
         try:
             with limit:
@@ -56,36 +53,34 @@ def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
         yield iterate
 
 
-def iterates(run: Run, interventions: Sequence[Callable[[Run], Intervention]] = INTERVENTIONS) -> Relaxation:
+def iterates(run: Run, interventions: Sequence[Callable[[Run], Intervention]] | None = None) -> Relaxation:
     """Yield the start and every accepted step or change of mesh, each once; return how it ended."""
-    rises = Rises()
     yield run.iterate
-    outcome = yield from descent(run, rises, interventions)
-    return told(outcome, run, rises)
+    outcome = yield from descent(run, interventions)
+    return summarised(outcome, run)
 
 
-def descent(
-    run: Run, rises: Rises, interventions: Sequence[Callable[[Run], Intervention]] = INTERVENTIONS
-) -> Relaxation:
-    """Yield what comes after the point that a run has reached; return how it ended, without what `told` adds."""
+def descent(run: Run, interventions: Sequence[Callable[[Run], Intervention]] | None = None) -> Relaxation:
+    """Yield what comes after the point that a run has reached; return how it ended, without the run's summary."""
+    kinds = INTERVENTIONS if interventions is None else interventions
     try:
-        return (yield from _descent(run, [make(run) for make in interventions], rises))
+        return (yield from _descent(run, [make(run) for make in kinds]))
     except np.linalg.LinAlgError as error:
-        return stalled(DEGENERATE.format(error=error))
+        return stalled(degenerate(error))
 
 
-def told(outcome: Outcome, run: Run, rises: Rises) -> Outcome:
-    """The outcome with what is to be said of the whole run."""
-    return with_errors(with_growth(rises.told(outcome, run.iterate.index), run), run)
+def summarised(outcome: Outcome, run: Run) -> Outcome:
+    """The outcome with what there is to say of the whole run."""
+    return with_errors(with_growth(run.rises.told(outcome, run.iterate.index), run), run)
 
 
-def _descent(run: Run, interventions: Sequence[Intervention], rises: Rises) -> Relaxation:
+def _descent(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
     event: Event = Start()
     while True:
         answer = _answer(event, interventions)
         if isinstance(answer, Change) and run.allows(answer):
             mesh = run.problem.mesh
-            yield from _changed(run, answer, rises)
+            yield from run.change(answer)
             if run.problem.mesh is not mesh:
                 event = Start()
                 continue
@@ -93,13 +88,10 @@ def _descent(run: Run, interventions: Sequence[Intervention], rises: Rises) -> R
             limits, curve = answer.limited_by, run.iterate.curve
             return stalled(answer.reason, None if limits is None else at_edges(curve, limits.edges))
         elif isinstance(event, Outcome):
-            return answer if isinstance(answer, Outcome) else at_limit(run)
-        event = termination(run) or run.step()
+            return answer if isinstance(answer, Outcome) else run.at_limit()
+        event = run.termination() or run.step()
         if isinstance(event, Step):
-            before = run.iterate
             yield run.accept(event)
-            if run.problem.geometry.prescribes:
-                rises.step(before, run.iterate)
 
 
 def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Change:
@@ -110,16 +102,3 @@ def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Chan
             return answer
         event = answer
     return event
-
-
-def _changed(run: Run, change: Change, rises: Rises) -> Iterator[Iterate]:
-    """Make a change; yield the iterates it leads to, if any."""
-    for step in change.steps:
-        before = run.iterate
-        yield run.accept(step)
-        rises.change(before, run.iterate)
-    before = run.iterate
-    remeshed = run.change(change)
-    if remeshed is not None:
-        rises.change(before, remeshed)
-        yield remeshed

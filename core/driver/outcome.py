@@ -4,10 +4,9 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from ..arguments import checked_fields
-from ..errors import Place, counted
+from ..errors import Place
 from ..hierarchy import SampledErrors
-
-_NEXT = "; "  # between clauses
+from ..messages import Message, joined
 
 
 class Status(Enum):
@@ -29,8 +28,8 @@ class Outcome:
     ----------
     status
         Why it ended.
-    message
-        The same in one sentence.
+    clauses
+        The same in words, and what else there is to say.
     negative_eigenvalues
         Of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum, more at a saddle.
     sampled_errors
@@ -42,7 +41,7 @@ class Outcome:
     """
 
     status: Status
-    message: str
+    clauses: tuple[str, ...]
     negative_eigenvalues: int | None = None
     sampled_errors: SampledErrors | None = None
     place: Place | None = None
@@ -61,67 +60,48 @@ class Outcome:
         """Whether the projected gradient is as small as asked for."""
         return self.status is Status.CONVERGED
 
-    def adding(self, more: str) -> "Outcome":
-        """The same, with more to say."""
-        return replace(self, message=f"{self.message}{_NEXT}{more}")
+    @property
+    def message(self) -> Message:
+        """All clauses in one sentence."""
+        return joined(self.clauses, "; ")
 
-    def stalling(self, reason: str) -> "Outcome":
-        """Stalled instead, for a reason that is a clause; what else there was to say is said still."""
-        _, *told = self.message.split(_NEXT)
-        return replace(self, status=Status.STALLED, message=_NEXT.join([stalled(reason).message, *told]))
+    def adding(self, template: str, **facts: object) -> "Outcome":
+        """The same, with another clause."""
+        return replace(self, clauses=(*self.clauses, Message(template, **facts)))
+
+    def stalling(self, reason: str, **facts: object) -> "Outcome":
+        """Stalled instead, for another reason; the other clauses stay."""
+        return replace(
+            self, status=Status.STALLED, clauses=(*stalled(Message(reason, **facts)).clauses, *self.clauses[1:])
+        )
 
 
 def converged(norm: float, bound: float) -> Outcome:
     """The projected gradient is small enough."""
-    return Outcome(Status.CONVERGED, f"converged: projected gradient {norm:.3g} ≤ {bound:.3g}")
+    message = Message("converged: projected gradient {norm:.3g} ≤ {bound:.3g}", norm=norm, bound=bound)
+    return Outcome(Status.CONVERGED, (message,))
 
 
 def out_of_iterations(count: int) -> Outcome:
     """The limit is reached."""
-    return Outcome(Status.ITERATION_LIMIT, f"stopped after {counted(count, 'iteration')}, as asked for")
+    return Outcome(Status.ITERATION_LIMIT, (Message("stopped at the iteration limit ({count})", count=count),))
 
 
 def out_of_time(seconds: float) -> Outcome:
     """The time is up."""
-    return Outcome(Status.TIME_LIMIT, f"stopped at the time limit, {seconds:g} s, as asked for")
+    return Outcome(Status.TIME_LIMIT, (Message("stopped at the time limit ({seconds:g} s)", seconds=seconds),))
 
 
 def stalled(reason: str, place: Place | None = None) -> Outcome:
-    """There is no way on, for a reason that is a clause."""
-    return Outcome(Status.STALLED, f"stalled: {reason}", place=place)
+    """There is no way on, for a reason that is a clause, at some place if it is somewhere."""
+    return Outcome(Status.STALLED, (Message("stalled: {reason}", reason=reason),), place=place)
 
 
-INTERRUPTED = Outcome(Status.INTERRUPTED, "interrupted: the curve reached so far is kept")
-OUT_OF_MEMORY = stalled("memory ran out; the curve reached so far is kept")
-FEWER = "it has {vertices} vertices, {given} at the start"
-DEGENERATE = "the curve has become too degenerate: {error}"
-HELD = (
-    "parts that are not linked, which would drift apart without limit, are held in place; "
-    "the sum of their own energies is {energy:.6g}"
-)
-FROZEN = "nothing can move: all vertices are pinned, or on straight arcs between pins"
-SADDLE, MINIMUM = "a saddle with index {index}", "a minimum"
-NO_WAY_DOWN = "no way down was found"
-ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
-COMPOSITE = (
-    "strands pull tight, and would do so without limit: the curve is composite, knotted both inside and outside the "
-    "ball of radius {radius:.3g} around ({center}), and has no shape of least energy"
-)
-UNTESTED = "whether it is composite was not tested, as its components could lie in too many ways"
-UNRESOLVED = (
-    "strands are nearer than this mesh resolves; with more vertices or a finer mesh there is less energy to reach"
-)
-ADVICE = "more vertices or an adaptive mesh may help"
-CROWDED = "no motion that changes the lengths as asked for is free of contact and takes little enough energy"
-GREW = "grew to {grown:.6g} of {wanted:.6g} times its length"
-TIGHTENED = "distant clusters were expanded to order {order} for the accuracy asked for"
-INACCURATE = (
-    "the hierarchical solver is less accurate than asked for: dense sums over sampled edges put its relative errors at "
-    "up to {energy:.1g} in the energy and {norm:.1g} in the gradient's norm; the dense solver has none of them"
-)
-ROSE = "the energy rose in {count} of {steps} steps, by {total:.3g} in all, while edge lengths were evened out"
-UNEVEN = "edge lengths are still off their targets by up to {percent:.2g} %"
-HOPS = "{taken} of {tried} led lower"
-IS_UNKNOT = "the curve is an unknot, and a circle has less energy"
-MAY_BE_UNKNOT = "the curve may be an unknot, for its Alexander polynomial is trivial, and a circle has less energy"
-REMESHED = "changes of mesh or shape raised the energy: {rises}"
+def degenerate(error: Exception) -> Message:
+    """Why linear algebra fails."""
+    return Message("the curve has become too degenerate: {error}", error=str(error).rstrip("."))
+
+
+_KEPT = Message("the curve reached so far is kept")
+INTERRUPTED = Outcome(Status.INTERRUPTED, (Message("interrupted: {kept}", kept=_KEPT),))
+OUT_OF_MEMORY = stalled(Message("memory ran out")).adding(_KEPT)

@@ -12,17 +12,18 @@ from ..curve import Curve
 from ..deadline import TimeLimit
 from ..errors import CurveError, counted
 from ..hierarchy import moebius_energy
+from ..messages import COMPONENT, VERTEX_COUNT, Message
 from ..system.threads import BLAS
 from ..task import Task
 from ..units import centred
-from .hops import hopping
-from .iterate import Iterate
+from .hopping import hopping
 from .loop import Relaxation, WithOutcome, within
 from .options import RelaxOptions
-from .outcome import FEWER, INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
+from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import start_problem
 from .run import Run
 from .solver import check_size
+from .trajectory import Iterate
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
 
@@ -152,25 +153,28 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     try:
         run = Run(start_problem(start, options), start.curve, options)
     except np.linalg.LinAlgError as error:
-        raise CurveError(
-            f"the curve is too degenerate to be relaxed: {error}; {_remedy(start.curve, options)}"
-        ) from error
+        degenerate = "the curve is too degenerate to be relaxed: {error}; {remedy}"
+        raise CurveError(Message(degenerate, error=str(error), remedy=_remedy(start.curve, options))) from error
     work = BLAS.bounding(hopping(run))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
 
 
-def _remedy(curve: Curve, options: RelaxOptions) -> str:
+def _remedy(curve: Curve, options: RelaxOptions) -> Message:
     """What to do about a singular matrix: parts too small for their distances, heavy terms, or strands too near."""
     lengths = curve.component_lengths
     shortest, width = int(lengths.argmin()), float(np.ptp(curve.vertices, axis=0).max())
     if width < WIDTHS * lengths[shortest]:
-        return "give terms smaller weights, or move near strands apart" if options.terms else "move near strands apart"
-    return (
-        f"component {shortest + 1} is only {lengths[shortest]:.3g} long in a link {width:.3g} wide, too small or too "
-        "far away to be relaxed together with the rest: relax it by itself, or move or scale it"
+        if options.terms:
+            return Message("give terms smaller weights, or move close strands apart")
+        return Message("move close strands apart")
+    small = (
+        "{component} is only {length:.3g} long in a link {width:.3g} wide, too small or too far away to be relaxed "
+        "together with the rest: relax it by itself, or move or scale it"
     )
+    component = Message(COMPONENT, number=shortest + 1)
+    return Message(small, component=component, length=float(lengths[shortest]), width=width)
 
 
 @checked
@@ -211,6 +215,7 @@ def finish(
     assert run.outcome is not None, "the loop is through"
     cut_short = run.outcome in (OUT_OF_MEMORY, INTERRUPTED) or run.outcome.status is Status.TIME_LIMIT
     if cut_short and len(last.curve) < given:
-        run.outcome = run.outcome.adding(FEWER.format(vertices=len(last.curve), given=given))
+        fewer = Message(VERTEX_COUNT, count=len(last.curve))
+        run.outcome = run.outcome.adding("it has {vertices}, {given} at the start", vertices=fewer, given=given)
     seconds = time.perf_counter() - started
     return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task)

@@ -3,8 +3,9 @@
 from itertools import pairwise
 
 from ..energies.components import energy_scale
-from .iterate import Iterate
-from .outcome import REMESHED, ROSE, Outcome
+from ..messages import Message, joined
+from .outcome import Outcome
+from .trajectory import Iterate
 
 RISE = 1e-9  # increase of the energy, by its scale, that is told of; less is rounding
 NAMED = 3  # changes of mesh whose energies are told one by one
@@ -37,14 +38,18 @@ class Rises:
         """The outcome after so many steps, with a clause for each kind of rise."""
         rises = [rise for rise in self._steps if rise]
         if rises:
-            outcome = outcome.adding(ROSE.format(count=len(rises), steps=steps, total=sum(rises)))
+            rose = "the energy rose in {count} of {steps} steps, by {total:.3g} in total, while lengths were equalized"
+            outcome = outcome.adding(rose, count=len(rises), steps=steps, total=sum(rises))
         changes = [change for change in self._changes if _total(change)]
         if not changes:
             return outcome
-        rest, total = len(changes) - NAMED, sum(map(_total, changes[NAMED:]))
-        again = "once more, by {:.3g}" if rest == 1 else f"{rest} times more, by {{:.3g}} in all"
-        more = f", and {again.format(total)}" if rest > 0 else ""
-        return outcome.adding(REMESHED.format(rises=", ".join(map(_energies, changes[:NAMED])) + more))
+        told, rest = joined([_energies(change) for change in changes[:NAMED]], ", "), changes[NAMED:]
+        if rest:
+            more = "{rises}, and in {count} further changes by {total:.3g} in total"
+            if len(rest) == 1:
+                more = "{rises}, and in another change by {total:.3g}"
+            told = Message(more, rises=told, count=len(rest), total=sum(map(_total, rest)))
+        return outcome.adding("changes of mesh or shape raised the energy: {rises}", rises=told)
 
 
 def _rise(before: Iterate, after: Iterate) -> float:
@@ -57,7 +62,7 @@ def _total(change: list[Iterate]) -> float:
     return sum(_rise(before, after) for before, after in pairwise(change))
 
 
-def _energies(change: list[Iterate]) -> str:
+def _energies(change: list[Iterate]) -> Message:
     """The energies before, between if that is the highest (or, where none is above the first, the lowest), and after.
 
     With as many digits as it takes to see that they are not equal.
@@ -67,4 +72,5 @@ def _energies(change: list[Iterate]) -> str:
     between = highest if highest > first else min(energies)
     passed = [first, last] if between in (first, last) else [first, between, last]
     digits = 6 if f"{first:.6g}" != f"{between:.6g}" else 12
-    return f"{' → '.join(f'{energy:.{digits}g}' for energy in passed)} at iteration {change[-1].index}"
+    shown = " → ".join(f"{energy:.{digits}g}" for energy in passed)
+    return Message("{energies} at iteration {number}", energies=shown, number=change[-1].index)

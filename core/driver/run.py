@@ -1,48 +1,79 @@
-"""Where one relaxation stands."""
+"""One relaxation under way: where it stands, what happens to it, and what may be done about that between steps."""
 
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..curve import Curve
+from ..curve import Curve, Mesh
 from ..curve.refine import Resolution
-from ..descent import METHODS, NoStep, Point, Problem, State, Step
+from ..descent import METHODS, Method, NoStep, Point, Problem, State, Step
+from ..energies.components import energy_scale
 from ..hierarchy import SampledErrors
 from ..types import FloatArray
-from .events import Change
-from .iterate import Iterate
 from .options import RelaxOptions
-from .outcome import DEGENERATE
+from .outcome import Outcome, converged, degenerate, out_of_iterations
+from .rises import Rises
+from .trajectory import Iterate
+
+LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| of a converged curve: a hundred times less than any figure shows
+
+
+class Start:
+    """Nothing has happened yet on this mesh."""
+
+
+Event = Start | Step | NoStep | Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """Steps, if any, and then another view of the same curve.
+
+    Attributes
+    ----------
+    steps
+        Motions that come first.
+    point
+        The curve reached, in another problem: with other constraints, or on another mesh.
+    method
+        The one that takes over.
+    resolution
+        New bounds of edge lengths.
+    """
+
+    steps: tuple[Step, ...] = ()
+    point: Point | None = None
+    method: Method | None = None
+    resolution: Resolution | None = None
 
 
 class Run:
-    """A relaxation under way: the point it has reached, and what its method remembers.
+    """A relaxation under way: the point reached, and what its method remembers.
 
     Parameters
     ----------
     problem
-        What is solved on the start's mesh.
+        On the mesh of the start.
     start
         The refined curve, in the user's units.
     options
-        What is asked for.
+        As the user gave them.
     max_iterations
-        How many iterations there may be, if not as many as the options allow.
+        Limit of iterations, if not that of the options.
 
     Attributes
     ----------
-    options
-        The same.
-    point
-        Where it stands.
     iterate
-        The same as users see it.
+        The point as users see it.
     method
-        Which method takes the next step.
+        The one that takes the next step.
     resolution
-        How long edges may be, where the mesh can be changed.
+        Bounds of edge lengths, where the mesh may change.
     sampled_errors
-        Of the hierarchical solver, when they were last looked at.
+        Of the hierarchical solver, when last checked.
+    rises
+        Where the energy went up.
     """
 
     def __init__(
@@ -53,15 +84,16 @@ class Run:
         self.resolution = Resolution(options.vertices, clearance=problem.clearance)
         self.method = METHODS[options.method]
         self.sampled_errors: SampledErrors | None = None
+        self.rises = Rises()
         self.point = problem.at_curve(start).anchored
         self._memory = State()
-        self._tried = 0
+        self._charged = 0
         self._certified = problem.certifiable  # an embedded start, and so far no motion
         self.iterate = self._described(0)
 
     @property
     def problem(self) -> Problem:
-        """What is solved on the present mesh, in the metric of the method that was asked for."""
+        """The problem on the present mesh, in the metric of the method that was asked for."""
         return self.point.problem
 
     @property
@@ -71,70 +103,106 @@ class Run:
 
     @property
     def iterations_left(self) -> int:
-        """How many more iterations there may be."""
+        """The budget that is left."""
         return self.max_iterations - self.iterations
 
     @property
     def iterations(self) -> int:
-        """How many there were, those of trials included of which nothing is left."""
-        return self.iterate.index + self._tried
+        """Those so far, including those of rejected trials."""
+        return self.iterate.index + self._charged
+
+    def charge(self, iterations: int) -> None:
+        """Charge a trial's iterations to the budget."""
+        self._charged += iterations
 
     def step(self) -> Step | NoStep:
         """The present method's next step, ending at a point of the present problem."""
         point = self.point
         if self.method.name != self.options.method:
-            point = point.within(replace(self.problem, metric=self.problem.solver.of_metric(self.method.metric)))
+            point = point.changing(metric=self.problem.solver.of_metric(self.method.metric))
         try:
             step, self._memory = self.method.rule.step(point, self._memory)
             if isinstance(step, Step):
                 step = step.within(self.problem)
                 step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be told)
         except np.linalg.LinAlgError as error:
-            return NoStep(DEGENERATE.format(error=error))
+            return NoStep(degenerate(error))
         return step
 
     def accept(self, step: Step) -> Iterate:
-        """Go to the end of a step."""
-        self.point = step.point.anchored
-        self._certified &= step.certified
-        path = tuple(leg.end.placed for leg in step.legs)
-        self.iterate = self._described(self.iterate.index + 1, step.size, path)
+        """Go to the end of a method's step."""
+        before = self.iterate
+        self._go(step)
+        if self.problem.geometry.prescribes:
+            self.rises.step(before, self.iterate)
         return self.iterate
 
-    def count_tried(self, iterations: int) -> None:
-        """Take those of a trial off the iterations that are left."""
-        self._tried += iterations
-
     def hop(self, end: Point, path: tuple[FloatArray, ...], certified: bool) -> Iterate:
-        """Go in one iterate to a point on the same mesh, by a way that was found elsewhere."""
+        """Go in one iterate to a point on the same mesh, by a path that was found elsewhere."""
         self.point, self.method, self._memory = end, METHODS[self.options.method], State()
         self._certified &= certified
         self.iterate = self._described(self.iterate.index + 1, path=path)
         return self.iterate
 
     def allows(self, change: Change) -> bool:
-        """Whether a change is within the limit: a step is an iteration, and so is another mesh."""
+        """Whether the budget suffices for a change: each step is an iteration, and so is another mesh."""
         return len(change.steps) + self._remeshes(change) <= self.iterations_left
 
-    def change(self, change: Change) -> Iterate | None:
-        """Go on from a point of another problem, or by another method; a new mesh makes a new iterate."""
+    def change(self, change: Change) -> Iterator[Iterate]:
+        """Make a change; yield the iterates it leads to, one for each step and one for a new mesh."""
+        for step in change.steps:
+            before = self.iterate
+            self._go(step)
+            yield self.iterate
+            self.rises.change(before, self.iterate)
         self.resolution = change.resolution or self.resolution
         if change.method is not None:
             self.method, self._memory = change.method, State()
         if change.point is None:
-            return None
-        remeshed = self._remeshes(change)
+            return
+        before, remeshed = self.iterate, self._remeshes(change)
         self.point = change.point.anchored
         self._memory = State(None, self._memory.last_step)
         self.iterate = self._described(self.iterate.index + remeshed)
-        return self.iterate if remeshed else None
+        if remeshed:
+            self.rises.change(before, self.iterate)
+            yield self.iterate
+
+    def termination(self) -> Outcome | None:
+        """How the run ends here of itself; None if it goes on."""
+        bound = gradient_bound(self.options, self.problem.mesh, self.point.energy)
+        if self.point.gradient_norm <= bound and self._feasible:
+            norm = self.point.with_own_metric().gradient_norm
+            if norm <= bound:
+                outcome = converged(norm, bound)
+                frozen = "nothing can move: the curve is pinned, or straight between pins"
+                return outcome.adding(frozen) if self.frozen else outcome
+        return self.at_limit() if self.iterations_left <= 0 else None
+
+    def at_limit(self) -> Outcome:
+        """How the run ends for want of iterations."""
+        outcome = out_of_iterations(self.iterations)
+        if self._feasible:
+            return outcome
+        uneven = "lengths are still up to {percent:.2g} % off target"
+        return outcome.adding(uneven, percent=100 * self.iterate.edge_length_error)
+
+    @property
+    def _feasible(self) -> bool:
+        return not self.problem.geometry.prescribes or self.iterate.edge_length_error <= LENGTHS_REACHED
+
+    def _go(self, step: Step) -> None:
+        self.point = step.point.anchored
+        self._certified &= step.certified
+        path = tuple(leg.end.placed for leg in step.legs)
+        self.iterate = self._described(self.iterate.index + 1, step.size, path)
 
     def _remeshes(self, change: Change) -> bool:
         """Whether it is to another mesh, perhaps with as many vertices."""
         return change.point is not None and change.point.problem.mesh is not self.problem.mesh
 
     def _described(self, index: int, step_size: float = 0.0, path: tuple[FloatArray, ...] = ()) -> Iterate:
-        point = self.point
+        point, constraints = self.point, self.problem.constraints
         return Iterate(
             index=index,
             curve=Curve(point.placed, point.problem.mesh),
@@ -143,8 +211,59 @@ class Run:
             step_size=step_size,
             path=path,
             certified=self._certified,
-            edge_length_error=point.problem.constraints.length_error(point.curve),
-            grown=point.problem.constraints.grown,
+            edge_length_error=constraints.length_error(point.curve),
+            grown=constraints.grown,
             method=self.method.name,
-            pins=tuple(point.problem.constraints.pins.vertices.tolist()),
+            pins=tuple(constraints.pins.vertices.tolist()),
         )
+
+
+def gradient_bound(options: RelaxOptions, mesh: Mesh, energy: float) -> float:
+    """Norm of the projected gradient at which a curve of this energy is at rest."""
+    return options.tolerance * float(np.sqrt(energy_scale(mesh, energy)))
+
+
+@dataclass(eq=False)
+class Intervention:
+    """What may change a run between steps: made for one run, it is called after every event.
+
+    A subclass overrides the methods for the events that concern it, or all at once by ``__call__``.  Each answers with
+    the event as later interventions are to see it, with a change, after which these are not asked, or with None, which
+    leaves the event as it is.  What can be set are fields.
+    """
+
+    run: Run
+
+    def __call__(self, event: Event) -> Event | Change:
+        """Answer with the event, or with a change."""
+        answer: Event | Change | None
+        match event:
+            case Start():
+                answer = self.started()
+            case Step():
+                answer = self.stepped(event)
+            case NoStep():
+                answer = self.stuck(event)
+            case Outcome():
+                answer = self.ended(event)
+        return event if answer is None else answer
+
+    def started(self) -> Event | Change | None:
+        """At the start, and after every change of mesh."""
+        return None
+
+    def stepped(self, step: Step) -> Event | Change | None:
+        """After a step of the method."""
+        return None
+
+    def stuck(self, found: NoStep) -> Event | Change | None:
+        """Where the method finds no step."""
+        return None
+
+    def ended(self, outcome: Outcome) -> Event | Change | None:
+        """Where the run would end."""
+        return self.converged(outcome) if outcome.converged else None
+
+    def converged(self, outcome: Outcome) -> Event | Change | None:
+        """Where it would end at rest."""
+        return None

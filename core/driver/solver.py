@@ -10,8 +10,8 @@ from ..descent import METHODS, Method
 from ..energies import ENERGIES, TERMS, Energy, MoebiusEnergy, Objective, Stiff, Term, Weighted
 from ..errors import CurveError, OptionError
 from ..hierarchy import HierarchicalMoebiusEnergy, compressed
-from ..hierarchy.inner_product import block_count
-from ..hierarchy.metric import MAX_VERTICES
+from ..hierarchy.inner_product import MAX_VERTICES, block_count
+from ..messages import VERTEX_COUNT, Message
 from ..metrics import METRICS, Metric
 from ..obstacle import Obstacle
 from ..quadrature import Rule
@@ -99,10 +99,10 @@ def check_size(curve: Curve, options: RelaxOptions) -> None:
     if options.vertices is not None and options.vertices > most:
         raise OptionError(f"vertices is {options.vertices!s:.40}; {method} has room and time for {most}")
     if len(curve) > most:
-        raise CurveError(
-            f"the curve has {len(curve)} vertices; {method} has room and time for {most}; "
-            "thin the curve out or relax its components apart"
+        large = (
+            "the curve has {vertices}; {method} has room and time for {most}; thin it out or relax its parts separately"
         )
+        raise CurveError(Message(large, vertices=Message(VERTEX_COUNT, count=len(curve)), method=method, most=most))
 
 
 def max_vertices(options: RelaxOptions, wanted: int) -> int:

@@ -1,4 +1,4 @@
-"""Energies of polygons: one file each, and the table they are chosen from."""
+"""Energies of polygons, and the table they are chosen from."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -6,15 +6,13 @@ from types import MappingProxyType
 from ..quadrature import Rule
 from .barrier import Barrier
 from .bending import Bending
+from .densities import EDGE_ENERGY, VERTEX_ENERGY, moebius_kpoint
 from .density import Density
-from .edge import EDGE_ENERGY
 from .energy import Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
 from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
-from .moebius_kpoint import moebius_kpoint
 from .objective import Objective, Weighted
 from .tangent_point import TANGENT_POINT_ENERGY
-from .vertex import VERTEX_ENERGY
 
 ENERGIES: Mapping[str, Energy] = MappingProxyType(
     {

@@ -8,18 +8,25 @@ q = 1 and 0 from q = 9/4, so B is one C² function of the vertices and vanishes 
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.spatial import cKDTree
 
 from ..arguments import checked_fields
 from ..curve import Curve
+from ..curve.tiles import EdgePairIndices
 from ..types import BoolArray, FloatArray, IntArray
-from .contributions import Contributions
-from .edge_pairs import EdgePairs, scatter_first, scatter_second
-from .jets import Jet
-from .near_pairs import FAR, NEAR, is_replaced, near_pairs
+from .complex_steps import change, stepped
+from .edge_pairs import DELTA, E, EdgePairs, F, Jet, scatter_first, scatter_second
+from .inverse_square import inverse_square
+
+NEAR = 1.0  # of q, up to which only the exact energy of a pair counts,
+FAR = 2.25  # and from where on only its midpoint energy does
+MIN_INDEX_DISTANCE = 4
+BLOCK = 4096  # pairs at once, for the processor's cache
 
 
 @checked_fields
@@ -31,7 +38,7 @@ class Barrier:
     ----------
     replaces_midpoint
         Whether the midpoint contributions are subtracted, as is right for the default energy that contains them.
-        Other energies do not: theirs is Σ χ W_exact, a positive barrier on top of what they say themselves.
+        For other energies the barrier is Σ χ W_exact, positive and on top of their own contributions.
     left_out
         Whether the energy leaves the pairs with χ = 1 out (`replaced_pairs`), so that theirs is W_exact alone.  The sum
         is the same, but nothing is added that is subtracted again: at a distance g that would be some 1/g² times the
@@ -49,65 +56,124 @@ class Barrier:
         return self.value_and_derivative(curve)[0]
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """B and its derivative with respect to the vertices, shape (n, m)."""
-        total, first = 0.0, _by_pair(curve)
-        for block, i, j in _blocks(curve, 4096):
-            jet = self._contributions(EdgePairs.of(curve, i, j), is_replaced(curve, i, j))
-            total += float(jet.value.sum())
-            first[block] = jet.first
-        # unordered pairs are listed, the sum is over ordered ones
-        return 2.0 * total, 2.0 * scatter_first(curve.mesh, *near_pairs(curve), first)
+        value, first = self._sum(curve, curve.vertices)
+        return float(value), first
 
     def hessian(self, curve: Curve) -> FloatArray:
-        """Second derivative D²B, symmetric, shape (n·m, n·m), in the order of ``vertices.ravel()``."""
         return np.asarray(self.sparse_hessian(curve).toarray())
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²B as a sparse matrix: it couples near edges only."""
         total = sp.csr_array((curve.vertices.size, curve.vertices.size))
-        for _, i, j in _blocks(curve, 16384):
-            # the jets' matrices, many of 3m × 3m for each pair, should stay in the processor's cache
-            parts = [slice(first, first + 128) for first in range(0, len(i), 128)]
-            pairs = [(EdgePairs.of(curve, i[s], j[s]), is_replaced(curve, i[s], j[s])) for s in parts]
-            second = [self._contributions(p.with_coordinates(), replaced).second for p, replaced in pairs]
-            total = total + scatter_second(curve.mesh, i, j, 2.0 * np.concatenate(second))
+        for i, j in _blocks(curve):
+            pairs, replaced = EdgePairs.of(curve.mesh, curve.vertices, i, j), is_replaced(curve, i, j)
+            second = [change(self._contributions(each, replaced).first) for each in pairs.along_coordinates()]
+            total = total + scatter_second(curve.mesh, i, j, 2.0 * np.stack(second, axis=2))
         return total
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        """D²B v for ``v`` of shape (n, m); shape (n, m)."""
-        first = _by_pair(curve)
-        for block, i, j in _blocks(curve, 4096):
-            jet = self._contributions(EdgePairs.of(curve, i, j).moving(curve.mesh, i, j, v), is_replaced(curve, i, j))
-            first[block] = jet.second[:, :, 0]
-        return 2.0 * scatter_first(curve.mesh, *near_pairs(curve), first)
+        return change(self._sum(curve, stepped(curve.vertices, v))[1])
+
+    def _sum(self, curve: Curve, vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """B and its derivative at a curve's vertices, or after a complex step from them."""
+        total, first = np.zeros((), vertices.dtype), [np.empty((0, 3 * curve.dimension), vertices.dtype)]
+        for i, j in _blocks(curve):
+            jet = self._contributions(EdgePairs.of(curve.mesh, vertices, i, j), is_replaced(curve, i, j))
+            total = total + jet.value.sum()
+            first.append(jet.first)
+        # unordered pairs are listed, the sum is over ordered ones
+        return 2.0 * total, 2.0 * scatter_first(curve.mesh, *near_pairs(curve), np.concatenate(first))
 
     def _contributions(self, pairs: EdgePairs, replaced: BoolArray) -> Jet:
         """χ (W_exact − W_mid) of pairs of edges, those ``replaced`` that have χ = 1."""
-        w = Contributions(pairs)
-        q = w.closeness()
-        excess = w.exact()
+        q, excess = closeness(pairs), exact(pairs)
         if self.replaces_midpoint:
-            excess = excess - (w.midpoint().where(~replaced) if self.left_out else w.midpoint())
+            excess = excess - (midpoint(pairs).where(~replaced) if self.left_out else midpoint(pairs))
         return q.compose(*cutoff(q.value)) * excess
 
 
-def _blocks(curve: Curve, size: int) -> Iterator[tuple[slice, IntArray, IntArray]]:
+def _blocks(curve: Curve) -> Iterator[tuple[IntArray, IntArray]]:
     """The near pairs in blocks, to bound the memory."""
     i, j = near_pairs(curve)
-    for first in range(0, len(i), size):
-        block = slice(first, first + size)
-        yield block, i[block], j[block]
+    for first in range(0, len(i), BLOCK):
+        yield i[first : first + BLOCK], j[first : first + BLOCK]
 
 
-def _by_pair(curve: Curve) -> FloatArray:
-    """Room for the derivative of each near pair by (Δ, e, f); shape (pairs, 3m)."""
-    return np.empty((len(near_pairs(curve)[0]), 3 * curve.dimension))
-
-
-def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """χ(q), the quintic smoothstep from 1 (q ≤ 1) to 0 (q ≥ 9/4), and its first and second derivative."""
+def cutoff(q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """χ(q), the quintic smoothstep from 1 (q ≤ 1) to 0 (q ≥ 9/4), and its derivative."""
     x = np.clip((FAR - q) / (FAR - NEAR), 0.0, 1.0)
-    product = x * (1.0 - x)
-    slope, curvature = 30.0 * product**2, 60.0 * product * (1.0 - 2.0 * x)
-    chi = np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x * x))
-    return chi, -slope / (FAR - NEAR), curvature / (FAR - NEAR) ** 2
+    return np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x * x)), -30.0 * (x * (1.0 - x)) ** 2 / (FAR - NEAR)
+
+
+def closeness(pairs: EdgePairs) -> Jet:
+    """q = |Δ|²/(|e| + |f|)², as a jet in (Δ, e, f)."""
+    total = pairs.inner(E, E).sqrt() + pairs.inner(F, F).sqrt()
+    return pairs.inner(DELTA, DELTA) * (total * total).reciprocal()
+
+
+def midpoint(pairs: EdgePairs) -> Jet:
+    """W_mid = (|e||f| + ⟨e, f⟩)/|Δ|² − 2 ⟨Δ, e⟩⟨Δ, f⟩/|Δ|⁴, the one-point rule, as a jet in (Δ, e, f)."""
+    s = pairs.inner(DELTA, DELTA).reciprocal()
+    p, q = pairs.inner(DELTA, E) * s, pairs.inner(DELTA, F) * s
+    return (_area(pairs) + pairs.inner(E, F)) * s - (p * q).scaled(2.0)
+
+
+def exact(pairs: EdgePairs) -> Jet:
+    """W_exact = ∬ (1 − cos α)/r² over both edges, however near they are, as a jet in (Δ, e, f).
+
+    For edges from x₀ to x₁ and y₀ to y₁ the cosine part is log(|x₁−y₁| |x₀−y₀| / (|x₁−y₀| |x₀−y₁|)); only ∬ 1/r² needs
+    quadrature.  Relative error of the values at most 1e-8; edges must not touch.
+    """
+
+    def log_square(x: float, y: float) -> Jet:
+        return pairs.inner((1.0, x, -y), (1.0, x, -y)).log()
+
+    same = log_square(0.5, 0.5) + log_square(-0.5, -0.5)
+    cosine = (same - log_square(0.5, -0.5) - log_square(-0.5, 0.5)).scaled(0.5)
+    return _area(pairs) * inverse_square(pairs) - cosine
+
+
+def _area(pairs: EdgePairs) -> Jet:
+    return pairs.inner(E, E).sqrt() * pairs.inner(F, F).sqrt()
+
+
+def replaced_pairs(curve: Curve) -> EdgePairIndices:
+    """Those of the near pairs that count with their exact energy alone."""
+    i, j = near_pairs(curve)
+    replaced = is_replaced(curve, i, j)
+    return i[replaced], j[replaced]
+
+
+def is_replaced(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
+    """Whether q ≤ 1; coordinate by coordinate, so that the answer for a pair does not depend on the others."""
+    chord = (curve.midpoints[i] - curve.midpoints[j]).T
+    return np.asarray(sum(c * c for c in chord) <= NEAR * (curve.edge_lengths[i] + curve.edge_lengths[j]) ** 2)
+
+
+@lru_cache(maxsize=2)
+def near_pairs(curve: Curve) -> tuple[IntArray, IntArray]:
+    """Unordered pairs of edges with q < 9/4 that the barrier counts, as two index arrays, no longer edge first.
+
+    A k-d tree per octave of edge lengths keeps the candidates few when lengths differ a lot: a near pair
+    has |Δ| < 3 max(ℓ_I, ℓ_J), so each edge is searched within 3 lengths among edges no longer than its octave.
+    The last answers are kept, because energy and barrier ask the same.
+    """
+    ell, midpoints = curve.edge_lengths, curve.midpoints
+    octave = np.frexp(ell)[1]
+    found: list[FloatArray] = []
+    for level in np.unique(octave):
+        long = np.flatnonzero(octave == level)
+        short = np.flatnonzero(octave <= level)
+        reach = 2.0 * np.sqrt(FAR) * float(np.max(ell[long]))
+        tree = cKDTree(midpoints[long])
+        near = tree.sparse_distance_matrix(cKDTree(midpoints[short]), reach, output_type="ndarray")
+        found.append(np.stack([short[near["j"]], long[near["i"]], near["v"]]))
+    table = np.concatenate(found, axis=1)
+    i, j, distance = table[0].astype(np.intp), table[1].astype(np.intp), table[2]
+    # within one octave every pair is found twice
+    kept = (distance**2 < FAR * (ell[i] + ell[j]) ** 2) & ((octave[i] != octave[j]) | (i < j))
+    i, j = i[kept], j[kept]
+    kept = curve.mesh.index_distance(i, j) >= MIN_INDEX_DISTANCE
+    i, j = i[kept], j[kept]
+    swapped = ell[i] > ell[j]
+    return np.where(swapped, j, i), np.where(swapped, i, j)

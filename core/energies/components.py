@@ -14,54 +14,36 @@ import numpy as np
 
 from ..curve import Curve, Mesh
 from ..types import FloatArray, IntArray
+from .complex_steps import change, stepped
 
 
 def energy_scale(mesh: Mesh, energy: float) -> float:
-    """What errors and gradients are to be compared with: |E|, and for each arc, whose energy may be 0, the circle's."""
+    """What errors and gradients are compared with: |E|, and for each arc, whose energy may be 0, the circle's."""
     return abs(energy) + 4.0 * len(mesh.ends)
 
 
 @dataclass(frozen=True, eq=False)
 class ComponentShares:
-    """Σ over the components: 1 for each closed one, ½ log(L/|a − b|) for each arc.
-
-    Parameters
-    ----------
-    curve
-        The curve.
-    """
+    """Σ over the components of a curve: 1 for each closed one, ½ log(L/|a − b|) for each arc."""
 
     curve: Curve
 
     def value(self) -> float:
-        """The sum."""
-        chords = self._chords(self.curve.vertices)
-        squares = np.einsum("ij,ij->i", chords, chords)
-        return float(sum(self.curve.mesh.closed) + 0.5 * np.sum(np.log(self._lengths / np.sqrt(squares))))
+        mesh = self.curve.mesh
+        first, last = self.curve.vertices[mesh.ends.T]
+        lengths = self.curve.component_lengths[~np.asarray(mesh.closed)]
+        chords = np.sqrt(np.einsum("ij,ij->i", last - first, last - first))
+        return float(sum(mesh.closed) + 0.5 * np.sum(np.log(lengths / chords)))
 
     def derivative(self) -> FloatArray:
         """Its derivative with respect to the vertices; shape (n, m)."""
         if self.curve.mesh.all_closed:  # as most are: not worth a dozen operations
             return np.zeros_like(self.curve.vertices)
-        chord = self._chords(self.curve.vertices)
-        square = np.einsum("ij,ij->i", chord, chord)[:, None]
-        return self._at_vertices(self._weights[:, None] * self._tangents, chord / square)
+        return self._derivative(self.curve.vertices)
 
     def second_derivative(self, v: FloatArray) -> FloatArray:
         """Its second derivative times one vector or more, shape (n, m) or (n, m, k); the same shape."""
-        mesh, tau, edges = self.curve.mesh, self._tangents, self.curve.mesh.arc_edges
-        shape, v = v.shape, v.reshape(*self.curve.vertices.shape, -1)
-        change, weights = v[mesh.heads[edges]] - v[mesh.tails[edges]], self._weights[:, None, None]
-        along = np.einsum("ij,ijk->ik", tau, change)
-        turning = (change - tau[:, :, None] * along[:, None, :]) / self.curve.edge_lengths[edges, None, None]
-        growth = np.zeros((len(mesh.ends), along.shape[1]))
-        np.add.at(growth, self._arc, along)
-        # D²(log L)/2 is D²L/(2L) − DL DLᵀ/(2L²)
-        pull = weights * (turning - 2.0 * weights * tau[:, :, None] * growth[self._arc][:, None, :])
-        chord, swing = self._chords(self.curve.vertices), self._chords(v)
-        square = np.einsum("ij,ij->i", chord, chord)[:, None, None]
-        along = np.einsum("ij,ijk->ik", chord, swing)[:, None, :]
-        return self._at_vertices(pull, (swing - 2.0 * along / square * chord[:, :, None]) / square).reshape(shape)
+        return change(self._derivative(stepped(self.curve.vertices.reshape(*v.shape[:2], *[1] * (v.ndim - 2)), v)))
 
     def hessian_columns(self) -> tuple[IntArray, FloatArray]:
         """The columns of D² that are not 0, those of the arcs' coordinates in ``vertices.ravel()``, and D² there."""
@@ -72,41 +54,24 @@ class ComponentShares:
         units[columns, np.arange(len(columns))] = 1.0
         return columns, self.second_derivative(units.reshape(n, m, -1)).reshape(n * m, -1)
 
-    @property
-    def _arc(self) -> IntArray:
-        """The arc that each edge of arcs is on, counted from 0."""
-        mesh = self.curve.mesh
-        return np.asarray((np.cumsum(~np.asarray(mesh.closed)) - 1)[mesh.edge_component[mesh.arc_edges]])
+    def _derivative(self, p: FloatArray) -> FloatArray:
+        """The derivative at vertices, shape (n, m), or (n, m, k) for several positions, that may be after complex
+        steps.
 
-    @property
-    def _lengths(self) -> FloatArray:
-        """Length of each arc."""
-        return self.curve.component_lengths[~np.asarray(self.curve.mesh.closed)]
-
-    @property
-    def _tangents(self) -> FloatArray:
-        """Unit tangents of the edges of arcs."""
-        edges = self.curve.mesh.arc_edges
-        return self.curve.edge_vectors[edges] / self.curve.edge_lengths[edges, None]
-
-    @property
-    def _weights(self) -> FloatArray:
-        """1/(2L) for the edges of arcs: the derivative of ½ log L by their lengths."""
-        mesh = self.curve.mesh
-        return np.asarray(0.5 / self.curve.component_lengths[mesh.edge_component[mesh.arc_edges]])
-
-    def _chords(self, at_vertices: FloatArray) -> FloatArray:
-        """From the first to the last vertex of each arc; (n, …) to (arcs, …)."""
-        first, last = self.curve.mesh.ends.T
-        return np.asarray(at_vertices[last] - at_vertices[first])
-
-    def _at_vertices(self, by_edge: FloatArray, by_chord: FloatArray) -> FloatArray:
-        """Derivatives by the vertices, from those by edge vectors and by the chords of −½ log |b − a|."""
+        By an edge vector e that of ½ log L is e/(2 ℓ L), by the chord d that of −½ log |d| is −d/(2 d²).
+        """
         mesh, edges = self.curve.mesh, self.curve.mesh.arc_edges
-        total = np.zeros((mesh.size, *by_edge.shape[1:]))
-        total[mesh.tails[edges]] -= by_edge
-        total[mesh.heads[edges]] += by_edge
-        first, last = mesh.ends.T
-        total[first] += 0.5 * by_chord
-        total[last] -= 0.5 * by_chord
+        tails, heads, (first, last) = mesh.tails[edges], mesh.heads[edges], mesh.ends.T
+        e, chord = p[heads] - p[tails], p[last] - p[first]
+        lengths, squares = (np.einsum("ij...,ij...->i...", x, x) for x in (e, chord))
+        lengths = np.sqrt(lengths)
+        arc = (np.cumsum(~np.asarray(mesh.closed)) - 1)[mesh.edge_component[edges]]  # of each edge, counted from 0
+        whole = np.zeros((len(mesh.ends), *lengths.shape[1:]), p.dtype)
+        np.add.at(whole, arc, lengths)
+        by_edge, by_chord = 0.5 * e / (lengths * whole[arc])[:, None], 0.5 * chord / squares[:, None]
+        total = np.zeros_like(p)
+        total[tails] -= by_edge
+        total[heads] += by_edge
+        total[first] += by_chord
+        total[last] -= by_chord
         return total

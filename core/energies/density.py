@@ -21,14 +21,14 @@ class PointSet(NamedTuple):
     """One quadrature point per edge."""
 
     t: float  # parameter on the edge, from 0 at its tail to 1 at its head
-    x: FloatArray  # the points, taken from the curve's centre so that their products keep their digits; (edges, m)
+    x: FloatArray  # the points, taken from the curve's center so that their products keep their digits; (edges, m)
     tau: FloatArray  # unit tangents, (edges, m)
 
 
 class PointPairs:
     """The pairs (x, y) of a tile, x on the edges of its rows and y on those of its columns; computed on demand.
 
-    All arrays have the shape (rows, columns).  Pairs that do not count have numbers of no meaning but finite ones.
+    All arrays have the shape (rows, columns).  Pairs that do not count have finite numbers without meaning.
     """
 
     def __init__(self, x: PointSet, y: PointSet, arcs: Arcs, tile: Tile) -> None:
@@ -36,8 +36,7 @@ class PointPairs:
 
     @cached_property
     def r2(self) -> FloatArray:
-        """|x − y|²."""
-        # from differences: strands may be close
+        """|x − y|², from differences: strands may be close."""
         r2 = np.asarray(cdist(self._x.x[self._tile.rows], self._y.x[self._tile.columns], "sqeuclidean"))
         r2[self._tile.excluded] = 1.0
         return r2

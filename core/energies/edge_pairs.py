@@ -1,14 +1,15 @@
-"""Pairs of straight edges in the three vectors that shape them: Δ between the midpoints, and the edges e and f."""
+"""Pairs of straight edges in three vectors, Δ between the midpoints and the edges e and f, and their chain rule."""
 
-from functools import cache
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
-from ..curve import Curve, Mesh
-from ..types import FloatArray, IntArray, frozen
-from .jets import Jet
+from ..curve import Mesh
+from ..types import BoolArray, FloatArray, IntArray
+from .complex_steps import stepped
 
 Combination = tuple[float, float, float]
 DELTA, E, F = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -17,65 +18,82 @@ DELTA, E, F = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _CORNERS = np.array([[0.5, -1.0, 0.0], [0.5, 1.0, 0.0], [-0.5, 0.0, -1.0], [-0.5, 0.0, 1.0]])
 
 
-class EdgePairs(NamedTuple):
-    """k pairs of edges: x(s) = x_mid + (s − ½) e, y(t) = y_mid + (t − ½) f, Δ = x_mid − y_mid; each array (k, m).
+@dataclass(frozen=True, eq=False)
+class Jet:
+    """A quantity of k pairs of edges, shape (k,), and its derivatives by c local variables, shape (k, c)."""
 
-    ``directions`` are r directions in which (Δ, e, f) may change, see `Jet`; shape (k, 3m, r), or (1, 3m, r) if they
-    are the same for all pairs.
-    """
+    value: FloatArray
+    first: FloatArray
+
+    def __add__(self, other: "Jet") -> "Jet":
+        return Jet(self.value + other.value, self.first + other.first)
+
+    def __sub__(self, other: "Jet") -> "Jet":
+        return self + other.scaled(-1.0)
+
+    def __mul__(self, other: "Jet") -> "Jet":
+        first = self.value[:, None] * other.first + other.value[:, None] * self.first
+        return Jet(self.value * other.value, first)
+
+    def scaled(self, factor: float) -> "Jet":
+        return Jet(factor * self.value, factor * self.first)
+
+    def where(self, kept: BoolArray) -> "Jet":
+        """The quantity for some pairs, shape (k,), and 0 for the others, even if it is infinite there."""
+        return Jet(np.where(kept, self.value, 0.0), np.where(kept[:, None], self.first, 0.0))
+
+    def compose(self, value: FloatArray, slope: FloatArray) -> "Jet":
+        """A function of the quantity, by its values and derivatives there, each (k,)."""
+        return Jet(value, slope[:, None] * self.first)
+
+    def sqrt(self) -> "Jet":
+        root = np.sqrt(self.value)
+        return self.compose(root, 0.5 / root)
+
+    def reciprocal(self) -> "Jet":
+        inverse = 1.0 / self.value
+        return self.compose(inverse, -(inverse**2))
+
+    def log(self) -> "Jet":
+        return self.compose(np.log(self.value), 1.0 / self.value)
+
+
+class EdgePairs(NamedTuple):
+    """k pairs of edges: x(s) = x_mid + (s − ½) e, y(t) = y_mid + (t − ½) f, Δ = x_mid − y_mid; each array (k, m)."""
 
     delta: FloatArray
     e: FloatArray
     f: FloatArray
-    directions: FloatArray
 
     @classmethod
-    def of(cls, curve: Curve, i: IntArray, j: IntArray) -> "EdgePairs":
-        """The pairs (i, j) of edges of a curve, without directions."""
-        delta, e, f = _shape(curve.mesh, curve.vertices, i, j)
-        return cls(delta, e, f, np.empty((1, 3 * delta.shape[1], 0)))
+    def of(cls, mesh: Mesh, p: FloatArray, i: IntArray, j: IntArray) -> "EdgePairs":
+        """The pairs (i, j) of edges between vertices p, shape (n, m), that may be after a complex step.
 
-    def moving(self, mesh: Mesh, i: IntArray, j: IntArray, v: FloatArray) -> "EdgePairs":
-        """The pairs with the direction of vertex velocities ``v``, shape (n, m)."""
-        return self._replace(directions=np.hstack(_shape(mesh, v, i, j))[:, :, None])
+        The end points are subtracted first: edges may be close and far from the origin.
+        """
+        x0, x1, y0, y1 = p[mesh.tails[i]], p[mesh.heads[i]], p[mesh.tails[j]], p[mesh.heads[j]]
+        return cls(0.5 * ((x0 - y0) + (x1 - y1)), x1 - x0, y1 - y0)
 
-    def with_coordinates(self) -> "EdgePairs":
-        """The pairs with the 3m coordinate directions."""
-        return self._replace(directions=np.eye(3 * self.delta.shape[1])[None])
+    def along_coordinates(self) -> "Iterator[EdgePairs]":
+        """The pairs after complex steps along each of the 3m coordinates of (Δ, e, f)."""
+        for units in np.eye(3 * self.e.shape[1]).reshape(-1, 3, self.e.shape[1]):
+            yield EdgePairs(*map(stepped, self, units))
 
     def combination(self, c: Combination) -> FloatArray:
         """The vector c₀ Δ + c₁ e + c₂ f of every pair, shape (k, m)."""
         return np.asarray(c[0] * self.delta + c[1] * self.e + c[2] * self.f)
 
-    def along(self, first: FloatArray) -> FloatArray:
-        """Derivatives along the directions, shape (k, r), from those by (Δ, e, f), shape (k, 3m)."""
-        return np.asarray((first[:, None, :] @ self.directions)[:, 0, :])
-
     def inner(self, a: Combination, b: Combination) -> Jet:
         """The inner product of two combinations, as a function of the 3m coordinates of (Δ, e, f)."""
         u, v = self.combination(a), self.combination(b)
-        k, m = u.shape
         first = np.asarray(a)[:, None] * v[:, None, :] + np.asarray(b)[:, None] * u[:, None, :]
-        first = first.reshape(k, 3 * m)
-        return Jet(np.einsum("km,km->k", u, v), first, self.along(first), _polar_form(a, b, m) @ self.directions)
-
-
-def _shape(mesh: Mesh, p: FloatArray, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Δ, e and f of pairs of edges; the end points are subtracted first: edges may be close and far from the origin."""
-    x0, x1, y0, y1 = p[mesh.tails[i]], p[mesh.heads[i]], p[mesh.tails[j]], p[mesh.heads[j]]
-    return 0.5 * ((x0 - y0) + (x1 - y1)), x1 - x0, y1 - y0
-
-
-@cache
-def _polar_form(a: Combination, b: Combination, m: int) -> FloatArray:
-    """The second derivative of an inner product of combinations, shape (3m, 3m)."""
-    return frozen(np.kron(np.outer(a, b) + np.outer(b, a), np.eye(m)))
+        return Jet(np.einsum("km,km->k", u, v), first.reshape(len(u), -1))
 
 
 def scatter_first(mesh: Mesh, i: IntArray, j: IntArray, first: FloatArray) -> FloatArray:
     """Derivative by the vertices, shape (n, m), from those by (Δ, e, f) of pairs (i, j) of edges, shape (k, 3m)."""
     by_delta, by_e, by_f = np.split(first, 3, axis=1)
-    by_midpoint, by_edge = (np.zeros((mesh.edges, by_delta.shape[1])) for _ in range(2))
+    by_midpoint, by_edge = (np.zeros((mesh.edges, by_delta.shape[1]), first.dtype) for _ in range(2))
     np.add.at(by_midpoint, i, by_delta)
     np.subtract.at(by_midpoint, j, by_delta)
     np.add.at(by_edge, i, by_e)

@@ -22,7 +22,6 @@ class OwnBlocks(NamedTuple):
 
     @classmethod
     def zeros(cls, edges: int, m: int) -> "OwnBlocks":
-        """Blocks to be added to."""
         return cls(*(np.zeros((edges, m, m)) for _ in range(3)))
 
     def add_to(self, matrix: FloatArray, mesh: Mesh, factor: float) -> None:

@@ -15,10 +15,10 @@ from ..curve.distances import points_at
 from ..curve.tiles import Tile, pair_tiles
 from ..quadrature import Rule
 from ..types import FloatArray
+from .arcs import ArcDerivative, Arcs
 from .components import ComponentShares
-from .density import Density, PointPairs, PointSet
+from .density import Density, Partials, PointPairs, PointSet
 from .energy import is_moebius_invariant
-from .kpoint_sums import KPointSums
 
 
 @checked_fields
@@ -53,22 +53,20 @@ class KPointEnergy:
 
     @property
     def moebius_invariant(self) -> bool:
-        """Whether the density says so."""
+        """Whether the density is."""
         return is_moebius_invariant(self.density)
 
     def value(self, curve: Curve) -> float:
         """Energy of the curve."""
-        sums = KPointSums(curve)
-        total = 0.0
-        for tile, x, y, area in self._pairs(curve, sums):
-            total += float(np.vdot(area, self.density.value(PointPairs(x, y, sums.arcs, tile))))
+        arcs, total = Arcs(curve), 0.0
+        for tile, x, y, area in self._pairs(curve):
+            total += float(np.vdot(area, self.density.value(PointPairs(x, y, arcs, tile))))
         return self._energy(curve, total)
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
-        sums = KPointSums(curve)
-        total = 0.0
-        for tile, x, y, area in self._pairs(curve, sums):
+        sums, total = _Sums(curve), 0.0
+        for tile, x, y, area in self._pairs(curve):
             total += sums.add(tile, x, y, area, self.density)
         of_components = self.density.constant * ComponentShares(curve).derivative()
         return self._energy(curve, total), 2.0 * sums.at_vertices(self.arc_derivative) + of_components
@@ -77,10 +75,10 @@ class KPointEnergy:
         """The energy from the sum over unordered pairs."""
         return self.density.constant * ComponentShares(curve).value() + 2.0 * total
 
-    def _pairs(self, curve: Curve, sums: KPointSums) -> Iterator[tuple[Tile, PointSet, PointSet, FloatArray]]:
+    def _pairs(self, curve: Curve) -> Iterator[tuple[Tile, PointSet, PointSet, FloatArray]]:
         """All pairs of quadrature points, with their weights ω_i ω_j ℓ_I ℓ_J, 0 for edges with a common vertex."""
-        centre = curve.vertices.mean(axis=0)
-        sets = [PointSet(t, points_at(curve, t) - centre, sums.tau) for t in self.rule.points]
+        center, tau = curve.vertices.mean(axis=0), curve.edge_vectors / curve.edge_lengths[:, None]
+        sets = [PointSet(t, points_at(curve, t) - center, tau) for t in self.rule.points]
         weighted = list(zip(sets, self.rule.weights, strict=True))
         for tile in pair_tiles(curve.mesh):
             area = np.multiply.outer(curve.edge_lengths[tile.rows], curve.edge_lengths[tile.columns])
@@ -88,3 +86,64 @@ class KPointEnergy:
             for x, omega_x in weighted:
                 for y, omega_y in weighted:
                     yield tile, x, y, area * (omega_x * omega_y)
+
+
+class _Sums:
+    """Derivatives of Σ ω_i ω_j ℓ_I ℓ_J F by tails, heads, unit tangents and lengths, over unordered pairs of edges."""
+
+    def __init__(self, curve: Curve) -> None:
+        self._arcs, self._mesh = Arcs(curve), curve.mesh
+        self._by_tail, self._by_head, self._by_tau = (np.zeros_like(curve.edge_vectors) for _ in range(3))
+        self._by_length, self._by_arc = np.zeros_like(curve.edge_lengths), ArcDerivative(self._arcs)
+        self._tau = curve.edge_vectors / curve.edge_lengths[:, None]
+
+    def add(self, tile: Tile, x: PointSet, y: PointSet, area: FloatArray, density: Density) -> float:
+        """Add pairs of points with weights ``area``, 0 for pairs that do not count; returns their part of the sum."""
+        pairs = PointPairs(x, y, self._arcs, tile)
+        weighted = area * density.value(pairs)
+        self._by_length[tile.rows] += weighted.sum(axis=1) / self._arcs.ell[tile.rows]
+        self._by_length[tile.columns] += weighted.sum(axis=0) / self._arcs.ell[tile.columns]
+        self._add_partials(tile, x, y, area, density.derivative(pairs))
+        return float(weighted.sum())
+
+    def _add_partials(self, tile: Tile, x: PointSet, y: PointSet, area: FloatArray, partials: Partials) -> None:
+        """With d = x − y, ∂F/∂d is 2 F_{r²} d + F_a τ_x + F_b τ_y, ∂F/∂τ_x is F_a d + F_c τ_y, likewise ∂F/∂τ_y."""
+        rows, columns = tile.rows, tile.columns
+        tau_x, tau_y = self._tau[rows], self._tau[columns]
+        force_x, force_y = _differences((2.0 * area) * partials.r2, x.x[rows], y.x[columns])  # Σ_J and Σ_I of ∂F/∂d
+        if partials.a is not None:
+            weights = area * partials.a
+            self._by_tau[rows] += _differences(weights, x.x[rows], y.x[columns])[0]
+            force_x += weights.sum(axis=1)[:, None] * tau_x
+            force_y += weights.T @ tau_x
+        if partials.b is not None:
+            weights = area * partials.b
+            self._by_tau[columns] += _differences(weights, x.x[rows], y.x[columns])[1]
+            force_x += weights @ tau_y
+            force_y += weights.sum(axis=0)[:, None] * tau_y
+        if partials.c is not None:
+            weights = area * partials.c
+            self._by_tau[rows] += weights @ tau_y
+            self._by_tau[columns] += weights.T @ tau_x
+        if partials.rho is not None:
+            self._by_arc.add(tile, x.t, y.t, area * partials.rho)
+        for edges, t, force in ((rows, x.t, force_x), (columns, y.t, -force_y)):
+            self._by_tail[edges] += (1.0 - t) * force
+            self._by_head[edges] += t * force
+
+    def at_vertices(self, arc_derivative: bool) -> FloatArray:
+        """The derivative with respect to the vertices, shape (n, m), with or without the part of ϱ."""
+        tau, by_length = self._tau, self._by_length
+        if arc_derivative:
+            by_length = by_length + self._by_arc.by_length()
+        # ∂τ/∂e = (1 − τ τᵀ)/ℓ
+        across = self._by_tau - np.einsum("ij,ij->i", self._by_tau, tau)[:, None] * tau
+        by_edge = by_length[:, None] * tau + across / self._arcs.ell[:, None]
+        return self._mesh.scatter(self._by_tail - by_edge, self._by_head + by_edge)
+
+
+def _differences(weights: FloatArray, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Σ_J w_IJ (x_I − y_J) and Σ_I w_IJ (x_I − y_J)."""
+    by_row = weights.sum(axis=1)[:, None] * x - weights @ y
+    by_column = weights.T @ x - weights.sum(axis=0)[:, None] * y
+    return by_row, by_column

@@ -17,8 +17,7 @@ from ..curve.tiles import EdgePairIndices, pair_tiles, row_tiles
 from ..quadrature import MIDPOINT
 from ..types import FloatArray, IntArray
 from .components import ComponentShares
-from .moebius_hessian import hessian
-from .moebius_hessian_product import hessian_product
+from .moebius_hessian import hessian, hessian_product
 from .moebius_pairs import DerivativeSums, Edges, Pairs
 
 CONSTANT = 4.0  # of a closed component
@@ -87,3 +86,11 @@ class MoebiusEnergy:
 def energy_of_pairs(curve: Curve, pairs: float) -> float:
     """The energy from the sum over unordered pairs."""
     return CONSTANT * ComponentShares(curve).value() + 2.0 * pairs
+
+
+def moebius_by_length(curve: Curve) -> FloatArray:
+    """Energy of each edge with all others per unit of length, (Σ_J W_IJ)/ℓ_I, shape (edges,); in 1/length.
+
+    Times the lengths it sums up to the energy less what the components add, see `components`.
+    """
+    return np.asarray(MoebiusEnergy().row_energies(curve, np.arange(curve.mesh.edges)) / curve.edge_lengths)

@@ -49,7 +49,6 @@ class Edges(NamedTuple):
 
     @classmethod
     def of(cls, curve: Curve) -> "Edges":
-        """Collect them for one curve."""
         e, ell = curve.edge_vectors, curve.edge_lengths
         vectors = Vectors.of(e, ell, curve.midpoints)
         foot = np.column_stack([-e, np.einsum("ij,ij->i", vectors.m, e)])
@@ -66,7 +65,6 @@ class Pairs(NamedTuple):
 
     @classmethod
     def of(cls, edges: Edges, tile: Tile | RowTile) -> "Pairs":
-        """Compute them for one tile."""
         (e_ell, m_one), foot = edges.vectors, edges.foot
         rows, columns = tile.rows, tile.columns
         # distances from differences: strands may be close
@@ -120,7 +118,6 @@ class DerivativeSums(NamedTuple):
 
     @classmethod
     def zeros(cls, edges: int, m: int) -> "DerivativeSums":
-        """Sums to be added to."""
         return cls(np.zeros((edges, m)), np.zeros((edges, m)), np.zeros(edges))
 
     def add(self, rows: slice, columns: slice, coefficients: Coefficients, vectors: Vectors) -> None:

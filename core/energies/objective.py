@@ -12,7 +12,7 @@ from ..curve import Curve
 from ..errors import OptionError
 from ..obstacle import Obstacle
 from ..types import FloatArray
-from .barrier import Barrier
+from .barrier import Barrier, replaced_pairs
 from .energy import (
     Approximate,
     Confining,
@@ -25,7 +25,6 @@ from .energy import (
     scale_exponent,
 )
 from .moebius import MoebiusEnergy
-from .near_pairs import replaced_pairs
 from .repulsion import Repulsion
 
 _Term = TypeVar("_Term", bound=Term)

@@ -1,4 +1,4 @@
-"""The tangent-point energy: another self-avoiding energy in the same frame.
+"""The tangent-point energy of Buck and Orloff: another self-avoiding energy in the same frame.
 
 Its density is |d ∧ τ_x|^α / r^β, the area between chord and tangent in place of the chord's inverse square; for
 β = 2 α it is a power of the radius of the circle through y that touches the curve at x.  Discretised as by
@@ -20,15 +20,7 @@ from .kpoint import KPointEnergy
 class TangentPointDensity:
     """F = ½ (|d ∧ τ_x|^α + |d ∧ τ_y|^α)/r^β, with |d ∧ τ|² = r² − ⟨d, τ⟩².
 
-    Parameters
-    ----------
-    alpha, beta
-        Exponents, α ≥ 2 and α + 2 ≤ β < 2 α + 1: strong enough to keep strands apart, finite for smooth curves.
-
-    Raises
-    ------
-    OptionError
-        If they are outside of that.
+    OptionError unless α ≥ 2 and α + 2 ≤ β < 2 α + 1: strong enough to keep strands apart, finite for smooth curves.
     """
 
     alpha: float = 3.0
@@ -38,7 +30,6 @@ class TangentPointDensity:
 
     @property
     def scale_exponent(self) -> float:
-        """|d ∧ τ|^α/r^β is a length to the α − β."""
         return self.alpha - self.beta
 
     def __post_init__(self) -> None:
@@ -48,15 +39,13 @@ class TangentPointDensity:
             raise OptionError(f"beta is {self.beta}; it must be from alpha + 2 to below 2 alpha + 1")
 
     def value(self, pairs: PointPairs) -> FloatArray:
-        """F of every pair."""
         power = 0.5 * self.alpha
-        heights = self._height(pairs, pairs.a) ** power + self._height(pairs, pairs.b) ** power
+        heights = _squared_height(pairs, pairs.a) ** power + _squared_height(pairs, pairs.b) ** power
         return np.asarray(0.5 * heights * pairs.r2 ** (-0.5 * self.beta))
 
     def derivative(self, pairs: PointPairs) -> Partials:
-        """The derivatives of F."""
         power, decay = 0.5 * self.alpha, pairs.r2 ** (-0.5 * self.beta)
-        height_a, height_b = self._height(pairs, pairs.a), self._height(pairs, pairs.b)
+        height_a, height_b = _squared_height(pairs, pairs.a), _squared_height(pairs, pairs.b)
         slope_a = (0.5 * power) * height_a ** (power - 1.0) * decay
         slope_b = (0.5 * power) * height_b ** (power - 1.0) * decay
         heights = height_a**power + height_b**power
@@ -66,9 +55,10 @@ class TangentPointDensity:
             b=-2.0 * pairs.b * slope_b,
         )
 
-    def _height(self, pairs: PointPairs, along: FloatArray) -> FloatArray:
-        """|d ∧ τ|², which rounding must not make negative."""
-        return np.maximum(pairs.r2 - along * along, 0.0)
+
+def _squared_height(pairs: PointPairs, along: FloatArray) -> FloatArray:
+    """|d ∧ τ|², which rounding must not make negative."""
+    return np.maximum(pairs.r2 - along * along, 0.0)
 
 
 TANGENT_POINT_ENERGY = KPointEnergy(

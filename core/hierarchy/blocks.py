@@ -1,18 +1,20 @@
-"""The block list: all pairs of edges as pairs of distant clusters, and those too near as they are."""
+"""Clusters of edges, and the block list: all pairs of edges as pairs of distant clusters, or one by one if near."""
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from ..clusters import ClusterTree, ranges
 from ..curve import Curve, Mesh
+from ..curve.ordering import component_order
 from ..curve.tiles import EdgePairIndices
 from ..errors import OptionError
 from ..types import BoolArray, FloatArray, IntArray
-from .clusters import ClusterTree
 
 ClusterPairs = tuple[IntArray, IntArray]
 
+CHUNK = 1 << 14  # pairs of leaves whose edges are listed at once, to bound the memory
 MOSTLY_NEAR = 1.0 / 8.0  # share of near pairs from which all pairs in tiles are faster than near ones in a list
 
 
@@ -22,36 +24,28 @@ class BlockList:
 
     A pair of clusters c, d is a block (is *admissible*) if r_c + r_d < θ |p_c − p_d|, for balls of centres p and radii
     r around their edges.  In a block, therefore, midpoints of edges are never nearer than (1/θ − 1)(ℓ_I + ℓ_J)/2: with
-    θ ≤ 1/4 every pair that the barrier counts, |Δ| < 3/2 (ℓ_I + ℓ_J), is a near one.
-
-    Attributes
-    ----------
-    tree
-        The clusters; all ranges are of positions in ``tree.order``.
-    first, second
-        The two clusters of each block; shape (blocks,).
-    leaves
-        The pairs of leaves that are no blocks, two arrays; a leaf and itself are such a pair.
+    θ ≤ 1/4 every pair that the barrier counts, |Δ| < 3/2 (ℓ_I + ℓ_J), is a near one.  The ranges of its clusters are
+    [a, b) and [c, d), arrays of shape (blocks,).
     """
 
-    tree: ClusterTree
-    first: IntArray
+    mesh: Mesh  # connectivity
+    tree: ClusterTree  # the clusters; all ranges are of positions in tree.order
+    first: IntArray  # the two clusters of each block; shape (blocks,)
     second: IntArray
-    leaves: ClusterPairs
+    leaves: ClusterPairs  # the pairs of leaves that are no blocks, two arrays; a leaf and itself are such a pair
 
     @classmethod
     def of(cls, curve: Curve, theta: float, leaf: int) -> "BlockList":
         """The list of a curve: separation parameter 0 < θ < 1, and the largest number of edges in a leaf."""
-        tree = ClusterTree.of(curve, leaf)
-        blocks, near = _traverse(tree, *tree.balls(curve), theta)
-        return cls(tree, *blocks, near)
+        tree = edge_clusters(curve, leaf)
+        blocks, near = _traverse(tree, *balls(tree, curve), theta)
+        return cls(curve.mesh, tree, *blocks, near)
 
     def is_separated(self, curve: Curve, theta: float) -> bool:
         """Whether another curve has the same mesh, and all blocks are admissible there with such a parameter."""
-        if curve.mesh != self.tree.mesh:
+        if curve.mesh != self.mesh:
             return False
-        centre, radius = self.tree.balls(curve)
-        return bool(_admissible(centre, radius, self.first, self.second, theta).all())
+        return bool(_admissible(*balls(self.tree, curve), self.first, self.second, theta).all())
 
     @property
     def i(self) -> IntArray:
@@ -60,19 +54,18 @@ class BlockList:
 
     @property
     def j(self) -> IntArray:
-        """The second edge; shape (pairs,)."""
         return self._edge_pairs[1]
 
     @cached_property
     def _edge_pairs(self) -> EdgePairIndices:
-        return _edge_pairs(self.tree, self.leaves)
+        return _edge_pairs(self.mesh, self.tree, self.leaves)
 
     @property
     def near_share(self) -> float:
         """How many of all pairs of edges are near ones, neighbours among them; they are not listed for that."""
         first, second = ((self.tree.stop - self.tree.start)[side] for side in self.leaves)
         count = float(np.where(self.leaves[0] == self.leaves[1], 0.5, 1.0) @ (first * second))
-        return count / (0.5 * self.tree.mesh.edges**2)
+        return count / (0.5 * self.mesh.edges**2)
 
     @property
     def mostly_near(self) -> bool:
@@ -80,16 +73,10 @@ class BlockList:
         return self.near_share > MOSTLY_NEAR
 
     def near_pairs(self, without: EdgePairIndices | None = None) -> EdgePairIndices:
-        """The near pairs but for some that are left out.
-
-        Raises
-        ------
-        OptionError
-            If one of these is not a near pair.
-        """
+        """The near pairs but for some that are left out; OptionError if one of these is not a near pair."""
         if without is None or not without[0].size:
             return self.i, self.j
-        n = self.tree.mesh.edges
+        n = self.mesh.edges
         code, left_out = _code(self.i, self.j, n), np.unique(_code(*without, n))
         place = np.searchsorted(code, left_out)
         if not np.array_equal(code[place[place < len(code)]], left_out):
@@ -104,22 +91,18 @@ class BlockList:
 
     @cached_property
     def a(self) -> IntArray:
-        """Where the first cluster's range [a, b) starts; shape (blocks,)."""
         return self.tree.start[self.first]
 
     @cached_property
     def b(self) -> IntArray:
-        """Where it stops."""
         return self.tree.stop[self.first]
 
     @cached_property
     def c(self) -> IntArray:
-        """Where the second cluster's range [c, d) starts; shape (blocks,)."""
         return self.tree.start[self.second]
 
     @cached_property
     def d(self) -> IntArray:
-        """Where it stops."""
         return self.tree.stop[self.second]
 
 
@@ -127,8 +110,7 @@ def _traverse(
     tree: ClusterTree, centre: FloatArray, radius: FloatArray, theta: float
 ) -> tuple[ClusterPairs, ClusterPairs]:
     """Admissible pairs of clusters, and the pairs of leaves that remain (a leaf and itself among them)."""
-    blocks: list[ClusterPairs] = []
-    near: list[ClusterPairs] = []
+    blocks, near = list[ClusterPairs](), list[ClusterPairs]()
     first = second = np.zeros(1, dtype=np.intp)
     while first.size:
         admissible = _admissible(centre, radius, first, second, theta)
@@ -147,7 +129,7 @@ def _admissible(centre: FloatArray, radius: FloatArray, first: IntArray, second:
 
 
 def _split(tree: ClusterTree, radius: FloatArray, first: IntArray, second: IntArray) -> ClusterPairs:
-    """Pairs with the children of one of the two clusters, the larger one if it has any, in its place."""
+    """Pairs in which the children replace one of the two clusters, the larger one if it has any."""
     same = first == second
     diagonal = tree.child[first[same]]
     first, second = first[~same], second[~same]
@@ -160,50 +142,18 @@ def _split(tree: ClusterTree, radius: FloatArray, first: IntArray, second: IntAr
     )
 
 
-def _edge_pairs(tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
+def _edge_pairs(mesh: Mesh, tree: ClusterTree, leaves: ClusterPairs) -> EdgePairIndices:
     """All pairs of edges of two leaves that have no vertex in common, i < j, sorted by i and then by j."""
-    row, begin, end = _without_neighbours(tree.mesh, tree.order, *_rows(tree, leaves))
-    count = np.maximum(end - begin, 0)
-    i, j = tree.order[np.repeat(row, count)], tree.order[_ranges(begin, count)]
-    if np.any(np.diff(tree.order) < 0):
-        i, j = np.divmod(np.sort(_code(i, j, tree.mesh.edges)), tree.mesh.edges)
-    return i, j
-
-
-def _rows(tree: ClusterTree, leaves: ClusterPairs) -> tuple[IntArray, IntArray, IntArray]:
-    """For each position and each partner of its leaf the later positions [begin, end) there, sorted by both."""
-    swap = tree.start[leaves[0]] > tree.start[leaves[1]]
-    first, second = np.where(swap, leaves[::-1], leaves)
-    by_start = np.argsort(tree.start[first] * len(tree.order) + tree.start[second])
-    first, second = first[by_start], second[by_start]
-    own = tree.leaves()  # each of which is a partner of its own
-    partners = np.searchsorted(tree.start[first], [tree.start[own], tree.stop[own]])
-    size = (tree.stop - tree.start)[own]
-    start, count = np.repeat(partners[0], size), np.repeat(partners[1] - partners[0], size)
-    row, partner = np.repeat(np.arange(len(tree.order)), count), second[_ranges(start, count)]
-    return row, np.maximum(tree.start[partner], row + 1), tree.stop[partner]
-
-
-def _without_neighbours(
-    mesh: Mesh, order: IntArray, row: IntArray, begin: IntArray, end: IntArray
-) -> tuple[IntArray, IntArray, IntArray]:
-    """The same ranges without the edges that share a vertex with the row's."""
-    position = np.empty_like(order)
-    position[order] = np.arange(len(order))
-    # of two neighbours the later one comes right after, or is the last of the component whose first the other one is
-    begin = begin + (begin == position[mesh.next[order]][row])
-    last = position[mesh.previous[order]][row]
-    cut = np.flatnonzero((begin <= last) & (last < end))
-    return (
-        np.insert(row, cut, row[cut]),
-        np.insert(begin, cut + 1, last[cut] + 1),
-        np.insert(end, cut, last[cut]),
-    )
-
-
-def _ranges(start: IntArray, count: IntArray) -> IntArray:
-    """start, start + 1, … of each of some ranges, one after the other."""
-    return np.asarray(np.repeat(start - np.cumsum(count) + count, count) + np.arange(count.sum()))
+    size, codes = tree.stop - tree.start, []
+    for k in range(0, len(leaves[0]), CHUNK):
+        first, second = (side[k : k + CHUNK] for side in leaves)
+        count = size[first] * size[second]
+        pair = np.repeat(np.arange(len(first)), count)
+        row, column = np.divmod(ranges(np.zeros_like(count), count), size[second][pair])
+        i, j = tree.order[tree.start[first][pair] + row], tree.order[tree.start[second][pair] + column]
+        kept = mesh.disjoint(i, j) & ((first != second)[pair] | (i < j))
+        codes.append(_code(i[kept], j[kept], mesh.edges))
+    return np.divmod(np.sort(np.concatenate(codes)), mesh.edges)
 
 
 def _code(i: IntArray, j: IntArray, n: int) -> IntArray:
@@ -213,3 +163,34 @@ def _code(i: IntArray, j: IntArray, n: int) -> IntArray:
 
 def _joined(parts: list[ClusterPairs]) -> ClusterPairs:
     return np.concatenate([first for first, _ in parts]), np.concatenate([second for _, second in parts])
+
+
+def edge_clusters(curve: Curve, leaf: int) -> ClusterTree:
+    """The tree of a curve's edges whose leaves have at most ``leaf`` of them; leaf ≥ 1.
+
+    The order follows the curve, one component after the other; only their succession is changed where there are three
+    or more, so that neighbours in space come next to each other.  A cluster is a part of one component, or several
+    whole ones: however many small components there are, the tree of n edges has O(n) clusters and O(log n) levels.
+    """
+    order = component_order(curve.mesh, curve.vertices.T)
+    ends = np.append(np.flatnonzero(np.diff(curve.mesh.edge_component[order])) + 1, curve.mesh.edges)
+    return ClusterTree.halved(order, leaf, lambda start, stop: _middle(start, stop, ends))
+
+
+def balls(tree: ClusterTree, curve: Curve) -> tuple[FloatArray, FloatArray]:
+    """Centres, shape (clusters, m), and radii, shape (clusters,), of balls around the clusters' bounding boxes."""
+    ends = curve.vertices[curve.mesh.tails[tree.order]], curve.vertices[curve.mesh.heads[tree.order]]
+    low = tree.reduced(np.minimum, np.minimum(*ends))
+    high = tree.reduced(np.maximum, np.maximum(*ends))
+    diagonal = high - low
+    return 0.5 * (low + high), 0.5 * np.sqrt(np.einsum("ij,ij->i", diagonal, diagonal))
+
+
+def _middle(start: IntArray, stop: IntArray, ends: IntArray) -> IntArray:
+    """Where to cut ranges: between two components if they hold more than one, else in the middle."""
+    middle = (start + stop) // 2
+    after = np.searchsorted(ends, middle)
+    before = ends[np.maximum(after - 1, 0)]
+    nearer = (ends[after] >= stop) | (2 * middle < before + ends[after])
+    cut = np.where((before > start) & nearer, before, ends[after])
+    return np.where((cut > start) & (cut < stop), cut, middle)

@@ -3,11 +3,13 @@
 The value differs from the sum over all pairs by some 10⁻⁶ of it; the derivative is exactly that of the value.
 """
 
+import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
+from ..checks import check_fields
 from ..curve import Curve
 from ..curve.tiles import EdgePairIndices
 from ..energies.components import ComponentShares
@@ -18,16 +20,12 @@ from ..errors import OptionError
 from ..quadrature import MIDPOINT
 from ..types import FloatArray
 from .blocks import BlockList
-from .far_field import FarField
-from .near_field import NearField
+from .fields import FarField, NearField
 
-ORDER = 4  # even orders are worth more: errors of the next odd one nearly cancel
 MAX_ORDER = 8  # each two orders make errors some forty times smaller, and half of the work twice as much
-THETA = 0.19  # with that order errors below 10⁻⁶ of a knot's energy, of 10⁻⁵ of the derivative in J_C's dual norm
-LEAF = 16  # edges; halving ends at 8 to 16 of them, with which the near field takes no longer than the far one
-KEPT = 0.2  # separation up to which a list is as good as a new one
-STRETCH, SHIFT = 1e-4, 1e-2  # of each edge, and of the shortest one: how far vertices move for a difference
+KEPT = 1.05  # times θ: separation up to which a list is as good as a new one
 OUTDATED = 1.0 / 3.0  # less separated blocks make a new list; up to 1/3 all replaced pairs are near pairs
+STRETCH, SHIFT = 1e-4, 1e-2  # of each edge, and of the shortest one: how far vertices move for a difference
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +43,24 @@ class HierarchicalMoebiusEnergy:
     without
         Near pairs of edges that are left out of the sum, because something else stands for them.
     order
-        Of the expansions.
+        Of the expansions, up to 8; even orders are worth more: errors of the next odd one nearly cancel.
+    theta
+        Separation parameter of blocks, below 1/3.  At order 4 the default leaves errors below 10⁻⁶ of a knot's energy,
+        of 10⁻⁵ of the derivative in J_C's dual norm.
+    leaf
+        Edges up to which clusters are not halved; with 8 to 16 the near field takes no longer than the far one.
+
+    Raises
+    ------
+    OptionError
+        If one of these is out of range.
     """
 
     blocks: BlockList | None = None
     without: EdgePairIndices | None = None
-    order: int = ORDER
+    order: int = 4
+    theta: float = 0.19
+    leaf: int = 16
 
     name = "moebius"
     rule = MIDPOINT
@@ -58,6 +68,9 @@ class HierarchicalMoebiusEnergy:
     moebius_invariant = True
     contains_midpoint_pairs = True
     description = "Möbius energy without arc distances, midpoint rule, distant clusters by Taylor expansion"
+
+    def __post_init__(self) -> None:
+        check_fields(self, order=(0, MAX_ORDER), theta=(0.0, OUTDATED), leaf=(0, math.inf))
 
     @classmethod
     def instead_of(cls, energy: Energy) -> "HierarchicalMoebiusEnergy":
@@ -76,9 +89,9 @@ class HierarchicalMoebiusEnergy:
 
     def frozen_at(self, curve: Curve) -> "HierarchicalMoebiusEnergy":
         """The smooth function that the block list of ``curve`` makes of it, or that its own list does if it fits."""
-        if self.blocks is not None and self.blocks.is_separated(curve, KEPT):
+        if self.blocks is not None and self.blocks.is_separated(curve, KEPT * self.theta):
             return self
-        return replace(self, blocks=block_list(curve))
+        return replace(self, blocks=_block_list(curve, self.theta, self.leaf))
 
     def leaving_out(self, pairs: EdgePairIndices) -> "HierarchicalMoebiusEnergy":
         """The same sum without some near pairs of edges, such as `replaced_pairs`."""
@@ -95,7 +108,6 @@ class HierarchicalMoebiusEnergy:
         return replace(self, order=self.order + 2) if self.order < MAX_ORDER else None
 
     def value(self, curve: Curve) -> float:
-        """Energy E of the curve."""
         blocks = self.block_list(curve)
         if blocks.mostly_near:
             return self.exact.value(curve)
@@ -103,7 +115,6 @@ class HierarchicalMoebiusEnergy:
         return energy_of_pairs(curve, near.value() + far.value())
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """Energy and its derivative with respect to the vertices, shape (n, m)."""
         blocks = self.block_list(curve)
         if blocks.mostly_near:
             return self.exact.value_and_derivative(curve)
@@ -114,7 +125,6 @@ class HierarchicalMoebiusEnergy:
         return energy_of_pairs(curve, value), np.ldexp(derivative, -exponent)
 
     def hessian(self, curve: Curve) -> FloatArray:
-        """Second derivative of the sum that this one approximates; shape (n·m, n·m)."""
         return self.exact.hessian(curve)
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
@@ -129,7 +139,6 @@ class HierarchicalMoebiusEnergy:
         return 0.5 * rate * (ahead - behind)
 
     def row_energies(self, curve: Curve) -> FloatArray:
-        """What `MoebiusEnergy.row_energies` gives for all edges; shape (edges,)."""
         blocks = self.block_list(curve)
         if blocks.mostly_near:
             return self.exact.row_energies(curve, np.arange(curve.mesh.edges))
@@ -144,13 +153,13 @@ class HierarchicalMoebiusEnergy:
         """The list that counts at a curve: its own, or that of the curve."""
         if self.blocks is not None and self.blocks.is_separated(curve, OUTDATED):
             return self.blocks
-        return block_list(curve)
+        return _block_list(curve, self.theta, self.leaf)
 
 
 @lru_cache(maxsize=1)
-def block_list(curve: Curve) -> BlockList:
-    """The list of a curve by which its energy is computed; the last one is kept, for value and derivative alike."""
-    return BlockList.of(curve, THETA, LEAF)
+def _block_list(curve: Curve, theta: float, leaf: int) -> BlockList:
+    """The list of a curve; the last one is kept, for value and derivative alike."""
+    return BlockList.of(curve, theta, leaf)
 
 
 def _value_and_sums(near: NearField, far: FarField) -> tuple[float, DerivativeSums]:

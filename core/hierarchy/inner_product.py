@@ -6,32 +6,36 @@ J_C the eigenvalues are between 0.85 and 1.2, on smooth curves and on tangles, a
 1.5.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 import scipy.sparse as sp
 
+from ..checks import check_fields
 from ..constraints import ConstraintDerivative
 from ..curve import Curve
 from ..curve.distances import arc_distance_of_pairs
+from ..errors import OptionError
+from ..metrics import FractionalMetric, Metric, MoebiusMetric
 from ..metrics.inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
 from ..metrics.local import arc_stiffness, lumped_mass, mass
 from ..metrics.moebius import pair_kernels
+from ..quadrature import MIDPOINT, Rule
 from ..saddle import TangentSpace
 from ..saddle.circulant import Circulants
 from ..saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
 from ..saddle.krylov import conjugate_gradients, relative
+from ..saddle.models import TwoLevel
 from ..saddle.resolvent import Resolvents
-from ..saddle.two_level import TwoLevel
 from ..types import FloatArray
 from .blocks import BlockList
-from .pair_forms import PairForms
-from .running_sum import RunningSum
+from .pair_forms import PairForms, RunningSum
 
 FarForm = tuple[RunningSum, sp.csr_array]
-SEPARATION = 0.5  # θ of the block list
-LEAF = 4
+MAX_VERTICES = 200_000  # some 3 GB, and half a minute a step
 EVEN_RATIO = 20.0  # of the longest edge of a component to its shortest, up to which Fourier transforms are faster
 SOLVED = 1e-10  # relative error of A⁻¹ f
 MAX_ITERATIONS = 1000
@@ -39,40 +43,22 @@ MAX_ITERATIONS = 1000
 
 @dataclass(frozen=True, eq=False)
 class CompressedInnerProduct:
-    """A = S + Σ Bᵀ Q B + V Vᵀ.
+    """A = S + Σ Bᵀ Q B + V Vᵀ, and S + Σ Bᵀ Q B on functions constant on each component, or near it: the coupling."""
 
-    Attributes
-    ----------
-    curve
-        The curve on which functions are.
-    local
-        S, sparse, shape (n, n).
-    far
-        Each B, running sums, and its Q, sparse, shape (edges + 1, edges + 1).
-    vectors
-        V, shape (n, r) for a small r.
-    coupling
-        S + Σ Bᵀ Q B on functions constant on each component, or near it; sparse, shape (components, components).
-    tolerances
-        Of all that is solved with it.
-    """
-
-    curve: Curve
-    local: sp.csr_array
-    far: tuple[FarForm, ...]
-    vectors: FloatArray
-    coupling: sp.csr_array
-    tolerances: Tolerances
+    curve: Curve  # on which functions are
+    local: sp.csr_array  # S, sparse, shape (n, n)
+    far: tuple[FarForm, ...]  # each B, running sums, and its Q, sparse, shape (edges + 1, edges + 1)
+    vectors: FloatArray  # V, shape (n, r) for a small r
+    coupling: sp.csr_array  # shape (components, components)
+    tolerances: Tolerances  # of all that is solved with it
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """A u."""
         product = self.local @ u
         for running, form in self.far:
             product += running.apply_transpose(form @ running.apply(u))
         return np.asarray(product + self.vectors @ (self.vectors.T @ u))
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """A⁻¹ f, to ten digits."""
         return conjugate_gradients(self.apply, self.model.solve, f, relative(SOLVED), MAX_ITERATIONS)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
@@ -92,16 +78,13 @@ class CompressedInnerProduct:
         return DenseInnerProduct(self.dense() + weight * other.dense())
 
     def dense(self) -> FloatArray:
-        """A, product by product."""
         matrix = self.apply(np.eye(len(self.curve)))
         return 0.5 * (matrix + matrix.T)
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        """By projected conjugate gradients."""
         return IterativeTangentSpace(self, constraints, self.tolerances)
 
     def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        """By conjugate gradients."""
         return IterativeWholeSpace(self, constraints, weights, self.tolerances)
 
     @cached_property
@@ -114,33 +97,34 @@ class CompressedInnerProduct:
         return TwoLevel(mesh, along(mesh, ell, self.apply), self.coupling, _indicators(self.curve).T @ self.vectors)
 
 
-def moebius_inner_product(curve: Curve, tolerances: Tolerances | None = None) -> CompressedInnerProduct:
+def moebius_inner_product(
+    curve: Curve, tolerances: Tolerances | None = None, theta: float = 0.5, leaf: int = 4
+) -> CompressedInnerProduct:
     """J_C by the midpoint rule, as in `MoebiusMetric`, compressed."""
-    blocks = BlockList.of(curve, SEPARATION, LEAF)
-    forms = PairForms(curve, blocks)
-    near, far = pair_kernels(curve, *forms.near), pair_kernels(curve, *forms.middles)
-    slopes = forms.of_slopes(near.inverse, far.inverse)
+    blocks = BlockList.of(curve, theta, leaf)
+    forms, order = PairForms(curve, blocks), blocks.tree.order
+    near, far = (pair_kernels(curve, *pairs) for pairs in (blocks.near_pairs(), blocks.middles))
     values, sums = forms.of_values(near.density, far.density)
+    far_forms = [(RunningSum.of_values(curve, order), sums)]
+    if not curve.mesh.all_closed:  # blocks of clusters of several components, some of them open
+        far_forms.append((RunningSum.of_slopes(curve, order), forms.of_long_slopes(far.inverse)))
     return CompressedInnerProduct(
         curve,
-        slopes + values + arc_stiffness(curve),
-        ((RunningSum.of_values(curve, blocks.tree.order), sums), *_long_slopes(curve, forms, blocks, far.inverse)),
+        forms.of_slopes(near.inverse, far.inverse) + values + arc_stiffness(curve),
+        tuple(far_forms),
         lumped_mass(curve)[:, None],
         forms.of_components(near.density, far.density),
         tolerances or Tolerances(),
     )
 
 
-def block_count(curve: Curve) -> int:
-    """Number of blocks of these inner products."""
-    return len(BlockList.of(curve, SEPARATION, LEAF).first)
-
-
-def fractional_inner_product(curve: Curve, tolerances: Tolerances | None = None) -> CompressedInnerProduct:
+def fractional_inner_product(
+    curve: Curve, tolerances: Tolerances | None = None, theta: float = 0.5, leaf: int = 4
+) -> CompressedInnerProduct:
     """W^{3/2,2}, as in `FractionalMetric`, compressed."""
-    blocks = BlockList.of(curve, SEPARATION, LEAF)
+    blocks = BlockList.of(curve, theta, leaf)
     forms = PairForms(curve, blocks)
-    near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (forms.near, forms.middles))
+    near, far = (1.0 / arc_distance_of_pairs(curve, i, j, 0.5) ** 2 for i, j in (blocks.near_pairs(), blocks.middles))
     n, indicators, weight = len(curve), _indicators(curve), mass(curve)
     return CompressedInnerProduct(
         curve,
@@ -152,11 +136,81 @@ def fractional_inner_product(curve: Curve, tolerances: Tolerances | None = None)
     )
 
 
-def _long_slopes(curve: Curve, forms: PairForms, blocks: BlockList, far: FloatArray) -> tuple[FarForm, ...]:
-    """Blocks of clusters of several components, where some of these are open."""
-    if curve.mesh.all_closed:
-        return ()
-    return ((RunningSum.of_slopes(curve, blocks.tree.order), forms.of_long_slopes(far)),)
+_COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]] = MappingProxyType(
+    {MoebiusMetric: moebius_inner_product, FractionalMetric: fractional_inner_product}
+)
+
+
+@dataclass(frozen=True)
+class CompressedMetric:
+    """One of the nonlocal metrics by products in O(N log N), with the midpoint rule.
+
+    Parameters
+    ----------
+    metric
+        The dense one, which has the same name, description, rule and penalty.
+    tolerances
+        Of what is solved with it.
+    theta
+        Separation parameter of blocks, below 1.
+    leaf
+        Edges up to which clusters are not halved.
+
+    Raises
+    ------
+    OptionError
+        If one of these is out of range.
+    """
+
+    metric: Metric
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    theta: float = 0.5
+    leaf: int = 4
+    most_vertices = MAX_VERTICES
+
+    def __post_init__(self) -> None:
+        check_fields(self, theta=(0.0, 1.0), leaf=(0, np.inf))
+
+    @property
+    def name(self) -> str:
+        return self.metric.name
+
+    @property
+    def description(self) -> str:
+        return self.metric.description
+
+    @property
+    def extends_penalty(self) -> bool:
+        return self.metric.extends_penalty
+
+    @property
+    def rule(self) -> Rule | None:
+        return self.metric.rule
+
+    def with_rule(self, rule: Rule) -> "CompressedMetric":
+        """Itself: there is no other rule.
+
+        Raises
+        ------
+        OptionError
+            If another rule is asked for.
+        """
+        if self.rule is not None and rule != MIDPOINT:
+            raise OptionError("metrics for so many vertices use one Gauss point per edge; leave quadrature_points out")
+        return self
+
+    def at(self, curve: Curve) -> InnerProduct:
+        return _COMPRESSED[type(self.metric)](curve, self.tolerances, self.theta, self.leaf)
+
+
+def compressed(metric: Metric, tolerances: Tolerances) -> Metric:
+    """A metric in the form for many vertices: local ones are sparse as they are."""
+    return CompressedMetric(metric, tolerances) if type(metric) in _COMPRESSED else metric
+
+
+def block_count(curve: Curve) -> int:
+    """Number of blocks of these inner products."""
+    return len(BlockList.of(curve, CompressedMetric.theta, CompressedMetric.leaf).first)
 
 
 def _indicators(curve: Curve) -> sp.csr_array:

@@ -1,6 +1,6 @@
 """The upward and the downward pass: moments of all clusters, and derivatives at the edges from those at the clusters.
 
-In the words of the fast multipole method they are P2M and M2M, and L2L and L2P; what is between is in `far_field`.
+In the words of the fast multipole method they are P2M and M2M, and L2L and L2P; what is between is in `fields`.
 """
 
 from collections.abc import Iterable, Iterator
@@ -10,12 +10,51 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..clusters import ClusterTree
 from ..energies.moebius_pairs import DerivativeSums, Vectors
 from ..types import FloatArray, IntArray
-from .clusters import ClusterTree
-from .expansion import Expansion
+from .polynomials import Polynomials, polynomials
 
 CHUNK = 1024  # polynomials handled at once, for the processor's cache
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """Taylor expansions of order p about the centre of a cluster: two moments, one below the other in one array.
+
+    With u_I = m_I − centre they are Σ_I ℓ_I exp⟨u_I, ξ⟩ up to degree p and Σ_I ⟨e_I, ξ⟩ exp⟨u_I, ξ⟩ up to degree p + 1.
+    Arrays of derivatives with respect to these have rows for those with respect to the centre besides.
+    """
+
+    dimension: int  # m, that of space
+    order: int  # p
+
+    @property
+    def table(self) -> Polynomials:
+        """Polynomials of all degrees needed, those of the kernels' derivatives among them."""
+        return polynomials(self.dimension, self.order + 3)
+
+    @property
+    def lengths(self) -> slice:
+        """Rows of the first moment."""
+        return slice(0, self.table.size(self.order))
+
+    @property
+    def edges(self) -> slice:
+        """Rows of the second moment."""
+        return slice(self.lengths.stop, self.lengths.stop + self.table.size(self.order + 1))
+
+    @property
+    def by_centre(self) -> slice:
+        """Rows of derivatives with respect to the centre."""
+        return slice(self.edges.stop, self.edges.stop + self.dimension)
+
+    @cached_property
+    def signs(self) -> FloatArray:
+        """Signs that come with the second cluster of a block, seen from which d is −d; shape (rows,)."""
+        signs = self.table.signs[:, 0]
+        lengths, edges = signs[: self.table.size(self.order)], -signs[: self.table.size(self.order + 1)]
+        return np.concatenate([lengths, edges, np.full(self.dimension, -1.0)])
 
 
 class _Leaves(NamedTuple):
@@ -29,21 +68,11 @@ class _Leaves(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MomentTree:
-    """The clusters of a curve with their centres, the means of their edges' midpoints.
-
-    Parameters
-    ----------
-    tree
-        The clusters.
-    expansion
-        What their moments are.
-    vectors
-        Edge vectors, lengths and midpoints.
-    """
+    """The clusters of a curve with their centres, the means of their edges' midpoints."""
 
     tree: ClusterTree
-    expansion: Expansion
-    vectors: Vectors
+    expansion: Expansion  # what their moments are
+    vectors: Vectors  # edge vectors, lengths and midpoints
 
     @cached_property
     def centres(self) -> FloatArray:

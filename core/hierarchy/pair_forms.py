@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..curve import Curve
+from ..curve import Curve, Mesh
 from ..types import BoolArray, FloatArray, IntArray
 from .blocks import BlockList
 
@@ -21,16 +21,9 @@ EdgePairs = tuple[IntArray, IntArray]
 
 
 class PairForms:
-    """Forms on one block list, summed over ordered pairs of edges.
+    """Forms on the block list of a curve, summed over ordered pairs of edges.
 
     Throughout, ``near`` are the weights w of the near pairs, shape (pairs,), ``far`` those of the blocks, (blocks,).
-
-    Parameters
-    ----------
-    curve
-        The curve.
-    blocks
-        Its pairs of edges.
     """
 
     def __init__(self, curve: Curve, blocks: BlockList) -> None:
@@ -39,16 +32,6 @@ class PairForms:
         ends = np.concatenate([[0.0], np.cumsum(curve.edge_lengths[tree.order])])
         lengths = ends[tree.stop] - ends[tree.start]
         self._length_c, self._length_d = lengths[blocks.first], lengths[blocks.second]
-
-    @property
-    def near(self) -> EdgePairs:
-        """The two edges of each near pair."""
-        return self._blocks.i, self._blocks.j
-
-    @property
-    def middles(self) -> EdgePairs:
-        """The middle edges of the two clusters of each block."""
-        return self._blocks.middles
 
     def of_slopes(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
         """The matrix of Σ w ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|², shape (n, n), but for what `of_long_slopes` adds."""
@@ -79,7 +62,7 @@ class PairForms:
         Left out are blocks of clusters that hold several components, which would couple all with all.
         """
         ell, component = self._curve.edge_lengths, self._curve.mesh.edge_component
-        (i, j), (c, d), single = self.near, self.middles, self._in_components
+        (i, j), (c, d), single = self._blocks.near_pairs(), self._blocks.middles, self._in_components
         first = component[np.concatenate([i, c[single]])]
         second = component[np.concatenate([j, d[single]])]
         weights = np.concatenate([near * ell[i] * ell[j], (far * self._length_c * self._length_d)[single]])
@@ -95,7 +78,7 @@ class PairForms:
 
     def _on_edges(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
         """Near pairs, and the diagonal of the blocks, in edge values; shape (edges, edges)."""
-        ell, (i, j) = self._curve.edge_lengths, self.near
+        ell, (i, j) = self._curve.edge_lengths, self._blocks.near_pairs()
         off = _symmetric(2.0 * near * ell[i] * ell[j], i, j, len(ell))
         return sp.csr_array(sp.diags_array(off.sum(axis=1) + 2.0 * ell * self._opposite(far)) - off)
 
@@ -121,6 +104,37 @@ def _products(weights: FloatArray, c: EdgePairs, d: EdgePairs, size: int) -> sp.
 
 
 def _symmetric(values: FloatArray, rows: IntArray, columns: IntArray, size: int) -> sp.csr_array:
-    """The sum of entries and their transposes."""
     half = sp.csr_array((values, (rows, columns)), shape=(size, size))
     return sp.csr_array(half + half.T)
+
+
+class RunningSum:
+    """B: u ↦ z, z_k = Σ w_I (u(I↑) + s u(I↓)) over the first k edges in an order; weights w and order (edges,)."""
+
+    def __init__(self, mesh: Mesh, order: IntArray, weights: FloatArray, sign: float) -> None:
+        self._mesh, self._sign = mesh, sign
+        self._tails, self._heads = mesh.tails[order], mesh.heads[order]
+        self._weights = weights[order, None]
+        self._place = np.empty_like(order)
+        self._place[order] = np.arange(len(order))
+
+    @classmethod
+    def of_values(cls, curve: Curve, order: IntArray) -> "RunningSum":
+        """∫ u, by the values at midpoints."""
+        return cls(curve.mesh, order, 0.5 * curve.edge_lengths, 1.0)
+
+    @classmethod
+    def of_slopes(cls, curve: Curve, order: IntArray) -> "RunningSum":
+        """∫ u'."""
+        return cls(curve.mesh, order, np.ones(curve.mesh.edges), -1.0)
+
+    def apply(self, u: FloatArray) -> FloatArray:
+        """B u; shapes (n, k) -> (edges + 1, k)."""
+        z = np.zeros((len(self._place) + 1, u.shape[1]))
+        np.cumsum(self._weights * (u[self._heads] + self._sign * u[self._tails]), axis=0, out=z[1:])
+        return z
+
+    def apply_transpose(self, y: FloatArray) -> FloatArray:
+        """Bᵀ y; shapes (edges + 1, k) -> (n, k)."""
+        back = (self._weights * np.cumsum(y[:0:-1], axis=0)[::-1])[self._place]
+        return self._mesh.scatter(self._sign * back, back)

@@ -3,11 +3,9 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from .fractional import FractionalMetric
-from .inner_product import DenseInnerProduct, InnerProduct, SparseInnerProduct
+from .inner_product import DenseInnerProduct, InnerProduct, Metric, SparseInnerProduct
 from .local import H1Metric, H2Metric, L2Metric, WithoutRule
-from .metric import Metric
-from .moebius import MoebiusMetric
+from .moebius import FractionalMetric, MoebiusMetric
 
 METRICS: Mapping[str, Metric] = MappingProxyType(
     {

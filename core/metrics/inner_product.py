@@ -13,7 +13,9 @@ from scipy.sparse.linalg import SuperLU
 
 from ..arguments import checked
 from ..constraints import ConstraintDerivative
+from ..curve import Curve
 from ..curve.pins import NOWHERE
+from ..quadrature import Rule
 from ..saddle import TangentSpace
 from ..saddle.dense import DenseTangentSpace, DenseWholeSpace, cholesky
 from ..saddle.sparse import SparseTangentSpace, SparseWholeSpace, factorised
@@ -63,27 +65,21 @@ class DenseInnerProduct:
         self._pinned: DenseInnerProduct | None = None
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """A u."""
         return _symmetric_product(self._matrix, u)
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """A⁻¹ f."""
         return _symmetric_product(self.inverse, f)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        """The sum, dense."""
         return DenseInnerProduct(self._matrix + weight * other.dense())
 
     def dense(self) -> FloatArray:
-        """A."""
         return _filled(self._matrix.copy(order="F"))
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        """By two Cholesky factorisations."""
         return DenseTangentSpace(self._vanishing_at(constraints.pins), constraints)
 
     def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        """By two Cholesky factorisations."""
         return DenseWholeSpace(self._vanishing_at(constraints.pins), constraints, weights)
 
     def _vanishing_at(self, pins: IntArray) -> "DenseInnerProduct":
@@ -122,29 +118,23 @@ class SparseInnerProduct:
         self.matrix = sp.csr_array(matrix)
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """A u."""
         return np.asarray(self.matrix @ u)
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """A⁻¹ f."""
         return np.asarray(self._factor.solve(f))
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        """The sum, sparse if both are."""
         if isinstance(other, SparseInnerProduct):
             return SparseInnerProduct(self.matrix + weight * other.matrix)
         return DenseInnerProduct(self.dense() + weight * other.dense())
 
     def dense(self) -> FloatArray:
-        """A."""
         return np.asarray(self.matrix.toarray())
 
     def tangent_space(self, constraints: ConstraintDerivative) -> TangentSpace:
-        """By a sparse factorisation."""
         return SparseTangentSpace(self.matrix, constraints)
 
     def whole_space(self, constraints: ConstraintDerivative, weights: FloatArray) -> TangentSpace:
-        """By a sparse factorisation."""
         return SparseWholeSpace(self.matrix, constraints, weights)
 
     @cached_property
@@ -166,3 +156,34 @@ def _filled(lower: FloatArray) -> FloatArray:
         diagonal[...] = np.tril(diagonal) + np.tril(diagonal, -1).T
         lower[first:last, last:] = lower[last:, first:last].T
     return lower
+
+
+@runtime_checkable
+class Metric(Protocol):
+    """An inner product on functions along the curve; on R^m-valued ones it acts coordinate by coordinate."""
+
+    @property
+    def name(self) -> str:
+        """Name in the registry."""
+
+    @property
+    def description(self) -> str:
+        """The space, in mathematicians' notation."""
+
+    @property
+    def extends_penalty(self) -> bool:
+        """Whether penalised methods add the lengths' part to it (footnote 8 of [RS21])."""
+
+    @property
+    def most_vertices(self) -> int:
+        """Number of vertices up to which its inner products fit into memory."""
+
+    @property
+    def rule(self) -> Rule | None:
+        """The quadrature rule for pairs of edges; None if there is nothing to choose."""
+
+    def with_rule(self, rule: Rule) -> "Metric":
+        """The same metric by another rule; itself if there is nothing to choose."""
+
+    def at(self, curve: Curve) -> InnerProduct:
+        """The inner product on functions along a curve of at most so many vertices."""

@@ -48,7 +48,6 @@ class WithoutRule:
     most_vertices = MAX_SPARSE_ROWS
 
     def with_rule(self, _rule: Rule) -> Self:
-        """Itself."""
         return self
 
 
@@ -61,7 +60,6 @@ class L2Metric(WithoutRule):
     extends_penalty = False
 
     def at(self, curve: Curve) -> InnerProduct:
-        """Two neighbours in each row."""
         return SparseInnerProduct(mass(curve))
 
 
@@ -74,7 +72,6 @@ class H1Metric(WithoutRule):
     extends_penalty = True
 
     def at(self, curve: Curve) -> InnerProduct:
-        """Two neighbours in each row."""
         return SparseInnerProduct(stiffness(curve) + mass(curve))
 
 
@@ -87,7 +84,6 @@ class H2Metric(WithoutRule):
     extends_penalty = True
 
     def at(self, curve: Curve) -> InnerProduct:
-        """Four neighbours in each row."""
         k = stiffness(curve)
         bending = k @ sp.diags_array(1.0 / lumped_mass(curve)) @ k
         return SparseInnerProduct(bending + mass(curve))

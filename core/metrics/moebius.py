@@ -26,7 +26,7 @@ from ..curve.distances import arc_distance_of_pairs, arc_distances, points_at
 from ..quadrature import MIDPOINT, Rule
 from ..types import FloatArray, IntArray
 from .inner_product import MAX_DENSE_ROWS, DenseInnerProduct, InnerProduct
-from .local import lumped_mass
+from .local import WithoutRule, lumped_mass, mass
 from .pairs import DifferenceForm, Stencil, Stripe, stripes
 
 # In both kernels r and ϱ are at least this many times ℓ_I + ℓ_J: the 1/r⁴ of nearer pairs would leave no digits to the
@@ -54,11 +54,9 @@ class MoebiusMetric:
     most_vertices = MAX_DENSE_ROWS
 
     def with_rule(self, rule: Rule) -> "MoebiusMetric":
-        """J_C by another rule."""
         return MoebiusMetric(rule)
 
     def at(self, curve: Curve) -> InnerProduct:
-        """Dense: every pair of edges weighs in."""
         mesh, slope, weights = curve.mesh, Stencil.slope(curve), _PairWeights(curve, self.rule)
         points = list(zip(self.rule.points, self.rule.weights, strict=True))
         form = DifferenceForm(mesh)
@@ -75,18 +73,10 @@ class MoebiusMetric:
 
 
 class PairKernels(NamedTuple):
-    """The kernels of terms 1 and 2 of J_C for some pairs of edges, by the midpoint rule; shapes (pairs,).
+    """The kernels of terms 1 and 2 of J_C for some pairs of edges, by the midpoint rule; shapes (pairs,)."""
 
-    Attributes
-    ----------
-    inverse
-        1/r².
-    density
-        1/r² (1/r² − 1/ϱ²).
-    """
-
-    inverse: FloatArray
-    density: FloatArray
+    inverse: FloatArray  # 1/r²
+    density: FloatArray  # 1/r² (1/r² − 1/ϱ²)
 
 
 def pair_kernels(curve: Curve, i: IntArray, j: IntArray) -> PairKernels:
@@ -131,3 +121,24 @@ class _PairWeights:
         s -= np.divide(1.0, np.square(rho, out=rho), out=rho)
         s *= inverse  # 0 for neighbours
         return inverse, s
+
+
+@dataclass(frozen=True)
+class FractionalMetric(WithoutRule):
+    """Σ ℓ_I ℓ_J |ΔU_I/ℓ_I − ΔU_J/ℓ_J|²/ϱ² + ∫ u², midpoint rule, ϱ the distance along the curve."""
+
+    name = "h3-2"
+    description = "W^{3/2,2}, intrinsic"
+    extends_penalty = True
+    most_vertices = MAX_DENSE_ROWS
+
+    def at(self, curve: Curve) -> InnerProduct:
+        ell, slope = curve.mesh.at_tails(curve.edge_lengths), Stencil.slope(curve)
+        form = DifferenceForm(curve.mesh)
+        for stripe in stripes(curve.mesh):
+            rho = arc_distances(curve, 0.5, 0.5, stripe.rows, stripe.columns)
+            stripe.exclude_neighbours(curve.mesh, rho)
+            weights = np.multiply.outer(ell[stripe.rows], ell[stripe.columns])
+            weights /= np.square(rho, out=rho)
+            form.add(stripe, weights, slope, slope)
+        return DenseInnerProduct(form.assembled() + mass(curve).toarray())

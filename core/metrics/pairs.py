@@ -37,17 +37,13 @@ class Stripe(NamedTuple):
 
     Attributes
     ----------
-    vertices
-        The vertices v.
     rows
         The edges that they belong to: the one before the first vertex, then those that begin at the vertices.
-    columns
-        The edges that the vertices from the first v on belong to.
     """
 
-    vertices: slice
+    vertices: slice  # the vertices v
     rows: IntArray
-    columns: slice
+    columns: slice  # the edges that the vertices from the first v on belong to
 
     def exclude_neighbours(self, mesh: Mesh, distance: FloatArray) -> None:
         """Set the distances, shape (rows, columns), of edges that share a vertex to inf."""

@@ -7,30 +7,19 @@ would grow with n, whereas with one scale they only grow with the ratio of lengt
 """
 
 import numpy as np
+from scipy.fft import irfft, rfft
 
 from ..curve import Mesh
 from ..types import FloatArray
-from .fourier import ComponentTransform
 from .krylov import LinearMap
-from .symbol import LEAST, Parameter
+from .symbol import LEAST, Parameter, Symbol, autocorrelation
 
 
 class Circulants:
     """M = W⁻¹ F W⁻¹, F circulant on each component, of one symbol, and W the mean edge length of the component.
 
-    Parameters
-    ----------
-    mesh
-        Connectivity; all components are closed.
-    lengths
-        Edge lengths, positive, shape (n,).
-    apply
-        The product A u that M is a model of, (n, k) to (n, k).
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If A is not positive definite.
+    A model of the product ``apply``, u to A u, (n, k) to (n, k), on a mesh of closed components; ``lengths`` are those
+    of the edges, shape (n,).  A LinAlgError says if A is not positive definite.
     """
 
     def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
@@ -45,7 +34,6 @@ class Circulants:
         self._compliance = [stretch / value for value, stretch in zip(values, stretches, strict=True)]
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """M⁻¹ f; shape (n, k)."""
         return np.asarray(self._scale * self._transform.filtered(self._scale * f, self._inverse))
 
     def tension(self, tangents: FloatArray) -> LinearMap:
@@ -55,3 +43,39 @@ class Circulants:
         modulated = self._transform.modulated(self._compliance, weighted / size)
         factors = [1.0 / np.maximum(each, LEAST * each.max(axis=1, keepdims=True)) for each in modulated]
         return lambda g: self._transform.filtered(g[:, None] / size, factors)[:, 0] / size[:, 0]
+
+
+class ComponentTransform:
+    """Products with circulant matrices, one of the same symbol on each component.
+
+    Components of one size are transformed together.  There are at most √(2n) different sizes, so thousands of small
+    components are no slower than a large one.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        sizes = np.asarray(mesh.component_sizes)
+        self._sizes = [int(size) for size in np.unique(sizes)]
+        self._rows = [mesh.offsets[:-1][sizes == size, None] + np.arange(size) for size in self._sizes]
+
+    def sampled(self, symbol: Symbol) -> list[FloatArray]:
+        """A symbol at the angles θ ∈ [0, π] from vertex to vertex that every size of components has."""
+        return [symbol(2.0 * np.pi / size * np.arange(size // 2 + 1)) for size in self._sizes]
+
+    def modulated(self, factors: list[FloatArray], t: FloatArray) -> list[FloatArray]:
+        """Factors of the circulant matrices nearest to Σ_k diag(t_k) F diag(t_k), F that of sampled factors.
+
+        Their entries are the means along the diagonals: those of F times the autocorrelation of t on the component
+        (Chan, An optimal circulant preconditioner for Toeplitz systems, SIAM J. Sci. Stat. Comput. 9, 1988).  For every
+        size of components ``factors`` have shape (frequencies,), the result (components, frequencies); t has (n, m).
+        """
+        return [
+            rfft(autocorrelation(t[rows]) * irfft(factor, size)).real
+            for size, rows, factor in zip(self._sizes, self._rows, factors, strict=True)
+        ]
+
+    def filtered(self, u: FloatArray, factors: list[FloatArray]) -> FloatArray:
+        """The circulant matrix of sampled factors, or those of modulated ones, times u; shape (n, k)."""
+        result = np.empty_like(u)
+        for size, rows, factor in zip(self._sizes, self._rows, factors, strict=True):
+            result[rows] = irfft(rfft(u[rows], axis=1) * factor[..., None], size, axis=1)
+        return result

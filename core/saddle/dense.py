@@ -101,7 +101,7 @@ def _schur_complement(inner: WithInverse, c: ConstraintDerivative) -> FloatArray
     if rows < edges:
         kept = np.concatenate([c.edges, np.arange(edges, len(schur))])
         schur = np.asfortranarray(schur[np.ix_(kept, kept)])
-    for k, row in enumerate(c.barycenter_rows(), rows):
+    for k, row in enumerate(c.border(), rows):
         schur[k, :] = c.apply(inner.solve(row))
     return schur
 

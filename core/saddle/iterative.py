@@ -13,9 +13,15 @@ from ..checks import check_fields
 from ..constraints import ConstraintDerivative, Constraints
 from ..curve import Curve
 from ..types import FloatArray
-from .krylov import conjugate_gradients, flexible_conjugate_gradients, relative
-from .pinned import vanishing_at
-from .preconditioner import ROUNDING, ConstraintPreconditioner, Model
+from .krylov import (
+    ROUNDING,
+    ConstraintPreconditioner,
+    Model,
+    conjugate_gradients,
+    flexible_conjugate_gradients,
+    relative,
+)
+from .models import vanishing_at
 from .tangent_space import TangentSpace, WholeSpace
 
 MIN_FORCING = 1e-4  # relative residual of Newton's method for the constraints
@@ -77,10 +83,7 @@ class WithModel(Protocol):
 class IterativeTangentSpace(TangentSpace):
     """The tangent space of constraints of full rank, with J = A ⊗ Id_m.
 
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If A is not positive definite, or iterations do not suffice.
+    A LinAlgError says if A is not positive definite, or iterations do not suffice.
     """
 
     def __init__(self, inner: WithModel, constraints: ConstraintDerivative, tolerances: Tolerances) -> None:
@@ -91,7 +94,6 @@ class IterativeTangentSpace(TangentSpace):
         self._preconditioner = ConstraintPreconditioner(self._model, constraints)
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """J u."""
         return self._inner.apply(u)
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
@@ -169,11 +171,9 @@ class IterativeWholeSpace(WholeSpace):
         self._model = vanishing_at(constraints.pins, inner.model, constraints.mesh)
 
     def riesz(self, eta: FloatArray) -> FloatArray:
-        """To the tolerance of gradients."""
         enough = relative(self._tolerances.gradient)
         return conjugate_gradients(self.apply, self._model.solve, eta, enough, self._tolerances.max_iterations)
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """(J + Cᵀ w C) u."""
         c = self.constraints
         return self._inner.apply(u) + c.apply_transpose(self.weights * c.apply(u))

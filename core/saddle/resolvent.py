@@ -23,19 +23,8 @@ RESOLVED = 0.9  # share of the edges that are shorter than half of any wave trie
 class Resolvents:
     """M = f(−Δ) with the symbol f of an inner product, −Δ the Laplacian of linear elements with lumped mass.
 
-    Parameters
-    ----------
-    mesh
-        Connectivity.
-    lengths
-        Edge lengths ℓ, positive, shape (edges,).
-    apply
-        The product A u that M is a model of, (n, k) to (n, k).
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If A is not positive definite.
+    A model of the product ``apply``, u to A u, (n, k) to (n, k); ``lengths`` ℓ are those of the edges, shape (edges,).
+    A LinAlgError says if A is not positive definite.
     """
 
     def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
@@ -53,7 +42,6 @@ class Resolvents:
         self._at_edges = [factorised(at_edges + s * sp.diags_array(lengths)) for s in sigma]
 
     def solve(self, f: FloatArray) -> FloatArray:
-        """M⁻¹ f; shape (n, k)."""
         total = np.zeros_like(f)
         for weight, factor in zip(self._weights, self._at_vertices, strict=True):
             total += weight * factor.solve(self._mass * factor.solve(f))

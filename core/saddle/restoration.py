@@ -9,20 +9,12 @@ from ..curve.pins import free_edges, holds
 from ..types import FloatArray
 
 
-def euclidean_correction(constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
-    """The solution of C u = −Φ, C = DΦ at the curve, that is shortest up to translations, in O(n); shape (n, m).
+def euclidean_correction(constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:
+    """The solution of C u = −Φ, C = DΦ at the curve, that is shortest as lengths are concerned, in O(n); shape (n, m).
 
-    Lengths do not see translations, so these are left to the barycenters.  At pins u is 0.
-
-    Parameters
-    ----------
-    residual
-        Φ, shape (r + p·m,) for r lengths and p barycenters.
-
-    Returns
-    -------
-    u
-        Too large to be of any use if all edges of a closed component, or of an arc between two pins, are collinear.
+    What changes no length, such as a translation, is left to the blocks of further rows.  At pins u is 0.  Φ has shape
+    (r + k,) for r lengths and k rows of blocks.  Where all edges of a closed component, or of an arc between two pins,
+    are collinear, u is too large to be of any use; it is None if a block knows no such correction.
     """
     ell, mesh, pins = curve.edge_lengths, curve.mesh, constraints.pins.vertices
     rows, free = free_edges(mesh, pins), np.where(holds(mesh, pins), 0.0, 1.0)
@@ -32,14 +24,9 @@ def euclidean_correction(constraints: Constraints, curve: Curve, residual: Float
     diagonal = np.maximum(free[mesh.tails] + free[mesh.heads], 1.0)  # 1 where there is no row, and nothing to solve
     tension = _solve_gram(mesh, diagonal, cosines, stretch)
     pull = tension[:, None] * tau
-    u = free[:, None] * mesh.scatter(-pull, pull)
-    # what the change of lengths does to Σ ℓ_I m_I, translations are to undo
-    moments = stretch[:, None] * curve.midpoints + (0.5 * ell)[:, None] * (u[mesh.tails] + u[mesh.heads])
-    shifts = -residual[len(rows) :].reshape(-1, curve.dimension)
-    for member, missing in zip(constraints.memberships(mesh), shifts, strict=True):
-        own = member > 0.0
-        moved = np.isin(mesh.component, mesh.edge_component[own])
-        u[moved] += (missing - moments[own].sum(axis=0)) / ell[own].sum()
+    u: FloatArray | None = free[:, None] * mesh.scatter(-pull, pull)
+    for block, own in constraints.of_blocks(residual[len(rows) :]):
+        u = None if u is None else block.corrected(curve, u, stretch, own)
     return u
 
 

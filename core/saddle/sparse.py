@@ -13,13 +13,7 @@ from .tangent_space import TangentSpace, WholeSpace
 
 
 class SparseTangentSpace(TangentSpace):
-    """The tangent space of constraints of full rank, with J = A ⊗ Id_m for a sparse A.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the system is singular.
-    """
+    """The tangent space of constraints of full rank, with J = A ⊗ Id_m for a sparse A; LinAlgError if singular."""
 
     def __init__(self, gram: sp.csr_array, constraints: ConstraintDerivative) -> None:
         super().__init__(constraints)
@@ -28,13 +22,12 @@ class SparseTangentSpace(TangentSpace):
         self._free = _free(constraints)
         lengths, full = constraints.length_rows(), sp.kron(_vanishing(gram, constraints), sp.eye_array(m))
         self._factor = factorised(sp.block_array([[full, lengths.T], [lengths, None]]))
-        border = np.reshape(list(constraints.barycenter_rows()), (-1, full.shape[0]))
+        border = np.reshape(list(constraints.border()), (-1, full.shape[0]))
         self._border = np.hstack([border, np.zeros((len(border), rows))])
         self._response = self._factor.solve(self._border.T)
         self._held = self._border @ self._response
 
     def solve(self, eta: FloatArray | None, xi: FloatArray | None) -> tuple[FloatArray, FloatArray]:
-        """Solve without barycenters, then hold these."""
         rows, (n, m) = len(self.constraints.edges), self.constraints.shape
         eta = np.zeros((n, m)) if eta is None else self._free * eta
         xi = np.zeros(self.constraints.count) if xi is None else xi
@@ -44,7 +37,6 @@ class SparseTangentSpace(TangentSpace):
         return both[: n * m].reshape(n, m), np.concatenate([both[n * m :], pull])
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """J u."""
         return np.asarray(self._gram @ u)
 
 
@@ -59,7 +51,6 @@ class SparseWholeSpace(WholeSpace):
         self._factor = factorised(self._matrix)
 
     def riesz(self, eta: FloatArray) -> FloatArray:
-        """By the factorisation."""
         return np.asarray(self._factor.solve((self._free * eta).ravel())).reshape(eta.shape)
 
     def apply(self, u: FloatArray) -> FloatArray:

@@ -19,19 +19,11 @@ Symbol = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True, eq=False)
 class Parameter:
-    """A way to run along the components of a mesh, each at its own constant speed: by index, or by arc length.
-
-    Attributes
-    ----------
-    positions
-        Of each vertex, 0 at the first one of its component; shape (n,).
-    periods
-        Of each component; shape (components,).
-    """
+    """A way to run along the components of a mesh, each at its own constant speed: by index, or by arc length."""
 
     mesh: Mesh
-    positions: FloatArray
-    periods: FloatArray
+    positions: FloatArray  # of each vertex, 0 at the first one of its component; shape (n,)
+    periods: FloatArray  # of each component; shape (components,)
 
     @classmethod
     def of_steps(cls, mesh: Mesh, steps: FloatArray) -> "Parameter":
@@ -52,22 +44,9 @@ class Parameter:
     def symbol(self, apply: LinearMap, weights: FloatArray, highest: float) -> Symbol:
         """Rayleigh quotients Σ u A u / Σ w u² of waves u, interpolated between logarithms.
 
-        Below the lowest frequency, one turn, the symbol is constant; above the highest one tried it grows like its
-        third power, as that of an inner product of order 3/2 does.
-
-        Parameters
-        ----------
-        apply
-            The product A u, (n, k) to (n, k).
-        weights
-            w, shape (n,).
-        highest
-            The highest frequency to try, in radians per unit of the parameter.
-
-        Raises
-        ------
-        numpy.linalg.LinAlgError
-            If a quotient is not positive.
+        Below the lowest frequency, one turn, the symbol is constant; above the ``highest`` one tried, in radians per
+        unit of the parameter, it grows like its third power, as that of an inner product of order 3/2 does.  ``apply``
+        is u to A u, (n, k) to (n, k), ``weights`` w has shape (n,).  A LinAlgError says if a quotient is not positive.
         """
         turn = 2.0 * np.pi / float(self.periods.max())
         frequencies = turn * np.unique(np.rint(np.geomspace(1.0, max(1.0, highest / turn), FREQUENCIES)))
@@ -92,14 +71,8 @@ def modulated(symbol: Symbol, tau: FloatArray, lengths: FloatArray) -> Symbol:
     """What Σ_k diag(τ_k) K diag(τ_k) costs waves on edges, on an average along the curve, for K of a symbol.
 
     The kernel of K is multiplied by the autocorrelation of τ, on a uniform grid on which components follow each other.
-    Waves that are too short for this grid do not see the curve turn.
-
-    Parameters
-    ----------
-    tau
-        Unit tangents, shape (edges, m).
-    lengths
-        Edge lengths, shape (edges,).
+    Waves that are too short for this grid do not see the curve turn.  Unit tangents have shape (edges, m), edge
+    ``lengths`` (edges,).
     """
     ends, count = np.cumsum(lengths), 2 * len(lengths)
     spacing = ends[-1] / count

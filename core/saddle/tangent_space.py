@@ -41,10 +41,10 @@ class TangentSpace(ABC):
         """C^† ξ, the shortest u with C u = ξ; shapes (rows of C,) -> (n, m)."""
         return self.solve(None, xi)[0]
 
-    def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
+    def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:
         """A short u with DΦ u = −Φ at a curve near by, where a small residual Φ is left: Newton's method; shape (n, m).
 
-        By default the shortest in the Euclidean metric, at O(n).
+        By default the shortest in the Euclidean metric, at O(n); None if there is none so cheap.
         """
         return euclidean_correction(constraints, curve, residual)
 
@@ -60,12 +60,7 @@ class TangentSpace(ABC):
 class WholeSpace(TangentSpace):
     """All of R^(n·m), nothing being constrained but pins, with J + Cᵀ w C: how Section 6.4 of [RS21] penalises lengths.
 
-    Parameters
-    ----------
-    constraints
-        C.
-    weights
-        w ≥ 0, shape (rows of C,).
+    The weights w ≥ 0 have shape (rows of C,).
     """
 
     def __init__(self, constraints: ConstraintDerivative, weights: FloatArray) -> None:
@@ -82,5 +77,4 @@ class WholeSpace(TangentSpace):
         return u, np.zeros(self.constraints.count)
 
     def project(self, u: FloatArray) -> FloatArray:
-        """Everything is tangent: u."""
         return u

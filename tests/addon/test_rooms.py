@@ -63,7 +63,7 @@ def test_no_room_imports_from_one_above_it(path):
 def test_arrows_are_found():
     assert set(imported(ADDON / "__init__.py")) == {"registration"}
     assert set(imported(ADDON / "live" / "run.py")) == {"curves", "engine", "live", "pictures"}
-    assert set(imported(ADDON / "engine" / "job.py")) == {"engine"}
+    assert set(imported(ADDON / "engine" / "motion.py")) == {"engine"}
 
 
 @pytest.mark.parametrize("path", ENGINE, ids=lambda path: path.stem)

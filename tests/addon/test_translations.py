@@ -14,11 +14,11 @@ bpy = pytest.importorskip("bpy")
 import shown_texts  # noqa: E402
 from mobius_flow.addon import registration, translations  # noqa: E402
 from mobius_flow.addon.curves.turned import lay_flat  # noqa: E402
-from mobius_flow.addon.engine.phrase import Phrase  # noqa: E402
 from mobius_flow.addon.engine.words import named  # noqa: E402
 from mobius_flow.addon.pictures.filming import target  # noqa: E402
 from mobius_flow.addon.translations.po import ANY, read_po  # noqa: E402
 from mobius_flow.core import MobiusFlowError  # noqa: E402
+from mobius_flow.core.messages import Message  # noqa: E402
 
 FOLDER = Path(translations.__file__).parent
 TABLES = translations.tables(FOLDER)
@@ -60,7 +60,7 @@ def test_nothing_is_shown_that_nobody_could_translate(tmp_path):
         "self.report({'ERROR'}, str(error))",
         "cls.poll_message_set(reason)",
         "Refusal('No')",
-        "Phrase(f'{name} is closed')",
+        "Message(f'{name} is closed')",
         "layout.label(text=f'Add {name}')",
         "sentence(layout, context, f'{name} is open')",
         "manager.invoke_confirm(self, event, message=f'{name} is there already')",
@@ -73,7 +73,7 @@ def test_nothing_is_shown_that_nobody_could_translate(tmp_path):
 def test_sentences_are_found_wherever_they_are_made(tmp_path):
     path = tmp_path / "module.py"
     path.write_text(
-        "A, b = 'One', 1\nsaid = 'Two'\nPhrase(A)\nrpt_(said if b else 'Three')\nvalue(box, 'Four', 'five')\n"
+        "A, b = 'One', 1\nsaid = 'Two'\nMessage(A)\nrpt_(said if b else 'Three')\nvalue(box, 'Four', 'five')\n"
         "layout.operator('mesh.six', text='Seven')\nlayout.label(text='…')\nprint('eight')\n"
     )
     assert shown_texts.sentences(path) == {"One", "Two", "Three", "Four", "Seven"}
@@ -201,7 +201,7 @@ def test_names_are_joined_in_german():
 
 
 def test_errors_hand_phrases_on():
-    phrase = Phrase("{names} is being relaxed; stop that first", names=named(["A", "B"]))
+    phrase = Message("{names} is being relaxed; stop that first", names=named(["A", "B"]))
     said = str(MobiusFlowError(phrase)).said(german)
     assert said == "'A' und 'B': Entspannung läuft; diese zuerst beenden"
 

@@ -47,7 +47,7 @@ def test_energy_of_half_a_circle(tmp_path, capsys):
 def test_arcs_that_double_back_are_refused_with_their_line(tmp_path, capsys):
     (tmp_path / "a.txt").write_text("# open\n0 0 0\n2 0 0\n1 0 0\n")
     assert run("relax", tmp_path / "a.txt", tmp_path / "o.txt") == 2
-    reason = "line 3: component 1: edge 2 doubles back on edge 1 at vertex 2, (2, 0, 0); move or remove that vertex"
+    reason = "line 3: component 1: edge 2 doubles back on edge 1 at vertex 2, (2, 0, 0); move or remove it"
     assert reason in capsys.readouterr().err
 
 

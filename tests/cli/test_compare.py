@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli.compare import WRITERS
-from mobius_flow.cli.comparison import write_strip
-from mobius_flow.cli.figures import LINE_HEIGHT, draw_curve, figure_class, name_lines
+from mobius_flow.cli.figures import LINE_HEIGHT, draw_curve, figure_class, name_lines, write_strip
 from mobius_flow.core import write_curve
 from mobius_flow.core.curve.writhe import writhe_and_crossings
 from mobius_flow.core.driver.compare import History, least_energy

@@ -122,7 +122,7 @@ def test_other_tables_are_no_results(
     ("pipe", "told"),
     [
         ("results.csv", "{}: holds no results of mobius-flow batch"),
-        ("round/curve.txt", "{}/round/curve.txt: cannot be read: it is missing, or no regular file"),
+        ("round/curve.txt", "{}/round/curve.txt: cannot be read: it is missing, or not a regular file"),
     ],
 )
 def test_a_pipe_is_no_result(pipe: str, told: str, results: Path) -> None:

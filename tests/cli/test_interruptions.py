@@ -24,7 +24,7 @@ TALKATIVE = """
 import sys
 from mobius_flow.cli import main
 from mobius_flow.cli.progress import Progress
-Progress.update = lambda self, iterate: iterate.index == 2 and print("running", flush=True)
+Progress.update = lambda self, bar, iterate: iterate.index == 2 and print("running", flush=True)
 sys.exit(main(sys.argv[1:]))
 """
 
@@ -101,7 +101,7 @@ if kind == "trajectory":
     write = lambda: trajectory.save(target)
 elif kind == "report":
     result = minimize(curve, RelaxOptions(vertices=len(curve), max_iterations=0))
-    write = lambda: _write_report(target, result)
+    write = lambda: _write_report(result, {}, target)
 else:
     write = lambda: write_curve(target, curve)
 write()

@@ -142,7 +142,7 @@ def test_whatever_a_command_raises(
     def failing(*_: object) -> None:
         raise error
 
-    monkeypatch.setattr("mobius_flow.cli.energy.measure", failing)
+    monkeypatch.setattr("mobius_flow.cli.info.measure", failing)
     assert main(["energy", trefoil]) == status
     said = capsys.readouterr().err
     assert words in said

@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from mobius_flow.cli import main, outputs, recovery
+from mobius_flow.cli import main, outputs, places
 from mobius_flow.cli import relax as relax_command
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.curve.io import FORMATS
@@ -262,7 +262,7 @@ def test_what_cannot_be_kept_leaves_nothing(trefoil: str) -> None:
             Path(path).write_text("half")
         raise MobiusFlowError("no")
 
-    assert recovery.kept("nowhere/o.txt", failing) == ["no"]
+    assert places.kept("nowhere/o.txt", failing) == ["no"]
     assert os.listdir("scratch") == []
 
 

@@ -13,7 +13,6 @@ import pytest
 from mobius_flow.cli import compare as compare_command
 from mobius_flow.cli import main, outputs, signals
 from mobius_flow.cli.progress import Progress
-from mobius_flow.cli.relax import _interruptible
 from mobius_flow.core import Curve, Iterate, Result, Trajectory, read_curve, relax, write_curve
 from mobius_flow.core.driver import finish
 from mobius_flow.core.driver.compare import History, compare
@@ -60,7 +59,7 @@ def test_held_signals_wait_until_they_are_allowed() -> None:
 def test_signals_wait_while_an_iterate_is_recorded() -> None:
     """They interrupt the computation of the next one: what is written ends with one and the same iterate."""
     with signals.raised():
-        iterates = _interruptible(relax(torus_trefoil(60)))
+        iterates = signals.interruptible(relax(torus_trefoil(60)))
         next(iterates)
         send(signal.SIGTERM)
         with pytest.raises(KeyboardInterrupt):
@@ -124,8 +123,8 @@ def test_signals_while_results_are_written_cost_nothing(
     """Two at once in the run, and more while the trajectory is written."""
     update, save = Progress.update, Trajectory.save
 
-    def interrupted(self: Progress, iterate: Iterate) -> None:
-        update(self, iterate)
+    def interrupted(self: Progress, bar: Any, iterate: Iterate) -> None:
+        update(self, bar, iterate)
         if iterate.index == 3:
             send(number)
             send(signal.SIGTERM)
@@ -186,8 +185,8 @@ def test_a_film_can_be_interrupted_and_the_curve_is_kept(
     """Also that of a run which was interrupted itself."""
     update = Progress.update
 
-    def interrupted(self: Progress, iterate: Iterate) -> None:
-        update(self, iterate)
+    def interrupted(self: Progress, bar: Any, iterate: Iterate) -> None:
+        update(self, bar, iterate)
         if before and iterate.index == 2:
             send(signal.SIGTERM)
 
@@ -237,8 +236,8 @@ def test_memory_that_runs_out_keeps_the_curve(
 ) -> None:
     update = Progress.update
 
-    def failing(self: Progress, iterate: Iterate) -> None:
-        update(self, iterate)
+    def failing(self: Progress, bar: Any, iterate: Iterate) -> None:
+        update(self, bar, iterate)
         if iterate.index == 3:
             raise MemoryError
 

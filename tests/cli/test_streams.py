@@ -6,13 +6,14 @@ import json
 import os
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from curve_formats import OF_VERTICES
 from mobius_flow import __version__
-from mobius_flow.cli import main, progress
+from mobius_flow.cli import main
 from mobius_flow.cli.progress import leg_progress
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.verify import verify
@@ -161,7 +162,7 @@ def test_verify_tells_how_far_it_is(
     trajectory: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     tqdm = pytest.importorskip("tqdm")
-    monkeypatch.setattr(progress, "bar", lambda **options: tqdm.tqdm(mininterval=0, leave=False, **options))
+    monkeypatch.setattr(tqdm, "tqdm", partial(tqdm.tqdm, mininterval=0))
     seen: list[tuple[int, int]] = []
     assert verify(trajectory, lambda *counts: seen.append(counts)).accepted
     assert seen == [(1, 2), (2, 2)]

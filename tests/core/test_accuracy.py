@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from hard_curves import bent_trefoil
 from mobius_flow.core import Curve, RelaxOptions, Result, minimize
-from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, far_field
+from mobius_flow.core.hierarchy import HierarchicalMoebiusEnergy, fields
 
-LESS_ACCURATE = "the hierarchical solver is less accurate than asked for"
+INACCURATE = "the hierarchical solver misses the requested accuracy"
 
 
 def short(vertices: int = 1500, **options: object) -> Result:
@@ -46,27 +46,27 @@ def test_expansions_are_tightened_for_the_accuracy_asked_for() -> None:
     assert errors.order == 6
     assert errors.energy.bound < 1e-7
     assert errors.gradient_norm.bound < 5e-6
-    assert "distant clusters were expanded to order 6 for the accuracy asked for" in result.message
-    assert LESS_ACCURATE not in result.message
+    assert "far-field expansions were raised to order 6 for the requested accuracy" in result.message
+    assert INACCURATE not in result.message
     assert len(result.energies) == 4
     assert result.certified
 
 
 @pytest.mark.slow
 def test_what_cannot_be_reached_is_told() -> None:
-    assert LESS_ACCURATE in short(accuracy=1e-12).message
+    assert INACCURATE in short(accuracy=1e-12).message
 
 
 def wrong_kernels(monkeypatch: pytest.MonkeyPatch) -> None:
     """One Taylor coefficient of the logarithm is wrong."""
-    original = far_field.kernel_derivatives
+    original = fields.kernel_derivatives
 
     def kernels(*arguments):  # type: ignore[no-untyped-def]
         square, log = original(*arguments)
         log[4] *= 1.01
         return square, log
 
-    monkeypatch.setattr(far_field, "kernel_derivatives", kernels)
+    monkeypatch.setattr(fields, "kernel_derivatives", kernels)
 
 
 def wrong_derivative(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -88,22 +88,22 @@ def wrong_value(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     defect(monkeypatch)
     message = short().message
-    assert f"{LESS_ACCURATE}: dense sums over sampled edges put its relative errors at up to " in message
-    assert message.endswith("in the gradient's norm; the dense solver has none of them")
+    assert f"{INACCURATE}: against dense sums over a sample its relative errors are up to " in message
+    assert message.endswith("in the gradient norm; the dense solver has none of them")
 
 
 @pytest.mark.slow
 def test_every_mesh_and_the_end_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mobius_flow.core.driver.interventions import check_accuracy
+    from mobius_flow.core.driver.interventions import fallback
 
     looked_at: list[int] = []
-    original = check_accuracy.SampledErrors.at
+    original = fallback.SampledErrors.at
 
     def at(energy, curve, *rest):  # type: ignore[no-untyped-def]
         looked_at.append(len(curve))
         return original(energy, curve, *rest)
 
-    monkeypatch.setattr(check_accuracy.SampledErrors, "at", at)
+    monkeypatch.setattr(fallback.SampledErrors, "at", at)
     short(1700)
     assert looked_at == [1700, 1700]
     looked_at.clear()
@@ -115,7 +115,7 @@ def test_the_last_line_says_the_error_of_an_energy_that_is_not_exact(monkeypatch
     from mobius_flow.cli.relax import _summary
 
     assert "±" not in _summary(short(300))
-    monkeypatch.setattr("mobius_flow.core.hierarchy.reported.EXACT_UP_TO", 200)
+    monkeypatch.setattr("mobius_flow.core.hierarchy.sampling.EXACT_UP_TO", 200)
     result = short(300)
     assert f" ± {result.final_energy * result.final_energy_error:.1g}, certified" in _summary(result)
     assert result.report()["final_energy_error"] == result.final_energy_error > 0.0

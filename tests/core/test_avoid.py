@@ -111,7 +111,7 @@ def test_a_curve_stays_on_its_side_of_a_rod(tmp_path):
 
 def test_what_no_step_gets_past_is_named():
     stuck = NoStep.because(Contact((4,), "obstacle box"))
-    assert stuck.reason == "edge 5 and obstacle box are so near to each other that no step is free of contact"
+    assert stuck.reason == "edge 5 and obstacle box are so close that no step is free of contact"
     assert stuck.limited_by is not None
     assert at_edges(regular_polygon(24), stuck.limited_by.edges).vertices == (4, 5)
 
@@ -130,7 +130,7 @@ def test_an_obstacle_too_large_for_its_repulsion_is_refused(size, unit, reach):
     """Its size is told, not coordinates in units that nobody knows."""
     curve, wall = torus_trefoil(30), plate(-2.0, size, "wall")
     wall = Obstacle(wall.vertices * [1.0, 1.0, unit], wall.faces, "wall")
-    with pytest.raises(CurveError, match=f"^obstacle wall reaches some {reach} times as far as the curve is long; cut"):
+    with pytest.raises(CurveError, match=f"^obstacle wall reaches some {reach} times the curve's length; cut"):
         relax(*wanted(curve.with_vertices(unit * curve.vertices), avoid=(wall,), vertices=30))
 
 

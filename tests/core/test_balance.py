@@ -9,10 +9,11 @@ from mobius_flow.core import Curve, Iterate, MoebiusEnergy, OptionError, RelaxOp
 from mobius_flow.core.constraints import Constraints
 from mobius_flow.core.curve.bending import bending
 from mobius_flow.core.curve.moebius_map import moebius_image
-from mobius_flow.core.driver import balance
-from mobius_flow.core.driver.balance import MoebiusImages, way_to_balance
-from mobius_flow.core.driver.interventions.balance import CUT_OFF
+from mobius_flow.core.descent import Point, Step
+from mobius_flow.core.driver.interventions import balance
+from mobius_flow.core.driver.interventions.balance import CUT_OFF, Balance, MoebiusImages
 from mobius_flow.core.driver.prepare import start_problem
+from mobius_flow.core.driver.run import Run
 from mobius_flow.core.knots import knot, torus_knot
 from mobius_flow.core.taylor import taylor_slope
 from mobius_flow.core.verify import verify
@@ -25,8 +26,16 @@ def unbalanced(curve: Curve, *v: float) -> Curve:
     return MoebiusImages(curve, curve.edge_lengths).at(np.array([1.0, *v]))
 
 
-def point(curve: Curve, **options: object):
+def point(curve: Curve, **options: object) -> Point:
     return start_problem(curve, RelaxOptions(**options)).at_curve(curve)  # type: ignore[arg-type]
+
+
+def run_at(start: Point) -> Run:
+    return Run(start.problem, Curve(start.placed, start.problem.mesh), RelaxOptions())
+
+
+def way_to_balance(start: Point) -> tuple[Step, ...]:
+    return Balance(run_at(start)).way(start)
 
 
 def largest_chord(curve: Curve) -> float:
@@ -127,11 +136,12 @@ def test_no_way_leads_through_a_strand() -> None:
     """The pole inside a circle, in its plane: it would have to come through the circle from wherever it comes."""
     start, inside = point(regular_polygon(60)), np.array([1.0, -2.0, 0.0, 0.0])
     images = MoebiusImages(start.curve, start.curve.edge_lengths)
-    assert balance._way(start, images, inside, start.problem) == ()
-    assert balance._way(start, images, -inside, start.problem) == ()
+    way = Balance(run_at(start))._way
+    assert way(start, images, inside, start.problem) == ()
+    assert way(start, images, -inside, start.problem) == ()
     outside = np.array([1.0, -0.5, 0.0, 0.0])
-    assert balance._way(start, images, outside, start.problem)
-    assert balance._way(start, images, -outside, start.problem) == (), "the long way is through the circle"
+    assert way(start, images, outside, start.problem)
+    assert way(start, images, -outside, start.problem) == (), "the long way is through the circle"
 
 
 def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -139,10 +149,10 @@ def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch: pytest.Mon
     asked = []
 
     def no_way(*arguments: object) -> tuple[()]:
-        asked.append(arguments[2])
+        asked.append(arguments[3])
         return ()
 
-    monkeypatch.setattr(balance, "_way", no_way)
+    monkeypatch.setattr(Balance, "_way", no_way)
     assert way_to_balance(start) == ()
     assert len(asked) >= 4
     np.testing.assert_array_equal(asked[::2], -np.array(asked[1::2]))
@@ -182,9 +192,8 @@ def test_a_balanced_run_bends_less_at_no_more_energy(runs) -> None:
     assert bending(result.curve) < 0.7 * bending(plain.curve)
     assert result.final_energy < plain.final_energy + 1e-3
     assert iterates[-1].edge_length_error < 1e-6
-    told = (
-        f"; balanced: bending {bending(result.curve):.4g} instead of {bending(plain.curve):.4g} (4π² on a round circle)"
-    )
+    before, after = bending(plain.curve), bending(result.curve)
+    told = f"; balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
     assert told in result.message
     assert "energy rose" not in result.message, "that is about the flow's own steps"
 
@@ -248,7 +257,7 @@ def test_a_mesh_becomes_finer_where_strands_are_near_in_the_balanced_shape() -> 
 
 def test_what_is_balanced_already_is_said_to_be() -> None:
     result = minimize(knot("3_1"), RelaxOptions(balance=True))
-    assert result.message.endswith("; no Möbius image that there is a way to bends less")
+    assert result.message.endswith("; no Möbius image within reach bends less")
 
 
 @pytest.mark.parametrize("method", ["flow-moebius", "penalty-lbfgs"])

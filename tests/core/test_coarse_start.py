@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from changed_interventions import change
 from hard_curves import hard_unknot
 from mobius_flow.core import Curve, Iterate, Outcome, RelaxOptions, Status, Trajectory, minimize
 from mobius_flow.core.curve import Mesh
 from mobius_flow.core.curve.smooth import smoothed
-from mobius_flow.core.driver.interventions import coarse_start
+from mobius_flow.core.driver.interventions import CoarseStart
 from mobius_flow.core.driver.rises import Rises
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.verify import verify
@@ -19,7 +20,7 @@ from shapes import regular_polygon, torus_trefoil
 @pytest.fixture
 def everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also for curves that are small enough for tests."""
-    monkeypatch.setattr(coarse_start, "MIN_VERTICES", 100)
+    change(monkeypatch, CoarseStart, min_vertices=100)
 
 
 def bent(curve: Curve) -> Curve:
@@ -68,11 +69,11 @@ def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
 
 
 @pytest.mark.usefixtures("everywhere")
-@pytest.mark.parametrize("limit", [0, 1, 5, 12, coarse_start.MIN_ITERATIONS, 33])
-@pytest.mark.parametrize("least", [0, coarse_start.MIN_ITERATIONS])
+@pytest.mark.parametrize("limit", [0, 1, 5, 12, CoarseStart.min_iterations, 33])
+@pytest.mark.parametrize("least", [1, CoarseStart.min_iterations])
 def test_a_run_that_is_cut_short_has_all_vertices(limit: int, least: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """The way back is within the limit, and ends on the smooth curve: no corners of the coarse one are left."""
-    monkeypatch.setattr(coarse_start, "MIN_ITERATIONS", least)
+    change(monkeypatch, CoarseStart, min_iterations=least)
     options = RelaxOptions(vertices=900, max_iterations=limit, tolerance=1e-9, method="flow-h1")
     result = minimize(torus_trefoil(900), options)
     assert result.status is Status.ITERATION_LIMIT
@@ -83,11 +84,11 @@ def test_a_run_that_is_cut_short_has_all_vertices(limit: int, least: int, monkey
 
 
 @pytest.mark.usefixtures("everywhere")
-@pytest.mark.parametrize("limit", [coarse_start.MIN_ITERATIONS, 34])
+@pytest.mark.parametrize("limit", [CoarseStart.min_iterations, 34])
 def test_a_run_that_is_cut_short_ends_on_the_constraints(limit: int) -> None:
     """Between strands the smooth curve with all vertices is a hundredth off."""
     result = minimize(hard_unknot(20, seed=3), RelaxOptions(vertices=900, max_iterations=limit))
-    assert result.message.startswith(f"stopped after {limit} iterations, as asked for; changes of mesh")
+    assert result.message.startswith(f"stopped at the iteration limit ({limit}); changes of mesh")
     assert result.last.edge_length_error < 1e-10
     assert result.certified
 
@@ -96,7 +97,7 @@ def test_lengths_that_are_not_reached_at_the_limit_are_told_of() -> None:
     result = minimize(bent(torus_trefoil(300)), RelaxOptions(vertices=300, max_iterations=1))
     off = 100 * result.last.edge_length_error
     assert off > 1
-    assert result.message.endswith(f"; edge lengths are still off their targets by up to {off:.2g} %")
+    assert result.message.endswith(f"; lengths are still up to {off:.2g} % off target")
 
 
 @pytest.mark.usefixtures("everywhere")
@@ -185,7 +186,10 @@ def test_rises_of_the_energy_with_the_mesh_are_told_of(options: dict[str, object
 
 @pytest.mark.parametrize(
     ("further", "told"),
-    [([1.0, 1.125], "once more, by 0.125"), ([1.0, 1.125, 1.0, 1.0625], "2 times more, by 0.188 in all")],
+    [
+        ([1.0, 1.125], "in another change by 0.125"),
+        ([1.0, 1.125, 1.0, 1.0625], "in 2 further changes by 0.188 in total"),
+    ],
 )
 def test_many_rises_are_added_up(further: list[float], told: str) -> None:
     curve = regular_polygon(5)
@@ -193,7 +197,7 @@ def test_many_rises_are_added_up(further: list[float], told: str) -> None:
     iterates = [Iterate(2 * k, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for k, energy in enumerate(energies)]
     for k in range(0, len(iterates), 2):
         rises.change(iterates[k], iterates[k + 1])
-    message = rises.told(Outcome(Status.CONVERGED, "done"), 9).message
+    message = rises.told(Outcome(Status.CONVERGED, ("done",)), 9).message
     assert message == (
         "done; changes of mesh or shape raised the energy: 4 → 4.5 at iteration 2, 3 → 3.5 at iteration 6, "
         f"2 → 2.25 at iteration 10, and {told}"
@@ -214,5 +218,5 @@ def test_energies_that_are_told_show_where_it_rose(energies: list[float], told: 
     iterates = [Iterate(3, curve, energy, 1.0, 0.0, (), True, 0.0, "lbfgs") for energy in energies]
     for before, after in itertools.pairwise(iterates):
         rises.change(before, after)
-    message = rises.told(Outcome(Status.CONVERGED, "done"), 9).message
+    message = rises.told(Outcome(Status.CONVERGED, ("done",)), 9).message
     assert message == f"done; changes of mesh or shape raised the energy: {told} at iteration 3"

@@ -68,7 +68,7 @@ def test_what_was_reached_is_kept():
     result = minimize(TREFOIL, RelaxOptions(time_limit=1e-9, vertices=40))
     assert result.status is Status.TIME_LIMIT
     assert result.report()["status"] == "time_limit"
-    assert result.message == "stopped at the time limit, 1e-09 s, as asked for"
+    assert result.message == "stopped at the time limit (1e-09 s)"
     assert len(result.energies) == 1
     assert result.certified
 

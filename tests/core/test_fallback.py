@@ -3,18 +3,18 @@
 from dataclasses import replace
 
 import pytest
+from changed_interventions import change
 from mobius_flow.core import METHODS, RelaxOptions, Status, minimize
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import NoStep
 from mobius_flow.core.driver import run as run_module
-from mobius_flow.core.driver.events import Change
-from mobius_flow.core.driver.interventions import fallback as fallback_module
-from mobius_flow.core.driver.interventions.fallback import HELPER, HELPS, Fallback
+from mobius_flow.core.driver.interventions import Fallback
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.driver.run import Run
+from mobius_flow.core.driver.run import Change, Run
 from mobius_flow.core.knots import knot
 
 STUCK = NoStep("it never does")
+HELPER, HELPS = Fallback.method, Fallback.steps
 
 
 class Stubborn:
@@ -67,15 +67,15 @@ def test_it_is_not_asked_where_its_matrices_do_not_fit(rule, monkeypatch):
 def test_it_is_not_asked_twice_in_vain(rule):
     run = run_by()
     fallback = Fallback(run)
-    run.change(fallback(STUCK))
+    list(run.change(fallback(STUCK)))
     assert run.method is HELPER
-    run.change(fallback(STUCK))
+    list(run.change(fallback(STUCK)))
     assert run.method.rule is rule
     assert fallback(STUCK) is STUCK
 
 
 def test_where_the_helper_finds_nothing_either_the_method_has_the_last_word(rule, monkeypatch):
-    monkeypatch.setattr(fallback_module, "HELPER", replace(HELPER, rule=Stubborn()))
+    change(monkeypatch, Fallback, method=replace(HELPER, rule=Stubborn()))
     result = minimize(knot("3_1"))
     assert result.status is Status.STALLED
     assert result.message.startswith("stalled: it never does; ")
@@ -86,9 +86,9 @@ def test_energies_of_another_mesh_are_not_compared(rule):
     run = run_by()
     fallback = Fallback(run)
     for _ in range(2):
-        run.change(fallback(STUCK))
+        list(run.change(fallback(STUCK)))
     assert fallback(STUCK) is STUCK
-    run.change(Change(point=run_by(vertices=150).point))
+    list(run.change(Change(point=run_by(vertices=150).point)))
     assert fallback(STUCK).method is HELPER
 
 

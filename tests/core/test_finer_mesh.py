@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from changed_interventions import change
 from mobius_flow.core import Curve, Objective, RelaxOptions, Result, Status, Trajectory, minimize
 from mobius_flow.core.curve.refine import Resolution, subdivide, subdivision, target_spacing
-from mobius_flow.core.driver.interventions import finer_mesh
+from mobius_flow.core.driver.interventions import FinerMesh
 from mobius_flow.core.verify import verify
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 from torus_energies import torus_knot_minimum
@@ -65,27 +66,27 @@ def test_what_is_asked_for_is_kept_and_said_to_be_coarse(options):
     result, curves = recorded(start, **options)
     assert len(curves) == 1
     assert result.status is Status.CONVERGED
-    assert "nearer than this mesh resolves" in result.message
+    assert "closer than this mesh resolves" in result.message
 
 
 def test_a_run_that_is_about_to_end_keeps_its_mesh():
     """The curve would end with corners where edges were split."""
     coarse = {"vertices": 40, "tolerance": 1e-3}
     steps = len(recorded(lattice_knot("3_1"), **coarse)[0].energies) - 1
-    for left, meshes in ((finer_mesh.MIN_ITERATIONS - 1, 1), (finer_mesh.MIN_ITERATIONS, 2)):
+    for left, meshes in ((FinerMesh.min_iterations - 1, 1), (FinerMesh.min_iterations, 2)):
         options = coarse | {"mesh": "finer", "max_iterations": steps + left}
         assert len(recorded(lattice_knot("3_1"), **options)[1]) == meshes
 
 
-@pytest.mark.parametrize(("finest", "count"), [(0, 40), (80, 80)])
+@pytest.mark.parametrize(("finest", "count"), [(1, 40), (80, 80)])
 def test_there_are_never_more_than_there_is_time_for(finest, count, monkeypatch):
     """What is not resolved by as many is said to be so."""
-    monkeypatch.setattr(finer_mesh, "FINEST", finest)
+    change(monkeypatch, FinerMesh, most=finest)
     result, _ = recorded(lattice_knot("3_1"), vertices=40, mesh="finer", tolerance=1e-3)
     assert len(result.curve) == count
     assert result.status is Status.CONVERGED
     unresolved = Objective().barrier.value(result.curve) < -1e-3
-    assert ("nearer than this mesh resolves" in result.message) == unresolved == (count == 40)
+    assert ("closer than this mesh resolves" in result.message) == unresolved == (count == 40)
 
 
 def test_edges_per_gap():

@@ -162,7 +162,7 @@ def test_a_straight_arc_between_pins_cannot_grow():
 def test_edges_between_pins_keep_their_lengths():
     curve = regular_polygon(24)
     pins = Pins.of(curve, np.array([0, 1]))
-    constraints = Constraints(curve.edge_lengths, np.empty(0), pins=pins).scaled(2.0, curve.mesh)
+    constraints = Constraints.of(curve, pins).scaled(2.0, curve.mesh)
     assert constraints.lengths[0] == curve.edge_lengths[0]
     assert np.array_equal(constraints.lengths[1:], 2.0 * curve.edge_lengths[1:])
 

@@ -7,10 +7,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions
 from mobius_flow.core.descent import Point
-from mobius_flow.core.driver.hops.motions import MOTIONS, Motion
-from mobius_flow.core.driver.hops.pace import Pace, radius, root_mean_square
-from mobius_flow.core.driver.hops.push import Push
-from mobius_flow.core.driver.hops.stir import Stir
+from mobius_flow.core.driver.motions import MOTIONS, Motion, Push, Stir, radius, root_mean_square
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import torus_knot
 
@@ -53,7 +50,7 @@ def test_motions_fit_where_lengths_are_prescribed_and_pushes_where_there_is_a_he
 
 
 def test_flows_have_no_divergence() -> None:
-    flow = Stir()._flow(saddle(), np.random.default_rng(0))
+    flow = Stir().field(saddle(), np.random.default_rng(0))
     x, h = np.array([[0.3, -0.2, 0.1]]), 1e-5
     divergence = sum((flow(x + h * e)[0] - flow(x - h * e)[0]) @ e for e in np.eye(3)) / (2.0 * h)
     assert abs(divergence) < 1e-8
@@ -67,7 +64,7 @@ def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room() ->
     def field(x: np.ndarray) -> np.ndarray:
         return rough if np.array_equal(x, start.vertices) else np.cross([0.0, 0.0, 1.0], x)
 
-    steps = list(Pace(stride, shortest=1e-3).along(start, field, 1.0, 1.02 * start.energy))
+    steps = list(Stir(stride=stride, shortest=1e-3).along(start, field, 1.02 * start.energy))
     places = [start.vertices, *(step.point.vertices for step in steps)]
     ways = [root_mean_square(b - a) / radius(a) for a, b in pairwise(places)]
     assert ways[0] < 0.6 * stride
@@ -77,4 +74,4 @@ def test_a_way_is_as_long_as_asked_and_steps_grow_again_where_there_is_room() ->
 
 def test_a_field_that_constraints_hold_back_moves_nothing() -> None:
     """What is left of a translation, with the barycenter held, is rounding errors."""
-    assert not list(Stir().pace.along(saddle(), np.ones_like, 1.0, np.inf))
+    assert not list(Stir().along(saddle(), np.ones_like, np.inf))

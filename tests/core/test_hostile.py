@@ -74,7 +74,7 @@ REFUSED: dict[str, tuple[Array, str]] = {
     ),
     "below range": (1e-300 * TREFOIL, "only 5.6.*e-300 wide, less than 1e-40; use a smaller unit"),
     "denormal": (np.ldexp(np.round(4 * TREFOIL), -1074), "use a smaller unit"),
-    "too far away": (TREFOIL + 1e15, "too few digits .* move it nearer to the origin"),
+    "too far away": (TREFOIL + 1e15, "too far from the origin, .* move it closer"),
     "much too far away": (TREFOIL + 1e18, "the same point"),
     "one point": (np.zeros((5, 3)), "vertices 1 and 2 are the same point"),
     "closed up to rounding": (np.stack([np.cos(CLOSED_TWICE), np.sin(CLOSED_TWICE)], axis=1), "41 and 1 are the same"),

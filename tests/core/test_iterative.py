@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from descent_contracts import point_on
 from mobius_flow.core import Curve, Objective, OptionError
-from mobius_flow.core.constraints import ConstraintDerivative
+from mobius_flow.core.constraints import Barycenters, Constraints
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent import METHODS, Point, State, Step
 from mobius_flow.core.hierarchy.inner_product import CompressedInnerProduct, moebius_inner_product
@@ -33,7 +33,7 @@ CURVE = pytest.mark.parametrize("name", CURVES)
 def spaces(name: str) -> tuple[TangentSpace, TangentSpace]:
     """The iterative tangent space, and the same by dense factorisations."""
     curve = centred(CURVES[name])
-    inner, constraints = moebius_inner_product(curve), ConstraintDerivative.at(curve)
+    inner, constraints = moebius_inner_product(curve), Constraints.of(curve).derivative(curve)
     return inner.tangent_space(constraints), DenseInnerProduct(inner.dense()).tangent_space(constraints)
 
 
@@ -63,7 +63,7 @@ def test_gradient(name: str) -> None:
 def test_norm_is_as_accurate_as_asked_for(name: str, accuracy: float) -> None:
     curve = centred(CURVES[name])
     inner = moebius_inner_product(curve, Tolerances.of_norms(accuracy))
-    u, _ = inner.tangent_space(ConstraintDerivative.at(curve)).gradient(derivative(name))
+    u, _ = inner.tangent_space(Constraints.of(curve).derivative(curve)).gradient(derivative(name))
     expected, _ = spaces(name)[1].gradient(derivative(name))
     square = np.sum(derivative(name) * expected)
     assert np.sqrt(np.sum(derivative(name) * u) / square) == pytest.approx(1, abs=accuracy)
@@ -72,7 +72,7 @@ def test_norm_is_as_accurate_as_asked_for(name: str, accuracy: float) -> None:
 @CURVE
 def test_gradient_against_the_exact_metric(name: str) -> None:
     curve = centred(CURVES[name])
-    exact = MoebiusMetric().at(curve).tangent_space(ConstraintDerivative.at(curve))
+    exact = MoebiusMetric().at(curve).tangent_space(Constraints.of(curve).derivative(curve))
     u, v = spaces(name)[0].gradient(derivative(name))[0], exact.gradient(derivative(name))[0]
     assert np.sum(u * exact.apply(v)) > 0.998 * exact.norm(u) * exact.norm(v)
 
@@ -119,7 +119,7 @@ def smooth_load(curve: Curve) -> np.ndarray:
 
 
 def space_at(curve: Curve) -> TangentSpace:
-    return moebius_inner_product(curve).tangent_space(ConstraintDerivative.at(curve))
+    return moebius_inner_product(curve).tangent_space(Constraints.of(curve).derivative(curve))
 
 
 @pytest.mark.parametrize("kind", ["torus", "tangle"])
@@ -173,7 +173,7 @@ def test_too_few_iterations_are_an_error() -> None:
     curve = CURVES["tangle"]
     inner = moebius_inner_product(curve, Tolerances(max_iterations=3))
     with pytest.raises(np.linalg.LinAlgError, match="more than 3 iterations"):
-        inner.tangent_space(ConstraintDerivative.at(curve)).gradient(smooth_load(curve))
+        inner.tangent_space(Constraints.of(curve).derivative(curve)).gradient(smooth_load(curve))
 
 
 def test_no_gradient_where_the_derivative_is_normal() -> None:
@@ -188,7 +188,10 @@ def test_several_barycenters() -> None:
     """Parts of a link that are each held in place."""
     curve = centred(CURVES["hopf"])
     apart = curve.with_vertices(curve.vertices + 5.0 * curve.mesh.component[:, None])
-    inner, constraints = moebius_inner_product(apart), ConstraintDerivative.at(apart, (0, 1))
+    inner, constraints = (
+        moebius_inner_product(apart),
+        Constraints(apart.edge_lengths, (Barycenters.of(apart, parts=(0, 1)),)).derivative(apart),
+    )
     assert constraints.count == len(apart) + 6
     load = smooth_load(apart)
     u, _ = inner.tangent_space(constraints).gradient(load)

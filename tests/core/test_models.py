@@ -9,8 +9,7 @@ from mobius_flow.core.curve import refine
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
 from mobius_flow.core.knots import knot
 from mobius_flow.core.metrics import MoebiusMetric
-from mobius_flow.core.saddle.circulant import Circulants
-from mobius_flow.core.saddle.fourier import ComponentTransform
+from mobius_flow.core.saddle.circulant import Circulants, ComponentTransform
 from mobius_flow.core.saddle.krylov import conjugate_gradients, relative
 from mobius_flow.core.saddle.resolvent import Resolvents
 from mobius_flow.core.saddle.symbol import Parameter

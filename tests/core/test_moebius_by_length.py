@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.energies import MoebiusEnergy
-from mobius_flow.core.energies.moebius_by_length import moebius_by_length
+from mobius_flow.core.energies.moebius import moebius_by_length
 from shapes import hopf_link, regular_polygon, torus_trefoil
 
 

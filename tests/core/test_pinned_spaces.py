@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from mobius_flow.core import Curve
-from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.constraints import Barycenters, ConstraintDerivative, Constraints
 from mobius_flow.core.curve.pins import Pins, free_edges
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
 from mobius_flow.core.metrics import METRICS, DenseInnerProduct, SparseInnerProduct
 from mobius_flow.core.saddle.iterative import Tolerances
-from mobius_flow.core.saddle.pinned import PinnedModel
+from mobius_flow.core.saddle.models import PinnedModel
 from mobius_flow.core.saddle.restoration import euclidean_correction
 from mobius_flow.core.taylor import taylor_slope
 from mobius_flow.core.types import FloatArray, IntArray
@@ -48,8 +48,7 @@ NAMES = pytest.mark.parametrize("name", PINNED)
 def constraints_of(name: str) -> tuple[Curve, Constraints]:
     curve, parts, vertices = PINNED[name]
     pins = Pins.of(curve, np.array(vertices))
-    barycenter = weighted_barycenter(curve, parts, pins.vertices)
-    return curve, Constraints(curve.edge_lengths, barycenter, parts, pins)
+    return curve, Constraints(curve.edge_lengths, (Barycenters.of(curve, pins, parts),), pins)
 
 
 def tangent_direction(curve: Curve, pins: IntArray) -> FloatArray:
@@ -154,7 +153,8 @@ def test_small_corrections_leave_pins_alone(name: str) -> None:
     np.testing.assert_allclose(derivative.apply(u), -residual, atol=1e-10 * np.abs(u).max() / curve.edge_lengths.min())
     shortest = -np.linalg.pinv(derivative.length_rows().toarray()) @ residual[: len(derivative.edges)]
     moved = u - shortest.reshape(n, m)
-    own = np.concatenate([np.flatnonzero(own) for own in constraints.memberships(curve.mesh)] or [[]]).astype(int)
+    parts = constraints.block(Barycenters).memberships(curve.mesh)
+    own = np.concatenate([np.flatnonzero(own) for own in parts] or [[]]).astype(int)
     np.testing.assert_allclose(np.delete(moved, own, axis=0), 0.0, atol=1e-9 * (np.abs(u).max() + 1e-300))
 
 
@@ -176,7 +176,7 @@ def test_a_dense_inner_product_keeps_its_inverse_for_the_same_pins() -> None:
     inner, derivative = METRICS["moebius"].at(curve), constraints.derivative(curve)
     before, again = inner.tangent_space(derivative), inner.tangent_space(derivative)
     assert before._inner is again._inner
-    other = inner.tangent_space(ConstraintDerivative.at(curve, pins=np.array([7])))
+    other = inner.tangent_space(Constraints.of(curve, Pins.of(curve, np.array([7]))).derivative(curve))
     assert not other.gradient(np.ones(curve.vertices.shape))[0][7].any()
 
 

@@ -57,5 +57,5 @@ def test_a_stalled_run_points_at_the_edges_in_the_way(monkeypatch):
     run = WithOutcome(relax(torus_trefoil(40), RelaxOptions(vertices=40)))
     last = list(run)[-1].curve
     assert run.outcome.status is Status.STALLED
-    assert "edges 4 and 40 are so near" in run.outcome.message
+    assert "edges 4 and 40 are so close" in run.outcome.message
     assert run.outcome.place == Place((3, 4, 39, 0), tuple(last.midpoints[[3, 39]].mean(axis=0)))

@@ -92,11 +92,11 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "relax": (relax, {"curve": TREFOIL, "options": SHORT}),
     "minimize": (minimize, {"curve": TREFOIL, "options": SHORT, "callback": lambda *_: None}),
     "Iterate": (Iterate, vars(START)),
-    "Outcome": (Outcome, {"status": Status.STALLED, "message": "stuck", "place": None}),
+    "Outcome": (Outcome, {"status": Status.STALLED, "clauses": ("stuck",), "place": None}),
     "Result": (
         Result,
         {
-            "outcome": Outcome(Status.STALLED, "stuck"),
+            "outcome": Outcome(Status.STALLED, ("stuck",)),
             "last": START,
             "energies": (1.0,),
             "fallback_steps": (),
@@ -228,7 +228,7 @@ def test_numpys_numbers_are_numbers():
         (RelaxOptions(), "RelaxOptions()"),
         (RelaxOptions(method="cg", vertices=9), "RelaxOptions(method='cg', vertices=9)"),
         (RelaxOptions(edge_lengths=[1.0] * 999), "RelaxOptions(edge_lengths=(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, ...))"),
-        (Outcome(Status.STALLED, "stuck"), "<Outcome: stuck>"),
+        (Outcome(Status.STALLED, ("stuck",)), "<Outcome: stuck>"),
         (Trajectory(), "<Trajectory: 0 stages, 0 frames>"),
     ],
 )

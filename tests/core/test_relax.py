@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_interventions import change
 from mobius_flow.core import (
     METHODS,
     Curve,
@@ -24,7 +25,7 @@ from mobius_flow.core import (
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.curve import refine
 from mobius_flow.core.driver.compare import compare
-from mobius_flow.core.driver.interventions import coarse_start
+from mobius_flow.core.driver.interventions import CoarseStart
 from mobius_flow.core.energies import ENERGIES
 from mobius_flow.core.knots import knot
 from mobius_flow.core.measure import measure
@@ -126,7 +127,7 @@ def test_energies_are_those_of_the_iterates():
         assert Objective().value(iterate.curve) == pytest.approx(iterate.energy, rel=1e-12)
     assert result.energies == tuple(iterate.energy for iterate in iterates)
     assert result.status is Status.ITERATION_LIMIT
-    assert "5 iterations" in result.message
+    assert "iteration limit (5)" in result.message
 
 
 def test_the_first_iterate_of_a_relaxed_curve_is_the_last():
@@ -309,14 +310,14 @@ def test_a_mesh_that_cannot_be_finer_ends_the_run_in_good_order(monkeypatch):
     result = minimize(lattice_knot("3_1"), RelaxOptions(vertices=60, mesh="finer"))
     assert len(result.curve) == 60
     assert result.status is Status.CONVERGED
-    assert "nearer than this mesh resolves" in result.message
+    assert "closer than this mesh resolves" in result.message
 
 
 def test_strands_that_are_too_near_for_the_mesh_come_with_a_remedy():
     result = minimize(knot("5_1", 60), RelaxOptions(vertices=60))
     assert result.status is Status.CONVERGED
-    assert "nearer than this mesh resolves" in result.message
-    assert "with more vertices or a finer mesh" in result.message
+    assert "closer than this mesh resolves" in result.message
+    assert "a finer one" in result.message
     assert result.final_energy > result.energies[-1] + 1  # the midpoint rule does not see them well
 
 
@@ -330,7 +331,7 @@ def test_energies_know_how_they_scale(name):
 
 def test_steps_are_compared_on_one_mesh(monkeypatch):
     """Also of curves that `relax` would begin with fewer vertices."""
-    monkeypatch.setattr(coarse_start, "MIN_VERTICES", 100)
+    change(monkeypatch, CoarseStart, min_vertices=100)
     options = RelaxOptions(vertices=600, max_iterations=40)
     (history,) = compare(torus_trefoil(600), ["lbfgs"], options, 60.0)
     fixed = minimize(torus_trefoil(600), replace(options, mesh="fixed"))

@@ -1,10 +1,12 @@
 """The structured solver against the paper's dense LU of (41)."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from mobius_flow.core import Curve, Objective
-from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.constraints import ConstraintDerivative, Constraints
 from mobius_flow.core.hierarchy.inner_product import fractional_inner_product, moebius_inner_product
 from mobius_flow.core.metrics import METRICS, DenseInnerProduct, SparseInnerProduct
 from mobius_flow.core.saddle.iterative import Tolerances
@@ -35,7 +37,7 @@ INNER_PRODUCTS = {name: metric.at for name, metric in METRICS.items()} | {
 
 def dense(curve: Curve, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     n, m = curve.vertices.shape
-    derivative = ConstraintDerivative.at(curve)
+    derivative = Constraints.of(curve).derivative(curve)
     columns = [derivative.apply(unit.reshape(n, m)) for unit in np.eye(n * m)]
     c = np.stack(columns, axis=1)
     return np.block([[np.kron(matrix, np.eye(m)), c.T], [c, np.zeros((len(c), len(c)))]]), c
@@ -51,7 +53,7 @@ def test_agrees_with_dense_lu(name, at):
         inner = inner.plus(SparseInnerProduct(sp.eye_array(n)))
     matrix = inner.dense()
     full, c = dense(curve, matrix)
-    solver = inner.tangent_space(ConstraintDerivative.at(curve))
+    solver = inner.tangent_space(Constraints.of(curve).derivative(curve))
     rng = np.random.default_rng(3)
     eta, xi, v = rng.normal(size=(n, m)), rng.normal(size=len(c)), rng.normal(size=(n, m))
     for right, (u, multipliers) in [
@@ -69,7 +71,7 @@ def test_agrees_with_dense_lu(name, at):
 
 def test_projection_is_idempotent_and_orthogonal():
     curve = CURVES["trefoil"]
-    solver = METRICS["moebius"].at(curve).tangent_space(ConstraintDerivative.at(curve))
+    solver = METRICS["moebius"].at(curve).tangent_space(Constraints.of(curve).derivative(curve))
     v = np.random.default_rng(5).normal(size=curve.vertices.shape)
     p = solver.project(v)
     np.testing.assert_allclose(solver.project(p), p, atol=1e-10)
@@ -79,7 +81,7 @@ def test_projection_is_idempotent_and_orthogonal():
 def test_indefinite_matrix_is_refused():
     curve = CURVES["trefoil"]
     with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
-        DenseInnerProduct(-np.eye(len(curve))).tangent_space(ConstraintDerivative.at(curve))
+        DenseInnerProduct(-np.eye(len(curve))).tangent_space(Constraints.of(curve).derivative(curve))
 
 
 WHOLE_SPACES = {
@@ -112,9 +114,9 @@ def test_weighted_constraints_are_a_part_of_the_metric(name, weight, at):
 @pytest.mark.parametrize("name", CURVES)
 def test_constraint_derivative_has_slope_two(name):
     curve = CURVES[name]
-    constraints = Constraints(np.full(curve.mesh.edges, 0.1), np.zeros(curve.dimension))
+    constraints = replace(Constraints.of(curve), lengths=np.full(curve.mesh.edges, 0.1))
     u = np.random.default_rng(11).normal(size=curve.vertices.shape) * 0.01
-    linear = ConstraintDerivative.at(curve).apply(u)
+    linear = Constraints.of(curve).derivative(curve).apply(u)
     along = [constraints.residual(curve), linear]
     slope = taylor_slope(
         lambda t: constraints.residual(curve.with_vertices(curve.vertices + t * u)), along, largest=1.0
@@ -125,7 +127,7 @@ def test_constraint_derivative_has_slope_two(name):
 @pytest.mark.parametrize("name", ["link", "arcs"])
 def test_transpose_is_adjoint(name):
     curve = CURVES[name]
-    derivative = ConstraintDerivative.at(curve)
+    derivative = Constraints.of(curve).derivative(curve)
     rng = np.random.default_rng(13)
     u, multipliers = rng.normal(size=curve.vertices.shape), rng.normal(size=derivative.count)
     assert derivative.apply(u) @ multipliers == pytest.approx(np.sum(u * derivative.apply_transpose(multipliers)))
@@ -133,13 +135,13 @@ def test_transpose_is_adjoint(name):
 
 def test_targets_vanish_at_the_start():
     curve = CURVES["trefoil"]
-    constraints = Constraints(curve.edge_lengths, weighted_barycenter(curve))
+    constraints = Constraints.of(curve)
     np.testing.assert_allclose(constraints.residual(curve), 0, atol=1e-14)
 
 
 def test_gradient_is_a_direction_of_descent_along_the_constraints():
     curve = CURVES["trefoil"]
-    solver = METRICS["moebius"].at(curve).tangent_space(ConstraintDerivative.at(curve))
+    solver = METRICS["moebius"].at(curve).tangent_space(Constraints.of(curve).derivative(curve))
     _, derivative = Objective().value_and_derivative(curve)
     u, _ = solver.gradient(derivative)
     assert np.sum(u * derivative) == pytest.approx(solver.norm(u) ** 2)

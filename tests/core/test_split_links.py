@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
-from mobius_flow.core.constraints import ConstraintDerivative, Constraints, weighted_barycenter
+from mobius_flow.core.constraints import Barycenters, Constraints, weighted_barycenter
 from mobius_flow.core.curve import refine
 from mobius_flow.core.descent.hessian import lagrangian_hessian
-from mobius_flow.core.driver.interventions.split_links import _near, separate_parts
+from mobius_flow.core.driver.interventions.links import _near, separate_parts
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.knots import knot
 from mobius_flow.core.knots.composite import knotted_ball
@@ -59,7 +59,7 @@ def test_near_balls_are_all_found(seed):
     centers, radii = rng.uniform(0, 30, (80, 3)), 10.0 ** rng.uniform(-2, 1, 80)
     distance = np.linalg.norm(centers[:, None] - centers, axis=2)
     near = distance < radii[:, None] + radii + np.maximum(radii[:, None], radii)
-    found = _near(centers, radii).toarray()
+    found = _near(centers, radii, 1.0).toarray()
     np.testing.assert_array_equal(found | found.T, near)
 
 
@@ -68,12 +68,13 @@ def parted():
     rng = np.random.default_rng(4)
     curve = rings(0, 5, 10)
     curve = curve.with_vertices(curve.vertices + 0.1 * rng.normal(size=curve.vertices.shape))
-    return curve, Constraints(1.1 * curve.edge_lengths, np.zeros(3)).of_parts(curve, (0, 1, 1))
+    blocks = (Barycenters.of(curve, parts=(0, 1, 1)),)
+    return curve, Constraints(1.1 * curve.edge_lengths, blocks)
 
 
 def test_barycenters_of_parts_add_up(parted):
     curve, constraints = parted
-    both = weighted_barycenter(curve, constraints.parts).reshape(2, 3)
+    both = constraints.block(Barycenters).target.reshape(2, 3)
     np.testing.assert_allclose(both.sum(axis=0), weighted_barycenter(curve))
     np.testing.assert_allclose(constraints.residual(curve)[len(curve) :], 0)
 
@@ -106,7 +107,8 @@ def test_solver_with_parts_against_dense_matrix(parted):
 def test_barycenters_of_many_parts_take_no_more_memory_than_one():
     curve = rings(*(4.0 * k for k in range(50)), size=400)
     tracemalloc.start()
-    derivative = ConstraintDerivative.at(curve, tuple(range(50)))
+    blocks = (Barycenters.of(curve, parts=tuple(range(50))),)
+    derivative = Constraints(curve.edge_lengths, blocks).derivative(curve)
     derivative.apply_transpose(derivative.apply(curve.vertices))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
@@ -116,8 +118,8 @@ def test_barycenters_of_many_parts_take_no_more_memory_than_one():
 
 def test_one_part_is_the_usual_constraint():
     curve = knot("L2a1")
-    usual, one = ConstraintDerivative.at(curve), ConstraintDerivative.at(curve, (0, 0))
-    np.testing.assert_array_equal(list(usual.barycenter_rows()), list(one.barycenter_rows()))
+    usual, one = Constraints.of(curve), Constraints(curve.edge_lengths, (Barycenters.of(curve, parts=(0, 0)),))
+    np.testing.assert_array_equal(*(list(each.derivative(curve).border()) for each in (usual, one)))
 
 
 @pytest.mark.parametrize("method", ["lbfgs", "flow-moebius", "trust-region"])
@@ -126,7 +128,7 @@ def test_unlinked_circles_come_to_rest(method):
     curve = Curve.from_components([ring([0, 0, 0], 1.0, 40), ring([0.2, 0, 0.1], 1.0, 40)])
     result = minimize(curve, RelaxOptions(method=method, vertices=80))
     assert result.status is Status.CONVERGED
-    assert "not linked" in result.message
+    assert "unlinked" in result.message
     assert float(result.message.split()[-1]) == pytest.approx(8, rel=1e-2)
     assert result.certified
     assert np.abs(result.curve.vertices).max() < 20
@@ -141,15 +143,16 @@ def test_held_parts_stay_held_on_another_mesh():
     options = RelaxOptions(vertices=60)
     curve, fine = (refine(rings(0, 5), vertices) for vertices in (30, 60))
     problem = start_problem(curve, options)
-    problem = replace(problem, constraints=problem.constraints.of_parts(problem.at_curve(curve).curve, (0, 1)))
+    parted = problem.constraints.replacing(Barycenters.of(problem.at_curve(curve).curve, parts=(0, 1)))
+    problem = replace(problem, constraints=parted)
     point = problem.on(fine)
-    assert point.problem.constraints.parts == (0, 1)
+    assert point.problem.constraints.block(Barycenters).parts == (0, 1)
     np.testing.assert_allclose(point.residual[len(fine) :], np.zeros(6), atol=1e-12)
 
 
 def test_linked_components_are_not_held():
     result = minimize(knot("L2a1"), RelaxOptions(vertices=120))
-    assert "not linked" not in result.message
+    assert "unlinked" not in result.message
     assert result.energies[-1] < 48
 
 
@@ -177,7 +180,7 @@ def test_second_derivative_along_held_parts():
     vertices = problem.units.from_user(curve.vertices)
     vertices = vertices + 0.02 * np.random.default_rng(8).normal(size=vertices.shape)
     start = curve.with_vertices(vertices)
-    constraints = Constraints(start.edge_lengths, np.zeros(3)).of_parts(start, (0, 1))
+    constraints = Constraints(start.edge_lengths, (Barycenters.of(start, parts=(0, 1)),))
     problem = replace(problem, constraints=constraints)
     point = problem.at(vertices)
     v = point.tangent_space.project(np.random.default_rng(9).normal(size=vertices.shape))
@@ -203,4 +206,4 @@ def test_parts_are_judged_one_by_one():
     assert knotted_ball(Curve.from_components([trefoil, trefoil + np.array([20.0, 0, 0])])) is None
     result = minimize(two, RelaxOptions(vertices=80))
     assert result.status is Status.CONVERGED
-    assert "not linked" in result.message
+    assert "unlinked" in result.message

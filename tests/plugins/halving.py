@@ -7,7 +7,7 @@ import numpy as np
 from ...types import FloatArray
 from ..problem import Point
 from ..step import Leg, NoStep, Step, attempt
-from .first_trial import FirstTrial
+from .trials import FirstTrial
 
 
 @dataclass(frozen=True)

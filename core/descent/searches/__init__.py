@@ -1,14 +1,10 @@
-"""Searches for a step, one file each: frozen values whose constants are their fields."""
+"""Searches for a step: frozen values whose constants are their fields."""
 
-from .accelerated import Accelerated
-from .armijo import Armijo
+from .armijo import Armijo, LineSearch
 from .backward_euler import BackwardEuler
-from .escape import Escape
-from .first_trial import FirstTrial
-from .line_search import LineSearch
-from .normal_step import TowardsTargets
-from .trust_region import TrustRegion
-from .wolfe import WeakWolfe
+from .trials import FirstTrial, TowardsTargets
+from .trust_region import Escape, TrustRegion
+from .wolfe import Accelerated, WeakWolfe
 
 __all__ = [
     "Accelerated",

@@ -18,11 +18,9 @@ import numpy as np
 from ...checks import check_fields
 from ...metrics import Metric, MoebiusMetric
 from ...saddle import TangentSpace
-from ..directions.newton import projected_conjugate_gradient
-from ..hessian import energy_hessian
+from ..hessian import energy_hessian, projected_conjugate_gradient
 from ..problem import Point
-from ..state import State
-from ..step import Leg, NoStep, Step, judged
+from ..step import Leg, NoStep, State, Step, judged
 from .armijo import Armijo
 
 

@@ -1,4 +1,4 @@
-"""The trust-region method of Section 6.4 of [RS21].
+"""Steps by second derivatives: the trust-region method of Section 6.4 of [RS21], and the way off a saddle.
 
 A quadratic model of the Lagrangian is minimised within a ball of the metric, in the span of the projected gradient,
 the previous projected gradient moved to this tangent space, and, once the gradient is short, the Newton direction: a
@@ -7,6 +7,7 @@ blend of Byrd, Schnabel and Shultz (1987) with the two-dimensional subspace meth
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -17,14 +18,11 @@ from ...energies.components import energy_scale
 from ...errors import OptionError
 from ...metrics import Metric
 from ...types import FloatArray
-from ..directions.newton import newton_direction
-from ..hessian import LinearMap, lagrangian_hessian
+from ..hessian import LinearMap, lagrangian_hessian, newton_direction
 from ..problem import Point
-from ..state import State
-from ..step import Leg, NoStep, Rejected, Step, attempt
+from ..step import Leg, NoStep, Rejected, State, Step, attempt
 from .armijo import Armijo
-from .first_trial import NOTHING, FirstTrial
-from .normal_step import on_target
+from .trials import NOTHING, FirstTrial, on_target
 
 ROUNDING = 1e-13  # of the energy: reductions below it cannot be measured, and there the model is believed
 
@@ -204,3 +202,54 @@ def _minimum_in_ball(q: FloatArray, g: FloatArray, radius: float) -> FloatArray:
     if values[0] < 0.0 and missing > 1e-10 * radius**2:  # the hard case: go on along the lowest eigenvector
         c[0] += math.copysign(math.sqrt(missing), c[0])
     return np.asarray(vectors @ c)
+
+
+@dataclass(frozen=True)
+class Escape:
+    """Halve a step along ± a direction of negative curvature until it lowers the energy and is proved.
+
+    Parameters
+    ----------
+    decrease
+        Required fraction of the predicted decrease.
+    longest
+        First step, in the metric's norm.
+    first
+        The first trial.
+    max_trials
+        Number of trials each way.
+    """
+
+    decrease: float = 0.1
+    longest: float = 0.5
+    first: FirstTrial = field(default_factory=FirstTrial)
+    max_trials: int = 20
+
+    def __post_init__(self) -> None:
+        check_fields(self, decrease=(0.0, 1.0), longest=(0.0, math.inf), max_trials=(0, math.inf))
+
+    def step(self, point: Point, direction: FloatArray, curvature: float) -> Step | NoStep:
+        """Find a step with E(Q) < E(P) + ½ c τ² curvature, c the required decrease.
+
+        Parameters
+        ----------
+        direction
+            Tangent vector of length 1 in the metric; shape (n, m).
+        curvature
+            ⟨direction, D²L direction⟩ < 0.
+        """
+        limited_by = None
+        for sign in (1.0, -1.0):
+            tau, limited_by = self.first(point, sign * direction, self.longest)
+            for _ in range(self.max_trials):
+                vertices, level = point.vertices + sign * tau * direction, 0.0 * point.residual
+                trial = attempt(point, vertices, level, partial(self.sufficient, point, 0.5 * curvature * tau**2))
+                if isinstance(trial, Leg):
+                    return Step((trial,), tau, limited_by)
+                limited_by = trial.in_the_way or limited_by
+                tau *= 0.5
+        return NoStep.because(limited_by)
+
+    def sufficient(self, point: Point, predicted: float, trial: Point) -> bool:
+        """Whether the energy goes down by enough of what is predicted, a negative number."""
+        return trial.energy < point.energy + self.decrease * predicted

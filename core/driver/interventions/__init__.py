@@ -1,32 +1,15 @@
-"""What happens to a run beside its method's steps, one file each.
-
-An intervention is made for one run and called after every event: nothing has happened yet, a step was taken, none was
-found, or the run is about to end.  It answers with the event, told otherwise perhaps, or with what it does about it.
-"""
+"""What may change a run between its steps; each `Intervention` is a class of one run, whose fields can be set."""
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
-from ..events import Change, Event
-from ..run import Run
+from ..run import Intervention, Run
 from .balance import Balance
-from .check_accuracy import CheckAccuracy
 from .coarse_start import CoarseStart
-from .composite import Composite
-from .escape_saddle import EscapeSaddle
-from .fallback import Fallback
-from .finer_mesh import FinerMesh
+from .fallback import CheckAccuracy, Fallback
 from .grow import Grow
-from .remesh import Remesh
-from .split_links import SplitLinks
-
-
-class Intervention(Protocol):
-    """What is called after every event."""
-
-    def __call__(self, event: Event) -> Event | Change:
-        """Answer with the event as the next ones are to see it, or with a change, which ends the round."""
-
+from .links import Composite, SplitLinks
+from .remesh import FinerMesh, Remesh
+from .saddle import EscapeSaddle
 
 INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
     Grow,

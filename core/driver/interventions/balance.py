@@ -1,43 +1,194 @@
-"""Among the shapes of equal energy that Möbius maps make of a converged curve, the one that bends least."""
+"""Among the Möbius images of a curve, which have the same energy, the one that bends least, and a proved way there."""
 
-from ...curve.bending import bending
-from ..balance import GAIN, way_to_balance
-from ..events import Change, Event
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize
+
+from ...checks import check_fields
+from ...constraints import weighted_barycenter
+from ...curve import Curve
+from ...curve.bending import bending, bending_and_derivative
+from ...curve.moebius_map import moebius_image, moebius_pullback
+from ...curve.smooth import arc_lengths, periodic_spline, sample_parameters
+from ...descent import Leg, Point, Problem, Step
+from ...types import FloatArray
 from ..outcome import Outcome, Status
-from ..run import Run
-from ..termination import at_limit
+from ..run import Change, Intervention
 
-BALANCED = "balanced: bending {after:.4g} instead of {before:.4g} (4π² on a round circle)"
-CUT_OFF = "it has not come to rest yet at the Möbius image that bends least"
-IS_BALANCED = "no Möbius image that there is a way to bends less"
+BALANCED = "balanced: bending reduced from {before:.4g} to {after:.4g} (4π² for a round circle)"
+CUT_OFF = "the Möbius image of least bending has not converged yet"
+IS_BALANCED = "no Möbius image within reach bends less"
 
 
-class Balance:
-    """Go from a converged curve to its balanced image, once, and tell of it in the end."""
+class MoebiusImages:
+    """The Möbius images of the smooth curve through a polygon's vertices, as polygons of as many.
 
-    def __init__(self, run: Run) -> None:
-        self._run = run
-        self._before: float | None = None  # bending that the balanced curve had
+    Vertices slide along the curve, so that the edges of every component keep the ratios of their lengths however
+    strongly a map stretches them; length and barycenter stay.
 
-    def __call__(self, event: Event) -> Event | Change:
+    Parameters
+    ----------
+    curve
+        The polygon.
+    lengths
+        Target lengths of its edges, shape (n,): of those of one component only the ratios count.
+    """
+
+    def __init__(self, curve: Curve, lengths: FloatArray) -> None:
+        self._curve, self._center = curve, _barycenter(curve)
+        # the unit sphere passes amidst the curve: poles far away and near the middle are about as far from (1, 0)
+        self._radius = float(np.sqrt(np.square(curve.vertices - self._center).sum(axis=1).mean()))
+        self._splines = [periodic_spline(self._unit(points)) for points in curve.components]
+        self._fractions = [np.cumsum(lengths[s]) / lengths[s].sum() for s in curve.mesh.slices]
+
+    def of_vertices(self, q: FloatArray) -> tuple[float, FloatArray]:
+        """Logarithm of the bending of the image of the vertices, and its derivative by q, shape (m + 1,)."""
+        points = self._unit(self._curve.vertices)
+        value, derivative = bending_and_derivative(self._curve.with_vertices(moebius_image(points, q)))
+        return float(np.log(value)), moebius_pullback(points, q, derivative / value)
+
+    def at(self, q: FloatArray) -> Curve:
+        """The image under the map of q, shape (m + 1,)."""
+        pieces = [_image(*each, q) for each in zip(self._splines, self._fractions, strict=True)]
+        image = self._curve.with_vertices(np.concatenate(pieces))
+        scale = self._curve.length / image.length
+        return image.with_vertices(self._center + scale * (image.vertices - _barycenter(image)))
+
+    def _unit(self, vertices: FloatArray) -> FloatArray:
+        return np.asarray((vertices - self._center) / self._radius)
+
+
+def _image(spline: CubicSpline, fractions: FloatArray, q: FloatArray) -> FloatArray:
+    """Points at fractions of the length of a spline's image, the first one its beginning; shape (n, m)."""
+    parameter = sample_parameters(spline)
+    arc = arc_lengths(moebius_image(spline(parameter), q))
+    wanted = arc[-1] * np.concatenate([[0.0], fractions[:-1]])
+    return moebius_image(spline(np.interp(wanted, arc, parameter)), q)
+
+
+def _barycenter(curve: Curve) -> FloatArray:
+    return weighted_barycenter(curve) / curve.length
+
+
+@dataclass(eq=False)
+class Balance(Intervention):
+    """Go from a converged curve to its balanced image, once.
+
+    Parameters
+    ----------
+    gain
+        Relative decrease of the bending that is worth the way.
+    longest, shortest
+        Steps, in radians of half the sphere's angle of rotation.
+    """
+
+    gain: float = 0.01
+    longest: float = 0.02
+    shortest: float = 1e-5
+    _before: float | None = field(default=None, init=False)  # bending that the balanced curve had
+
+    def __post_init__(self) -> None:
+        check_fields(self, gain=(0.0, 1.0), longest=(0.0, math.inf), shortest=(0.0, self.longest))
+
+    def ended(self, outcome: Outcome) -> Outcome | Change | None:
         """Look at converged curves, and at ends of the run on the way from one."""
-        run = self._run
-        if not (run.options.balance and isinstance(event, Outcome)):
-            return event
-        if event.status is Status.ITERATION_LIMIT and self._before is not None:
-            return event.adding(CUT_OFF)
-        if not event.converged:
-            return event
+        run = self.run
+        if not run.options.balance:
+            return None
+        if outcome.status is Status.ITERATION_LIMIT and self._before is not None:
+            return outcome.adding(CUT_OFF)
+        if not outcome.converged:
+            return None
         if self._before is not None:
             before, after = self._before, bending(run.iterate.curve)
             # on coarse and uneven meshes energies of images differ, and the flow may have gone all the way back
-            gained = after <= (1.0 - GAIN) * before
-            return event.adding(BALANCED.format(before=before, after=after) if gained else IS_BALANCED)
-        steps = way_to_balance(run.point)
+            gained = after <= (1.0 - self.gain) * before
+            return outcome.adding(BALANCED, before=before, after=after) if gained else outcome.adding(IS_BALANCED)
+        steps = self.way(run.point)
         if not steps:
-            return event.adding(IS_BALANCED)
+            return outcome.adding(IS_BALANCED)
         if run.iterations_left <= 0:
-            return at_limit(run).adding(CUT_OFF)
+            return run.at_limit().adding(CUT_OFF)
         self._before = bending(run.iterate.curve)
         # the method remembers nothing of the curve before
         return Change(steps[: run.iterations_left], method=run.method)
+
+    def way(self, point: Point) -> tuple[Step, ...]:
+        """Proved steps to the Möbius image with the least bending of those that there is a way to.
+
+        Empty if none is worth it.  The steps end in the problem that is the point's own for the image.
+        """
+        images = MoebiusImages(point.curve, point.problem.constraints.lengths)
+        # against the identity's image too: what smoothing alone takes off is no gain, the flow would put it back
+        still = images.at(np.eye(point.curve.dimension + 1)[0])
+        enough = (1.0 - self.gain) * min(bending(point.curve), bending(still))
+        for q in _least(images, point.curve.dimension):
+            image = images.at(q)
+            if bending(image) > enough:
+                continue
+            problem = _problem_of(point.problem, image)
+            for end in (q, -q):  # the same map, the pole having come from the one side or from the other
+                if way := self._way(point, images, end, problem):
+                    return way
+        return ()
+
+    def _way(self, point: Point, images: MoebiusImages, q: FloatArray, problem: Problem) -> tuple[Step, ...]:
+        """Proved steps to the image of q, by those of rotations by smaller angles; empty if strands are in the way.
+
+        Where a step is not proved, a shorter one is tried.
+        """
+        sine = float(np.linalg.norm(q[1:]))
+        end, axis = np.arctan2(sine, q[0]), q[1:] / sine
+        steps: list[Step] = []
+        here, angle, stride = point.placed, 0.0, self.longest
+        while angle < end:
+            further = min(angle + stride, end)
+            there = problem.at(images.at(np.concatenate([[np.cos(further)], np.sin(further) * axis])).vertices)
+            proof = problem.free_motion(here, there.placed)
+            if proof.time == 1.0:
+                steps.append(Step((Leg(there, proof),), 0.0, None))
+                here, angle, stride = there.placed, further, min(2.0 * stride, self.longest)
+            elif stride < self.shortest:
+                return ()
+            else:
+                stride *= 0.5
+        return tuple(steps)
+
+
+def balanced(curve: Curve) -> Curve:
+    """The Möbius image that bends least, of the same energy; no way to it is proved, as pictures need none."""
+    images = MoebiusImages(curve, curve.edge_lengths)
+    return min((images.at(q) for q in _least(images, curve.dimension)), key=bending, default=curve)
+
+
+def _least(images: MoebiusImages, dimension: int) -> list[FloatArray]:
+    """Local minimisers of the bending, the lowest first, of length 1 with c ≥ 0; none is found twice."""
+    found = [minimize(images.of_vertices, start, jac=True, method="BFGS") for start in _starts(dimension)]
+    distinct: list[FloatArray] = []
+    for result in sorted(found, key=lambda each: float(each.fun)):
+        q = np.asarray(result.x / np.linalg.norm(result.x))
+        q *= np.copysign(1.0, q[0])
+        if np.isfinite(result.fun) and all(abs(q @ other) < 1.0 - 1e-4 for other in distinct):
+            distinct.append(q)
+    return distinct
+
+
+def _starts(dimension: int) -> Iterator[FloatArray]:
+    """The pole at infinity, amidst the curve, and on the unit sphere along the axes on both sides."""
+    units = np.eye(dimension + 1)
+    yield from units[:2]
+    for unit in units[1:]:
+        yield from (units[0] + unit, units[0] - unit)
+
+
+def _problem_of(problem: Problem, image: Curve) -> Problem:
+    """The same problem for an image: the target lengths of each component add up to what it has there."""
+    lengths = problem.constraints.lengths.copy()
+    for part in image.mesh.slices:
+        lengths[part] *= image.edge_lengths[part].sum() / lengths[part].sum()
+    blocks = tuple(block.on(image) for block in problem.constraints.blocks)
+    return replace(problem, constraints=replace(problem.constraints, lengths=lengths, blocks=blocks))

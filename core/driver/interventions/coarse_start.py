@@ -1,9 +1,12 @@
 """A curve of many vertices is untangled with few of them, which is faster, and ends with all."""
 
+import math
 from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...checks import check_fields
 from ...collision import survives_rounding
 from ...curve import Curve
 from ...curve.pins import arcs
@@ -12,57 +15,82 @@ from ...curve.remesh import graded_spacing, superfluous
 from ...curve.smooth import smoothed
 from ...descent import Leg, NoStep, Point, Problem, Step
 from ...types import FloatArray, IntArray
-from ..events import Change, Event, Start
 from ..outcome import Outcome
 from ..prepare import equal_lengths
-from ..run import Run
+from ..run import Change, Intervention
 from .remesh import proved_remesh
 
-MIN_VERTICES = 1500  # from which it is worth while
-MIN_GAIN = 2.0  # factor by which there must be fewer at first
-MIN_ITERATIONS = 30  # the way there and back takes a dozen: with fewer nothing would be left for untangling
-MIN_SHARE = 0.05  # of the way to the smooth curve
-PASS = WAY_BACK = 2  # iterations: a motion and a change of mesh
+PASS = WAY_BACK = 2  # iterations that they take: a motion and a change of mesh
 
 
-class CoarseStart:
-    """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve."""
+@dataclass(eq=False)
+class CoarseStart(Intervention):
+    """Leave vertices out, as far as the gaps between strands allow; in the end bring all back, on a smooth curve.
 
-    def __init__(self, run: Run) -> None:
-        self._run = run
-        self._problem, constraints = run.problem, run.problem.constraints
+    Parameters
+    ----------
+    min_vertices
+        From which it is worth while.
+    min_gain
+        Factor by which there must be fewer at first.
+    min_iterations
+        The way there and back takes a dozen: with fewer nothing would be left for untangling.
+    min_share
+        Of the way to the smooth curve, below which the curve stays as it is.
+    """
+
+    min_vertices: int = 1500
+    min_gain: float = 2.0
+    min_iterations: int = 30
+    min_share: float = 0.05
+    _coarse: Curve | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        check_fields(self, min_vertices=(0, math.inf), min_gain=(1.0, math.inf), min_share=(0.0, 1.0))
+        check_fields(self, min_iterations=(0, math.inf))
+        self._problem, constraints = self.run.problem, self.run.problem.constraints
         # what kept lengths from being equal at the start is gone in the end
-        lengths = equal_lengths(run.problem.mesh, constraints.lengths, constraints.pins.vertices)
-        self._lengths = run.problem.units.scale * lengths
+        lengths = equal_lengths(self._problem.mesh, constraints.lengths, constraints.pins.vertices)
+        self._lengths = self._problem.units.scale * lengths
         self._wanted = self._is_wanted()
-        self._coarse: Curve | None = None
 
-    def __call__(self, event: Event) -> Event | Change:
-        """Look at the start of a mesh, and at the end on the coarse one."""
-        if isinstance(event, Start):
-            return (self._coarser() if self._wanted else self._smoother()) or event
+    def started(self) -> Change | None:
+        """Leave out vertices at first, and smooth the curve once they are back."""
+        return self._coarser() if self._wanted else self._smoother()
+
+    def stepped(self, step: Step) -> Change | None:
+        """Bring the vertices back where iterations are about to run out."""
+        return self._back(self.run.iterations_left <= WAY_BACK)
+
+    def stuck(self, found: NoStep) -> Change | None:
+        """Bring the vertices back."""
+        return self._back()
+
+    def ended(self, outcome: Outcome) -> Change | None:
+        """Bring the vertices back."""
+        return self._back()
+
+    def _back(self, due: bool = True) -> Change | None:
         self._wanted = False
-        if self._coarse is not None and (isinstance(event, Outcome | NoStep) or self._run.iterations_left <= WAY_BACK):
-            return self._finest() or event
-        return event
+        return self._finest() if due and self._coarse is not None else None
 
     def _is_wanted(self) -> bool:
-        options, curve = self._run.options, self._run.iterate.curve
-        if self._run.iterate.index > 0:
+        options, curve = self.run.options, self.run.iterate.curve
+        if self.run.iterate.index > 0:
             return False  # after a hop the curve is untangled already
         if options.mesh != "auto" or options.grow != 1.0 or options.edge_lengths not in ("auto", "equal"):
             return False
         if not self._problem.geometry.prescribes:
             return False  # lengths that are penalised would take the jump of the energy at once
-        if len(curve) < MIN_VERTICES or options.max_iterations < MIN_ITERATIONS:
+        if len(curve) < self.min_vertices or options.max_iterations < self.min_iterations:
             return False
-        return bool(MIN_GAIN * np.sum(curve.edge_lengths / graded_spacing(curve, Resolution())) <= len(curve))
+        return bool(self.min_gain * np.sum(curve.edge_lengths / graded_spacing(curve, Resolution())) <= len(curve))
 
     def _coarser(self) -> Change | None:
         """A pass that leaves out up to a third of the vertices; None if there are none to leave out, or no time."""
-        if self._run.iterations_left < PASS + WAY_BACK:
+        if self.run.iterations_left < PASS + WAY_BACK:
             return None
-        curve, problem = self._run.iterate.curve, self._run.problem
+        curve, problem = self.run.iterate.curve, self.run.problem
         spacing = graded_spacing(curve, Resolution())
         unsplit = np.maximum(spacing, curve.edge_lengths)  # so that no arc has more vertices than in the end
         found = proved_remesh(problem, curve, Resolution(), superfluous(curve, spacing, _kept(problem)), unsplit)
@@ -73,17 +101,17 @@ class CoarseStart:
         return Change((step,), problem.on(remeshed.curve))
 
     def _finest(self) -> Change | None:
-        """The same curve with all vertices, in the problem of the start; None if doubles do not tell them apart."""
-        self._coarse = curve = self._run.iterate.curve
+        """The same curve with all vertices, in the problem of the start; None if rounding would make some coincide."""
+        self._coarse = curve = self.run.iterate.curve
         pieces = np.empty(curve.mesh.edges, dtype=np.intp)
-        coarse, fine = (arcs(each.mesh, _kept(each)) for each in (self._run.problem, self._problem))
+        coarse, fine = (arcs(each.mesh, _kept(each)) for each in (self.run.problem, self._problem))
         for arc, again in zip(coarse, fine, strict=True):
             pieces[arc] = apportion(curve.edge_lengths[arc], len(again))
         finest = subdivide(curve, pieces)
         if not survives_rounding(finest, self._problem.obstacles):
             self._coarse = None
             return None
-        return Change(point=self._run.problem.on(finest, self._lengths))
+        return Change(point=self.run.problem.on(finest, self._lengths))
 
     def _smoother(self) -> Change | None:
         """The motion to a smooth curve through the vertices of the coarse one, as far as strands leave way for it.
@@ -92,8 +120,8 @@ class CoarseStart:
         """
         if self._coarse is None:
             return None
-        start = self._run.iterate.curve
-        pins = self._run.problem.constraints.pins
+        start = self.run.iterate.curve
+        pins = self.run.problem.constraints.pins
         old = pins.on(self._coarse).vertices
         way = smoothed(self._coarse, start.mesh, old, pins.vertices).vertices - start.vertices
         way[pins.vertices] = 0.0
@@ -102,9 +130,9 @@ class CoarseStart:
 
     def _motion(self, way: FloatArray, ending: Callable[[Point], Point | None]) -> Change | None:
         """The longest part of a way that can be gone straight to where it is to end; None if that is hardly any."""
-        problem, start = self._run.problem, self._run.iterate.curve
+        problem, start = self.run.problem, self.run.iterate.curve
         share = 1.0
-        while share > MIN_SHARE:
+        while share > self.min_share:
             end = ending(problem.at_curve(start.with_vertices(start.vertices + share * way)))
             if end is None:
                 return None

@@ -1,41 +1,116 @@
-"""Another method takes some steps where the one asked for finds none."""
+"""Where method or solver does not suffice: a fallback method takes over, and expansions get a higher order."""
 
 import math
+from dataclasses import dataclass, field, replace
 
-from ...descent import METHODS, NoStep
-from ..events import Change, Event
-from ..run import Run
+from ...checks import check_fields
+from ...curve import Mesh
+from ...descent import METHODS, Method, NoStep
+from ...energies.barrier import replaced_pairs
+from ...hierarchy import HierarchicalMoebiusEnergy, SampledErrors
+from ..outcome import Outcome
+from ..run import Change, Event, Intervention, Run
 
-HELPER = METHODS["flow-h3-2"]  # its metric does not see how near strands are, and so does not hold them together
-HELPS = 10  # steps that it takes
-PROGRESS = 1e-6  # relative decrease of energy without which asking it again is no use
+INACCURATE = (
+    "the hierarchical solver misses the requested accuracy: against dense sums over a sample its relative errors are "
+    "up to {energy:.1g} in the energy and {norm:.1g} in the gradient norm; the dense solver has none of them"
+)
 
 
-class Fallback:
-    """Hand over to the helper where no step is found, and back after some steps."""
+@dataclass(eq=False)
+class Fallback(Intervention):
+    """Hand over to another method where no step is found, and back after some steps.
 
-    def __init__(self, run: Run) -> None:
-        self._run, self._asked_for = run, run.method
-        self._mesh = run.problem.mesh
-        self._until = 0  # iterate at which the helper has done enough
-        self._helped_at = math.inf  # energy at which it was asked last, on the present mesh
+    Parameters
+    ----------
+    method
+        Its metric does not see how near strands are, and so does not hold them together.
+    steps
+        Number of steps it takes.
+    progress
+        Relative decrease of the energy without which another attempt is no use.
+    """
+
+    method: Method = METHODS["flow-h3-2"]
+    steps: int = 10
+    progress: float = 1e-6
+    _until: int = field(default=0, init=False)  # iterate at which the fallback hands back
+    _tried_at: float = field(default=math.inf, init=False)  # energy at the last attempt on the present mesh
+
+    def __post_init__(self) -> None:
+        check_fields(self, steps=(0, math.inf), progress=(0.0, 1.0))
+        self._asked_for, self._mesh = self.run.method, self.run.problem.mesh
 
     def __call__(self, event: Event) -> Event | Change:
         """Change the method."""
-        run = self._run
+        run = self.run
         if run.problem.mesh is not self._mesh:
-            self._mesh, self._helped_at = run.problem.mesh, math.inf
+            self._mesh, self._tried_at = run.problem.mesh, math.inf
         stuck = isinstance(event, NoStep)
         if run.method is not self._asked_for:
             return Change(method=self._asked_for) if stuck or run.iterate.index >= self._until else event
-        if not (stuck and self._may_help and run.point.energy < (1.0 - PROGRESS) * self._helped_at):
+        if not (stuck and self._may_help and run.point.energy < (1.0 - self.progress) * self._tried_at):
             return event
-        self._until, self._helped_at = run.iterate.index + HELPS, run.point.energy
-        return Change(method=HELPER)
+        self._until, self._tried_at = run.iterate.index + self.steps, run.point.energy
+        return Change(method=self.method)
 
     @property
     def _may_help(self) -> bool:
-        run = self._run
-        count = len(run.point.vertices)
-        fits = count <= run.problem.solver.of_metric(HELPER.metric).most_vertices
-        return fits and run.problem.geometry.prescribes and self._asked_for is not HELPER
+        problem = self.run.problem
+        fits = len(self.run.point.vertices) <= problem.solver.of_metric(self.method.metric).most_vertices
+        return fits and problem.geometry.prescribes and self._asked_for is not self.method
+
+
+@dataclass(eq=False)
+class CheckAccuracy(Intervention):
+    """Check the hierarchical solver against dense sums over a sample of edges, on every mesh at first and at the end.
+
+    Where it is not accurate enough, the order of expansions is raised.
+    """
+
+    _seen: Mesh | None = field(default=None, init=False)
+
+    def __call__(self, event: Event) -> Event | Change:
+        """Look at every new mesh, and wherever the run may end."""
+        problem = self.run.problem
+        energy = problem.objective.energy
+        ends = isinstance(event, NoStep | Outcome)
+        if not isinstance(energy, HierarchicalMoebiusEnergy) or not (ends or problem.mesh is not self._seen):
+            return event
+        self._seen = problem.mesh
+        self.run.sampled_errors = None
+        if energy.block_list(self.run.point.curve).mostly_near:
+            return event
+        accurate = self._tightened(energy)
+        if accurate is energy:
+            return event
+        return Change(point=self.run.point.changing(objective=replace(problem.objective, energy=accurate)))
+
+    def _tightened(self, energy: HierarchicalMoebiusEnergy) -> HierarchicalMoebiusEnergy:
+        """The first of higher and higher order that is accurate enough, or the last one."""
+        while True:
+            self.run.sampled_errors = errors = self._errors(energy)
+            tighter = energy.tightened
+            if tighter is None or errors.within(self.run.options.accuracy):
+                return energy
+            energy = tighter
+
+    def _errors(self, energy: HierarchicalMoebiusEnergy) -> SampledErrors:
+        """At the present curve; near pairs that the barrier stands for are exact."""
+        point = self.run.point
+        energy = energy.leaving_out(replaced_pairs(point.curve))
+        return SampledErrors.at(energy, point.curve, point.energy, point.gradient, point.gradient_norm)
+
+
+def with_errors(outcome: Outcome, run: Run) -> Outcome:
+    """The outcome with what is known of the errors."""
+    errors = run.sampled_errors
+    if errors is None:
+        return outcome
+    outcome = replace(outcome, sampled_errors=errors)
+    if errors.order > HierarchicalMoebiusEnergy.order:
+        tightened = "far-field expansions were raised to order {order} for the requested accuracy"
+        outcome = outcome.adding(tightened, order=errors.order)
+    if errors.within(run.options.accuracy):
+        return outcome
+    return outcome.adding(INACCURATE, energy=errors.energy.bound, norm=errors.gradient_norm.bound)

@@ -1,55 +1,80 @@
 """Target lengths grow or shrink to a multiple of those of the start, as fast as what is in the way allows."""
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...checks import check_fields
 from ...constraints import weighted_barycenter
 from ...curve import Curve
 from ...curve.pins import spans
 from ...curve.refine import affordable_pieces, subdivide
 from ...curve.remesh import SPLIT, graded_spacing
 from ...descent import Leg, NoStep, Point, Step
-from ...descent.searches.normal_step import on_target
+from ...descent.searches.trials import on_target
 from ...descent.step import attempt
 from ...energies.components import energy_scale
 from ...errors import MobiusFlowError
 from ...task import check_refined
 from ...types import IntArray
 from ...units import Units
-from ..events import Change, Event
-from ..outcome import CROWDED, GREW, Outcome
-from ..run import Run
-from .finer_mesh import FINEST
+from ..outcome import Outcome
+from ..run import Change, Event, Intervention, Run
+from .remesh import FinerMesh
 
-FASTEST, SLOWEST = 0.2, 0.01  # logarithmic change of the lengths in one motion; less is not worth an iteration
-RISE = 0.25  # of the objective's scale in one motion: more is made by contacts that it takes long to relax from
-SETTLED = 0.01  # decrease of the objective in a step, relative to its scale, from which on the next motion may come
-LATER = 0.1  # factor of that after no motion was found
-EDGES_PER_GAP = 2.0  # what is packed bends as narrowly as strands are near
-REACHED = 1e-9  # logarithm of what may be missing
+REACHED = 1e-9  # logarithm of what may be missing: rounding
+
+CROWDED = "every motion that changes the lengths as requested causes contact or costs too much energy"
 
 
-class Grow:
-    """Change the lengths, by motions that are proved like all others, where the steps between have settled."""
+@dataclass(eq=False)
+class Grow(Intervention):
+    """Change the lengths, by motions that are proved like all others, where the steps between have settled.
 
-    def __init__(self, run: Run) -> None:
-        self._run = run
-        self._fastest, self._settled = FASTEST, SETTLED
-        self._energy = np.inf  # after the last event
-        self._is_done = run.options.grow == 1.0
-        self._resolution = replace(run.resolution, edges_per_gap=EDGES_PER_GAP)
+    Parameters
+    ----------
+    fastest, slowest
+        Logarithmic change of the lengths in one motion; less is not worth an iteration.
+    rise
+        Of the objective, by its scale, in one motion: more is made by contacts that it takes long to relax from.
+    settled
+        Decrease of the objective in a step, by its scale, from which on the next motion may come.
+    later
+        Factor of that after no motion was found.
+    edges_per_gap
+        What is packed bends as narrowly as strands are near.
+    most
+        Vertices, unless there are more.
+    """
+
+    fastest: float = 0.2
+    slowest: float = 0.01
+    rise: float = 0.25
+    settled: float = 0.01
+    later: float = 0.1
+    edges_per_gap: float = 2.0
+    most: int = FinerMesh.most
+    _energy: float = field(default=math.inf, init=False)  # after the last event
+
+    def __post_init__(self) -> None:
+        positive = (0.0, math.inf)
+        check_fields(self, fastest=positive, slowest=(0.0, self.fastest), rise=positive, settled=positive)
+        check_fields(self, later=(0.0, 1.0), edges_per_gap=positive, most=positive)
+        self._longest, self._enough = self.fastest, self.settled
+        self._is_done = self.run.options.grow == 1.0
+        self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
 
     def __call__(self, event: Event) -> Event | Change:
         """Look at the start, at steps that gained little, and where the run would end with other lengths."""
         if self._is_done or (isinstance(event, Outcome) and not event.converged):
             return event
-        left = float(np.log(self._run.options.grow / self._run.iterate.grown))
-        if abs(left) > REACHED and not (self._run.problem.obstacles or len(self._run.problem.constraints.pins)):
+        left = float(np.log(self.run.options.grow / self.run.iterate.grown))
+        if abs(left) > REACHED and not (self.run.problem.obstacles or len(self.run.problem.constraints.pins)):
             return self._scaled(left)
         if not self._is_due(event):
             return event
-        resolved = self._resolved(self._run.point)  # before the next motion: right after one strands are too near
+        resolved = self._resolved(self.run.point)  # before the next motion: right after one strands are too near
         if resolved is not None:
             return Change(point=resolved)
         self._is_done = abs(left) <= REACHED
@@ -57,11 +82,11 @@ class Grow:
 
     def _is_due(self, event: Event) -> bool:
         """Whether there is nothing else to do, or the curve has its lengths and has all but come to rest."""
-        before, self._energy = self._energy, self._run.point.energy
+        before, self._energy = self._energy, self.run.point.energy
         if isinstance(event, NoStep | Outcome):
             return True
         gained = before - self._energy if isinstance(event, Step) else 0.0
-        return on_target(self._run.point) and gained <= self._settled * self._energy_scale
+        return on_target(self.run.point) and gained <= self._enough * self._energy_scale
 
     def _grown(self, left: float, event: Event) -> Event | Change:
         """A motion; where there is none the event, which is no convergence."""
@@ -73,7 +98,7 @@ class Grow:
 
     def _scaled(self, left: float) -> Change:
         """With nothing in the way: the whole curve scaled about its barycenter."""
-        start, problem, factor = self._run.iterate.curve, self._run.problem, float(np.exp(left))
+        start, problem, factor = self.run.iterate.curve, self.run.problem, float(np.exp(left))
         center = weighted_barycenter(start) / start.length
         end = start.with_vertices(center + factor * (start.vertices - center))
         proof = problem.free_motion(start.vertices, end.vertices)
@@ -83,34 +108,34 @@ class Grow:
 
     def _step(self, left: float) -> Step | None:
         """The shortest motion in the metric to what can be had of the change that is left; None if it is nothing."""
-        point, problem = self._run.point, self._run.problem
-        space, change = point.tangent_space, float(np.clip(left, -self._fastest, self._fastest))
+        point, problem = self.run.point, self.run.problem
+        space, change = point.tangent_space, float(np.clip(left, -self._longest, self._longest))
         least = self._slowest(left)
         while abs(change) >= least:
             constraints = problem.constraints.scaled(np.exp(change), problem.mesh)
-            base = point.within(replace(problem, constraints=constraints))
+            base = point.changing(constraints=constraints)
             aim = base.vertices - space.pseudo_inverse(base.residual)
             found = attempt(base, aim, np.zeros_like(base.residual), self._is_cheap, space)
             if isinstance(found, Leg):
-                self._fastest, self._settled = min(2.0 * abs(change), FASTEST), SETTLED
+                self._longest, self._enough = min(2.0 * abs(change), self.fastest), self.settled
                 return Step((found,), 0.0, None)
             change *= 0.5
-        self._settled *= LATER
+        self._enough *= self.later
         return None
 
     def _slowest(self, left: float) -> float:
         """The least change worth an iteration: of an arc that is all but straight, half of its slack."""
-        spanned = spans(self._run.point.curve, self._run.problem.constraints.pins.vertices)
+        spanned = spans(self.run.point.curve, self.run.problem.constraints.pins.vertices)
         slack = (0.5 * float(np.log(span.length / span.distance)) for span in spanned if not span.taut)
-        return min(SLOWEST, abs(left), *slack)
+        return min(self.slowest, abs(left), *slack)
 
     def _is_cheap(self, end: Point) -> bool:
-        return end.energy - self._run.point.energy <= RISE * self._energy_scale
+        return end.energy - self.run.point.energy <= self.rise * self._energy_scale
 
     @property
     def _energy_scale(self) -> float:
         """What rises and decreases of the objective are relative to: arcs may have as good as no energy."""
-        return energy_scale(self._run.problem.mesh, self._run.point.energy)
+        return energy_scale(self.run.problem.mesh, self.run.point.energy)
 
     def _resolved(self, point: Point) -> Point | None:
         """The point on a mesh and in units for its length; None if the present ones do, or are all that there are."""
@@ -129,15 +154,18 @@ class Grow:
     def _pieces(self, curve: Curve) -> IntArray:
         """Into how many each edge is to be split."""
         whole = np.ones(curve.mesh.edges, dtype=np.intp)
-        if self._run.options.mesh == "fixed":
+        if self.run.options.mesh == "fixed":
             return whole
         spacing = graded_spacing(curve, self._resolution)
         if not (curve.edge_lengths > SPLIT * spacing).any():
             return whole
-        return affordable_pieces(curve, spacing, FINEST)
+        return affordable_pieces(curve, spacing, self.most)
 
 
 def with_growth(outcome: Outcome, run: Run) -> Outcome:
-    """What is told of a run's end, with how far lengths have come that were to change."""
+    """The outcome with how far lengths have come that were to change."""
     wanted = run.options.grow
-    return outcome if wanted == 1.0 else outcome.adding(GREW.format(grown=run.iterate.grown, wanted=wanted))
+    if wanted == 1.0:
+        return outcome
+    grew = "grew to {grown:.6g} of {wanted:.6g} times its length"
+    return outcome.adding(grew, grown=run.iterate.grown, wanted=wanted)

@@ -1,44 +1,64 @@
-"""The adaptive mesh: when it changes, and the proof that nothing touches meanwhile."""
+"""Changes of mesh that follow the strands: along the way, with the proof that nothing touches meanwhile, or at rest."""
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...checks import check_fields
 from ...collision import Contact, survives_rounding
 from ...curve import Curve
-from ...curve.refine import Resolution
+from ...curve.distances import arc_distance_of_pairs
+from ...curve.refine import STRAND_RATIO, Resolution, affordable_pieces, subdivide
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
-from ...descent import Leg, Problem, Step
+from ...descent import Leg, NoStep, Problem, Step
+from ...energies.barrier import near_pairs
+from ...errors import MobiusFlowError
+from ...messages import Message, joined
+from ...task import check_refined
 from ...types import FloatArray, IntArray
-from ..events import Change, Event, Start
-from ..outcome import ADVICE, Outcome
-from ..run import Run
+from ..outcome import Outcome
+from ..run import Change, Intervention
 
-INTERVAL = 5  # accepted steps between two looks at the mesh
+ADVICE = Message("a finer or an adaptive mesh may help")
+UNRESOLVED = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
 
 
-class Remesh:
-    """Change the mesh where neighbours are no longer nearer than strands, and around edges that are stuck."""
+@dataclass(eq=False)
+class Remesh(Intervention):
+    """The adaptive mesh: shorter edges where strands are near, and around edges that are stuck.
 
-    def __init__(self, run: Run) -> None:
-        self._run = run
-        self._just_refined = False  # around edges that were stuck: once is enough
+    Parameters
+    ----------
+    interval
+        Accepted steps between two looks at the mesh.
+    """
 
-    def __call__(self, event: Event) -> Event | Change:
-        """Look at the mesh now and then, and where no step was found."""
-        if isinstance(event, Start | Outcome):
-            return event
-        if self._run.options.mesh != "adaptive":
-            return event if isinstance(event, Step) else replace(event, reason=f"{event.reason}; {ADVICE}")
-        if isinstance(event, Step):
-            self._just_refined = False
-            due = self._run.iterate.index % INTERVAL == 0
-            return (self._change(None) if due else None) or event
-        if event.limited_by is None or self._just_refined:
-            return event
-        change = self._change(event.limited_by)
+    interval: int = 5
+    _just_refined: bool = field(default=False, init=False)  # around edges that were stuck: once is enough
+
+    def __post_init__(self) -> None:
+        check_fields(self, interval=(0, math.inf))
+
+    def stepped(self, step: Step) -> Change | None:
+        """Look at the mesh now and then."""
+        self._just_refined = False
+        due = self._adapts and self.run.iterate.index % self.interval == 0
+        return self._change(None) if due else None
+
+    def stuck(self, found: NoStep) -> NoStep | Change | None:
+        """Refine around what is in the way."""
+        if not self._adapts:
+            return replace(found, reason=joined((found.reason, ADVICE), "; "))
+        if found.limited_by is None or self._just_refined:
+            return None
+        change = self._change(found.limited_by)
         self._just_refined = change is not None
-        return change or event
+        return change
+
+    @property
+    def _adapts(self) -> bool:
+        return self.run.options.mesh == "adaptive"
 
     def _change(self, stuck: Contact | None) -> Change | None:
         """Another mesh; None if this one is good or must stay.
@@ -48,7 +68,7 @@ class Remesh:
         stuck
             What keeps edges from moving: the mesh around them is refined whether it needs it or not.
         """
-        problem, curve, resolution = self._run.problem, self._run.iterate.curve, self._run.resolution
+        problem, curve, resolution = self.run.problem, self.run.iterate.curve, self.run.resolution
         pins = problem.constraints.pins.vertices
         spacing = graded_spacing(curve, resolution)
         if stuck is not None:
@@ -73,7 +93,7 @@ def proved_remesh(
 ) -> tuple[Step, Remeshed] | None:
     """The last motion on the old mesh and the change to a new one, with as many collapses as are free of contact.
 
-    None if doubles do not tell the vertices apart.
+    None if vertices would coincide in double precision.
     """
     while True:
         change = remesh(curve, resolution, removable, spacing, problem.constraints.pins)
@@ -87,3 +107,54 @@ def proved_remesh(
     if not all(survives_rounding(each, problem.obstacles) for each in (change.moved, change.curve)):
         return None
     return Step((Leg(problem.at_curve(change.moved), free),), 0.0, None), change
+
+
+@dataclass(eq=False)
+class FinerMesh(Intervention):
+    """Split edges where a converged curve's strands are nearer than its mesh resolves, or say that it would help.
+
+    Parameters
+    ----------
+    edges_per_gap
+        The barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then.
+    most
+        Vertices, unless there are more: what the hierarchical solver has time for.
+    min_iterations
+        That are left: it takes two or three to get back what corners cost when their edges are split.
+    """
+
+    edges_per_gap: float = 6.0
+    most: int = 10_000
+    min_iterations: int = 5
+
+    def __post_init__(self) -> None:
+        positive = (0, math.inf)
+        check_fields(self, edges_per_gap=positive, most=positive, min_iterations=positive)
+        self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
+
+    def converged(self, outcome: Outcome) -> Outcome | Change | None:
+        """Look at converged curves."""
+        curve = self.run.iterate.curve
+        if not _unresolved(curve) or self.run.frozen:
+            return None
+        wanted = self.run.options.ends_finer and self.run.iterations_left >= self.min_iterations
+        return (self._finer(curve) if wanted else None) or outcome.adding(UNRESOLVED)
+
+    def _finer(self, curve: Curve) -> Change | None:
+        """The same curve on a finer mesh; None if that cannot be computed with, or has too few digits."""
+        finer = subdivide(curve, affordable_pieces(curve, graded_spacing(curve, self._resolution), self.most))
+        if len(finer) == len(curve):
+            return None
+        try:
+            check_refined(curve, finer, self.run.problem.obstacles)
+            point = self.run.problem.on(finer)  # its lengths, shorter near strands as they are, need no evening out
+        except MobiusFlowError:
+            return None
+        return Change(point=point, resolution=self._resolution)
+
+
+def _unresolved(curve: Curve) -> bool:
+    """Whether strands, not merely edges of very different lengths, are so near that the barrier still acts."""
+    i, j = near_pairs(curve)
+    distance = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)
+    return bool(np.any(arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance))

@@ -1,129 +1,89 @@
-"""A binary tree of clusters of simplices, each of which from afar is its moments up to the second order."""
+"""Clusters of simplices: from afar each is its moments up to the second order."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from ...clusters import ClusterTree, ranges
 from ...types import FloatArray, IntArray, frozen
-from .multipoles import COLUMNS, ROWS, Multipoles
-from .simplices import Potentials, Simplices
+from .simplices import Simplices, dot
 
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """Clusters of simplices, halved by their number across the longest way down to single ones.
+    """Clusters of simplices, halved by number across their longest extent down to single ones."""
 
-    Attributes
-    ----------
-    simplices
-        Sorted: the clusters are ranges.
-    child
-        The first of a cluster's two children, which are numbered one after the other; 0 for leaves.
-    simplex
-        The first simplex of each cluster, the only one of a leaf; shape (clusters,).
-    centre
-        Centroids c; shape (3, clusters).
-    radius
-        Of the smallest balls around the centroids that hold the clusters; shape (clusters,).
-    size
-        Areas or lengths W = ∫ dA; shape (clusters,).
-    spread
-        Second moments Q = ∫ (y − c)(y − c)ᵀ dA, as xx, yy, zz, xy, xz, yz; shape (6, clusters).
-    """
-
-    simplices: Simplices
-    child: IntArray
-    simplex: IntArray
-    centre: FloatArray
-    radius: FloatArray
-    size: FloatArray
-    spread: FloatArray
+    simplices: Simplices  # sorted: the clusters are ranges
+    tree: ClusterTree  # its leaves are single simplices
+    centre: FloatArray  # centroids c; shape (3, clusters)
+    radius: FloatArray  # of the smallest balls around the centroids that hold the clusters; shape (clusters,)
+    size: FloatArray  # areas or lengths W = ∫ dA; shape (clusters,)
+    spread: FloatArray  # second moments Q = ∫ (y − c)(y − c)ᵀ dA; shape (3, 3, clusters)
 
     @classmethod
     def of(cls, corners: FloatArray) -> "Clusters":
-        """The tree of simplices with given corners, shape (corner, coordinate, simplex)."""
-        order, start, stop, child, levels = _halved(np.mean(corners, axis=0))
+        """The clusters of simplices with given corners, shape (corner, coordinate, simplex)."""
+        points = np.mean(corners, axis=0)
+        order = np.arange(points.shape[1])
+
+        def cut(start: IntArray, stop: IntArray) -> IntArray:
+            _sort_across(points, order, start, stop - start)
+            return (start + stop) // 2
+
+        tree = ClusterTree.halved(order, 1, cut)
         simplices = Simplices(frozen(np.ascontiguousarray(corners[:, :, order])))
-        size, centre, spread = _moments(simplices, start, child, levels)
-        radius = np.concatenate([_radii(simplices.corners, centre[:, s], start[s], stop[s]) for s in levels])
-        return cls(simplices, *map(frozen, (child, start, centre, radius, size, spread)))
+        size, centre, spread = _moments(simplices, tree)
+        radius = np.concatenate([_radii(simplices.corners, centre, tree, level) for level in tree.levels])
+        return cls(simplices, tree, *map(frozen, (centre, radius, size, spread)))
 
-    def potential(self, index: IntArray, x: FloatArray) -> Potentials:
-        """Φ of the clusters ``index``, shape (k,), each at its own points x, shape (3, k, points)."""
-        return self._seen(index, x).potential()
+    def potential(self, index: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Φ and ∇Φ of the clusters ``index``, shape (k,), each at its own points x, shape (3, k, points).
 
-    def change(self, index: IntArray, x: FloatArray, v: FloatArray) -> Potentials:
-        """The derivatives of Φ and ∇Φ as the points move with velocities v, shape (3, k, points)."""
-        return self._seen(index, x).change(v)
+        With K = 1/rᵖ and d = x − c
 
-    def _seen(self, index: IntArray, x: FloatArray) -> Multipoles:
-        strength = self.simplices.strength
-        size, spread = strength * self.size[index, None], strength * self.spread[:, index, None]
-        return Multipoles(self.simplices.exponent, x - self.centre[:, index, None], size, spread)
-
-
-def _halved(points: FloatArray) -> tuple[IntArray, IntArray, IntArray, IntArray, list[slice]]:
-    """An order of points, shape (3, f), and the ranges [start, stop), children and levels of the tree over it."""
-    order = np.arange(points.shape[1])
-    start, stop = np.array([0]), np.array([len(order)])
-    parts, levels, first = [], [], 0
-    while start.size:
-        last = first + start.size
-        levels.append(slice(first, last))
-        split = stop - start > 1
-        child = np.where(split, last + 2 * (np.cumsum(split) - 1), 0)
-        parts.append((start, stop, child))
-        start, stop = start[split], stop[split]
-        _sort_across(points, order, start, stop)
-        middle = (start + stop) // 2
-        start, stop = (np.stack(ends, axis=1).ravel() for ends in ((start, middle), (middle, stop)))
-        first = last
-    starts, stops, children = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
-    return order, starts, stops, children, levels
+            Φ ≈ W K + ½ ⟨Q, ∇²K⟩ = r⁻ᵖ (W − p/2 tr Q/r² + p (p + 2)/2 dᵀQd/r⁴).
+        """
+        p, d = self.simplices.exponent, x - self.centre[:, index, None]
+        q, half = self.spread[:, :, index, None], 0.5 * p * (p + 2)
+        s = 1.0 / dot(d, d)
+        kernel, q_d = self.simplices.strength * s ** (0.5 * p), q[:, 0] * d[0] + q[:, 1] * d[1] + q[:, 2] * d[2]
+        size, trace, along = self.size[index, None], (q[0, 0] + q[1, 1] + q[2, 2]) * s, dot(d, q_d) * (s * s)
+        radial = s * kernel * (half * trace - (p + 4) * half * along - p * size)
+        return kernel * (size - 0.5 * p * trace + half * along), radial * d + (2.0 * half * s * s * kernel) * q_d
 
 
-def _sort_across(points: FloatArray, order: IntArray, start: IntArray, stop: IntArray) -> None:
-    """Sort each range of the order by the coordinate in which its points are spread the most."""
+def _sort_across(points: FloatArray, order: IntArray, start: IntArray, count: IntArray) -> None:
+    """Sort ranges of the order, each by the coordinate in which its points are spread the most."""
     if not start.size:
         return
-    places = _places(start, stop)
+    places = ranges(start, count)
     x = points[:, order[places]]
-    first = np.cumsum(stop - start) - (stop - start)
+    first = np.cumsum(count) - count
     widths = np.maximum.reduceat(x, first, axis=1) - np.minimum.reduceat(x, first, axis=1)
-    owner = np.repeat(np.arange(start.size), stop - start)
+    owner = np.repeat(np.arange(start.size), count)
     along = x[np.argmax(widths, axis=0)[owner], np.arange(len(places))]
     order[places] = order[places][np.lexsort((along, owner))]
 
 
-def _places(start: IntArray, stop: IntArray) -> IntArray:
-    """The places of ranges, one after the other."""
-    count = stop - start
-    return np.asarray(np.repeat(start - np.cumsum(count) + count, count) + np.arange(count.sum()))
-
-
-def _moments(
-    simplices: Simplices, start: IntArray, child: IntArray, levels: list[slice]
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _moments(simplices: Simplices, tree: ClusterTree) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Sizes W, centroids c and second moments Q of all clusters, from the leaves up."""
     k = len(simplices.corners)
-    size, centre = simplices.sizes[start], np.mean(simplices.corners, axis=0)[:, start]
-    from_centre = simplices.corners[:, :, start] - centre
-    spread = size / (k * (k + 1)) * np.sum(from_centre[:, ROWS] * from_centre[:, COLUMNS], axis=0)
-    for level in reversed(levels):
-        inner = level.start + np.flatnonzero(child[level])
-        one, two = child[inner], child[inner] + 1
-        size[inner] = size[one] + size[two]
-        share = size[two] / size[inner]
-        between = centre[:, two] - centre[:, one]
-        centre[:, inner] = centre[:, one] + share * between
-        apart = size[one] * share * between[ROWS] * between[COLUMNS]
-        spread[:, inner] = spread[:, one] + spread[:, two] + apart
+    size, centre = simplices.sizes[tree.start], np.mean(simplices.corners, axis=0)[:, tree.start]
+    from_centre = simplices.corners[:, :, tree.start] - centre
+    spread = size / (k * (k + 1)) * np.einsum("aif,ajf->ijf", from_centre, from_centre)
+    for inner, child in tree.upward():
+        size[inner] = size[child] + size[child + 1]
+        share = size[child + 1] / size[inner]
+        between = centre[:, child + 1] - centre[:, child]
+        centre[:, inner] = centre[:, child] + share * between
+        apart = size[child] * share * (between[:, None] * between)
+        spread[:, :, inner] = spread[:, :, child] + spread[:, :, child + 1] + apart
     return size, centre, spread
 
 
-def _radii(corners: FloatArray, centre: FloatArray, start: IntArray, stop: IntArray) -> FloatArray:
+def _radii(corners: FloatArray, centre: FloatArray, tree: ClusterTree, level: slice) -> FloatArray:
     """Largest distance of a corner from the centre of its cluster, for the clusters of one level."""
-    places, count = _places(start, stop), stop - start
-    from_centre = corners[:, :, places] - np.repeat(centre, count, axis=1)
+    count = (tree.stop - tree.start)[level]
+    from_centre = corners[:, :, ranges(tree.start[level], count)] - np.repeat(centre[:, level], count, axis=1)
     square = np.max(np.einsum("cif,cif->cf", from_centre, from_centre), axis=0)
     return np.asarray(np.sqrt(np.maximum.reduceat(square, np.cumsum(count) - count)))

@@ -14,14 +14,14 @@ from functools import lru_cache
 import numpy as np
 import scipy.sparse as sp
 
-from ...curve import Curve, Mesh
+from ...curve import Curve
 from ...obstacle import Obstacle
+from ...quadrature import gauss_legendre
 from ...types import FloatArray
+from ..complex_steps import change, stepped
 from .clusters import Clusters
-from .integrals import Forces, Integrals
-from .panels import Edges
 from .schedule import Schedule
-from .simplices import Simplices
+from .simplices import Simplices, norm
 
 THETA = 0.4  # errors up to some 6·10⁻⁴ of R and 10⁻³ of its derivative
 KEPT = 0.9  # slack up to which a schedule is as good as a new one
@@ -71,27 +71,21 @@ class Repulsion:
         return replace(self, schedule=_schedule(curve, self.clusters, self.theta))
 
     def value(self, curve: Curve) -> float:
-        """R of the curve."""
         return self.value_and_derivative(curve)[0]
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
-        """R and its derivative with respect to the vertices, shape (n, 3)."""
-        edges = Edges.of(curve.mesh, curve.vertices)
-        integrals = Integrals.of(edges, self.clusters, self._schedule(curve))
-        derivative = _at_vertices(curve.mesh, integrals.forces(edges))
-        return integrals.energy(edges), derivative
+        tails, heads = _ends(curve, curve.vertices)
+        value, derivative = self._at_ends(self._schedule(curve), tails, heads)
+        return float(value), curve.mesh.scatter(*derivative.transpose(0, 2, 1))
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
-        """D²R v for ``v`` of shape (n, 3); shape (n, 3)."""
-        changes = self._force_changes(curve, [Edges.of(curve.mesh, v)])
-        return _at_vertices(curve.mesh, changes[0])
+        return curve.mesh.scatter(*self._change(curve, *_ends(curve, v)).transpose(0, 2, 1))
 
     def sparse_hessian(self, curve: Curve) -> sp.csr_array:
         """D²R as a sparse matrix, which couples the ends of edges only, in the order of ``vertices.ravel()``."""
         n, edges = len(curve), curve.mesh.edges
-        rest, unit = np.zeros((3, edges)), np.eye(3)[:, :, None] * np.ones(edges)
-        tails_move, heads_move = [Edges(e, -e) for e in unit], [Edges(rest, e) for e in unit]
-        changes = np.array(self._force_changes(curve, [*tails_move, *heads_move]))
+        motions = np.eye(6).reshape(6, 2, 3, 1) * np.ones(edges)
+        changes = np.array([self._change(curve, tails, heads) for tails, heads in motions])
         ends = np.stack([curve.mesh.tails, curve.mesh.heads])
         index = (3 * ends[:, None] + np.arange(3)[:, None]).reshape(6, edges)
         rows, columns = np.broadcast_arrays(index[None], index[:, None])
@@ -111,8 +105,7 @@ class Repulsion:
 
     def _means(self, curve: Curve) -> FloatArray:
         """Those of Φ on every edge, shape (edges,)."""
-        edges = Edges.of(curve.mesh, curve.vertices)
-        return Integrals.of(edges, self.clusters, self._schedule(curve)).potential
+        return self._integrals(self._schedule(curve), *_ends(curve, curve.vertices))[0]
 
     def _schedule(self, curve: Curve) -> Schedule:
         """The schedule that counts at a curve: its own, or that of the curve."""
@@ -120,12 +113,35 @@ class Repulsion:
             return self.schedule
         return _schedule(curve, self.clusters, self.theta)
 
-    def _force_changes(self, curve: Curve, motions: list[Edges]) -> list[Forces]:
-        """How the derivative by the ends of edges changes along some motions."""
-        schedule, edges = self._schedule(curve), Edges.of(curve.mesh, curve.vertices)
-        integrals = Integrals.of(edges, self.clusters, schedule)
-        changes = (Integrals.of(edges, self.clusters, schedule, motion) for motion in motions)
-        return [integrals.force_changes(edges, motion, each) for motion, each in zip(motions, changes, strict=True)]
+    def _change(self, curve: Curve, tails: FloatArray, heads: FloatArray) -> FloatArray:
+        """How the derivative by the ends of edges changes as these move, by a complex step; shape (2, 3, edges)."""
+        moved = map(stepped, _ends(curve, curve.vertices), (tails, heads))
+        return change(self._at_ends(self._schedule(curve), *moved)[1])
+
+    def _at_ends(self, schedule: Schedule, tails: FloatArray, heads: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """R and its derivative by the tails and heads of edges, shape (2, 3, edges).
+
+        With ℓ, τ and the integrals over t = 0 … 1 it is ℓ ∫ (1 − t) ∇Φ dt − τ ∫ Φ dt at tails, ℓ ∫ t ∇Φ dt + τ ∫ Φ dt
+        at heads.
+        """
+        potential, *both = self._integrals(schedule, tails, heads)
+        gradient, moment = np.reshape(both, (2, *tails.shape))
+        length = norm(heads - tails)
+        along, at_heads = (heads - tails) / length * potential, length * moment
+        return length @ potential, np.stack([length * gradient - at_heads - along, at_heads + along])
+
+    def _integrals(self, schedule: Schedule, tails: FloatArray, heads: FloatArray) -> FloatArray:
+        """∫ Φ dt, ∫ ∇Φ dt and ∫ t ∇Φ dt over every edge; shape (7, edges) from tails and heads of shape (3, edges)."""
+        total = np.zeros((7, tails.shape[1]), dtype=tails.dtype)
+        for potential, panels, points in schedule.chunks(self.clusters):
+            u, weight = gauss_legendre(points)
+            t = panels.begin[:, None] + panels.width[:, None] * u
+            tail, head = tails[:, panels.edge, None], heads[:, panels.edge, None]
+            value, gradient = potential(panels.source, tail + t * (head - tail))
+            integrals = panels.width * (np.concatenate([value[None], gradient, t * gradient]) @ weight)
+            first = np.flatnonzero(np.diff(panels.edge, prepend=-1))
+            total[:, panels.edge[first]] += np.add.reduceat(integrals, first, axis=1)
+        return total
 
 
 @lru_cache(maxsize=2)
@@ -134,5 +150,7 @@ def _schedule(curve: Curve, clusters: Clusters, theta: float) -> Schedule:
     return Schedule.of(curve, clusters, theta)
 
 
-def _at_vertices(mesh: Mesh, forces: Forces) -> FloatArray:
-    return mesh.scatter(forces.at_tails.T, forces.at_heads.T)
+def _ends(curve: Curve, at_vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What there is at the tails and heads of edges; shape (3, edges) each."""
+    columns = at_vertices.T
+    return columns[:, curve.mesh.tails], columns[:, curve.mesh.heads]

@@ -1,31 +1,108 @@
-"""Which panels of a curve see which simplices one by one, which of them in clusters, and by how many Gauss points.
+"""Graded quadrature along edges: which panels see which simplices one by one, which clusters, by how many Gauss points.
 
-Panels are halved until the potential is analytic so far around them that few points are enough.  That follows all
-singularities wherever they are, with a number of panels that grows like the logarithm of their distance only.
+Panels, dyadic parts of edges, are halved until the potential is analytic so far around them that few points are enough.
+That follows all singularities wherever they are; the number of panels grows only like the logarithm of their distance.
 """
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ...curve import Curve
-from ...types import BoolArray, FloatArray
+from ...types import BoolArray, FloatArray, IntArray
 from .clusters import Clusters
-from .panels import MAX_POINTS, Edges, Panels, least_ratios
-from .vectors import norm
+from .simplices import norm
 
-EXACT = least_ratios(20.0)  # 2e-9
-CLUSTERED = least_ratios(8.0)  # 3e-4, still less than what moments leave
+Potential = Callable[[IntArray, FloatArray], tuple[FloatArray, FloatArray]]
+"""Φ and ∇Φ of some simplices or clusters, shape (k,), each at its own points, shape (3, k, points)."""
+
+MAX_POINTS = 8
 SHORTEST = 2.0**-48  # of an edge: not even contact makes panels shorter
-CHUNK = 1024  # edges looked at together, to bound the memory
+EDGES = 1024  # looked at together, to bound the memory
+POINTS = 8192  # at which a potential is taken at once, for the processor's cache
+
+
+def _least_ratios(exponent: float) -> FloatArray:
+    """Ratios of analytic radius to half length from which 1, 2, … Gauss points leave an error of exp(−exponent).
+
+    k points have the error ρ⁻²ᵏ; the Bernstein ellipse lies within a disc of R half lengths if ρ + 1/ρ ≤ 2R.
+    """
+    return np.asarray(np.cosh(exponent / (2.0 * np.arange(1, MAX_POINTS + 1))))
+
+
+EXACT = _least_ratios(20.0)  # 2e-9
+CLUSTERED = _least_ratios(8.0)  # 3e-4, still less than what moments leave
+
+
+@dataclass(frozen=True, eq=False)
+class Panels:
+    """Parts [begin, begin + width] of edges [0, 1], and the cluster or simplex that each of them sees; shapes (k,)."""
+
+    edge: IntArray
+    begin: FloatArray
+    width: FloatArray
+    source: IntArray
+
+    def __len__(self) -> int:
+        return len(self.edge)
+
+    def __getitem__(self, choice: slice | BoolArray | IntArray) -> "Panels":
+        return Panels(self.edge[choice], self.begin[choice], self.width[choice], self.source[choice])
+
+    @classmethod
+    def joined(cls, parts: "Sequence[Panels]") -> "Panels":
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in cls.__match_args__))
+
+    def seeing(self, source: IntArray) -> "Panels":
+        """The same parts of edges with other sources."""
+        return Panels(self.edge, self.begin, self.width, source)
+
+    def halved(self) -> "Panels":
+        """Both halves of each."""
+        half = 0.5 * self.width
+        return Panels.joined([Panels(self.edge, begin, half, self.source) for begin in (self.begin, self.begin + half)])
 
 
 class Group(NamedTuple):
-    """Panels that are integrated by equally many Gauss points."""
+    """Panels that are integrated by equally many Gauss points, sorted by edge."""
 
     points: int
     panels: Panels
+
+
+class _View:
+    """How panels of a curve's edges see clusters and simplices."""
+
+    def __init__(self, curve: Curve, clusters: Clusters) -> None:
+        self.clusters = clusters
+        self._tail, self._vector = curve.vertices[curve.mesh.tails].T, curve.edge_vectors.T
+        self._length = curve.edge_lengths
+
+    def half(self, panels: Panels) -> FloatArray:
+        return np.asarray(0.5 * panels.width * self._length[panels.edge])
+
+    def are_far(self, panels: Panels, theta: float) -> BoolArray:
+        """Whether the clusters that panels see may count by their moments."""
+        return np.asarray(self.clusters.radius[panels.source] + self.half(panels) < theta * self._distances(panels))
+
+    def analytic_ratios(self, panels: Panels) -> FloatArray:
+        """Analytic radius to half length, for panels that see simplices."""
+        tau = self._vector[:, panels.edge] / self._length[panels.edge]
+        reach = self.clusters.simplices.reach(panels.source, self._middles(panels), tau)
+        return np.asarray(reach / self.half(panels))
+
+    def clear_ratios(self, panels: Panels) -> FloatArray:
+        """Distance from the cluster to half length, for panels that see clusters."""
+        return np.asarray((self._distances(panels) - self.clusters.radius[panels.source]) / self.half(panels))
+
+    def _middles(self, panels: Panels) -> FloatArray:
+        t = panels.begin + 0.5 * panels.width
+        return np.asarray(self._tail[:, panels.edge] + t * self._vector[:, panels.edge])
+
+    def _distances(self, panels: Panels) -> FloatArray:
+        return norm(self._middles(panels) - self.clusters.centre[:, panels.source])
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,32 +111,25 @@ class Schedule:
 
     Attributes
     ----------
-    curve
-        The curve that it was made for.
-    single
-        Panels that see simplices.
     clustered
         Panels that see clusters: those with (radius of the cluster + half length) < θ (distance of the centres).
-    theta
-        The separation parameter θ.
     """
 
-    curve: Curve
-    single: tuple[Group, ...]
+    curve: Curve  # the curve that it was made for
+    single: tuple[Group, ...]  # panels that see simplices
     clustered: tuple[Group, ...]
-    theta: float
+    theta: float  # the separation parameter θ
 
     @classmethod
     def of(cls, curve: Curve, clusters: Clusters, theta: float) -> "Schedule":
         """That of a curve in R³."""
-        edges, every = Edges.of(curve.mesh, curve.vertices), np.arange(curve.mesh.edges)
-        chunks = [every[first : first + CHUNK] for first in range(0, len(every), CHUNK)]
-        found = [_traverse(Panels.whole(chunk), edges, clusters, theta) for chunk in chunks]
-        single, clustered = (Panels.joined(list(kind)) for kind in zip(*found, strict=True))
+        view, n = _View(curve, clusters), curve.mesh.edges
+        found = [_traverse(view, np.arange(first, min(first + EDGES, n)), theta) for first in range(0, n, EDGES)]
+        single, clustered = (Panels.joined(kind) for kind in zip(*found, strict=True))
         return cls(
             curve,
-            _grouped(single, _analytic_ratios(single, edges, clusters), EXACT),
-            _grouped(clustered, _clear_ratios(clustered, edges, clusters), CLUSTERED),
+            _grouped(single, view.analytic_ratios(single), EXACT),
+            _grouped(clustered, view.clear_ratios(clustered), CLUSTERED),
             theta,
         )
 
@@ -69,34 +139,43 @@ class Schedule:
             return False
         if np.array_equal(curve.vertices, self.curve.vertices):
             return True
-        edges = Edges.of(curve.mesh, curve.vertices)
+        view = _View(curve, clusters)
         return all(
-            np.all(_analytic_ratios(panels, edges, clusters) >= slack * EXACT[points - 1])
-            for points, panels in self.single
-        ) and all(np.all(_are_far(panels, edges, clusters, self.theta / slack)) for _, panels in self.clustered)
+            np.all(view.analytic_ratios(panels) >= slack * EXACT[points - 1]) for points, panels in self.single
+        ) and all(np.all(view.are_far(panels, self.theta / slack)) for _, panels in self.clustered)
+
+    def chunks(self, clusters: Clusters) -> Iterator[tuple[Potential, Panels, int]]:
+        """Potentials, the panels that see their sources, and the number of points on each."""
+        for source, groups in ((clusters.simplices, self.single), (clusters, self.clustered)):
+            for points, panels in groups:
+                size = POINTS // points
+                for first in range(0, len(panels), size):
+                    yield source.potential, panels[first : first + size], points
 
 
-def _traverse(panels: Panels, edges: Edges, clusters: Clusters, theta: float) -> tuple[Panels, Panels]:
+def _traverse(view: _View, edges: IntArray, theta: float) -> tuple[Panels, Panels]:
     """Panels that see simplices and panels that see clusters, from whole edges that see the root."""
+    tree = view.clusters.tree
+    panels = Panels(edges, np.zeros(len(edges)), np.ones(len(edges)), np.zeros_like(edges))
     single, clustered = [], []
     while len(panels):
-        far = _are_far(panels, edges, clusters, theta)
+        far = view.are_far(panels, theta)
         clustered.append(panels[far])
         panels = panels[~far]
-        leaf = clusters.child[panels.source] == 0
-        seen = panels[leaf].seeing(clusters.simplex[panels.source[leaf]])
-        fine = (_analytic_ratios(seen, edges, clusters) >= EXACT[-1]) | (seen.width <= SHORTEST)
+        leaf = tree.is_leaf[panels.source]
+        seen = panels[leaf].seeing(tree.start[panels.source[leaf]])
+        fine = (view.analytic_ratios(seen) >= EXACT[-1]) | (seen.width <= SHORTEST)
         single.append(seen[fine])
         left = np.ones(len(panels), dtype=bool)
         left[leaf] = ~fine
-        panels = _split(panels[left], edges, clusters)
+        panels = _split(view, panels[left])
     return Panels.joined(single), Panels.joined(clustered)
 
 
-def _split(panels: Panels, edges: Edges, clusters: Clusters) -> Panels:
+def _split(view: _View, panels: Panels) -> Panels:
     """Each panel with both children of the cluster it sees, or both of its halves if these are larger."""
-    child = clusters.child[panels.source]
-    opened = (child > 0) & (clusters.radius[panels.source] >= panels.half_lengths(edges))
+    child = view.clusters.tree.child[panels.source]
+    opened = (child > 0) & (view.clusters.radius[panels.source] >= view.half(panels))
     same, child = panels[opened], child[opened]
     return Panels.joined([same.seeing(child), same.seeing(child + 1), panels[~opened].halved()])
 
@@ -104,27 +183,6 @@ def _split(panels: Panels, edges: Edges, clusters: Clusters) -> Panels:
 def _grouped(panels: Panels, ratio: FloatArray, least: FloatArray) -> tuple[Group, ...]:
     """The panels by the number of points that they need."""
     points = np.minimum(np.searchsorted(-least, -ratio) + 1, MAX_POINTS)
+    order = np.argsort(panels.edge, kind="stable")
+    points, panels = points[order], panels[order]
     return tuple(Group(k, panels[points == k]) for k in np.unique(points).tolist())
-
-
-def _analytic_ratios(panels: Panels, edges: Edges, clusters: Clusters) -> FloatArray:
-    """Analytic radius to half length, for panels that see simplices."""
-    tau = edges.vector[:, panels.edge] / edges.length[panels.edge]
-    reach = clusters.simplices.reach(panels.source, panels.middles(edges), tau)
-    return np.asarray(reach / panels.half_lengths(edges))
-
-
-def _clear_ratios(panels: Panels, edges: Edges, clusters: Clusters) -> FloatArray:
-    """Distance from the cluster to half length, for panels that see clusters."""
-    clear = _distances(panels, edges, clusters) - clusters.radius[panels.source]
-    return np.asarray(clear / panels.half_lengths(edges))
-
-
-def _are_far(panels: Panels, edges: Edges, clusters: Clusters, theta: float) -> BoolArray:
-    """Whether the clusters that panels see may count by their moments."""
-    extent = clusters.radius[panels.source] + panels.half_lengths(edges)
-    return np.asarray(extent < theta * _distances(panels, edges, clusters))
-
-
-def _distances(panels: Panels, edges: Edges, clusters: Clusters) -> FloatArray:
-    return norm(panels.middles(edges) - clusters.centre[:, panels.source])

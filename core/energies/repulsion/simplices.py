@@ -3,45 +3,39 @@
     Φ(x) = ∫_T dA(y)/|x − y|³ = Ω/h       for triangles,
     Φ(x) = 2 ∫_S ds(y)/|x − y|² = 2 ψ/h    for segments,
 
-with the solid angle Ω or the angle ψ under which a point x sees the simplex, and its distance h from the simplex's
-plane or line.  By tan(Ω/2) = N/D (Van Oosterom and Strackee, 1983) and tan ψ = N/D, with N proportional to h, both are
-a constant times atan2(N, D)/N: nothing happens where x is in the plane or on the line, beside the simplex.
+with the solid angle Ω or the angle ψ that the simplex subtends at x, and the distance h from its plane or line.  By
+tan(Ω/2) = N/D (Van Oosterom and Strackee, 1983) and tan ψ = N/D, with N proportional to h, both are a constant times
+g(N², D) = atan2(N, D)/N, which is regular beside the simplex too, where x is in the plane or on the line.
+
+Points may be after complex steps.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from ...types import BoolArray, FloatArray, IntArray, frozen
-from .arctangent import ArctangentQuotient
-from .forms import Form, SegmentForm, TriangleForm
-from .vectors import cross, dot, norm
+from ..complex_steps import arctan2
+from ..moments import CONTACT
 
+Form = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+"""N², D, ∇N² and ∇D."""
 
-class Potentials(NamedTuple):
-    """A potential Φ at points: values, shape (k, points), and gradients, shape (3, k, points)."""
-
-    value: FloatArray
-    gradient: FloatArray
+_FLAT = 1e-3  # N²/D² below which series replace quotients by N², of which second derivatives lose six digits
+_VALUE = [(-1.0) ** k / (2 * k + 1) for k in range(6)]  # of D g in powers of N²/D²
+_SLOPE = [-((-1.0) ** k) * (k + 1) / (2 * k + 3) for k in range(6)]  # of D³ ∂g/∂N²
 
 
 @dataclass(frozen=True, eq=False)
 class Simplices:
-    """Triangles or segments in space.
+    """Triangles or segments in space."""
 
-    Parameters
-    ----------
-    corners
-        Shape (3, 3, f) for triangles, (2, 3, f) for segments: corner, coordinate, simplex.
-    """
-
-    corners: FloatArray
+    corners: FloatArray  # shape (3, 3, f) for triangles, (2, 3, f) for segments: corner, coordinate, simplex
 
     @property
     def are_triangles(self) -> bool:
-        """Whether they are triangles rather than segments."""
         return len(self.corners) == 3
 
     @property
@@ -70,23 +64,14 @@ class Simplices:
         """Areas or lengths; shape (f,)."""
         return frozen(0.5 * norm(self.normals) if self.are_triangles else norm(self.sides[0]))
 
-    def potential(self, index: IntArray, x: FloatArray) -> Potentials:
-        """Φ of the simplices ``index``, shape (k,), each at its own points x, shape (3, k, points)."""
-        form = self._form(index, x)
-        g = ArctangentQuotient.at(form.square, form.d)
-        factor = self._factors[index, None]
-        return Potentials(factor * g.value, factor * (g.by_square * form.slope_of_square + g.by_d * form.slope_of_d))
-
-    def change(self, index: IntArray, x: FloatArray, v: FloatArray) -> Potentials:
-        """The derivatives of Φ and ∇Φ as the points move with velocities v, shape (3, k, points)."""
-        form = self._form(index, x)
-        g = ArctangentQuotient.at(form.square, form.d)
-        rate = g.change(form.square, form.d, dot(form.slope_of_square, v), dot(form.slope_of_d, v))
-        gradient = rate.by_square * form.slope_of_square + rate.by_d * form.slope_of_d
-        square_bend, d_bend = form.bend(v)
-        gradient += g.by_square * square_bend + g.by_d * d_bend
-        factor = self._factors[index, None]
-        return Potentials(factor * rate.value, factor * gradient)
+    def potential(self, index: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Φ and ∇Φ of the simplices ``index``, shape (k,), each at its own points x, shape (3, k, points)."""
+        seen = self.corners[:, :, index, None] - x
+        form = _triangle_form(seen, self.normals[:, index, None]) if self.are_triangles else _segment_form(*seen)
+        square, d, slope_of_square, slope_of_d = form
+        value, by_square, by_d = _arctangent_quotient(square, d)
+        factor = ((4.0 if self.are_triangles else 2.0) * self.sizes)[index, None]
+        return factor * value, factor * (by_square * slope_of_square + by_d * slope_of_d)
 
     def reach(self, index: IntArray, x: FloatArray, tau: FloatArray) -> FloatArray:
         """Radii of discs |z| < reach in which z ↦ Φ(x + z τ) is analytic; x and unit vectors τ of shape (3, k).
@@ -108,18 +93,40 @@ class Simplices:
             square = np.where(_is_above(seen, sides, normal), np.minimum(square, pole), square)
         return np.asarray(np.sqrt(square))
 
-    @cached_property
-    def _factors(self) -> FloatArray:
-        """Φ N/atan2(N, D) of each simplex; shape (f,)."""
-        return (4.0 if self.are_triangles else 2.0) * self.sizes
 
-    def _form(self, index: IntArray, x: FloatArray) -> Form:
-        seen = self.corners[:, :, index, None] - x
-        if self.are_triangles:
-            a, b, c = seen
-            return TriangleForm(a, b, c, self.normals[:, index, None])
-        a, b = seen
-        return SegmentForm(a, b)
+def _segment_form(a: FloatArray, b: FloatArray) -> Form:
+    """N = |a × b| and D = ⟨a, b⟩, for ends a and b seen from x; at contact N is what it is 10⁻¹⁶ of the side away."""
+    side = b - a
+    normal = cross(a, side)
+    square = np.maximum(dot(normal, normal), (CONTACT * dot(side, side)) ** 2)
+    return square, dot(a, b), -2.0 * cross(side, normal), -(a + b)
+
+
+def _triangle_form(corners: FloatArray, normal: FloatArray) -> Form:
+    """N = ⟨a, b × c⟩ and D = |a||b||c| + ⟨a, b⟩|c| + ⟨b, c⟩|a| + ⟨c, a⟩|b|, for corners a, b and c seen from x.
+
+    ``normal`` is twice the area long; at contact N and lengths are what they are 10⁻¹⁶ of the triangle's size away.
+    """
+    a, b, c = corners
+    n, width = dot(normal, a), np.sqrt(norm(normal))
+    ra, rb, rc = (np.maximum(norm(corner), CONTACT * width) for corner in corners)
+    bc, ca, ab = dot(b, c), dot(c, a), dot(a, b)
+    slope = a * ((rb * rc + bc) / ra + rb + rc)
+    slope += b * ((rc * ra + ca) / rb + rc + ra)
+    slope += c * ((ra * rb + ab) / rc + ra + rb)
+    square = np.maximum(n * n, (CONTACT * width**3) ** 2)
+    return square, ra * rb * rc + ab * rc + bc * ra + ca * rb, -2.0 * n * normal, -slope
+
+
+def _arctangent_quotient(square: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """g = atan2(N, D)/N, ∂g/∂N² = (D/(N² + D²) − g)/(2N²) and ∂g/∂D = −1/(N² + D²), from N² > 0 and D."""
+    n, inverse = np.sqrt(square), 1.0 / (square + d * d)
+    value = arctan2(n, d) / n
+    by_square = (d * inverse - value) / (2.0 * square)
+    flat = (d.real > 0.0) & (square.real < _FLAT * d.real**2)
+    x, y = d[flat], square[flat] / d[flat] ** 2
+    value[flat], by_square[flat] = polyval(y, _VALUE) / x, polyval(y, _SLOPE) / x**3
+    return value, by_square, -inverse
 
 
 def _is_above(seen: FloatArray, sides: FloatArray, normal: FloatArray) -> BoolArray:
@@ -131,3 +138,18 @@ def _quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
     """Their quotient, inf where the denominator is 0."""
     safe = np.where(denominator > 0.0, denominator, 1.0)
     return np.where(denominator > 0.0, numerator / safe, np.inf)
+
+
+def dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    """⟨a, b⟩, not conjugated; shapes (3, ...) -> (...): loops over points stay contiguous."""
+    return np.asarray(np.einsum("i...,i...->...", a, b))
+
+
+def norm(a: FloatArray) -> FloatArray:
+    """√⟨a, a⟩; shapes (3, ...) -> (...)."""
+    return np.asarray(np.sqrt(dot(a, a)))
+
+
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """a × b; shapes (3, ...) -> (3, ...)."""
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])

@@ -18,9 +18,9 @@ from blender_scenes import (  # noqa: E402
 from mobius_flow.addon.curves import bevel, sampling  # noqa: E402
 from mobius_flow.addon.curves.keyframes import end_of  # noqa: E402
 from mobius_flow.addon.engine.colours import PALETTE, ramp  # noqa: E402
-from mobius_flow.addon.engine.strands import strand_distances  # noqa: E402
+from mobius_flow.addon.engine.vertex_values import strand_distances  # noqa: E402
 from mobius_flow.core import Curve  # noqa: E402
-from mobius_flow.core.energies.moebius_by_length import moebius_by_length  # noqa: E402
+from mobius_flow.core.energies.moebius import moebius_by_length  # noqa: E402
 from shapes import hopf_link, torus_trefoil  # noqa: E402
 
 

@@ -8,7 +8,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_trefoil  # noqa: E402
-from mobius_flow.addon.curves.snapshot import control_points  # noqa: E402
+from mobius_flow.addon.curves.splines import control_points  # noqa: E402
 from mobius_flow.core.errors import Place  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
 

@@ -6,10 +6,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mobius_flow.addon.engine import wire
-from mobius_flow.addon.engine.job import messages
 from mobius_flow.addon.engine.motion import frames_of
 from mobius_flow.addon.engine.obstacles import Surface, in_common_space, obstacles
 from mobius_flow.addon.engine.placement import Link, Placement
+from mobius_flow.addon.engine.worker import messages
 from mobius_flow.core import Curve, CurveError, Obstacle, RelaxOptions, Task
 from mobius_flow.core.collision import is_free
 from shapes import hopf_link

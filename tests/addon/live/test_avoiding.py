@@ -6,7 +6,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, relax  # noqa: E402
-from mobius_flow.addon.curves.snapshot import Snapshot  # noqa: E402
+from mobius_flow.addon.curves.splines import Splines  # noqa: E402
 from mobius_flow.addon.engine import worker  # noqa: E402
 from mobius_flow.addon.live.run import State  # noqa: E402
 from modal_operator import keys, restored  # noqa: E402
@@ -79,7 +79,7 @@ def move_curve(ring, _torus):
 
 @pytest.mark.parametrize("act", [delete, edit, move, move_curve], ids=lambda act: act.__name__)
 def test_what_happens_to_what_is_avoided_ends_the_run(operator, ring, torus, act):
-    before = Snapshot.of(ring.data)
+    before = Splines.of(ring.data)
     operator.start()
     operator.reach(2)
     said = act(ring, torus)

@@ -11,7 +11,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored  # noqa: E402
-from mobius_flow.addon.curves.snapshot import Snapshot  # noqa: E402
+from mobius_flow.addon.curves.splines import Splines  # noqa: E402
 from mobius_flow.addon.engine import worker  # noqa: E402
 from mobius_flow.addon.live import key_writer  # noqa: E402
 from mobius_flow.addon.live.run import State  # noqa: E402
@@ -55,7 +55,7 @@ def test_points_that_are_added_in_the_end_are_in_every_key(operator):
 
 def test_esc_restores_what_has_got_more_points_meanwhile(operator):
     obj = add_curve([lattice_knot("5_1").vertices])
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     operator.given |= {"vertices": 0, "tolerance": 1e-3}
     operator.start()
     operator.reach(1)
@@ -73,7 +73,7 @@ def test_esc_restores_bit_for_bit(operator, kind):
         for point in spline.bezier_points if kind == "BEZIER" else spline.points:
             point.radius, point.tilt = rng.random(2)
     obj.data.splines[1].material_index, obj.data.splines[0].use_smooth = 2, False
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     operator.given["vertices"] = 0
     operator.start()
     operator.reach(2)
@@ -110,7 +110,7 @@ def test_pause_and_enter_keep_what_is_shown(operator):
 
 def test_undo_key_is_esc(operator):
     obj = add_trefoil()
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     operator.start()
     operator.reach(1)
     assert operator.event("Z", ctrl=True) == {"CANCELLED"}
@@ -161,11 +161,11 @@ def test_one_at_a_time(operator):
 
 def test_another_object_has_to_wait(operator):
     obj = add_trefoil()
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     operator.start()
     operator.reach(1)
     other = add_hopf_link()
-    untouched = Snapshot.of(other.data)
+    untouched = Splines.of(other.data)
     second = Operator()
     assert second.start() == {"CANCELLED"}
     assert second.reports == [({"ERROR"}, f"'{obj.name}' is being relaxed; stop that first")]
@@ -178,7 +178,7 @@ def test_a_bad_curve_is_refused_untouched(operator):
     points = torus_trefoil(30).vertices.copy()
     points[3] = points[2]
     obj = add_curve([points])
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     operator.start()
     assert operator.until(lambda: False) == {"CANCELLED"}
     assert operator.reports[-1][0] == {"ERROR"}
@@ -229,7 +229,7 @@ def test_shape_keys_of_somebody_else_are_left_alone(operator):
 
 def test_edit_mode(operator):
     obj = add_trefoil()
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     operator.start()
     operator.reach(1)
     bpy.ops.object.mode_set(mode="EDIT")
@@ -265,7 +265,7 @@ def test_loading_a_file(operator):
 
 def test_disabling_ends_the_run(operator, addon):
     obj = add_trefoil()
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     operator.start()
     operator.reach(1)
     addon.unregister()
@@ -297,7 +297,7 @@ def test_without_a_process_a_thread(operator, monkeypatch):
 def test_esc_while_keys_are_written(operator, monkeypatch):
     monkeypatch.setattr(key_writer, "_SLICE", 0.0)  # a key at a tick
     obj = add_trefoil()
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     actions = len(bpy.data.actions)
     operator.start()
     operator.until(lambda: obj.data.shape_keys is not None)

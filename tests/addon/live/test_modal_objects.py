@@ -7,7 +7,7 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_trefoil, stored  # noqa: E402
 from mobius_flow.addon.curves import keyframes  # noqa: E402
-from mobius_flow.addon.curves.snapshot import Snapshot  # noqa: E402
+from mobius_flow.addon.curves.splines import Splines  # noqa: E402
 from mobius_flow.addon.engine import worker  # noqa: E402
 from mobius_flow.addon.live import key_writer  # noqa: E402
 from mobius_flow.addon.live.run import State  # noqa: E402
@@ -57,7 +57,7 @@ def test_the_worker_proves_what_is_stored(operator, rings, monkeypatch):
 
 
 def test_esc_restores_all_objects(operator, rings):
-    before = [Snapshot.of(obj.data) for obj in rings]
+    before = [Splines.of(obj.data) for obj in rings]
     operator.start()
     operator.reach(2)
     assert all(len(obj.data.splines[0].points) > 24 for obj in rings)
@@ -101,7 +101,7 @@ def give_data(obj):
 @pytest.mark.parametrize("act", [remove, edit, give_keys, add_point, move, give_data], ids=lambda act: act.__name__)
 def test_what_happens_to_one_object_restores_the_others(operator, rings, act):
     first, second = rings
-    before = Snapshot.of(first.data)
+    before = Splines.of(first.data)
     operator.start()
     operator.reach(2)
     said = act(second)
@@ -143,7 +143,7 @@ def test_a_file_saved_meanwhile_has_all_objects_as_they_were(operator, rings, tm
 
 def test_esc_while_keys_of_the_second_object_are_written(operator, rings, monkeypatch):
     monkeypatch.setattr(key_writer, "_SLICE", 0.0)  # a key at a tick
-    before = [Snapshot.of(obj.data) for obj in rings]
+    before = [Splines.of(obj.data) for obj in rings]
     operator.start()
     operator.until(lambda: rings[1].data.shape_keys is not None)
     assert operator.event("ESC") == {"CANCELLED"}
@@ -155,7 +155,7 @@ def test_esc_while_keys_of_the_second_object_are_written(operator, rings, monkey
 
 
 def test_an_error_while_keys_are_written_loses_nothing(operator, rings, monkeypatch):
-    before = [Snapshot.of(obj.data) for obj in rings]
+    before = [Splines.of(obj.data) for obj in rings]
 
     def failing(*arguments):
         yield next(keyframes._shape_keys(arguments[0], arguments[1], arguments[2]))

@@ -9,7 +9,7 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_trefoil  # noqa: E402
 from mobius_flow.addon.curves import pins  # noqa: E402
-from mobius_flow.addon.engine.contrast import contrast  # noqa: E402
+from mobius_flow.addon.engine.colours import contrast  # noqa: E402
 from mobius_flow.addon.live import overlay, registry  # noqa: E402
 from mobius_flow.core.knots import knot  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402

@@ -8,7 +8,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil, contents, evaluated, relax, stored  # noqa: E402
-from mobius_flow.addon.curves.snapshot import Snapshot  # noqa: E402
+from mobius_flow.addon.curves.splines import Splines  # noqa: E402
 from mobius_flow.addon.live import handlers, registry, run  # noqa: E402
 from modal_operator import restored  # noqa: E402
 
@@ -155,7 +155,7 @@ def test_what_has_changed_is_not_recovered(operator):
 def test_undo_of_something_else_does_not_end_a_run(operator):
     """Blender runs no undo without a window; the handlers are called as it would call them."""
     obj = add_trefoil()
-    before = Snapshot.of(obj.data)
+    before = Splines.of(obj.data)
     operator.start()
     operator.reach(2)
     registry.history.others = 2

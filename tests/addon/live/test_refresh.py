@@ -1,7 +1,7 @@
 """Drawing gets a third of the time at most, however long it takes; or every so many iterates are shown."""
 
 import pytest
-from mobius_flow.addon.live.preview import Refresh
+from mobius_flow.addon.live.refresh import Refresh
 
 
 class Window:

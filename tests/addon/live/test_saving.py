@@ -125,3 +125,28 @@ def test_the_saved_animation_plays(operator, tmp_path):
     (obj,) = bpy.data.objects
     for frame, points in zip((1, last), wanted, strict=True):
         np.testing.assert_array_equal(evaluated(obj, frame), points)
+
+
+@pytest.mark.parametrize("baked", [False, True])
+def test_a_file_saved_automatically_has_the_curve_once_it_is_opened(operator, tmp_path, monkeypatch, baked):
+    """Blender tells nobody of it; a copy that somebody has made of the preview meanwhile is theirs."""
+    obj = add_trefoil()
+    if baked:
+        relax(max_iterations=2)
+    before, name = stored(obj.data), obj.data.name
+    operator.start()
+    operator.reach(2)
+    copy = obj.copy()
+    copy.data = obj.data.copy()
+    bpy.context.scene.collection.objects.link(copy)
+    shown = stored(copy.data)
+    assert not np.array_equal(shown, before)
+    monkeypatch.setattr(operator.run.group, "hide", lambda: None)
+    save(tmp_path)
+    operator.run.cancel()
+    reopen(tmp_path)
+    obj, copied = (bpy.data.objects[each] for each in ("Knot", "Knot.001"))
+    assert obj.data.name == name
+    np.testing.assert_array_equal(stored(obj.data), before)
+    assert bake.is_baked(obj.data) == baked
+    np.testing.assert_array_equal(stored(copied.data), shown)

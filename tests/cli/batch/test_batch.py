@@ -17,7 +17,7 @@ from mobius_flow.cli.batch import campaign, cluster, sandbox, single
 from mobius_flow.cli.batch.job import Job
 from mobius_flow.cli.batch.table import Row
 from mobius_flow.core import MobiusFlowError, read_curve, write_curve
-from mobius_flow.core.collision.thickness import thickness
+from mobius_flow.core.collision.gap import thickness
 from mobius_flow.core.curve.writhe import writhe_and_crossings
 from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
@@ -156,7 +156,7 @@ def test_poisoned_inputs_are_rows(batch: Batch, ring: Path, tmp_path: Path, caps
     assert len(rows) == 16
     assert [row["name"] for row in rows if row["status"] != "failed"] == ["ring", "ring"]
     for name, reason in {
-        "pipe": "no regular file",
+        "pipe": "not a regular file",
         "broken": "missing",
         "cross": "edges 1 and 3 touch",
         "empty": "empty",
@@ -219,7 +219,7 @@ def test_a_killed_run_is_tried_again(
 def test_an_interrupt_leaves_the_table(
     batch: Batch, ring: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(campaign._Progress, "show", lambda *_: os.kill(os.getpid(), signal.SIGINT))
+    monkeypatch.setattr(campaign, "_show", lambda *_: os.kill(os.getpid(), signal.SIGINT))
     rows = batch(ring, "3_1..8_21", *TINY, status=130)
     assert len(rows) == 1
     assert rows[0]["status"] != "failed"

@@ -18,8 +18,7 @@ import pytest
 from mobius_flow.cli import main
 from mobius_flow.cli.batch import campaign, single
 from mobius_flow.cli.batch.folder import new_folder
-from mobius_flow.cli.batch.inputs import inputs
-from mobius_flow.cli.batch.job import jobs
+from mobius_flow.cli.batch.job import inputs, jobs
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, read_curve, write_curve
 from processes import finished, listening, running
 from shapes import regular_polygon
@@ -62,7 +61,7 @@ def moved_and_linked(path: Path) -> None:
 
 
 def with_a_note_in_the_table(path: Path) -> None:
-    path.write_text(path.read_text().replace("stopped after", "discuss with Anna: stopped after"))
+    path.write_text(path.read_text().replace("stopped at", "discuss with Anna: stopped at"))
 
 
 def with_a_column(path: Path) -> None:
@@ -168,13 +167,13 @@ def test_a_table_that_is_edited_during_the_work_survives(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = place / "out/results.csv"
-    monkeypatch.setattr(campaign._Progress, "show", lambda *_: table.write_text("mine"))
+    monkeypatch.setattr(campaign, "_show", lambda *_: table.write_text("mine"))
     words = ["batch", str(place / "ring.txt"), "-o", str(place / "out"), *OTHERWISE]
     assert main(words) == 2
     assert f"{table}: was not written by" in capsys.readouterr().err
     assert table.read_text() == "mine"
     table.unlink()
-    monkeypatch.setattr(campaign._Progress, "show", lambda *_: pytest.fail("done twice"))
+    monkeypatch.setattr(campaign, "_show", lambda *_: pytest.fail("done twice"))
     assert main(words) == 0
     assert "ring,1," in table.read_text()
 

@@ -4,8 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
-from mobius_flow.cli.batch.inputs import Input, inputs
-from mobius_flow.cli.batch.job import jobs
+from mobius_flow.cli.batch.job import Input, inputs, jobs
 from mobius_flow.core import MobiusFlowError, RelaxOptions
 
 STILL = {"avoid": [], "pins": [], "pin_tangents": False}

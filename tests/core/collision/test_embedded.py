@@ -41,9 +41,7 @@ def test_doubled_back(m: int) -> None:
     spike = np.zeros((5, m))
     spike[:, :2] = [[0, 0], [1, 0], [3, 3], [2, 2], [0, 1]]
     spike[1, :2] = [1, 1]
-    expected = (
-        f"component 1: edge 3 doubles back on edge 2 at vertex 3, (3, 3{', 0' * (m - 2)}); move or remove that vertex"
-    )
+    expected = f"component 1: edge 3 doubles back on edge 2 at vertex 3, (3, 3{', 0' * (m - 2)}); move or remove it"
     assert refusal(Curve(spike)) == expected
 
 
@@ -119,7 +117,7 @@ def test_thousands_of_edges_within_rounding_of_each_other_are_refused_in_time() 
     tails = 1.0 + 2.0**-52 * np.stack([row, column, 0 * row], axis=1)
     arcs = np.stack([tails, tails + np.array([[0.5, 0.25, 0.375]])], axis=1)
     check_embedded(Curve.from_components(arcs[:12], [False] * 12))
-    assert "thousands of others are so near" in refusal(Curve.from_components(arcs, [False] * 72))
+    assert "thousands of others are so close" in refusal(Curve.from_components(arcs, [False] * 72))
 
 
 def test_thousands_of_edges_on_each_other_need_little_memory() -> None:

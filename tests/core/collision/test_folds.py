@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.collision import Limit, free_motion, is_free, minimal_gap, survives_rounding
-from mobius_flow.core.collision.folds import folds
+from mobius_flow.core.collision.gap import folds
 from mobius_flow.core.verify import Verdict, verify
 from mobius_flow.core.verify.segments import meet
 from shapes import opened, straight_arc, torus_trefoil

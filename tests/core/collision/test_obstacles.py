@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh, Obstacle
 from mobius_flow.core.collision import Contact, FreeMotion, Limit, free_motion, is_free
-from mobius_flow.core.collision.boxes import BoxTree
-from mobius_flow.core.collision.still import still_triangles
+from mobius_flow.core.collision.boxes import BoxTree, still_triangles
 from obstacle_motions import first_contact
 from shapes import hopf_link, regular_polygon, torus_trefoil
 from solids import box, plate, rod, sphere
@@ -30,7 +29,7 @@ def test_a_wall_in_the_way(obstacle: Obstacle, scale: float) -> None:
     assert motion.contact.obstacle == "obstacle plate"
     assert motion.contact.edges[0] in (19, 20)
     assert motion.pair is None
-    assert str(motion.contact) == f"edge {motion.contact.edges[0] + 1} and obstacle plate"
+    assert motion.contact.message == f"edge {motion.contact.edges[0] + 1} and obstacle plate"
     assert not is_free(curve.mesh, curve.vertices, end, (still,))
     assert is_free(curve.mesh, curve.vertices, curve.vertices + motion.time * (end - curve.vertices), (still,))
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hard_curves import rope
 from mobius_flow.core import Curve
-from mobius_flow.core.collision.thickness import bending_radii, thickness
+from mobius_flow.core.collision.gap import bending_radii, thickness
 from mobius_flow.core.knots import knot, smooth_knot
 
 

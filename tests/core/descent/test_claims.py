@@ -5,10 +5,10 @@ import pytest
 from dense_stability import lagrangian_hessian_matrix
 from descent_contracts import with_geometry
 from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Status, minimize, relax
-from mobius_flow.core.descent.constrained import Constrained
+from mobius_flow.core.descent.geometries import Constrained
 from mobius_flow.core.descent.hessian import lagrangian_hessian
+from mobius_flow.core.driver.interventions.saddle import stability
 from mobius_flow.core.driver.prepare import start_problem
-from mobius_flow.core.driver.stability import stability
 from mobius_flow.core.energies import ENERGIES, MoebiusEnergy
 from mobius_flow.core.taylor import taylor_slope
 from shapes import lattice_knot, torus_trefoil

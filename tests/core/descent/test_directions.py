@@ -6,7 +6,7 @@ from descent_cases import GEOMETRIES, start
 from descent_contracts import point_on, with_geometry
 from mobius_flow.core.descent import Step
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS
-from mobius_flow.core.descent.penalised import Penalised
+from mobius_flow.core.descent.geometries import Penalised
 from mobius_flow.core.descent.searches import Armijo, WeakWolfe
 from mobius_flow.core.taylor import taylor_slope
 from shapes import torus_trefoil

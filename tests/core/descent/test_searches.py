@@ -18,9 +18,8 @@ from descent_contracts import (
 from mobius_flow.core import OptionError
 from mobius_flow.core.collision import Contact
 from mobius_flow.core.descent import NoStep, State
-from mobius_flow.core.descent.constrained import Constrained
 from mobius_flow.core.descent.directions import SteepestDescent
-from mobius_flow.core.descent.penalised import Penalised
+from mobius_flow.core.descent.geometries import Constrained, Penalised
 from mobius_flow.core.descent.searches import (
     Armijo,
     BackwardEuler,
@@ -82,7 +81,7 @@ def test_what_can_not_be_proved_is_said(name: str) -> None:
     step, _ = rule.step(narrow(start(geometry), 0.0), State())
     assert isinstance(step, NoStep)
     assert step.limited_by == Contact((0, 2))
-    assert "edges 1 and 3 are so near" in step.reason
+    assert "edges 1 and 3 are so close" in step.reason
 
 
 def test_a_chord_through_a_strand_is_rejected() -> None:

@@ -10,7 +10,7 @@ from descent_contracts import point_on
 from mobius_flow.core import Curve, RelaxOptions, minimize
 from mobius_flow.core.descent import Point
 from mobius_flow.core.descent.soft_modes import BULK, smooth_starts, soft_modes
-from mobius_flow.core.driver.stability import stability
+from mobius_flow.core.driver.interventions.saddle import stability
 from mobius_flow.core.knots import torus_knot
 from mobius_flow.core.types import FloatArray
 from shapes import half_circle, hopf_link, regular_polygon, torus_trefoil

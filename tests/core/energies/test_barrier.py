@@ -6,10 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mobius_flow.core import Curve, MoebiusEnergy, Objective
 from mobius_flow.core.energies import Barrier
-from mobius_flow.core.energies.barrier import cutoff
-from mobius_flow.core.energies.contributions import Contributions
+from mobius_flow.core.energies.barrier import closeness, cutoff, exact, midpoint, near_pairs
+from mobius_flow.core.energies.complex_steps import change, stepped
 from mobius_flow.core.energies.edge_pairs import EdgePairs
-from mobius_flow.core.energies.near_pairs import near_pairs
 from mobius_flow.core.knots import knot
 from mobius_flow.core.taylor import taylor_slope
 from shapes import lattice_knot, regular_polygon
@@ -18,21 +17,21 @@ from smooth_curves import SMOOTH_CURVES, random_polygon
 BARRIER = Barrier()
 
 
-def contributions(x0: list[float], x1: list[float], y0: list[float], y1: list[float]) -> Contributions:
-    """Of one pair of edges, by way of a curve that has them as edges 0 and 4."""
+def one_pair(x0: list[float], x1: list[float], y0: list[float], y1: list[float]) -> EdgePairs:
+    """One pair of edges, by way of a curve that has them as edges 0 and 4."""
     far = [[50.0, 0, 0], [50.0, 50.0, 0], [0, 50.0, 50.0], [0, 0, 90.0], [-70.0, 0, 0]]
     curve = Curve([x0, x1, far[0], far[1], y0, y1, *far[2:]])
-    return Contributions(EdgePairs.of(curve, np.array([0]), np.array([4])))
+    return EdgePairs.of(curve.mesh, curve.vertices, np.array([0]), np.array([4]))
 
 
 @pytest.mark.parametrize(
-    ("gap", "midpoint", "exact"),
+    ("gap", "by_midpoints", "by_integral"),
     [(0.5, 4.188574125, 2.769582087), (0.1, 13.993463424, 11.235155010), (0.02, 2.124182083, 21.440754439)],
 )
-def test_one_pair(gap: float, midpoint: float, exact: float) -> None:
-    pair = contributions([0, 0, 0], [1, 0, 0], [0.3, -0.6, gap], [0.5, 0.4, gap])
-    assert pair.midpoint().value[0] == pytest.approx(midpoint, abs=1e-9)
-    assert pair.exact().value[0] == pytest.approx(exact, abs=1e-9)
+def test_one_pair(gap: float, by_midpoints: float, by_integral: float) -> None:
+    pair = one_pair([0, 0, 0], [1, 0, 0], [0.3, -0.6, gap], [0.5, 0.4, gap])
+    assert midpoint(pair).value[0] == pytest.approx(by_midpoints, abs=1e-9)
+    assert exact(pair).value[0] == pytest.approx(by_integral, abs=1e-9)
 
 
 @pytest.mark.parametrize("curve", [lattice_knot("4_1"), knot("thistlethwaite")], ids=["lattice", "diagram"])
@@ -42,8 +41,8 @@ def test_coarse_knots(curve: Curve) -> None:
     assert len(found) > 100
     total, ends = 0.0, curve.vertices[np.stack([curve.mesh.tails, curve.mesh.heads], axis=1)]
     for i, j in found:
-        pair = contributions(*ends[i].tolist(), *ends[j].tolist())
-        total += float(cutoff(pair.closeness().value)[0][0] * (pair.exact().value[0] - pair.midpoint().value[0]))
+        pair = one_pair(*ends[i].tolist(), *ends[j].tolist())
+        total += float(cutoff(closeness(pair).value)[0][0] * (exact(pair).value[0] - midpoint(pair).value[0]))
     assert BARRIER.value(curve) == pytest.approx(2 * total, rel=1e-10)
 
 
@@ -108,11 +107,15 @@ def test_one_point_rule_alone_is_no_barrier() -> None:
 
 def test_the_cutoff_joins_with_two_derivatives() -> None:
     for q, value in ((0.2, 1.0), (1.0, 1.0), (2.25, 0.0), (3.0, 0.0)):
-        assert [float(part[0]) for part in cutoff(np.array([q]))] == [value, 0.0, 0.0]
+        assert [float(part[0]) for part in cutoff_and_derivatives(q)] == pytest.approx([value, 0.0, 0.0], abs=1e-150)
     x = (2.25 - 1.7) / 1.25
     assert cutoff(np.array([1.7]))[0] == pytest.approx(x**3 * (10 - 15 * x + 6 * x**2))
-    chi, slope, curvature = cutoff(np.array([1.7]))
-    assert taylor_slope(lambda t: cutoff(np.array([1.7 + t]))[0], [chi, slope, curvature]) == pytest.approx(3, abs=0.02)
+    terms = cutoff_and_derivatives(1.7)
+    assert taylor_slope(lambda t: cutoff(np.array([1.7 + t]))[0], terms) == pytest.approx(3, abs=0.02)
+
+
+def cutoff_and_derivatives(q: float) -> list[np.ndarray]:
+    return [*cutoff(np.array([q])), change(cutoff(stepped(np.array([q]), np.ones(1)))[1])]
 
 
 @pytest.mark.parametrize("factor", [1e-3, 1e3])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve, MoebiusEnergy, Objective
 from mobius_flow.core.energies import ENERGIES, Barrier, Energy, TwiceDifferentiable, moebius_kpoint
-from mobius_flow.core.energies.near_pairs import near_pairs
+from mobius_flow.core.energies.barrier import near_pairs
 from mobius_flow.core.knots import knot
 from mobius_flow.core.taylor import derivative_slope, hessian_slope, taylor_slope
 from shapes import lattice_knot, opened, regular_polygon

@@ -9,10 +9,9 @@ import sympy as sp
 from energy_references import disjoint_pairs
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.curve.tiles import pair_tiles
-from mobius_flow.core.energies.arc_density import ArcDensity
 from mobius_flow.core.energies.arcs import Arcs
+from mobius_flow.core.energies.densities import ArcDensity, IshizekiNagasawaDensity
 from mobius_flow.core.energies.density import Density, PointPairs, PointSet
-from mobius_flow.core.energies.moebius_kpoint import IshizekiNagasawaDensity
 from mobius_flow.core.energies.tangent_point import TangentPointDensity
 from smooth_curves import random_polygon
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, OptionError
-from mobius_flow.core.energies.near_pairs import near_pairs
-from mobius_flow.core.hierarchy import BlockList, ClusterTree
+from mobius_flow.core.energies.barrier import near_pairs
+from mobius_flow.core.hierarchy import BlockList
+from mobius_flow.core.hierarchy.blocks import edge_clusters
 from mobius_flow.core.knots import knot
 from shapes import hopf_link, opened, regular_polygon, scattered_rings, torus_trefoil
 from smooth_curves import random_polygon
@@ -93,7 +94,7 @@ def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
 @CURVE
 @LIST
 def test_blocks_are_far_apart(curve: Curve, theta: float, leaf: int) -> None:
-    blocks, order = BlockList.of(curve, theta, leaf), ClusterTree.of(curve, leaf).order
+    blocks, order = BlockList.of(curve, theta, leaf), edge_clusters(curve, leaf).order
     for a, b, c, d in zip(blocks.a, blocks.b, blocks.c, blocks.d, strict=True):
         i, j = order[a:b, None], order[None, c:d]
         apart = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=-1)
@@ -112,7 +113,7 @@ def test_pairs_of_the_barrier_are_near(name: str) -> None:
 
 @CURVE
 def test_clusters_are_parts_of_a_component_or_whole_ones(curve: Curve) -> None:
-    tree = ClusterTree.of(curve, 4)
+    tree = edge_clusters(curve, 4)
     assert sorted(tree.order) == list(range(curve.mesh.edges))
     component = curve.mesh.edge_component[tree.order]
     for start, stop in zip(tree.start, tree.stop, strict=True):
@@ -122,7 +123,7 @@ def test_clusters_are_parts_of_a_component_or_whole_ones(curve: Curve) -> None:
 
 @CURVE
 def test_children_halve_their_parent_and_leaves_are_small(curve: Curve) -> None:
-    tree = ClusterTree.of(curve, 4)
+    tree = edge_clusters(curve, 4)
     for inner, child in tree.downward():
         np.testing.assert_array_equal(tree.start[inner], tree.start[child])
         np.testing.assert_array_equal(tree.stop[child], tree.start[child + 1])

@@ -5,9 +5,8 @@ import pytest
 from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, RelaxOptions, minimize
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.energies import ENERGIES, Energy
-from mobius_flow.core.energies.near_pairs import near_pairs, replaced_pairs
+from mobius_flow.core.energies.barrier import near_pairs, replaced_pairs
 from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy, moebius_energy
-from mobius_flow.core.hierarchy.energy import THETA
 from mobius_flow.core.knots import knot
 from mobius_flow.core.metrics import FractionalMetric
 from mobius_flow.core.metrics.moebius import MoebiusMetric
@@ -46,7 +45,7 @@ def lists(monkeypatch: pytest.MonkeyPatch) -> None:
 CURVE = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 
-def with_small_leaves(curve: Curve, theta: float = THETA) -> HierarchicalMoebiusEnergy:
+def with_small_leaves(curve: Curve, theta: float = HierarchicalMoebiusEnergy.theta) -> HierarchicalMoebiusEnergy:
     """The energy with many blocks even on small curves."""
     energy = HierarchicalMoebiusEnergy(BlockList.of(curve, theta, 4))
     assert energy.blocks is not None
@@ -156,7 +155,7 @@ def test_a_hundred_thousand_vertices_lose_no_digits() -> None:
     limit = fine + (fine - coarse) / 3.0  # the midpoint rule's error falls with 1/n²
     value, slope = energy_and_slope(100_000, HierarchicalMoebiusEnergy())
     assert value == pytest.approx(limit[0], rel=1e-6)
-    assert slope == pytest.approx(limit[1], rel=1e-5), "what the order of the expansions promises, see `THETA`"
+    assert slope == pytest.approx(limit[1], rel=1e-5), "what the order of the expansions promises, see `theta`"
 
 
 def flat_trefoil() -> Curve:
@@ -185,7 +184,7 @@ def test_objective_is_that_of_the_default_energy() -> None:
 
 def test_left_out_pairs_must_be_near() -> None:
     curve = torus_trefoil(300)
-    blocks = BlockList.of(curve, THETA, 4)
+    blocks = BlockList.of(curve, HierarchicalMoebiusEnergy.theta, 4)
     far = blocks.tree.order[blocks.a[:1]], blocks.tree.order[blocks.c[:1]]
     assert HierarchicalMoebiusEnergy(blocks, (far[0][:0], far[1][:0])).value(curve)
     for pairs in (far, (np.append(blocks.i[:2], far[0]), np.append(blocks.j[:2], far[1]))):
@@ -243,7 +242,7 @@ def test_reported_energies_are_exact_unless_their_error_is_told(monkeypatch: pyt
     curve = torus_trefoil(700)
     exact = MoebiusEnergy().value(curve)
     assert moebius_energy(curve) == (exact, 0.0)
-    monkeypatch.setattr("mobius_flow.core.hierarchy.reported.EXACT_UP_TO", len(curve) - 1)
+    monkeypatch.setattr("mobius_flow.core.hierarchy.sampling.EXACT_UP_TO", len(curve) - 1)
     value, error = moebius_energy(curve)
     assert 0.0 < abs(value / exact - 1.0) <= error
 

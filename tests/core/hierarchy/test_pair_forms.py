@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from mobius_flow.core import Curve
 from mobius_flow.core.hierarchy import BlockList
-from mobius_flow.core.hierarchy.pair_forms import PairForms
-from mobius_flow.core.hierarchy.running_sum import RunningSum
+from mobius_flow.core.hierarchy.pair_forms import PairForms, RunningSum
 from shapes import chain_of_rings, hopf_link, opened, torus_trefoil
 from smooth_curves import random_polygon
 

@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from mobius_flow.core.hierarchy.kernels import kernel_derivatives
-from mobius_flow.core.hierarchy.polynomials import Polynomials, polynomials
+from mobius_flow.core.hierarchy.polynomials import Polynomials, kernel_derivatives, polynomials
 
 DIMENSION = pytest.mark.parametrize("m", [2, 3, 4])
 DEGREE = 5

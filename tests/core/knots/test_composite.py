@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
-from mobius_flow.core.driver.outcome import UNTESTED
+from mobius_flow.core.driver.interventions.links import UNTESTED
 from mobius_flow.core.knots import knot, scramble
 from mobius_flow.core.knots.composite import is_searchable, knotted_ball
 from shapes import chain_of_rings, regular_polygon

@@ -28,10 +28,9 @@ def case() -> Steps:
     is_whole(before)
 
     yield from relax()
-    data = obj().data
     bpy.data.objects.remove(obj())
     yield from over("removal by a script", "lost")
-    assert np.array_equal([p.co[:] for p in data.splines[0].points], before)
+    assert np.array_equal([p.co[:] for p in bpy.data.curves["5_2"].splines[0].points], before)
     with here():
         bpy.ops.ed.undo_push(message="Removed")
     undo()

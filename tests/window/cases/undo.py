@@ -68,12 +68,19 @@ def of_something_else(before: np.ndarray) -> Steps:
 def twice(before: np.ndarray) -> Steps:
     """Undo after a run that was given up over another undo step finds the curve as it was."""
     yield from relax()
-    with here():
-        bpy.ops.ed.undo_push(message="Something else")
+    for what in ("Something else", "And another"):
+        with here():
+            bpy.ops.ed.undo_push(message=what)
+        yield from reaches(iterate() + 1)
     yield from key("ESC")
-    yield from over("Esc after another undo step")
+    yield from over("Esc after other undo steps")
     is_whole(before)
-    yield from key("Z", ctrl=True)
-    yield
+    for _ in range(2):  # the first step has a preview
+        yield from key("Z", ctrl=True)
+        yield
+        is_whole(before)
+        assert len(bpy.data.curves) == 1
+    with here():
+        bpy.ops.ed.redo()
     is_whole(before)
     yield from picture("undo-4-twice")

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from energy_references import inverse_square_integral
 from mobius_flow.core import Curve
-from mobius_flow.core.energies.repulsion.integrals import Integrals
-from mobius_flow.core.energies.repulsion.panels import Edges
 from mobius_flow.core.energies.repulsion.schedule import Schedule
 from mobius_flow.core.obstacle import Obstacle
 from repulsion_references import edge_integral, repulsion
@@ -34,10 +32,8 @@ def curve_of(start: list[float], end: list[float]) -> Curve:
 
 def integrated(obstacle: Obstacle, curve: Curve) -> tuple[float, Schedule]:
     """∫ Φ ds over the first edge, and by what panels."""
-    clusters = repulsion(obstacle).clusters
-    schedule = Schedule.of(curve, clusters, theta=0.0)
-    edges = Edges.of(curve.mesh, curve.vertices)
-    return float(edges.length[0] * Integrals.of(edges, clusters, schedule).potential[0]), schedule
+    term = repulsion(obstacle).frozen_at(curve)
+    return float(2 * np.pi * curve.edge_lengths[0] / term.clearance(curve)[0]), term.schedule
 
 
 @pytest.mark.parametrize("gap", [1e-1, 1e-3, 1e-6])

@@ -1,0 +1,149 @@
+"""The splines of curve data: copied with all that they and their points have, made into polygons, compared."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core import Curve
+from ..engine.interpolation import along, on_refined
+from ..engine.placement import Frame
+
+if TYPE_CHECKING:
+    import bpy
+
+_TYPES: dict[str, Any] = {"BOOLEAN": np.int32, "INT": np.int32, "FLOAT": np.float32, "ENUM": np.int32}
+_POINT_VALUES = ("radius", "tilt", "weight_softbody")
+
+
+@dataclass(frozen=True, eq=False)
+class _Spline:
+    """One spline: its own settings, and an array for every setting of its points."""
+
+    type: str
+    count: int
+    settings: dict[str, Any]
+    points: dict[str, npt.NDArray[Any]]
+
+    @classmethod
+    def of(cls, spline: "bpy.types.Spline") -> "_Spline":
+        points = control_points(spline)
+        arrays = {}
+        for prop in _properties(points[0]) if len(points) else ():
+            width = max(getattr(prop, "array_length", 1), 1)  # only vectors have several numbers
+            arrays[prop.identifier] = read(points, prop.identifier, width, _TYPES[prop.type])
+        settings = {prop.identifier: getattr(spline, prop.identifier) for prop in _properties(spline)}
+        if spline.type != "NURBS":
+            del settings["order_u"]  # means nothing, and is made valid when it is set
+        return cls(spline.type, len(points), settings, arrays)
+
+    def put(self, spline: "bpy.types.Spline") -> None:
+        """Fill a new spline of this type."""
+        points = control_points(spline)
+        points.add(self.count - len(points))
+        for name, array in self.points.items():
+            points.foreach_set(name, array.ravel())
+        for name, value in self.settings.items():
+            setattr(spline, name, value)
+
+
+@dataclass(frozen=True, eq=False)
+class Splines:
+    """Copies of all splines of curve data."""
+
+    each: Sequence[_Spline]
+    active: int | None
+
+    @classmethod
+    def of(cls, data: "bpy.types.Curve") -> "Splines":
+        """Copy the splines of curve data."""
+        active = next((k for k, spline in enumerate(data.splines) if spline == data.splines.active), None)
+        return cls([_Spline.of(spline) for spline in data.splines], active)
+
+    def polygons(self, drawn: Curve, refined: Curve) -> "Splines":
+        """The same as poly splines with the vertices of a refined curve; where their points are is left open.
+
+        New points have values between those of their neighbours; all other settings stay.
+
+        Parameters
+        ----------
+        drawn
+            The polygons that are drawn for the splines, a component each.
+        refined
+            The same with more vertices.
+        """
+        made = []
+        for k, spline in enumerate(self.each):
+            size, closed = drawn.mesh.component_sizes[k], drawn.mesh.closed[k]
+            old, new = (curve.edge_lengths[curve.mesh.edge_slices[k]] for curve in (drawn, refined))
+            points = {
+                name: on_refined(along(spline.points[name], size, closed), old, new, closed).astype(np.float32)
+                for name in _POINT_VALUES
+            }
+            settings = {name: value for name, value in spline.settings.items() if name != "order_u"}
+            made.append(_Spline("POLY", refined.mesh.component_sizes[k], settings, points))
+        return Splines(made, self.active)
+
+    def fill(self, data: "bpy.types.Curve") -> None:
+        """Give these splines to curve data in place of its own."""
+        data.splines.clear()
+        for spline in self.each:
+            spline.put(data.splines.new(spline.type))
+        if self.active is not None:
+            data.splines.active = data.splines[self.active]
+        data.update_tag()
+
+
+@dataclass(frozen=True)
+class SplineShape:
+    """What a spline is but for where its points are: its type, their number, and whether it is closed."""
+
+    type: str
+    count: int
+    closed: bool
+
+
+def shape(data: "bpy.types.Curve") -> list[SplineShape]:
+    """The shapes of all splines."""
+    return [SplineShape(each.type, len(control_points(each)), bool(each.use_cyclic_u)) for each in data.splines]
+
+
+def digest(data: "bpy.types.Curve") -> bytes:
+    """A name for the points, and for how many keys they have; cheap enough for every redraw."""
+    keys = len(data.shape_keys.key_blocks) if data.shape_keys else 0
+    hashed = hashlib.blake2b(repr((shape(data), keys)).encode(), digest_size=16)
+    for spline in data.splines:
+        hashed.update(coordinates(spline).tobytes())
+    return hashed.digest()
+
+
+def control_points(spline: "bpy.types.Spline") -> Any:
+    """The points of a spline of any type."""
+    return spline.bezier_points if spline.type == "BEZIER" else spline.points
+
+
+def coordinates(spline: "bpy.types.Spline") -> Frame:
+    """Where the points of a spline of any type are; shape (n, 3)."""
+    width = 3 if spline.type == "BEZIER" else 4
+    return read(control_points(spline), "co", width).reshape(-1, width)[:, :3]
+
+
+def radii(spline: "bpy.types.Spline") -> Frame:
+    """Radii of the points of a spline of any type, relative to the bevel depth; shape (n,)."""
+    return read(control_points(spline), "radius")
+
+
+def read(items: Any, name: str, width: int = 1, dtype: Any = np.float32) -> npt.NDArray[Any]:
+    """A property of all items of a collection; (items,), or (items, width) if it has several numbers."""
+    array = np.empty(width * len(items), dtype=dtype)
+    items.foreach_get(name, array)
+    return array if width == 1 else array.reshape(-1, width)
+
+
+def _properties(owner: "bpy.types.bpy_struct") -> list["bpy.types.Property"]:
+    """Everything that can be written but what belongs to surfaces; the type of a spline is set when it is made."""
+    properties = (p for p in owner.bl_rna.properties if p.type in _TYPES and not p.is_readonly)
+    return [p for p in properties if p.identifier != "type" and not p.identifier.endswith("_v")]

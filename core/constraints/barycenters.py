@@ -1,0 +1,151 @@
+"""Fixed barycenters: Σ ℓ_I m_I of every part of a curve that no pin holds in place."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..curve import Curve, Mesh
+from ..curve.pins import NO_PINS, Pins
+from ..types import FloatArray
+
+Parts = tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Barycenters:
+    """Σ ℓ_I m_I = target, part by part; parts of a link that are far from each other have one each.
+
+    Attributes
+    ----------
+    parts
+        For each component the number of its part, from 0.
+    loose
+        The p parts without pins, ascending.
+    target
+        In the order of ``loose``, coordinate by coordinate; shape (p·m,).
+    """
+
+    parts: Parts
+    loose: Parts
+    target: FloatArray
+
+    @classmethod
+    def of(cls, curve: Curve, pins: Pins = NO_PINS, parts: Parts | None = None) -> "Barycenters":
+        """Those of a curve; it is one part by default."""
+        part = np.asarray(parts or (0,) * len(curve.mesh.component_sizes))
+        loose = np.setdiff1d(part, part[curve.mesh.component[pins.vertices]])
+        return cls(tuple(part.tolist()), tuple(loose.tolist()), np.empty(0)).on(curve)
+
+    @property
+    def rows(self) -> int:
+        """p·m."""
+        return len(self.target)
+
+    def on(self, curve: Curve) -> "Barycenters":
+        """The same parts, held where they are in a curve."""
+        moments = _moments(curve)
+        each = [np.sum(moments * own, axis=1) for own in self.memberships(curve.mesh)]
+        return replace(self, target=np.concatenate([np.empty(0), *each]))
+
+    def scaled(self, factor: float) -> "Barycenters":
+        """Barycenters stay in their places relative to a curve that is so many times as large.
+
+        Σ ℓ_I m_I is a length times a place.
+        """
+        return replace(self, target=factor * self.target)
+
+    def residual(self, curve: Curve) -> FloatArray:
+        """Σ ℓ_I m_I less the target."""
+        return self.on(curve).target - self.target
+
+    def error(self, lengths: FloatArray, mesh: Mesh, residual: FloatArray) -> float:
+        """The largest displacement of a barycenter.
+
+        Σ ℓ_I m_I itself is so large on long chains of components that its rounding is above any tolerance.
+        """
+        totals = [own @ lengths for own in self.memberships(mesh)]
+        shifts = [shift / total for shift, total in zip(self._by_part(residual), totals, strict=True)]
+        return float(np.max(np.abs(shifts), initial=0.0))
+
+    def corrected(self, curve: Curve, u: FloatArray, stretch: FloatArray, residual: FloatArray) -> FloatArray:
+        """Displacements u, which change lengths by ``stretch``, with translations that reach the targets as well."""
+        ell, mesh, u = curve.edge_lengths, curve.mesh, u.copy()
+        # what the change of lengths does to Σ ℓ_I m_I, translations are to undo
+        moments = stretch[:, None] * curve.midpoints + (0.5 * ell)[:, None] * (u[mesh.tails] + u[mesh.heads])
+        for member, missing in zip(self.memberships(mesh), self._by_part(-residual), strict=True):
+            own = member > 0.0
+            moved = np.isin(mesh.component, mesh.edge_component[own])
+            u[moved] += (missing - moments[own].sum(axis=0)) / ell[own].sum()
+        return u
+
+    def derivative(self, curve: Curve) -> "BarycenterDerivative":
+        """The rows' derivative at a curve."""
+        ell, mesh, part = curve.edge_lengths, curve.mesh, np.asarray(self.parts)
+        places = (part[mesh.component], np.arange(mesh.size))
+        membership = sp.csr_array((np.ones(mesh.size), places), shape=(part.max() + 1, mesh.size))
+        loose = membership[np.array(self.loose, dtype=np.intp)]
+        return BarycenterDerivative(mesh, 0.5 * mesh.scatter(ell, ell), ell[:, None] * curve.midpoints, loose)
+
+    def memberships(self, mesh: Mesh) -> Iterator[FloatArray]:
+        """For each loose part, 1 at its edges and 0 elsewhere; shape (edges,)."""
+        part = np.asarray(self.parts)[mesh.edge_component]
+        return (np.where(part == k, 1.0, 0.0) for k in self.loose)
+
+    def _by_part(self, rows: FloatArray) -> FloatArray:
+        return rows.reshape(len(self.loose), -1) if self.loose else np.empty((0, 0))
+
+
+@dataclass(frozen=True, eq=False)
+class BarycenterDerivative:
+    """Barycenters move with vertices, and as edges become longer.
+
+    Attributes
+    ----------
+    masses
+        (ℓ_I + ℓ_{I−1})/2 at each vertex; shape (n,).
+    moments
+        ℓ_I m_I; shape (edges, m).
+    membership
+        Which vertices are in which of p parts, as 0 and 1; sparse, shape (p, n).
+    """
+
+    mesh: Mesh
+    masses: FloatArray
+    moments: FloatArray
+    membership: sp.csr_array
+
+    @property
+    def rows(self) -> int:
+        """p·m."""
+        return int(self.membership.shape[0]) * self.moments.shape[1]
+
+    def apply(self, u: FloatArray, stretch: FloatArray) -> FloatArray:
+        """Σ over each part of what displaces its vertices and stretches its edges."""
+        stretched = self.mesh.at_tails(stretch[:, None] * self.moments)
+        return np.asarray((self.membership @ (self.masses[:, None] * u + stretched)).ravel())
+
+    def loads(self, multipliers: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The multiplier of its part's barycenter pulls at each vertex and edge."""
+        pull = self._parts_to_vertices @ multipliers.reshape(-1, self.moments.shape[1])
+        return np.einsum("ij,ij->i", self.moments, pull[self.mesh.tails]), self.masses[:, None] * pull
+
+    def curvature(self, multipliers: FloatArray, v: FloatArray) -> FloatArray:
+        """At fixed lengths barycenters are linear: 0."""
+        return np.zeros_like(v)
+
+    @cached_property
+    def _parts_to_vertices(self) -> sp.csr_array:
+        return sp.csr_array(self.membership.T)
+
+
+def weighted_barycenter(curve: Curve) -> FloatArray:
+    """Σ ℓ_I m_I of the whole curve; shape (m,)."""
+    return np.asarray(np.sum(_moments(curve), axis=1))
+
+
+def _moments(curve: Curve) -> FloatArray:
+    """ℓ_I m_I as columns, so that sums over edges are pairwise ones; shape (m, edges)."""
+    return np.ascontiguousarray((curve.edge_lengths[:, None] * curve.midpoints).T)

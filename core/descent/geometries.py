@@ -1,0 +1,183 @@
+"""The sets that iterates lie on: polygons with prescribed lengths, or all polygons, lengths costing a penalty."""
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from ..checks import check_fields
+from ..constraints import ConstraintDerivative
+from ..curve import Curve
+from ..curve.pins import free_edges
+from ..errors import OptionError
+from ..metrics import InnerProduct
+from ..saddle import TangentSpace
+from ..types import FloatArray
+from .problem import Point, Problem
+
+
+class Geometry(Protocol):
+    """The set that iterates lie on, its tangent spaces, and the ways from these back to the set."""
+
+    @property
+    def prescribes(self) -> bool:
+        """Whether the constraints are prescribed, so that there are multipliers and a residual."""
+
+    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
+        """What is minimised on the set, and its derivative, shape (n, m)."""
+
+    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
+        """Where directions at a curve lie, with the metric there."""
+
+    def residual(self, problem: Problem, curve: Curve) -> FloatArray:
+        """How far a curve is from the set; shape (rows of the constraints,)."""
+
+    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
+        """The point of the set, or of a level of the residual, that vertices near it are led to; None if too far.
+
+        ``space`` has the metric of the way; its constraints are those of the base point.
+        """
+
+    def transport(self, point: Point, u: FloatArray) -> FloatArray:
+        """A vector of another tangent space moved to that of a point; shape (n, m)."""
+
+    def weighted(self, penalty: float) -> "Geometry":
+        """The same with another weight α of length errors; an OptionError if there is none."""
+
+
+@dataclass(frozen=True)
+class Constrained:
+    """The manifold {Φ = 0}, to which (42) of [RS21] leads back after a step.
+
+    Parameters
+    ----------
+    tolerance
+        Of lengths, a relative error, and of barycenters: far below any gap that can be proved.
+    max_iterations
+        Of the modified Newton method (42), and of Newton's for what it leaves over.
+    small
+        Change of an edge vector, relative to its length, up to which `TangentSpace.restoration` is as good as the
+        shortest way back in the metric, and far cheaper.  Larger corrections should know where other strands are, not
+        turn edges that are much shorter than others, and not cost the energy the step has gained.
+    contraction
+        Least rate of both; where it is slower, a shorter step is cheaper than more iterations.
+    """
+
+    tolerance: float = 1e-11
+    max_iterations: int = 15
+    small: float = 1e-3
+    contraction: float = 0.6
+    prescribes = True
+
+    def __post_init__(self) -> None:
+        check_fields(
+            self, tolerance=(0.0, 1.0), max_iterations=(0, np.inf), small=(0.0, np.inf), contraction=(0.0, 1.0)
+        )
+
+    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
+        """The objective alone."""
+        return problem.objective.value_and_derivative(curve)
+
+    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
+        """ker DΦ."""
+        return inner.tangent_space(problem.constraints.derivative(curve))
+
+    def residual(self, problem: Problem, curve: Curve) -> FloatArray:
+        """Φ."""
+        return problem.constraints.residual(curve)
+
+    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
+        """Find Q near ``vertices`` with Φ(Q) = ``level`` by Q ← Q − C(P)^† (Φ(Q) − level), P the base point: (42).
+
+        Once corrections are small the derivative is that at Q and the pseudo-inverse one that is cheap, by which the
+        residual vanishes quadratically.  There is always a correction: many short steps, each within the tolerance,
+        would drift away together, and what lengths gain or lose by that is energy which searches take for the step's.
+        None if the residual does not contract: the step was too long.
+        """
+        last = np.inf
+        for corrections in range(self.max_iterations):
+            point = base.problem.at(vertices)
+            if not point.nondegenerate:
+                return None
+            residual = point.residual - level
+            error = base.problem.constraints.error(point.curve.mesh, residual)
+            if error <= self.tolerance and corrections:
+                return point
+            if not error <= self.contraction * last:
+                return None
+            last = error
+            correction = space.restoration(base.problem.constraints, point.curve, residual)
+            if correction is None or _relative_change(point.curve, correction) > self.small:
+                correction = -space.pseudo_inverse(residual)
+            vertices = vertices + correction
+        return None
+
+    def transport(self, point: Point, u: FloatArray) -> FloatArray:
+        """By orthogonal projection."""
+        return point.tangent_space.project(u)
+
+    def weighted(self, penalty: float) -> "Constrained":
+        """There is no penalty."""
+        raise OptionError(f"penalty is {penalty}; the method keeps lengths and has no penalty")
+
+
+def _relative_change(curve: Curve, u: FloatArray) -> float:
+    """max |ΔU_I|/ℓ_I, by how much displacements u turn or stretch an edge."""
+    change = u[curve.mesh.heads] - u[curve.mesh.tails]
+    return float(np.max(np.linalg.norm(change, axis=1) / curve.edge_lengths))
+
+
+@dataclass(frozen=True)
+class Penalised:
+    """All polygons that are where their pins are; lengths cost α Σ ℓ⁰ log(ℓ/ℓ⁰)², as in Section 6.4 of [RS21].
+
+    The metric is J + α DΦᵀ I_{L²} DΦ, or J alone where footnote 8 leaves the extension out.
+
+    Parameters
+    ----------
+    penalty
+        α.
+
+    Raises
+    ------
+    OptionError
+        If α is not a finite positive number.
+    """
+
+    penalty: float = 1000.0
+    prescribes = False
+
+    def __post_init__(self) -> None:
+        check_fields(self, penalty=(0.0, np.inf))
+
+    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
+        """E_α and its derivative."""
+        energy, derivative = problem.objective.value_and_derivative(curve)
+        targets = problem.constraints.lengths
+        stretch = np.log(curve.edge_lengths / targets)
+        weights = self.penalty * targets
+        pull = ConstraintDerivative.of_lengths(curve).apply_transpose(2.0 * weights * stretch)
+        return energy + float(weights @ stretch**2), derivative + pull
+
+    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
+        """The whole space, but for pins."""
+        penalty = self.penalty if problem.metric.extends_penalty else 0.0
+        rows = ConstraintDerivative.of_lengths(curve, problem.constraints.pins.vertices)
+        return inner.whole_space(rows, penalty * problem.constraints.lengths)
+
+    def residual(self, problem: Problem, curve: Curve) -> FloatArray:
+        """Every polygon is allowed: 0."""
+        return np.zeros(len(free_edges(curve.mesh, problem.constraints.pins.vertices)))
+
+    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
+        """The vertices as they are, unless an edge has no length."""
+        point = base.problem.at(vertices)
+        return point if point.nondegenerate else None
+
+    def transport(self, point: Point, u: FloatArray) -> FloatArray:
+        """There is only one tangent space."""
+        return u
+
+    def weighted(self, penalty: float) -> "Penalised":
+        """The same with another α."""
+        return replace(self, penalty=penalty)

@@ -1,0 +1,166 @@
+"""Links of several parts: unlinked ones would drift apart, and composite ones have no shape of least energy."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ...checks import check_fields
+from ...constraints import Barycenters, Parts
+from ...curve import Curve
+from ...descent import Step
+from ...hierarchy import moebius_energy
+from ...knots.composite import is_searchable, knotted_ball
+from ...obstacle import Obstacle
+from ...types import FloatArray, IntArray
+from ..outcome import Outcome
+from ..run import Change, Intervention, Run
+
+COMPOSITE = (
+    "strands pull tight without limit: the curve is composite, knotted both inside and outside the ball of radius "
+    "{radius:.3g} around ({center}), and has no shape of least energy"
+)
+UNTESTED = "whether the link is composite was not tested, as there are too many ways to divide it"
+HELD = (
+    "unlinked parts, which would drift apart without limit, are held in place; their own energies add up to "
+    "{energy:.6g}"
+)
+# facts: less energy than any composite
+COMPOSITE_KNOT = 140.0  # two trefoils (74.4 each) less a circle make 144.8,
+COMPOSITE_LINK = 90.0  # two Hopf links (47.5 each) 91
+
+
+@dataclass(eq=False)
+class SplitLinks(Intervention):
+    """Give every part that is far from the others a barycenter of its own among the constraints.
+
+    Parameters
+    ----------
+    interval
+        Accepted steps between two looks.
+    gap
+        Least one between the balls around two parts, in radii of the larger one.
+    most
+        Parts: each has rows of its own in the linear systems.
+    """
+
+    interval: int = 5
+    gap: float = 1.0
+    most: int = 50
+
+    def __post_init__(self) -> None:
+        check_fields(self, interval=(0, math.inf), gap=(0.0, math.inf), most=(0, math.inf))
+
+    def stepped(self, step: Step) -> Change | None:
+        """Look for parts now and then."""
+        run, constraints = self.run, self.run.problem.constraints
+        if not run.problem.geometry.prescribes or run.iterate.index % self.interval:
+            return None
+        parts = separate_parts(run.iterate.curve, run.problem.obstacles, self.gap, self.most)
+        if max(parts) <= max(parts_of(run)):
+            return None
+        held = Barycenters.of(run.point.curve, constraints.pins, parts)
+        return Change(point=run.point.changing(constraints=constraints.replacing(held)))
+
+    def converged(self, outcome: Outcome) -> Outcome | None:
+        """Say which energies of their own the parts have, unless pins hold them all."""
+        held = self.run.problem.constraints.block(Barycenters)
+        if not max(held.parts) or not held.loose:
+            return None
+        alone = sum(moebius_energy(part)[0] for part in split(self.run.iterate.curve, held.parts))
+        return outcome.adding(HELD, energy=alone)
+
+
+def parts_of(run: Run) -> Parts:
+    """For each component the number of the part whose barycenter is fixed."""
+    return run.problem.constraints.block(Barycenters).parts
+
+
+def separate_parts(
+    curve: Curve, obstacles: Sequence[Obstacle] = (), gap: float = SplitLinks.gap, most: int = SplitLinks.most
+) -> Parts:
+    """For each component the number of its part, from 0; parts lie in balls that are far from each other.
+
+    Disjoint balls prove that parts are not linked.  All is one part if there would be very many.  Obstacles are merged
+    with what is near to them all: between walls nothing drifts away.
+    """
+    components = len(curve.mesh.component_sizes)
+    if components == 1:
+        return (0,)
+    points = [curve.vertices, *(obstacle.corners.reshape(-1, curve.dimension) for obstacle in obstacles)]
+    member = np.concatenate([curve.mesh.component, np.full(sum(map(len, points[1:])), components)])
+    count = components + bool(obstacles)
+    part = np.arange(count)
+    while count > 1:
+        fewer, merged = connected_components(_near(*_balls(np.concatenate(points), part[member]), gap), directed=False)
+        if fewer == count:
+            break
+        part, count = merged[part], fewer
+    _, part = np.unique(part[:components], return_inverse=True)  # without one of obstacles alone
+    return tuple(part.tolist()) if count <= most else (0,) * components
+
+
+def split(curve: Curve, parts: Parts) -> list[Curve]:
+    """The parts as curves of their own."""
+    own = [np.flatnonzero(np.asarray(parts) == k) for k in range(max(parts) + 1)]
+    return [
+        Curve.from_components([curve.components[c] for c in each], [curve.mesh.closed[c] for c in each]) for each in own
+    ]
+
+
+def _balls(points: FloatArray, part: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Centers, shape (p, m), and radii, shape (p,), of balls around the points of p parts; shapes (k, m) and (k,)."""
+    order = np.argsort(part, kind="stable")
+    points, own = points[order], part[order]
+    starts = np.searchsorted(own, np.arange(own[-1] + 1))
+    centers = 0.5 * (np.minimum.reduceat(points, starts) + np.maximum.reduceat(points, starts))
+    return centers, np.maximum.reduceat(np.linalg.norm(points - centers[own], axis=1), starts)
+
+
+def _near(centers: FloatArray, radii: FloatArray, gap: float) -> sp.coo_array:
+    """Which balls are not far enough from each other to be parts; sparse, shape (p, p).
+
+    A k-d tree per octave of radii finds the neighbours among balls that are no larger.
+    """
+    octave = np.frexp(radii)[1]
+    found = []
+    for level in np.unique(octave):
+        large, small = np.flatnonzero(octave == level), np.flatnonzero(octave <= level)
+        reach = (2.0 + gap) * float(radii[large].max())
+        near = cKDTree(centers[large]).sparse_distance_matrix(cKDTree(centers[small]), reach, output_type="ndarray")
+        i, j = large[near["i"]], small[near["j"]]
+        kept = near["v"] < radii[i] + radii[j] + gap * np.maximum(radii[i], radii[j])
+        found.append(np.stack([i[kept], j[kept]]))
+    i, j = np.concatenate(found, axis=1)
+    return sp.coo_array((np.ones(len(i), dtype=bool), (i, j)), shape=(len(radii), len(radii)))
+
+
+@dataclass(eq=False)
+class Composite(Intervention):
+    """Report composite curves: unless the energy sees size, only the mesh keeps a part from shrinking to a point."""
+
+    def converged(self, outcome: Outcome) -> Outcome | None:
+        """Look for a ball with a knot in it."""
+        problem = self.run.problem
+        if problem.objective.sees_size or len(problem.constraints.pins):  # between pins no part shrinks without limit
+            return None
+        parts = [part for part in split(self.run.iterate.curve, parts_of(self.run)) if _may_be_composite(part)]
+        ball = next(filter(None, map(knotted_ball, parts)), None)
+        if ball is not None:
+            if not all(map(ball.is_clear_of, problem.obstacles)):
+                return None  # around what stands still nothing shrinks to a point
+            center = ", ".join(f"{x:.3g}" for x in ball.center)
+            return replace(outcome.stalling(COMPOSITE, radius=ball.radius, center=center), unbounded=True)
+        return None if all(map(is_searchable, parts)) else outcome.adding(UNTESTED)
+
+
+def _may_be_composite(curve: Curve) -> bool:
+    """Whether there is energy enough for that, in space, on closed components: arcs can be unknotted."""
+    if curve.dimension != 3 or not curve.mesh.all_closed:
+        return False
+    components = len(curve.mesh.component_sizes)
+    return moebius_energy(curve)[0] >= (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK)

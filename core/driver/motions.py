@@ -1,0 +1,168 @@
+"""Random motions out of a minimum, or from where a curve is stuck; they are proved like all others."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..checks import check_fields
+from ..descent import Leg, Point, Step
+from ..descent.soft_modes import soft_modes
+from ..descent.step import attempt
+from ..energies.components import energy_scale
+from ..errors import OptionError
+from ..types import FloatArray
+
+RIGID = 1e-12  # part of a field that is tangent, up to which it is rounding: pins may leave nothing to move
+
+Field = Callable[[FloatArray], FloatArray]
+"""Velocities at vertices; shapes (n, m) -> (n, m)."""
+
+
+@dataclass(frozen=True)
+class Motion(ABC):
+    """Move along one random field after another, up to a random level of energy, as nearly as the constraints allow.
+
+    Lengths are root mean squares over the vertices, in radii of gyration.
+
+    Parameters
+    ----------
+    fields
+        Their number.
+    distance
+        That the curve moves along each of them.
+    stride
+        Of a step, at most; where steps are not accepted they are halved.
+    shortest
+        Step at which a field is given up.
+    ceilings
+        Least and greatest multiple of the energy, by its scale, up to which the curve may be led.
+    """
+
+    fields: int
+    distance: float
+    stride: float
+    shortest: float
+    ceilings: tuple[float, float] = (2.0, 16.0)
+
+    def __post_init__(self) -> None:
+        positive = (0.0, math.inf)
+        check_fields(self, fields=positive, distance=positive, stride=positive, shortest=(0.0, self.stride))
+        if not 1.0 <= self.ceilings[0] <= self.ceilings[1] < math.inf:
+            raise OptionError(f"ceilings are {self.ceilings}; they must ascend from 1 or more")
+
+    def fits(self, point: Point) -> bool:
+        """Whether lengths are prescribed: else the curve would be stretched without end."""
+        return point.problem.geometry.prescribes
+
+    @abstractmethod
+    def field(self, point: Point, rng: np.random.Generator) -> Field:
+        """The next field."""
+
+    def __call__(self, point: Point, rng: np.random.Generator) -> Iterator[Step]:
+        """Yield proved steps, each of which ends on the constraints."""
+        multiple = math.exp(rng.uniform(*np.log(self.ceilings)))
+        ceiling = energy_scale(point.problem.mesh, point.energy) * multiple
+        for _ in range(self.fields):
+            for step in self.along(point, self.field(point, rng), ceiling):
+                yield step
+                point = step.point.anchored
+
+    def along(self, point: Point, field: Field, ceiling: float) -> Iterator[Step]:
+        """Yield steps along a field, each of which ends on the constraints and below a level of energy."""
+        left, stride = self.distance, self.stride
+        while left > 0.0 and stride > self.shortest:
+            velocity = field(point.vertices)
+            u = point.tangent_space.project(velocity)
+            if root_mean_square(u) <= RIGID * root_mean_square(velocity):
+                return
+            u *= stride * radius(point.vertices) / root_mean_square(u)
+            leg = attempt(point, point.vertices + u, 0.0 * point.residual, lambda end: end.energy < ceiling)
+            if not isinstance(leg, Leg):
+                stride *= 0.5
+                continue
+            yield Step((leg,), 0.0, None)
+            point, left, stride = leg.end.anchored, left - stride, min(2.0 * stride, self.stride)
+
+
+@dataclass(frozen=True)
+class Push(Motion):
+    """Push the curve where it resists least: along random combinations of soft modes.
+
+    Where strands are about to touch, random flows press them together; a soft mode slides them along each other.
+
+    Parameters
+    ----------
+    modes
+        Number of modes in a combination.
+    products
+        With the Hessian, by which they are looked for: near enough then to be soft, they need be no nearer.  From a
+        single start, of all rotations and other flat directions only one can be among them.
+    """
+
+    fields: int = 3
+    distance: float = 1.0
+    stride: float = 0.05  # where strands touch, only short steps are free
+    shortest: float = 1e-3
+    modes: int = 6
+    products: int = 30
+
+    def fits(self, point: Point) -> bool:
+        """Whether, besides, the energy has a second derivative."""
+        return super().fits(point) and point.problem.objective.has_hessian
+
+    def field(self, point: Point, rng: np.random.Generator) -> Field:
+        """A constant one."""
+        start = point.tangent_space.project(rng.normal(size=point.vertices.shape))
+        modes = soft_modes(point, start[None], 0.0, -math.inf, self.products).vectors[: self.modes]
+        u = np.tensordot(rng.normal(size=len(modes)), modes, 1)
+        return lambda _: u
+
+
+@dataclass(frozen=True)
+class Stir(Motion):
+    """Stir space by random flows, which fold the curve and turn it over.
+
+    A flow alone is an isotopy that leaves strands beside each other which were so before; one after the other they
+    mix, and a higher ceiling lets the curve forget more of the minimum.
+
+    Parameters
+    ----------
+    waves
+        Number of plane waves that a flow is the sum of.
+    frequency
+        Standard deviation of each component of their wave vectors, in radians per radius of gyration.
+    """
+
+    fields: int = 10
+    distance: float = 1.0
+    stride: float = 0.1
+    shortest: float = 5e-3
+    waves: int = 4
+    frequency: float = 2.0
+
+    def field(self, point: Point, rng: np.random.Generator) -> Field:
+        """A sum of plane waves, each without divergence, most of them shorter than the curve is wide."""
+        center = point.vertices.mean(axis=0)
+        waves, amplitudes = rng.normal(size=(2, self.waves, point.curve.dimension))
+        along = np.sum(waves * amplitudes, axis=1) / np.square(waves).sum(axis=1)
+        amplitudes -= along[:, None] * waves
+        waves *= self.frequency / radius(point.vertices)
+        phases = rng.uniform(0.0, 2.0 * np.pi, self.waves)
+        return lambda x: np.asarray(np.sin((x - center) @ waves.T + phases) @ amplitudes)
+
+
+def radius(vertices: FloatArray) -> float:
+    """Radius of gyration."""
+    return root_mean_square(vertices - vertices.mean(axis=0))
+
+
+def root_mean_square(u: FloatArray) -> float:
+    """Of the lengths of vectors; shape (n, m)."""
+    return float(np.sqrt(np.square(u).sum(axis=1).mean()))
+
+
+MOTIONS: tuple[Motion, ...] = (Push(), Stir())
+"""In the order of their turns."""
