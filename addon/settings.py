@@ -15,13 +15,12 @@ from .properties import MobiusFlowSettings
 # since 5.0 Blender marks relative paths as wrong where a property does not say that it knows them
 _RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
 _LEVELS = [*QUALITIES, "CUSTOM"]
+_LEVEL_ITEMS = [
+    *((name, each.label, each.description, "NONE", k) for k, (name, each) in enumerate(QUALITIES.items())),
+    ("CUSTOM", "Custom", "Options as they are set in Expert", "NONE", len(QUALITIES)),
+]
 _TREFOIL = list(labels()).index("3_1")  # where items are made by a function, the default is a number
 _knot_items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender needs the strings to stay alive
-
-
-def _quality_items() -> list[tuple[str, str, str, str, int]]:
-    items = [(name, each.label, each.description, "NONE", k) for k, (name, each) in enumerate(QUALITIES.items())]
-    return [*items, ("CUSTOM", "Custom", "Options as they are set in Expert", "NONE", len(items))]
 
 
 def _quality(panel: Any) -> int:
@@ -39,7 +38,7 @@ class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
     quality: EnumProperty(
         name="Quality",
         description="How near to the least energy the shape comes; sets some of the options in Expert",
-        items=_quality_items(),
+        items=_LEVEL_ITEMS,
         get=_quality,
         set=_set_quality,
     )

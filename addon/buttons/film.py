@@ -139,7 +139,6 @@ class CURVE_OT_mobius_flow_replace_film(_OfFilm, Button, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask."""
         message = iface_("{name} is there already", name=target(self.wanted(context)[0]).name)
         title = iface_("Overwrite the film?")
         manager = context.window_manager

@@ -18,9 +18,8 @@ from ..engine.words import named
 from ..live import registry
 from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
 from ..live.modal import Listening, tell, unseen
-from ..live.refresh import Refresh
 from ..live.requirements import Condition, avoided, selected_curves
-from ..live.run import Run
+from ..live.run import Refresh, Run
 from ..properties import SETTINGS, relax_options, settings
 from ..scripting import Relaxation, begin, implied
 from ..translations import rpt_

@@ -102,7 +102,6 @@ class CURVE_OT_mobius_flow_sample(Button, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Ask."""
         try:
             self.questions = sampling.questions(selected_curves(context))
         except MobiusFlowError as error:

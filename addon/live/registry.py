@@ -13,12 +13,7 @@ _latest: "list[Run]" = []
 class History:
     """Counts what is done in Blender during a run: undo is about that first, and about the run when all is undone.
 
-    Attributes
-    ----------
-    others
-        Number of things that were done, such as selecting or moving an object, and not undone.
-    undone
-        Number of things that were undone, and may be done again.
+    ``others`` were done, such as selecting or moving an object, and not undone; ``undone`` may be done again.
     """
 
     def __init__(self) -> None:
@@ -69,7 +64,7 @@ def latest() -> "Run | None":
     return _latest[0] if _latest else None
 
 
-def shown(obj: "bpy.types.Object | None") -> "Run | None":
+def shown(obj: bpy.types.Object | None) -> "Run | None":
     """The run that is going on, or else the last one, if what is known of it is about an object as it is now."""
     run = latest()
     return run if run is not None and run.concerns(obj) else None

@@ -8,7 +8,8 @@ import time
 from collections.abc import Callable
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING
+
+import bpy
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.errors import Place
@@ -21,13 +22,10 @@ from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
 from .key_writer import KeyWriter
-from .refresh import Refresh
-
-if TYPE_CHECKING:
-    import bpy
 
 _CANCELLED = Message("Cancelled; all is as it was")
 _SLICE = 0.02  # seconds of taking in iterates at a time
+_REST = 2.0  # times as long as drawing takes nothing is drawn after it: drawing gets a third of the time
 
 
 class State(Enum):
@@ -43,29 +41,46 @@ class State(Enum):
         return self in (State.DONE, State.CANCELLED, State.LOST)
 
 
-class Run:
-    """A session that is fed by a worker, while its curves are shown.
+class Refresh:
+    """Decides which iterates are shown: every so many; 0: as often as leaves two thirds of the time to the rest."""
 
-    Attributes
-    ----------
-    state, message, failed
-        Where it stands, and what is to be said of its end.
-    energies
-        The objective at all iterates that were taken in.
-    trouble
-        Where on the objects the reason is why it failed or got stuck, if it is somewhere.
-    """
+    def __init__(self, every: int = 0, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._every, self._clock = every, clock
+        self._shown: float | None = None
+        self._next = clock()
+
+    def shown(self) -> None:
+        """Note that an iterate is being shown; Blender draws it before it sends the next event."""
+        self._shown = self._clock()
+
+    def drawn(self) -> None:
+        """Note that an event has come: what was shown last has been drawn."""
+        if self._shown is not None:
+            now = self._clock()
+            self._next = now + _REST * (now - self._shown)
+            self._shown = None
+
+    def ends_batch(self, index: int) -> bool:
+        """Whether an iterate must be shown before the next one is taken in."""
+        return self._every > 0 and index % self._every == 0
+
+    def due(self, index: int) -> bool:
+        """Whether an iterate, the last one taken in, is to be shown now."""
+        return self.ends_batch(index) if self._every else self._clock() >= self._next
+
+
+class Run:
+    """A session that is fed by a worker, while its curves are shown."""
 
     def __init__(self, session: Session, refresh: Refresh) -> None:
         self.state = State.RUNNING
-        self.message = ""
-        self.failed = False
+        self.message, self.failed = "", False  # what is to be said of its end
         self.on_end: Callable[[], None] = lambda: None
         self.last: Iterate | None = None
         self.report: Report | None = None
         self.shown: Iterate | None = None
         self.energies: list[float] = []
-        self.trouble: list[Spot] = []
+        self.trouble: list[Spot] = []  # where the reason is why it failed or got stuck, if it is somewhere
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self._session, self._refresh = session, refresh
         try:
@@ -92,14 +107,14 @@ class Run:
         """The least energy that there can be."""
         return target_of(self._session.task, self._session.options)
 
-    def concerns(self, obj: "bpy.types.Object | None") -> bool:
+    def concerns(self, obj: bpy.types.Object | None) -> bool:
         """Whether it is about an object: always while it goes on, and afterwards if the object is as it was left."""
         if self._left is None:
             return True
         return obj is not None and obj.type == "CURVE" and self._left.get(obj.session_uid) == digest(obj.data)
 
     @property
-    def spots(self) -> dict["bpy.types.Object", Spot]:
+    def spots(self) -> dict[bpy.types.Object, Spot]:
         """The places of trouble by their objects, those that are still there."""
         found = {self.group.member(spot.member): spot for spot in self.trouble}
         return {obj: spot for obj, spot in found.items() if obj is not None}

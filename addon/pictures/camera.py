@@ -36,8 +36,13 @@ def follow(
     ``size`` is that of its pictures, in any unit; the floor is at the height of the stage's middle; points are the
     vertices, (n, 3), of every key.
     """
+    import bpy
+
     axes = _view_axes(stage)
-    camera = _camera(collection, stage, axes)
+    data = bpy.data.cameras.new("Camera")
+    data.lens, data.sensor_width = _LENS, _SENSOR
+    camera = add(collection, "Camera", data)
+    place(camera, stage.middle + axes[2], stage.middle, stage.axes[2])
     every = np.arange(np.floor(frames[0]), np.ceil(frames[-1]) + 1)
     seen = [(p - stage.middle) @ axes.T for p in points]
     slopes = 0.5 * _SENSOR / _LENS * np.array(size) / max(size)  # tangents of half the angles of view
@@ -47,7 +52,7 @@ def follow(
     _move(camera, stage.middle + eyes @ axes, every)
     _move(floor, stage.middle + lows[:, None] * stage.axes[2], every)
     distances = eyes[:, 2]
-    camera.data.clip_start, camera.data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
+    data.clip_start, data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
     return camera
 
 
@@ -55,16 +60,6 @@ def _view_axes(stage: Stage) -> FloatArray:
     """Right, up and backward of the camera, which looks down on the stage; rows."""
     backward = np.array([0.0, -np.cos(_ELEVATION), np.sin(_ELEVATION)]) @ stage.axes
     return np.array([stage.axes[0], np.cross(backward, stage.axes[0]), backward])
-
-
-def _camera(collection: "bpy.types.Collection", stage: Stage, axes: FloatArray) -> "bpy.types.Object":
-    import bpy
-
-    data = bpy.data.cameras.new("Camera")
-    data.lens, data.sensor_width = _LENS, _SENSOR
-    camera = add(collection, "Camera", data)
-    place(camera, stage.middle + axes[2], stage.middle, stage.axes[2])
-    return camera
 
 
 def _eyes(

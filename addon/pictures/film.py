@@ -83,7 +83,9 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
     data = new_curve_data("Curve", mesh)
     data.bevel_depth, data.bevel_resolution = float(radii.max()), _BEVEL_RESOLUTION
     data.use_fill_caps = True  # at the ends of arcs
-    obj = _add_object(scene, data)
+    obj = stage.add(scene.collection, "Curve", data)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
     if len(points) > 1:
         write_shape_keys(obj, keys, frames, radii / radii.max())
     else:
@@ -100,16 +102,6 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
         _put(scene, origin)
     scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
     scene.frame_set(scene.frame_start)
-
-
-def _add_object(scene: "bpy.types.Scene", data: "bpy.types.Curve") -> "bpy.types.Object":
-    import bpy
-
-    obj = bpy.data.objects.new("Curve", data)
-    scene.collection.objects.link(obj)
-    obj.select_set(True)
-    bpy.context.view_layer.objects.active = obj
-    return obj
 
 
 def _put(scene: "bpy.types.Scene", origin: Origin) -> None:

@@ -38,7 +38,6 @@ class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):
     bl_label = "Knot"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Show common ones with their pictures, then the rest."""
         layout = self.layout
         layout.operator_context = "INVOKE_REGION_WIN"
         for name in COMMON:
@@ -61,12 +60,10 @@ def search(layout: bpy.types.UILayout, _context: bpy.types.Context) -> None:
 
 
 def _add_knot(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    """Offer knots in Add > Curve."""
     menu.layout.menu(VIEW3D_MT_mobius_flow_knots.__name__, icon="CURVE_NCIRCLE")
 
 
 def _flow(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    """Offer the rest in Object, and in Edit Mode in Curve."""
     menu.layout.separator()
     menu.layout.menu(VIEW3D_MT_mobius_flow.bl_idname)
 
