@@ -1,4 +1,4 @@
-"""What operators have in common: the tooltip and scripts are told why one cannot be used, and nothing has happened."""
+"""The base of operators: tooltips and scripts get the reason why one cannot be used, and nothing has changed then."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -15,11 +15,11 @@ _PREFIX = "CURVE_OT_"
 
 
 class Button:
-    """An operator that acts if nothing that it needs is missing, and says otherwise what is."""
+    """An operator that acts if all that it needs is there, and otherwise reports what is missing."""
 
     bl_options = {"REGISTER", "UNDO"}
     needs: Sequence[Requirement] = ()
-    needs_at_last: Sequence[Requirement] = ()  # what takes too long for every redraw
+    needs_at_last: Sequence[Requirement] = ()  # those that take too long for every redraw
     poll_message_set: Callable[[str], None]
     report: Callable[[set[str], str], None]
 
@@ -46,7 +46,7 @@ class Button:
             self.act(context)
         except MobiusFlowError as error:
             return self.fail(error)
-        redraw_views(context.window_manager)  # which they are not by themselves where keys were changed
+        redraw_views(context.window_manager)  # changed keys alone do not cause it
         return {"FINISHED"}
 
     def fail(self, error: MobiusFlowError) -> set[str]:

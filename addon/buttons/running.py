@@ -12,7 +12,7 @@ from ..curves.splines import control_points
 from ..engine.placement import Spot, at
 from ..live import registry
 from ..live.checks import RELAXABLE
-from ..live.modal import Listening, tell_end
+from ..live.modal import Listening, report_end
 from ..live.requirements import Condition, require, selected_curves
 from ..live.run import Run, State
 from ..translations import iface_
@@ -84,7 +84,7 @@ class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
         while not run.state.over:
             run.tick()
             time.sleep(_PATIENCE)
-        tell_end(self, context.scene, run)
+        report_end(self, context.scene, run)
         return {"FINISHED"} if run.state is State.DONE else {"CANCELLED"}
 
     def _recovered(self) -> Run:

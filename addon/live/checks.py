@@ -164,7 +164,7 @@ POLYGONS = Curves(
 
 
 def needing(objects: Sequence[bpy.types.Object], remedy: Remedy) -> Iterator[bpy.types.Object]:
-    """Yield the curve objects that a remedy is the next to help; each is looked at when it is its turn."""
+    """Yield the curve objects whose first refusal has this remedy, examining each in its turn."""
     several = len(objects) > 1
     checks = [*RELAXABLE.checks, *POLYGONS.checks]
     alone = Curves(*(replace(check, together=check.together and not several) for check in checks))

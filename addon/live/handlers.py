@@ -1,4 +1,4 @@
-"""What happens to a live relaxation when a file is loaded or saved, or somebody undoes."""
+"""How a live relaxation responds to undo, and to files that are loaded or saved."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,13 +14,13 @@ from .run import Run
 
 
 def _forget() -> None:
-    """What is known is about another file, which may have been saved automatically during a run."""
+    """Forget the run of another file; the new one may have been saved automatically during a run."""
     registry.forget()
     show_originals()
 
 
 def _before_undo(run: Run, others: int) -> None:
-    """The curve must be as undo knows it; unless something else is undone or done again, the run is over."""
+    """Undo must find the originals; the run goes on only if something else is undone or redone."""
     if others and run.endures:
         run.group.hide()
     else:

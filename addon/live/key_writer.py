@@ -15,7 +15,7 @@ _SLICE = 0.02  # seconds of writing at a time
 
 
 class _AbandonedError(Exception):
-    """Nobody waits for the keys any more."""
+    """The keys are no longer wanted."""
 
 
 class KeyWriter:

@@ -1,4 +1,4 @@
-"""What operators require of curves and scenes: where a requirement fails, one sentence says so, and what mends it."""
+"""What operators require of curves and scenes: a failed requirement gives one sentence, and a remedy if there is one."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class Remedy(Enum):
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why something cannot be done and what helps, in one sentence, and the remedy that does so by itself, if any."""
+    """Why something cannot be done and what helps, in one sentence, and the button that does so, if there is one."""
 
     sentence: Message
     remedy: Remedy | None = None

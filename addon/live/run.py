@@ -1,6 +1,6 @@
 """One live relaxation: takes in the worker's iterates, shows them in the curves, and ends cleanly whatever happens.
 
-The curves themselves move; what they were is put back unless the run is to be kept.
+The objects show what has been reached; their originals come back unless the run is kept.
 """
 
 import math
@@ -108,29 +108,29 @@ class Run:
         return target_of(self._session.task, self._session.options)
 
     def concerns(self, obj: bpy.types.Object | None) -> bool:
-        """Whether it is about an object: always while it goes on, and afterwards if the object is as it was left."""
+        """Whether it concerns an object: always while in progress, afterwards if the object is as the run left it."""
         if self._left is None:
             return True
         return obj is not None and obj.type == "CURVE" and self._left.get(obj.session_uid) == digest(obj.data)
 
     @property
     def spots(self) -> dict[bpy.types.Object, Spot]:
-        """The places of trouble by their objects, those that are still there."""
+        """The places of trouble by object, for the objects that still exist."""
         found = {self.group.member(spot.member): spot for spot in self.trouble}
         return {obj: spot for obj, spot in found.items() if obj is not None}
 
     @property
     def waits(self) -> bool:
-        """Whether Blender renders the curve, which must not move then."""
+        """Whether it waits for a render, during which curves must not move."""
         return not self.state.over and is_rendering()
 
     @property
     def endures(self) -> bool:
-        """Whether it can go on from wherever undo puts the curves."""
+        """Whether it survives an undo of something else."""
         return self.state in (State.RUNNING, State.PAUSED)
 
     def toggle_pause(self) -> None:
-        """Show no more iterates, or go on; meanwhile the worker fills its queue and then waits too."""
+        """Stop or resume taking in iterates; during a pause the worker fills its queue and then waits too."""
         self._show()
         self.state = {State.RUNNING: State.PAUSED, State.PAUSED: State.RUNNING}.get(self.state, self.state)
 
@@ -155,7 +155,7 @@ class Run:
 
     @property
     def recoverable(self) -> bool:
-        """Whether it has ended with the curves put back, but what it had found is still known."""
+        """Whether it ended with the curves put back, while its iterates are still known."""
         return self.state in (State.CANCELLED, State.LOST) and self.last is not None
 
     def recover(self) -> None:
@@ -172,7 +172,7 @@ class Run:
             self._advance()
 
     def complete(self) -> None:
-        """Write the rest of keys whose writing has begun: a file that is saved must not hold half of them."""
+        """Finish writing keys once begun: a saved file must not hold half of them."""
         if self.state is State.FINISHING and self._keys.has_begun:
             self._advance(math.inf)
 
@@ -244,7 +244,7 @@ class Run:
         self.cancel(message)
 
     def _lose(self, reason: Message) -> None:
-        """End because of what somebody did to an object; what else there is is put back."""
+        """End because an object was changed from outside; the others are put back."""
         ended = Message("{reason}; the relaxation has ended", reason=reason)
         restored = self._close(State.LOST, ended)
         more = Message("and every curve is as it was") if restored else Message("and the others are as they were")
