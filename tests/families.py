@@ -1,6 +1,7 @@
-"""Whole families of knots, of which a few are looked at every time, and all by --slow."""
+"""Whole families, of which a few members are looked at every time, and all by --slow."""
 
 from collections.abc import Iterable
+from itertools import product
 from typing import Any
 
 import pytest
@@ -8,6 +9,17 @@ import pytest
 EVERY = 12
 
 
-def family(names: Iterable[str]) -> list[Any]:
+def family(names: Iterable[str], every: int = EVERY) -> list[Any]:
     """Every twelfth name, and the others as parameters marked slow."""
-    return [pytest.param(name, marks=pytest.mark.slow if k % EVERY else ()) for k, name in enumerate(names)]
+    return [pytest.param(name, marks=pytest.mark.slow if k % every else ()) for k, name in enumerate(names)]
+
+
+def crossed(*lists: Iterable[Any]) -> list[Any]:
+    """All combinations; every value is in one that is looked at every time, the others are marked slow."""
+    values = [list(each) for each in lists]
+    sizes = [len(each) for each in values]
+    quick = {tuple(k % size for size in sizes) for k in range(max(sizes))}
+    return [
+        pytest.param(*combination, marks=() if place in quick else pytest.mark.slow)
+        for place, combination in zip(product(*map(range, sizes)), product(*values), strict=True)
+    ]

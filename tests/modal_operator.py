@@ -1,10 +1,12 @@
 """A double of the Relax operator that is fed events by hand, and what curves are compared by afterwards."""
 
+import sys
 import time
 from types import SimpleNamespace
 
 import bpy
 import numpy as np
+import pytest
 from mobius_flow.addon.buttons.relaxing import CURVE_OT_mobius_flow_relax
 from mobius_flow.addon.curves.splines import Splines
 from mobius_flow.addon.properties import SETTINGS
@@ -21,6 +23,8 @@ class Operator:
     session = CURVE_OT_mobius_flow_relax.session
     fail = CURVE_OT_mobius_flow_relax.fail
     sample_splines = True
+
+    in_process = False  # the worker
 
     def __init__(self, continues=False, **values):
         self.loop, self.reports, self.continues = None, [], continues
@@ -46,7 +50,10 @@ class Operator:
         bpy.context.view_layer.update()
         scene = bpy.context.scene.mobius_flow
         self.values = lambda _context: {name: getattr(scene, name) for name in SETTINGS} | self.given
-        return self.begin(self.context)
+        with pytest.MonkeyPatch.context() as patch:
+            if not self.in_process:
+                patch.setattr(sys, "executable", "")  # then there is no Python to start
+            return self.begin(self.context)
 
     def event(self, kind="TIMER", mouse=(0, 0), **keys):
         modifiers = {"ctrl": False, "shift": False, "oskey": False} | keys

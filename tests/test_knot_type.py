@@ -4,6 +4,7 @@ import random
 
 import numpy as np
 import pytest
+from families import crossed
 from hard_curves import hard_unknot
 from jones import jones
 from knot_diagrams import diagram, linking_number, pairwise_linking, simplified
@@ -14,8 +15,7 @@ NAMES = ["0_1", "3_1", "m3_1", "4_1", "5_2", "6_2", "7_7", "8_19", "9_42", "3_1#
 TREFOIL = {2: 1, 6: 1, 8: -1}
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("seed", [1, 3, 5])
+@pytest.mark.parametrize(("name", "seed"), crossed(NAMES, [1, 3, 5]))
 def test_the_jones_polynomial_is_that_of_every_diagram(name: str, seed: int) -> None:
     points = knot(name, 100).vertices
     turned = points + 0.4 * np.random.default_rng(seed).normal(size=3) * np.sin(3 * points[:, [1, 2, 0]])
@@ -42,7 +42,7 @@ def test_components_apart_count_as_loops() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_messy_and_neat_polygons_agree(name: str) -> None:
     curve = knot(name, 80)
-    messy = scramble(curve, 3, moves=800)
+    messy = scramble(curve, 3, moves=250)
     assert knot_invariants(messy.vertices) == knot_invariants(curve.vertices)
 
 

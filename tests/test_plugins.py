@@ -9,13 +9,14 @@ import json
 import os
 import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 from mobius_flow.core import RelaxOptions, read_curve, write_curve
-from processes import finished
+from processes import finished, running
 from shapes import torus_trefoil
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -116,7 +117,9 @@ PLUGINS = {
             ),
         ),
     ),
-    "subcommand": Plugin("cli", "length.py", "cli/parser.py", (Line('    "verify": ', '    "length": "print it",'),)),
+    "subcommand": Plugin(
+        "cli", "length.py", "cli/parser.py", (Line('    "verify": ', '    "length": ("length", "print it"),'),)
+    ),
 }
 
 
@@ -142,15 +145,49 @@ def copy(tmp_path_factory):
     return root
 
 
-@pytest.fixture
-def python(copy, tmp_path):
-    """Run Python on the copy, and give its output."""
+SERVER = """
+import contextlib, io, json, os, runpy, sys
+from mobius_flow.cli import main
+for line in sys.stdin:
+    script, words, place = json.loads(line)
+    os.chdir(place)
+    sys.argv[1:] = words
+    out, status = io.TextIOWrapper(io.BytesIO(), encoding="utf-8"), 0
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
+        try:
+            if script:
+                runpy.run_path(script, run_name="__main__")
+            else:
+                status = main(words)
+        except SystemExit as end:
+            status = end.code or 0
+    out.seek(0)
+    print(json.dumps([status, out.read()]), flush=True)
+"""
 
-    def run(*words, status=0, cwd=tmp_path):
-        path = os.pathsep.join([str(copy.parent), str(copy / "tests")])
-        done = finished([sys.executable, *map(str, words)], cwd=cwd, env={**os.environ, "PYTHONPATH": path})
-        assert done.returncode == status, done.stdout + done.stderr
-        return done.stdout
+
+def environment(copy):
+    """Of processes whose package is the copy."""
+    return {**os.environ, "PYTHONPATH": os.pathsep.join([str(copy.parent), str(copy / "tests"), str(copy / "tools")])}
+
+
+@pytest.fixture(scope="module")
+def server(copy):
+    """A process that runs one after the other in the copy: it imports NumPy and SciPy once."""
+    with running([sys.executable, "-c", SERVER], stdin=subprocess.PIPE, env=environment(copy)) as process:
+        yield process
+
+
+@pytest.fixture
+def python(server, tmp_path):
+    """Run a script on the copy, or the command line where none is named, and give its output."""
+
+    def run(script, *words, status=0):
+        server.stdin.write(json.dumps([str(script), [*map(str, words)], str(tmp_path)]) + "\n")
+        server.stdin.flush()
+        found, said = json.loads(server.stdout.readline())
+        assert found == status, said
+        return said
 
     return run
 
@@ -158,7 +195,7 @@ def python(copy, tmp_path):
 @pytest.fixture
 def command(python):
     """Run the copy's command line."""
-    return lambda *words, **more: python("-m", "mobius_flow", *words, **more)
+    return lambda *words, **more: python("", *words, **more)
 
 
 @pytest.fixture
@@ -166,10 +203,6 @@ def trefoil(tmp_path):
     path = tmp_path / "trefoil.txt"
     write_curve(path, torus_trefoil(40))
     return path
-
-
-def test_the_copy_is_what_runs(copy, python):
-    assert Path(python("-c", "import mobius_flow.core as m; print(m.__file__)").strip()) == copy / "core/__init__.py"
 
 
 @pytest.mark.parametrize("kind", PLUGINS)
@@ -259,9 +292,11 @@ print(*(option.name for option in properties.shown("basic")))
 """
 
 
-def test_blender(python):
+def test_blender(copy):
     pytest.importorskip("bpy")
-    lines = [line.split() for line in python("-c", IN_BLENDER).splitlines() if line]
+    done = finished([sys.executable, "-c", IN_BLENDER], env=environment(copy))
+    assert done.returncode == 0, done.stderr
+    lines = [line.split() for line in done.stdout.splitlines() if line]
     for energy, metric, method, patience in (lines[:4], lines[4:8]):
         assert "inverse-cube" in energy
         assert "lumped" in metric
@@ -289,27 +324,28 @@ def test_the_documents_are_out_of_date_until_they_are_rendered(copy, python):
     assert python(tool, "--check") == ""
 
 
-def outcome_of(python, copy, *words, **more):
-    """What pytest says of some of the copy's tests."""
-    return python("-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:randomly", *words, cwd=copy, **more)
-
-
-def test_the_tests_pick_it_up(copy, python):
-    files = ["tests/core/energies", "tests/core/test_relax.py", "tests/core/curve", "tests/cli/test_options.py"]
-    chosen = "inverse-cube or heavy-ball-trefoil or halving-trefoil or num or patience"
-    found = outcome_of(python, copy, "-vv", "-k", chosen, *files)
+def test_the_tests_pick_it_up(copy):
+    """And that of the metrics asks for the newcomer's value on the circle."""
+    files = [
+        *("core/energies/test_derivatives.py", "core/energies/test_invariances.py", "core/test_relax.py"),
+        *("core/curve/test_io_refusals.py", "cli/test_options.py", "core/test_metrics.py"),
+    ]
+    chosen = (
+        "inverse-cube or heavy-ball-trefoil or halving-trefoil or num or patience or lumped and (circle or definite)"
+    )
+    words = ["-vv", "-p", "no:cacheprovider", "-k", chosen, *(f"tests/{name}" for name in files)]
+    done = finished([sys.executable, "-m", "pytest", "--slow", *words], cwd=copy, env=environment(copy))
+    found = dict(re.findall(r"^tests/\S*/(test_\w+\.py::\S+) (PASSED|FAILED)", done.stdout, re.MULTILINE))
     for test in (
-        "test_derivatives.py::test_taylor_slope_of_the_derivative[",
+        "test_derivatives.py::test_taylor_slope_of_the_derivative[plane-inverse-cube]",
         "test_invariances.py::test_similarities[inverse-cube]",
         "test_relax.py::test_every_method_goes_down_feasibly_and_certified[heavy-ball-trefoil]",
         "test_relax.py::test_every_method_goes_down_feasibly_and_certified[halving-trefoil]",
         "test_io_refusals.py::test_any_bytes_give_a_curve_or_one_sentence[.num]",
         "test_options.py::test_every_option_can_be_given[patience]",
     ):
-        assert test in found
-
-
-def test_a_metric_is_asked_for_its_value_on_the_circle(copy, python):
-    said = outcome_of(python, copy, "tests/core/test_metrics.py", "-k", "lumped and (circle or definite)", status=1)
-    assert "KeyError: 'lumped'" in said
-    assert "4 failed, 7 passed" in said
+        assert found.get(test) == "PASSED", done.stdout
+    failed = [name for name, outcome in found.items() if outcome == "FAILED"]
+    assert len(failed) == 4
+    assert all("lumped" in name and name.startswith("test_metrics.py") for name in failed)
+    assert "KeyError: 'lumped'" in done.stdout

@@ -158,8 +158,10 @@ def test_blender_is_told_the_tables_and_to_forget_them(monkeypatch):
 @pytest.mark.skipif(not bpy.app.build_options.international, reason="this Blender speaks English only")
 def test_blender_speaks_german():
     view = bpy.context.preferences.view
+    before = view.language, view.use_translate_interface
     view.language, view.use_translate_interface = "de_DE", True
     assert translations.iface_("Links") == "Verschlingungen"
+    view.language, view.use_translate_interface = before
 
 
 def german(text):

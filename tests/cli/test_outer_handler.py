@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from families import crossed, family
 from mobius_flow import __version__
 from mobius_flow.cli import main
 from mobius_flow.core import write_curve
@@ -80,8 +81,7 @@ def test_help_and_version_need_no_numpy(tmp_path: Path) -> None:
 
 
 @linux
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
-@pytest.mark.parametrize("words", ["relax --help", "relax nö.txt o.txt"])
+@pytest.mark.parametrize(("encoding", "words"), crossed(["ascii", "cp1252"], ["relax --help", "relax nö.txt o.txt"]))
 def test_terminals_of_few_letters(trefoil: str, encoding: str, words: str) -> None:
     done = shell(f"flow {words}", trefoil, {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"})
     assert done.returncode == (2 if "nö" in words else 0)
@@ -90,8 +90,9 @@ def test_terminals_of_few_letters(trefoil: str, encoding: str, words: str) -> No
 
 
 @linux
-@pytest.mark.parametrize("words", ["methods", "--help", 'energy "$1"', "knot 3_1 -"])
-@pytest.mark.parametrize("end", [">/dev/full", ">&-"])
+@pytest.mark.parametrize(
+    ("words", "end"), crossed(["methods", "--help", 'energy "$1"', "knot 3_1 -"], [">/dev/full", ">&-"])
+)
 def test_standard_output_that_takes_nothing(trefoil: str, words: str, end: str) -> None:
     done = shell(f"flow {words} {end}", trefoil)
     assert done.returncode == 2
@@ -100,7 +101,7 @@ def test_standard_output_that_takes_nothing(trefoil: str, words: str, end: str) 
 
 
 @linux
-@pytest.mark.parametrize("end", ["2>/dev/full", "2>&-", "<&- 2>&-", ">&- 2>&-"])
+@pytest.mark.parametrize("end", family(["2>/dev/full", "<&- 2>&-", ">&- 2>&-", "2>&-"], every=2))
 def test_work_is_done_without_standard_error(trefoil: str, tmp_path: Path, end: str) -> None:
     out, report = tmp_path / "o.txt", tmp_path / "r.json"
     done = shell(f'flow relax "$1" {out} --report {report} --max-iterations 2 {end}', trefoil)
@@ -110,7 +111,7 @@ def test_work_is_done_without_standard_error(trefoil: str, tmp_path: Path, end: 
 
 
 @linux
-@pytest.mark.parametrize("outputs", ["-", "o.txt --report -", "o.txt --trajectory /dev/stdout"])
+@pytest.mark.parametrize("outputs", family(["-", "o.txt --report -", "o.txt --trajectory /dev/stdout"]))
 def test_results_do_not_go_to_a_closed_stream(trefoil: str, tmp_path: Path, outputs: str) -> None:
     done = shell(f'cd {tmp_path} && flow relax "$1" {outputs} >&-', trefoil)
     assert (done.returncode, done.stderr) == (2, "mobius-flow: standard output is closed; name a file\n")

@@ -84,10 +84,10 @@ def wrong_value(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(HierarchicalMoebiusEnergy, "value", lambda self, curve: (1.0 + 3e-6) * original(self, curve))
 
 
-@pytest.mark.parametrize("defect", [wrong_kernels, wrong_derivative, wrong_value])
+@pytest.mark.parametrize("defect", [pytest.param(wrong_kernels, marks=pytest.mark.slow), wrong_derivative, wrong_value])
 def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     defect(monkeypatch)
-    message = short().message
+    message = short(max_iterations=1).message
     assert f"{INACCURATE}: against dense sums over a sample its relative errors are up to " in message
     assert message.endswith("in the gradient norm; the dense solver has none of them")
 

@@ -143,7 +143,7 @@ def test_famous_unknot_adaptively(tmp_path):
     assert verify(tmp_path / "t.npz").accepted
 
 
-@pytest.mark.parametrize("mesh", ["finer", "adaptive"])
+@pytest.mark.parametrize("mesh", [pytest.param("finer", marks=pytest.mark.slow), "adaptive"])
 def test_granny_has_no_minimiser_and_is_told_so(mesh, tmp_path):
     """A composite knot's strands pull tight without limit: that is no convergence."""
     trajectory = Trajectory()

@@ -94,8 +94,8 @@ def test_meshes_that_change(tmp_path: Path, mesh: str) -> None:
 
 
 def test_coarse_starts_with_arcs(tmp_path: Path) -> None:
-    result = relaxed(tmp_path, opened(torus_trefoil(1600), 0), max_iterations=35)
-    assert len(result.curve) == 1600
+    result = relaxed(tmp_path, opened(torus_trefoil(900), 0), max_iterations=35)
+    assert len(result.curve) == 900
 
 
 @pytest.mark.slow

@@ -42,14 +42,14 @@ def verified(curve, tmp_path, **settings):
     return result
 
 
-def flat_trefoil(n=60):
+def flat_trefoil(n=40):
     curve = torus_trefoil(n)
     return curve.with_vertices(curve.vertices * [1.0, 1.0, 0.9])
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_no_method_goes_through_a_wall(method, tmp_path):
-    result = verified(flat_trefoil(), tmp_path, method=method, max_iterations=6, vertices=60, mesh="fixed", avoid=NEAR)
+    result = verified(flat_trefoil(), tmp_path, method=method, max_iterations=6, vertices=40, mesh="fixed", avoid=NEAR)
     assert np.abs(result.curve.vertices[:, 2]).max() < 0.95
 
 
@@ -62,10 +62,10 @@ def test_without_the_wall_it_goes_there():
 
 @pytest.mark.parametrize("more", [{"mesh": "adaptive"}, {"mesh": "finer"}, {"hops": 1}, {"escape_saddles": True}])
 def test_changes_of_mesh_and_shape_stay_clear(more, tmp_path):
-    curve = scramble(knot("3_1", vertices=60), seed=3, moves=300)
+    curve = scramble(knot("3_1", vertices=40), seed=3, moves=150)
     low, high = float(curve.vertices.min()), float(curve.vertices.max())
     container = box(low - 0.02 * (high - low), high + 0.02 * (high - low))
-    verified(curve, tmp_path, max_iterations=40, avoid=[container], **more)
+    verified(curve, tmp_path, max_iterations=20, avoid=[container], **more)
 
 
 @pytest.mark.kernels

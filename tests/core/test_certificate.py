@@ -130,7 +130,7 @@ FAR_TRIANGLE = [
 
 def far_polygons() -> list[Curve]:
     rng = np.random.default_rng(17)
-    shapes = [rng.normal(size=(int(rng.integers(3, 9)), 3)) for _ in range(8)]
+    shapes = [rng.normal(size=(int(rng.integers(3, 9)), 3)) for _ in range(3)]
     return [Curve(FAR_TRIANGLE), *[Curve(1e6 * shape + 1e9 * rng.choice([-1, 1], size=3)) for shape in shapes]]
 
 

@@ -22,6 +22,8 @@ from mobius_flow.core.verify import verify
 from shapes import regular_polygon, torus_trefoil
 from tasks import wanted
 
+SLOW = [pytest.param(mesh, marks=pytest.mark.slow) for mesh in ("fixed", "finer")]
+
 
 def rough(curve: Curve) -> Curve:
     rng = np.random.default_rng(71)
@@ -128,7 +130,7 @@ def test_pins_are_held_by_the_hierarchical_solver_too() -> None:
     assert hierarchical[-1].energy == pytest.approx(dense[-1].energy, rel=1e-6)
 
 
-@pytest.mark.parametrize("mesh", ["fixed", "finer", "adaptive", "auto"])
+@pytest.mark.parametrize("mesh", [*SLOW, "adaptive", "auto"])
 def test_pins_survive_every_mesh(mesh: str) -> None:
     """Coarse input with near strands: vertices are inserted at the start, and later on split and left out."""
     curve = knot("ochiai-1")

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from changed_interventions import change
+from families import crossed
 from mobius_flow.core import (
     METHODS,
     Curve,
@@ -44,8 +45,7 @@ def even_trefoil() -> Curve:
     return result.curve
 
 
-@pytest.mark.parametrize("name", ["trefoil", "link"])
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("method", "name"), crossed(METHODS, ["trefoil", "link"]))
 def test_every_method_goes_down_feasibly_and_certified(method, name, even_trefoil):
     curve = even_trefoil if name == "trefoil" else hopf_link(40)
     iterates = list(relax(curve, RelaxOptions(method=method, max_iterations=6, vertices=len(curve))))

@@ -16,6 +16,8 @@ from mobius_flow.core.knots.composite import knotted_ball
 from mobius_flow.core.metrics import METRICS
 from mobius_flow.core.taylor import taylor_slope
 
+SLOW = [pytest.param(method, marks=pytest.mark.slow) for method in ("cg", "flow-moebius", "trust-region")]
+
 
 def ring(center, radius=1.0, size=12):
     t = 2 * np.pi * np.arange(size) / size
@@ -122,7 +124,7 @@ def test_one_part_is_the_usual_constraint():
     np.testing.assert_array_equal(*(list(each.derivative(curve).border()) for each in (usual, one)))
 
 
-@pytest.mark.parametrize("method", ["lbfgs", "flow-moebius", "trust-region"])
+@pytest.mark.parametrize("method", ["lbfgs", *SLOW])
 def test_unlinked_circles_come_to_rest(method):
     """They used to drift apart until the iterations were used up."""
     curve = Curve.from_components([ring([0, 0, 0], 1.0, 40), ring([0.2, 0, 0.1], 1.0, 40)])
@@ -154,9 +156,6 @@ def test_linked_components_are_not_held():
     result = minimize(knot("L2a1"), RelaxOptions(vertices=120))
     assert "unlinked" not in result.message
     assert result.energies[-1] < 48
-
-
-SLOW = [pytest.param(method, marks=pytest.mark.slow) for method in ("cg", "flow-moebius")]
 
 
 @pytest.mark.parametrize("method", ["lbfgs", *SLOW])

@@ -6,14 +6,14 @@ from . import curves
 from .streams import emit
 
 
-def add_to(parser: argparse.ArgumentParser) -> None:
+def add_length(parser: argparse.ArgumentParser) -> None:
     """Describe the subcommand."""
     parser.description = "Print the length of a curve."
     parser.add_argument("input", metavar="IN")
     curves.add_format(parser)
+    parser.set_defaults(run=_run)
 
 
-def run(options: argparse.Namespace) -> int:
-    """Print the length."""
+def _run(options: argparse.Namespace) -> int:
     emit(repr(curves.read(options.input, options.format).curve.length))
     return 0

@@ -71,7 +71,8 @@ def test_what_is_none_is_refused(options):
     assert contents() == before
 
 
-def test_the_gallery_has_every_knot_in_one_group():
+def test_the_gallery_has_every_knot_in_one_group(monkeypatch):
+    monkeypatch.setattr(icons, "icon", lambda _: 0)
     settings = bpy.context.scene.mobius_flow_knots
     assert settings.knot == "3_1"
     shown = []

@@ -8,6 +8,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, contents, evaluated, fcurves, in_world, relax, sentence, show, stored  # noqa: E402
+from families import crossed  # noqa: E402
 from knot_diagrams import linking_number  # noqa: E402
 from mathutils import Euler, Matrix, Vector  # noqa: E402
 from mobius_flow.addon.curves import keyframes  # noqa: E402
@@ -262,8 +263,7 @@ def test_other_animation_of_several_stays():
     assert {curve.data_path for curve in fcurves(second)} == {"color", "hide_render"}
 
 
-@pytest.mark.parametrize("output", ["SHAPE_KEYS", "FCURVES", "RESULT"])
-@pytest.mark.parametrize("kind", ["POLY", "BEZIER", "NURBS"])
+@pytest.mark.parametrize(("output", "kind"), crossed(["SHAPE_KEYS", "FCURVES", "RESULT"], ["POLY", "BEZIER", "NURBS"]))
 def test_whatever_fails_while_writing_all_is_put_back(monkeypatch, output, kind):
     for k, points in enumerate(tangled(12)):
         add_curve([2 * points], f"Ring {k}", kind=kind)

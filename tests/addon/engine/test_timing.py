@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from families import family
 from mobius_flow.addon.engine.motion import Motion
 from mobius_flow.addon.engine.placement import Link, Placement
 from mobius_flow.addon.engine.timing import LAST_FRAME, Course, Pace, Timing
@@ -14,11 +15,11 @@ from mobius_flow.core.knots import knot
 LENGTHS = [pace for pace in Pace if pace is not Pace.ITERATE]
 
 
-@pytest.fixture(scope="module", params=["7_4", "6_1", "5_2"])
+@pytest.fixture(scope="module", params=family(["7_4", "6_1", "5_2"]))
 def motion(request):
     """A relaxation whose iterates move much at first and hardly at last."""
     motion = Motion(Link((Placement(np.eye(3), np.zeros(3)),), (1,)))
-    for iterate in relax(knot(request.param)):
+    for iterate in relax(knot(request.param, 100), RelaxOptions(mesh="fixed", vertices=100)):
         motion.add(iterate)
     return motion
 

@@ -12,7 +12,6 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored  # noqa: E402
 from mobius_flow.addon.curves.splines import Splines  # noqa: E402
-from mobius_flow.addon.engine import worker  # noqa: E402
 from mobius_flow.addon.live import key_writer  # noqa: E402
 from mobius_flow.addon.live.run import State  # noqa: E402
 from mobius_flow.core import Curve, minimize  # noqa: E402
@@ -20,6 +19,7 @@ from modal_operator import Operator, keys, restored  # noqa: E402
 from shapes import lattice_knot, torus_trefoil  # noqa: E402
 
 
+@pytest.mark.parametrize("operator", ["process"], indirect=True)
 def test_the_same_curve_as_the_headless_job(operator):
     live = add_trefoil()
     bpy.ops.curve.mobius_flow_fit_tube()
@@ -253,6 +253,7 @@ def test_a_saved_file_has_the_curve_as_it_was(operator, tmp_path):
     np.testing.assert_array_equal(stored(loaded.curves[0]), before)
 
 
+@pytest.mark.parametrize("operator", ["process"], indirect=True)
 def test_loading_a_file(operator):
     add_trefoil()
     operator.start()
@@ -274,6 +275,7 @@ def test_disabling_ends_the_run(operator, addon):
     restored(obj, before)
 
 
+@pytest.mark.parametrize("operator", ["process"], indirect=True)
 def test_a_worker_that_dies_loses_nothing(operator):
     obj = add_trefoil()
     operator.given["vertices"] = 400
@@ -286,8 +288,7 @@ def test_a_worker_that_dies_loses_nothing(operator):
     assert obj.data.shape_keys is not None
 
 
-def test_without_a_process_a_thread(operator, monkeypatch):
-    monkeypatch.setattr(worker, "_start", lambda: None)
+def test_without_a_process_a_thread(operator):
     add_trefoil()
     operator.start()
     assert operator.run._worker.process is None

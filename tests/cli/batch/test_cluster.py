@@ -138,6 +138,7 @@ def test_a_scheduler_that_is_killed_costs_no_result(port: int, rings: Path, tmp_
     assert not list(out.glob(".*"))
 
 
+@pytest.mark.slow
 def test_it_works_beside_snappy_and_listens_on_loopback_alone(port: int, rings: Path, tmp_path: Path) -> None:
     """The commands of the documents, with nannies, where SnapPy is installed in place of python-snappy."""
     manual = (Path(__file__).parents[3] / "docs/batch.md").read_text(encoding="utf-8")

@@ -15,7 +15,7 @@ from mobius_flow.core.collision import FreeMotion, Limit, free_motion, is_free
 from motions import KINDS, Motion, Rng, first_contact, gaussian, placed
 
 QUADRILATERAL = Mesh((4,))
-COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
+COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "12"))
 
 
 @dataclass

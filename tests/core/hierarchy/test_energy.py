@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from families import crossed
 from mobius_flow.core import Curve, MobiusFlowError, MoebiusEnergy, Objective, RelaxOptions, minimize
 from mobius_flow.core.curve.refine import refine, subdivide
 from mobius_flow.core.energies import ENERGIES, Energy
@@ -23,16 +24,16 @@ def fourfold(n: int) -> Curve:
 
 
 CURVES = {
-    "torus": torus_trefoil(700),
-    "hopf": hopf_link(300),
-    "wave": SMOOTH_CURVES["wave"].polygon(500),
-    "ellipse": SMOOTH_CURVES["ellipse"].polygon(500),
-    "fourfold": fourfold(500),
-    "rings": scattered_rings(120, 5, 20.0),
-    "planar rings": scattered_rings(100, 3, 20.0, 2),
-    "table": refine(knot("8_19"), 700),
+    "torus": torus_trefoil(350),
+    "hopf": hopf_link(150),
+    "wave": SMOOTH_CURVES["wave"].polygon(250),
+    "ellipse": SMOOTH_CURVES["ellipse"].polygon(250),
+    "fourfold": fourfold(250),
+    "rings": scattered_rings(60, 5, 20.0),
+    "planar rings": scattered_rings(50, 3, 20.0, 2),
+    "table": refine(knot("8_19"), 400),
     "tangle": subdivide(random_polygon(3, (30,), 3), np.full(30, 20)),
-    "uneven": Curve.from_components([torus_trefoil(301).vertices, *scattered_rings(20, 3, 20.0).components]),
+    "uneven": Curve.from_components([torus_trefoil(201).vertices, *scattered_rings(20, 3, 20.0).components]),
 }
 
 
@@ -76,9 +77,9 @@ def test_taylor_slope_of_the_derivative(curve: Curve) -> None:
     assert derivative_slope(with_small_leaves(curve), curve, direction, largest=1e-4) == pytest.approx(2, abs=0.02)
 
 
-@CURVE
-@pytest.mark.parametrize("smooth", [True, False])
-def test_products_with_the_second_derivative_to_four_digits(curve: Curve, smooth: bool) -> None:
+@pytest.mark.parametrize(("name", "smooth"), crossed(CURVES, [True, False]))
+def test_products_with_the_second_derivative_to_four_digits(name: str, smooth: bool) -> None:
+    curve = CURVES[name]
     inner, noise = FractionalMetric().at(curve), direction_for(curve)
     v = inner.solve(noise) if smooth else noise
     exact = MoebiusEnergy().hessian_product(curve, v)
@@ -144,7 +145,7 @@ def test_units_that_are_powers_of_two_change_no_digit(factor: float) -> None:
     np.testing.assert_array_equal(factor * scaled, derivative)
 
 
-def test_a_hundred_thousand_vertices_lose_no_digits() -> None:
+def test_many_vertices_lose_no_digits() -> None:
     def energy_and_slope(n: int, energy: Energy) -> tuple[float, float]:
         """The energy and its derivative along one smooth field."""
         curve = Curve(torus_trefoil(n).vertices * [1.0, 1.3, 0.8])
@@ -153,7 +154,7 @@ def test_a_hundred_thousand_vertices_lose_no_digits() -> None:
 
     coarse, fine = (np.array(energy_and_slope(n, MoebiusEnergy())) for n in (500, 1000))
     limit = fine + (fine - coarse) / 3.0  # the midpoint rule's error falls with 1/n²
-    value, slope = energy_and_slope(100_000, HierarchicalMoebiusEnergy())
+    value, slope = energy_and_slope(40_000, HierarchicalMoebiusEnergy())
     assert value == pytest.approx(limit[0], rel=1e-6)
     assert slope == pytest.approx(limit[1], rel=1e-5), "what the order of the expansions promises, see `theta`"
 

@@ -18,8 +18,8 @@ from mobius_flow.core.knots import knot
 from shapes import chain_of_rings, graded_trefoil, torus_trefoil
 
 CURVES = {
-    "smooth": bent_trefoil(3000),
-    "tangle": subdivide(refine(knot("ochiai-1"), 300), np.full(300, 6)),
+    "smooth": bent_trefoil(1500),
+    "tangle": subdivide(refine(knot("ochiai-1"), 300), np.full(300, 4)),
     "table": refine(knot("goeritz"), 1000),
     "graded": graded_trefoil(1500, 20.0),
     "links": chain_of_rings(20, (60, 90)),

@@ -76,7 +76,10 @@ def test_links() -> None:
     assert abs(signature(curve).linking[0]) == 2
 
 
-@pytest.mark.parametrize("name", ["culprit", "goeritz", "thistlethwaite", "ochiai-1"])
+@pytest.mark.parametrize(
+    "name",
+    ["culprit", "goeritz", *(pytest.param(name, marks=pytest.mark.slow) for name in ("thistlethwaite", "ochiai-1"))],
+)
 def test_they_relax_to_the_circle(name: str) -> None:
     result = minimize(knot(name))
     assert result.status is Status.CONVERGED

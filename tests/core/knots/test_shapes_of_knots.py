@@ -86,7 +86,7 @@ def test_the_trivial_braid_is_a_set_of_circles() -> None:
 
 
 @given(word=st.lists(st.integers(-4, 4).filter(bool), max_size=12), strands=st.integers(5, 6))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=12, deadline=None)
 def test_components_and_linking_numbers_are_those_of_the_word(word: list[int], strands: int) -> None:
     curve = braid_closure(word, strands=strands)
     component_at = list(range(strands))

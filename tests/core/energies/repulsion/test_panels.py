@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from energy_references import inverse_square_integral
+from families import crossed
 from mobius_flow.core import Curve
 from mobius_flow.core.energies.repulsion.schedule import Schedule
 from mobius_flow.core.obstacle import Obstacle
@@ -36,8 +37,7 @@ def integrated(obstacle: Obstacle, curve: Curve) -> tuple[float, Schedule]:
     return float(2 * np.pi * curve.edge_lengths[0] / term.clearance(curve)[0]), term.schedule
 
 
-@pytest.mark.parametrize("gap", [1e-1, 1e-3, 1e-6])
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(("shape", "gap"), crossed(SHAPES, [1e-1, 1e-3, 1e-6]))
 def test_triangles(shape: str, gap: float) -> None:
     start, end, breaks = SHAPES[shape](gap)
     found, _ = integrated(Obstacle(TRIANGLE, [[0, 1, 2]]), curve_of(start, end))
@@ -45,8 +45,7 @@ def test_triangles(shape: str, gap: float) -> None:
     assert found == pytest.approx(reference, rel=1e-8)
 
 
-@pytest.mark.parametrize("gap", [1e-1, 1e-3, 1e-6])
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(("shape", "gap"), crossed(SHAPES, [1e-1, 1e-3, 1e-6]))
 def test_segments(shape: str, gap: float) -> None:
     start, end, _ = SHAPES[shape](gap)
     segment = np.array([[0.0, 0, 0], [1.0, 0, 0]])
