@@ -1,4 +1,4 @@
-"""What operators require of curves and scenes: a failed requirement gives one sentence, and a remedy if there is one."""
+"""What operators require of curves and scenes: a failed requirement gives a sentence, and a remedy if there is one."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
