@@ -6,14 +6,12 @@ so that the library works where there is no Blender.
 
 
 def register() -> None:
-    """Add Möbius Flow's classes, settings and menu entry to Blender."""
     from . import registration
 
     registration.register()
 
 
 def unregister() -> None:
-    """Remove everything that `register` added."""
     from . import registration
 
     registration.unregister()

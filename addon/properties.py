@@ -168,8 +168,6 @@ SETTINGS = tuple(settings(set()))
 
 
 class MobiusFlowSettings(bpy.types.PropertyGroup):
-    """What to relax with and how to key it."""
-
     __annotations__ = settings(set())
 
 

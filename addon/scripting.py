@@ -13,8 +13,9 @@ import numbers
 import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..core import Curve, MobiusFlowError, OptionError
@@ -30,9 +31,6 @@ from .live.requirements import idle, require
 from .pictures import staging
 from .pictures.filming import Filming
 from .properties import key_options, relax_options, settings
-
-if TYPE_CHECKING:
-    import bpy
 
 _DECLARED = {name: (each.function, each.keywords) for name, each in settings(set()).items()}
 _DEFAULTS = {name: keywords["default"] for name, (_, keywords) in _DECLARED.items()}
@@ -53,14 +51,9 @@ class Relaxation:
     Parameters
     ----------
     objects
-        Curve objects in Object Mode.
+        Curve objects in Object Mode, none of them twice.
     sample_splines
         Whether Bézier and NURBS splines may become the polygons that are drawn for them.
-
-    Raises
-    ------
-    MobiusFlowError
-        If an object is no curve, or is given twice.
 
     Examples
     --------
@@ -73,7 +66,7 @@ class Relaxation:
     >>> relaxation.film("/tmp/film.mp4", look="QUICK")  # doctest: +SKIP
     """
 
-    def __init__(self, *objects: "bpy.types.Object", sample_splines: bool = False) -> None:
+    def __init__(self, *objects: bpy.types.Object, sample_splines: bool = False) -> None:
         if not objects:
             raise MobiusFlowError("give at least one curve object")
         for obj in objects:
@@ -84,7 +77,7 @@ class Relaxation:
         self.objects = objects
         self.sample_splines = sample_splines
 
-    def relax(self, avoid: Iterable["bpy.types.Object"] = (), **settings: Any) -> Report:
+    def relax(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Relax from how the curves are, or were before they were baked, and keep the motion as keyframes.
 
         Parameters
@@ -100,16 +93,12 @@ class Relaxation:
         Returns
         -------
         Report
-            What was done; its ``sentence`` says so, and ``certified`` whether all of it was proved.
-
-        Raises
-        ------
-        MobiusFlowError
-            If the curves cannot be relaxed or a setting is wrong; the message says why and what helps.
+            What was done; its ``sentence`` says so, and ``certified`` whether all of it was proved. What cannot be
+            relaxed, or is no setting, raises a MobiusFlowError.
         """
         return begin(self.objects, complete(settings) | {"avoid": avoid}, False, self.sample_splines).run()
 
-    def relax_further(self, avoid: Iterable["bpy.types.Object"] = (), **settings: Any) -> Report:
+    def relax_further(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
 
         With ``balance=True`` or ``escape_saddles=True`` this is what the buttons *Balance* and *Leave Saddle* do.
@@ -128,13 +117,11 @@ class Relaxation:
         require(BAKED.of(self.objects))
         return BakedKeys(self.objects).curves
 
-    def set_up_stage(self, use_camera: bool = True, use_world: bool = True) -> "bpy.types.Collection":
+    def set_up_stage(self, use_camera: bool = True, use_world: bool = True) -> bpy.types.Collection:
         """Put a camera, lights and a floor around the curves for as long as they move; see `staging.set_up`.
 
         The scene is the open one. Raises MobiusFlowError if splines cannot be read.
         """
-        import bpy
-
         _update()
         require(idle() or READABLE.of(self.objects))
         return staging.set_up(bpy.context.scene, self.objects, use_camera, use_world)
@@ -144,8 +131,6 @@ class Relaxation:
 
         Raises MobiusFlowError if it cannot be made, or is there already and may not be overwritten.
         """
-        import bpy
-
         require(idle())
         filming = Filming(bpy.context.scene, os.fspath(path), look, overwrite)
         filming.render()
@@ -153,7 +138,7 @@ class Relaxation:
 
 
 def begin(
-    objects: Sequence["bpy.types.Object"], values: Mapping[str, Any], continues: bool, sample_splines: bool
+    objects: Sequence[bpy.types.Object], values: Mapping[str, Any], continues: bool, sample_splines: bool
 ) -> Session:
     """A session with the values of all settings; raises MobiusFlowError."""
     _update()
@@ -171,15 +156,11 @@ def begin(
 
 def _update() -> None:
     """Let Blender know where objects are that a script has just moved."""
-    import bpy
-
     bpy.context.view_layer.update()
 
 
-def _objects(avoid: Iterable["bpy.types.Object"]) -> list["bpy.types.Object"]:
+def _objects(avoid: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
     """What is to be avoided; raises MobiusFlowError if something is no object."""
-    import bpy
-
     if not isinstance(avoid, Iterable):
         raise MobiusFlowError(f"avoid is of type {type(avoid).__name__}; give a list of objects")
     found = list(avoid)

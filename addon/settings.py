@@ -15,13 +15,12 @@ from .properties import MobiusFlowSettings
 # since 5.0 Blender marks relative paths as wrong where a property does not say that it knows them
 _RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0) else set()
 _LEVELS = [*QUALITIES, "CUSTOM"]
+_LEVEL_ITEMS = [
+    *((name, each.label, each.description, "NONE", k) for k, (name, each) in enumerate(QUALITIES.items())),
+    ("CUSTOM", "Custom", "Options as they are set in Expert", "NONE", len(QUALITIES)),
+]
 _TREFOIL = list(labels()).index("3_1")  # where items are made by a function, the default is a number
 _knot_items: dict[str, list[tuple[str, str, str, int, int]]] = {}  # Blender needs the strings to stay alive
-
-
-def _quality_items() -> list[tuple[str, str, str, str, int]]:
-    items = [(name, each.label, each.description, "NONE", k) for k, (name, each) in enumerate(QUALITIES.items())]
-    return [*items, ("CUSTOM", "Custom", "Options as they are set in Expert", "NONE", len(items))]
 
 
 def _quality(panel: Any) -> int:
@@ -36,12 +35,10 @@ def _set_quality(panel: Any, number: int) -> None:
 
 
 class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
-    """What the panel shows."""
-
     quality: EnumProperty(
         name="Quality",
         description="How near to the least energy the shape comes; sets some of the options in Expert",
-        items=_quality_items(),
+        items=_LEVEL_ITEMS,
         get=_quality,
         set=_set_quality,
     )
@@ -54,8 +51,6 @@ class MobiusFlowPanelSettings(bpy.types.PropertyGroup):
 
 
 class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
-    """Where the film goes, and what it looks like."""
-
     filepath: StringProperty(
         name="File",
         description="Where the film goes, an MP4; // is the directory of the open file",
@@ -71,8 +66,6 @@ class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
 
 
 class MobiusFlowSurroundings(bpy.types.PropertyGroup):
-    """What curves avoid."""
-
     avoid: PointerProperty(
         name="Avoid",
         description="Collection whose visible objects are never touched by curves that are relaxed",
@@ -98,8 +91,6 @@ def _show_first(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) 
 
 
 class MobiusFlowKnots(bpy.types.PropertyGroup):
-    """Which knot is picked."""
-
     group: EnumProperty(
         name="Group",
         description="Which knots are shown",
@@ -121,7 +112,6 @@ GROUPS_OF_SCENE = {
 
 
 def register() -> None:
-    """Give scenes the settings, whose classes are registered."""
     for name, cls in GROUPS_OF_SCENE.items():
         setattr(bpy.types.Scene, name, PointerProperty(type=cls))
 

@@ -6,7 +6,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
-from ...core import Curve, OptionError
+from ...core import Curve, OptionError, knots
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves import bevel
@@ -82,7 +82,6 @@ class AddsKnot(Button, AddObjectHelper):
         return self.fit_bevel and (given("fit_bevel") or not given("thickness"))
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
-        """Show what says which knot it is."""
         raise NotImplementedError
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -120,11 +119,7 @@ class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
     q: IntProperty(name="q", description="How often the curve goes through the torus", default=3, soft_min=2)
 
     def make(self) -> tuple[str, Curve]:
-        from ...core.knots import knot
-
-        name = self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})"
-        check_numbers(name)
-        return name, knot(name)
+        return named_knot(self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})")
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
         layout.prop(self, "kind")
@@ -132,17 +127,13 @@ class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
             layout.prop(self, name)
 
 
-def check_numbers(name: str) -> None:
-    """Raise an OptionError for a torus knot or braid that would freeze the window."""
-    for number in re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))):
-        if int(number) > _MAX_TURNS:
-            raise OptionError(
-                Message(
-                    "{name} has a number beyond {most}, which is too much for a window; use smaller ones",
-                    name=name[:60],
-                    most=_MAX_TURNS,
-                )
-            )
+def named_knot(name: str) -> tuple[str, Curve]:
+    """A knot as it is woven, and its name; raises an OptionError if a torus knot or braid would freeze the window."""
+    numbers = map(int, re.findall(r"\d+", "".join(re.findall(r"\([^)]*\)", name))))
+    if max(numbers, default=0) > _MAX_TURNS:
+        sentence = "{name} has a number beyond {most}, which is too much for a window; use smaller ones"
+        raise OptionError(Message(sentence, name=name[:60], most=_MAX_TURNS))
+    return name, knots.knot(name)
 
 
 def found(_operator: bpy.types.Operator, _context: bpy.types.Context, _text: str) -> list[str]:
@@ -188,13 +179,11 @@ class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):
         return {"FINISHED"}
 
     def make(self) -> tuple[str, Curve]:
-        from ...core.knots import smooth_knot
-
         if self.properties.is_property_set("choice"):
             self.knot = labels()[self.choice]
             self.properties.property_unset("choice")  # from now on the name is what counts
         name = ("m" if self.mirror else "") + name_of(self.knot)
-        return name, smooth_knot(name, self.vertices or None)
+        return name, knots.smooth_knot(name, self.vertices or None)
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
         for name in ("knot", "mirror", "vertices"):

@@ -1,4 +1,4 @@
-"""What operators have in common: the tooltip and scripts are told why one cannot be used, and nothing has happened."""
+"""The base of operators: tooltips and scripts get the reason why one cannot be used, and nothing has changed then."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -10,15 +10,16 @@ from ..live.modal import redraw_views
 from ..live.requirements import Refusal, Requirement, first, require
 from ..translations import rpt_, tip_
 
+_Act = Callable[[Any, bpy.types.Context], object]
 _PREFIX = "CURVE_OT_"
 
 
 class Button:
-    """An operator that acts if nothing that it needs is missing, and says otherwise what is."""
+    """An operator that acts if all that it needs is there, and otherwise reports what is missing."""
 
     bl_options = {"REGISTER", "UNDO"}
     needs: Sequence[Requirement] = ()
-    needs_at_last: Sequence[Requirement] = ()  # what takes too long for every redraw
+    needs_at_last: Sequence[Requirement] = ()  # those that take too long for every redraw
     poll_message_set: Callable[[str], None]
     report: Callable[[set[str], str], None]
 
@@ -45,7 +46,7 @@ class Button:
             self.act(context)
         except MobiusFlowError as error:
             return self.fail(error)
-        redraw_views(context.window_manager)  # which they are not by themselves where keys were changed
+        redraw_views(context.window_manager)  # changed keys alone do not cause it
         return {"FINISHED"}
 
     def fail(self, error: MobiusFlowError) -> set[str]:
@@ -58,10 +59,10 @@ class Button:
         raise NotImplementedError
 
 
-def button(label: str, *needs: Requirement, **more: Any) -> Callable[[Callable[[Any, bpy.types.Context], Any]], type]:
+def button(label: str, *needs: Requirement, **more: Any) -> Callable[[_Act], type]:
     """Make an operator without settings of a function: its name is the identifier, its docstring the tooltip."""
 
-    def operator(act: Callable[[Any, bpy.types.Context], Any]) -> type:
+    def operator(act: _Act) -> type:
         body = {"__doc__": act.__doc__, "__module__": act.__module__, "bl_label": label, "needs": needs, "act": act}
         return type(f"{_PREFIX}mobius_flow_{act.__name__}", (Button, bpy.types.Operator), body | more)
 

@@ -1,13 +1,12 @@
 """The operator that lifts drawings into knots."""
 
-from typing import TYPE_CHECKING
-
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, BoolVectorProperty, FloatProperty, IntProperty
 from bpy_extras.object_utils import object_data_add
 
 from ...core import Curve, CurveError
+from ...core.knots import Drawing, knot_type
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_link
@@ -15,9 +14,6 @@ from ..engine.drawing_plane import DrawingPlane
 from ..live.requirements import Condition, selected_curves
 from ..translations import iface_, rpt_
 from .adding import OBJECT_MODE, AddsKnot
-
-if TYPE_CHECKING:
-    from ...core.knots import Drawing
 
 _DRAWN = Condition("Draw a flat closed curve and select it first", lambda context: not selected_curves(context))
 _SWITCHES = 32  # Blender's longest array of switches
@@ -55,8 +51,6 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         """Lift the drawing and add it as a new object."""
-        from ...core.knots import Drawing
-
         drawn = selected_curves(context)
         self.check_lengths()
         curve = _read(drawn)
@@ -71,15 +65,12 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):
             obj.hide_render = True
         self.report({"INFO"}, rpt_(said))
 
-    def _lifted(self, drawing: "Drawing") -> Curve:
+    def _lifted(self, drawing: Drawing) -> Curve:
         count = min(len(drawing.crossings), _SWITCHES)
         lifted = drawing.lifted([k + 1 for k in range(count) if self.change[k]])
         return lifted.with_vertices(lifted.vertices * [1.0, 1.0, -self.height if self.mirror else self.height])
 
-    def _add(
-        self, context: bpy.types.Context, name: str, plane: DrawingPlane, drawing: "Drawing", lifted: Curve
-    ) -> None:
-        """Add the knot, and the numbers as its children."""
+    def _add(self, context: bpy.types.Context, name: str, plane: DrawingPlane, drawing: Drawing, lifted: Curve) -> None:
         vertices = plane.raised(lifted.vertices)
         middle = vertices.mean(axis=0)
         obj = object_data_add(context, self.curve_data(name, vertices - middle, lifted))
@@ -112,18 +103,16 @@ def _read(objects: list[bpy.types.Object]) -> Curve:
 
 def _description(curve: Curve, crossings: int) -> tuple[str, Message]:
     """A name for a drawn knot, and what can be said of it."""
-    from ...core.knots import knot_type
-
     found = knot_type(curve)
-    told = Message("{count} crossings", count=crossings) if crossings != 1 else Message("1 crossing")
+    said = Message("{count} crossings", count=crossings) if crossings != 1 else Message("1 crossing")
     if found.proved and found.names == ("0_1",):
-        return "Drawn Unknot", Message("{crossings}: it is not knotted", crossings=told)
+        return "Drawn Unknot", Message("{crossings}: it is not knotted", crossings=said)
     if not found.names:
-        return "Drawn Knot", told
+        return "Drawn Knot", said
     known = Message("one of {knots}", knots=", ".join(found.names)) if len(found.names) > 1 else found.names[0]
     name = "Drawn Knot" if len(found.names) > 1 else f"Drawn {found.names[0]}"
     sentence = "{crossings}: {knots}, proved" if found.proved else "{crossings}: perhaps {knots}, not proved"
-    return name, Message(sentence, crossings=told, knots=known)
+    return name, Message(sentence, crossings=said, knots=known)
 
 
 def _mark(collection: bpy.types.Collection, parent: bpy.types.Object, places: FloatArray, size: float) -> None:

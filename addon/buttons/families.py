@@ -3,9 +3,9 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ...core import Curve
+from ...core import Curve, knots
 from ..engine.knot_list import labels, name_of
-from .adding import AddsKnot, check_numbers, found
+from .adding import AddsKnot, found, named_knot
 
 _SHOWN = {
     "TORUS": ("p", "q"),
@@ -66,41 +66,21 @@ class CURVE_OT_mobius_flow_add_family(AddsKnot, bpy.types.Operator):
     )
 
     def make(self) -> tuple[str, Curve]:
-        return getattr(self, f"_{self.family.lower()}")()
-
-    def _torus(self) -> tuple[str, Curve]:
-        return _named(f"T({self.p},{self.q})")
-
-    def _braid(self) -> tuple[str, Curve]:
-        return _named(f"braid({','.join(self.word.replace(',', ' ').split())})")
-
-    def _lissajous(self) -> tuple[str, Curve]:
-        from ...core.knots import lissajous_knot
-
-        frequencies = self.frequency_x, self.frequency_y, self.frequency_z
-        return f"Lissajous{frequencies}".replace(" ", ""), lissajous_knot(frequencies, (self.phase_x, self.phase_y))
-
-    def _cable(self) -> tuple[str, Curve]:
-        from ...core.knots import cable, smooth_knot
-
+        if self.family == "TORUS":
+            return named_knot(f"T({self.p},{self.q})")
+        if self.family == "BRAID":
+            return named_knot(f"braid({','.join(self.word.replace(',', ' ').split())})")
+        if self.family == "LISSAJOUS":
+            frequencies, phases = (self.frequency_x, self.frequency_y, self.frequency_z), (self.phase_x, self.phase_y)
+            return f"Lissajous{frequencies}".replace(" ", ""), knots.lissajous_knot(frequencies, phases)
         name = name_of(self.companion)
-        return f"Cable({self.strands},{self.turns}) of {name}", cable(smooth_knot(name), self.strands, self.turns)
-
-    def _double(self) -> tuple[str, Curve]:
-        from ...core.knots import double, smooth_knot
-
-        name = name_of(self.companion)
-        return f"Double of {name}", double(smooth_knot(name), self.twists, clasp=-1 if self.left_clasp else 1)
+        along = knots.smooth_knot(name)
+        if self.family == "CABLE":
+            return f"Cable({self.strands},{self.turns}) of {name}", knots.cable(along, self.strands, self.turns)
+        return f"Double of {name}", knots.double(along, self.twists, clasp=-1 if self.left_clasp else 1)
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
         layout.prop(self, "family")
         column = layout.column(align=True)
         for name in _SHOWN[self.family]:
             column.prop(self, name)
-
-
-def _named(name: str) -> tuple[str, Curve]:
-    from ...core.knots import knot
-
-    check_numbers(name)
-    return name, knot(name)

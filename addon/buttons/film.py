@@ -54,7 +54,7 @@ def remove_stage(_operator: Button, context: bpy.types.Context) -> None:
 
 
 class _OfFilm:
-    """What is asked of a film; what is not given comes from the scene's settings."""
+    """File and look of a film, by default those of the scene's settings."""
 
     __annotations__ = {
         "filepath": StringProperty(name="File", description="Where the film goes", options={"SKIP_SAVE", "HIDDEN"}),
@@ -88,7 +88,6 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
     }
 
     def act(self, context: bpy.types.Context) -> None:
-        """Render it in this call."""
         self.filming = Filming(context.scene, *self.wanted(context), self.overwrite)
         self.filming.render()
         self._report_film()
@@ -121,7 +120,7 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Blender gives up the operator: its window or its file is closed."""
+        """Called when Blender closes the operator's window or file."""
         self._end(context)
 
     def _end(self, context: bpy.types.Context) -> bool:
@@ -140,7 +139,6 @@ class CURVE_OT_mobius_flow_replace_film(_OfFilm, Button, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask."""
         message = iface_("{name} is there already", name=target(self.wanted(context)[0]).name)
         title = iface_("Overwrite the film?")
         manager = context.window_manager

@@ -1,4 +1,4 @@
-"""Buttons for what is refused: each mends one hindrance, on all selected curves that it is the next one of."""
+"""Buttons that remedy refusals: each removes one obstacle from all selected curves for which it is the next."""
 
 from collections.abc import Callable, Iterable
 
@@ -21,11 +21,11 @@ class _Mending(Button):
 
     @classmethod
     def concerned(cls, context: bpy.types.Context) -> Iterable[bpy.types.Object]:
-        """The objects that need it; each is looked at when it is its turn, as mending one may mend others."""
+        """The objects that need it, examined one by one, as mending one may mend others."""
         return needing(selected_curves(context), Remedy(cls.bl_idname))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Mend them all; what cannot be mended is said, and stays as it is."""
+        """Mend them all; failures are reported, and leave their objects as they were."""
         results = {"CANCELLED"}
         for obj in self.concerned(context):
             try:

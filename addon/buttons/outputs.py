@@ -29,11 +29,10 @@ from .button import Button
 
 _PLAIN = "NONE"
 _MAX_POINTS = 10_000
+_Objects, _Records = Sequence[bpy.types.Object], Sequence[Recorded]
 
 
 class _Output(Button):
-    """What operators that make other objects of the selected curves have in common."""
-
     __annotations__ = {
         "hide_curve": BoolProperty(
             name="Hide Curve",
@@ -45,26 +44,16 @@ class _Output(Button):
     needs = (READABLE,)
 
     def act(self, context: bpy.types.Context) -> None:
-        """Make all of them before any is shown."""
+        """Make an object of each, all of them before any is shown; ``link`` is the end of all in the world."""
         objects = selected_curves(context)
-        self.check_values()
         recorded = [self.read(obj) for obj in objects]
         link = in_world(objects, recorded, [each.points[-1] for each in recorded])
         check_embedded(link)
         for made, obj in zip(self.make(objects, recorded, link), objects, strict=True):
             put_beside(made, obj, self.hide_curve)
 
-    def check_values(self) -> None:
-        """Raise an OptionError for what Blender lets through but is no number."""
-
     def read(self, obj: bpy.types.Object) -> Recorded:
         return Recorded.of(obj)
-
-    def make(
-        self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
-    ) -> list[bpy.types.Object]:
-        """Make an object of each, where ``link`` is the end of all in the world, and say what they are."""
-        raise NotImplementedError
 
 
 class CURVE_OT_mobius_flow_tube_mesh(_Output, bpy.types.Operator):
@@ -98,17 +87,16 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         **_Output.__annotations__,
     }
 
-    def check_values(self) -> None:
+    def act(self, context: bpy.types.Context) -> None:
         check_length(Message("Radius"), self.radius)
+        super().act(context)
 
     def read(self, obj: bpy.types.Object) -> Recorded:
         """Read the shapes of a curve, more of them where it turns far from key to key."""
         recorded = Recorded.of(obj)
         return recorded.at(places_between(recorded.points, recorded.mesh))
 
-    def make(
-        self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
-    ) -> list[bpy.types.Object]:
+    def make(self, objects: _Objects, recorded: _Records, link: Curve) -> list[bpy.types.Object]:
         """Make the meshes, with the numbers that colors may show as attributes."""
         values, radii, first, made = vertex_values(link), self._radii(objects, recorded, link), 0, []
         colours = None if self.color == _PLAIN else COLOURINGS[self.color](values[self.color])
@@ -122,9 +110,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         self._report(objects, recorded)
         return made
 
-    def _radii(
-        self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
-    ) -> list[np.ndarray]:
+    def _radii(self, objects: _Objects, recorded: _Records, link: Curve) -> list[np.ndarray]:
         """Radii at all keys, in each object's coordinates; (keys, n) each."""
         drawn = [obj.data.bevel_depth for obj in objects]
         wanted = self.radius or (0.0 if all(drawn) else bevel.fitting_radius(link))
@@ -133,7 +119,7 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             for obj, each, depth in zip(objects, recorded, drawn, strict=True)
         ]
 
-    def _report(self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded]) -> None:
+    def _report(self, objects: _Objects, recorded: _Records) -> None:
         own = [obj.name for obj in objects if obj.data.bevel_mode != "ROUND" or obj.data.taper_object]
         if own:
             sentence = "The tube of {names} is round: profiles and tapers are left out"
@@ -171,16 +157,14 @@ are. USD and Alembic keep the control points, glTF and FBX what is drawn (glTF n
         **_Output.__annotations__,
     }
 
-    def make(
-        self, objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], link: Curve
-    ) -> list[bpy.types.Object]:
+    def make(self, objects: _Objects, recorded: _Records, link: Curve) -> list[bpy.types.Object]:
         """Make the splines of all objects together: what one comes near to may be in another."""
         points = max(self.points, FEWEST) if self.points else None
         made, fit = smooth_objects(objects, link, points, self.kind)
         self._report(objects, fit)
         return made
 
-    def _report(self, objects: Sequence[bpy.types.Object], fit: SmoothFit) -> None:
+    def _report(self, objects: _Objects, fit: SmoothFit) -> None:
         scene = bpy.context.scene
         said = Message(
             "{names}: {count} points, at most {error} off",

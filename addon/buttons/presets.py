@@ -16,8 +16,6 @@ PANEL = "VIEW3D_PT_mobius_flow_presets"
 SUBDIRECTORY = "mobius_flow"
 ROOM = Path(__file__).parents[1]  # Blender looks for presets in its "presets"
 SHIPPED = ROOM / "presets" / SUBDIRECTORY
-_GONE = "There is no preset {name} any more; choose another one"
-_OURS = "The preset {name} belongs to Möbius Flow; only your own can be removed"
 
 
 class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
@@ -32,7 +30,8 @@ class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Run the preset; how a motion is kept is changed only by presets that say so."""
         if not Path(self.filepath).is_file():
-            self.report({"ERROR"}, rpt_(_GONE, name=Path(self.filepath).name))
+            sentence = "There is no preset {name} any more; choose another one"
+            self.report({"ERROR"}, rpt_(sentence, name=Path(self.filepath).name))
             return {"CANCELLED"}
         for option in shown():
             context.scene.mobius_flow.property_unset(option.name)
@@ -51,15 +50,12 @@ class CURVE_OT_mobius_flow_preset_add(AddPresetBase, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add or remove; those of the extension stay, wherever it is installed."""
-        if self.remove_name and self.name in _shipped():
-            self.report({"ERROR"}, rpt_(_OURS, name=self.name))
+        shipped = [bpy.path.display_name(path.name, title_case=False) for path in SHIPPED.glob("*.py")]
+        if self.remove_name and self.name in shipped:
+            sentence = "The preset {name} belongs to Möbius Flow; only your own can be removed"
+            self.report({"ERROR"}, rpt_(sentence, name=self.name))
             return {"CANCELLED"}
         return set(super().execute(context))
-
-
-def _shipped() -> list[str]:
-    """Names of the presets of the extension, as the menu shows them."""
-    return [bpy.path.display_name(path.name, title_case=False) for path in SHIPPED.glob("*.py")]
 
 
 class VIEW3D_PT_mobius_flow_presets(PresetPanel, bpy.types.Panel):

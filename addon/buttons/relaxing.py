@@ -1,4 +1,4 @@
-"""The operators that relax, anew or further, and those for the animations that come of it."""
+"""The operators that relax, anew or further, and those for the resulting animations."""
 
 from contextlib import suppress
 from typing import Any
@@ -17,10 +17,9 @@ from ..engine.rest import Rest
 from ..engine.words import named
 from ..live import registry
 from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
-from ..live.modal import Listening, tell, unseen
-from ..live.refresh import Refresh
+from ..live.modal import Listening, report_result, unseen
 from ..live.requirements import Condition, avoided, selected_curves
-from ..live.run import Run
+from ..live.run import Refresh, Run
 from ..properties import SETTINGS, relax_options, settings
 from ..scripting import Relaxation, begin, implied
 from ..translations import rpt_
@@ -61,7 +60,6 @@ class Relaxing(Listening, Button):
         return self.begin(context)
 
     def begin(self, context: bpy.types.Context) -> set[str]:
-        """Start a live run and its event loop."""
         try:
             values = self.values(context)
             run = Run(self.session(context, values), Refresh(values["view_every"]))
@@ -80,7 +78,7 @@ class Relaxing(Listening, Button):
             return {"CANCELLED"}
 
     def act(self, context: bpy.types.Context) -> None:
-        tell(self, context.scene, self.session(context, self.values(context)).run())
+        report_result(self, context.scene, self.session(context, self.values(context)).run())
 
     def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
         """Begin to relax the selected curves; raises MobiusFlowError."""
@@ -165,11 +163,10 @@ class CURVE_OT_mobius_flow_leave_saddle(Relaxing, bpy.types.Operator):
         return {"CANCELLED"} if self._at_minimum(context) else super().execute(context)
 
     def begin(self, context: bpy.types.Context) -> set[str]:
-        """Start the run, if there is anything to leave."""
         return {"CANCELLED"} if self._at_minimum(context) else super().begin(context)
 
     def _at_minimum(self, context: bpy.types.Context) -> bool:
-        """Whether there is no way down, which is said; what else is wrong the relaxation reports."""
+        """Whether there is no way down, which is reported; other errors are left to the relaxation."""
         with suppress(MobiusFlowError):
             rest = _rest(context, self.values(context))
             if rest.index == 0:

@@ -12,7 +12,7 @@ from ..curves.splines import control_points
 from ..engine.placement import Spot, at
 from ..live import registry
 from ..live.checks import RELAXABLE
-from ..live.modal import Listening, tell_end
+from ..live.modal import Listening, report_end
 from ..live.requirements import Condition, require, selected_curves
 from ..live.run import Run, State
 from ..translations import iface_
@@ -84,7 +84,7 @@ class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
         while not run.state.over:
             run.tick()
             time.sleep(_PATIENCE)
-        tell_end(self, context.scene, run)
+        report_end(self, context.scene, run)
         return {"FINISHED"} if run.state is State.DONE else {"CANCELLED"}
 
     def _recovered(self) -> Run:
@@ -102,7 +102,6 @@ class CURVE_OT_mobius_flow_sample(Button, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Ask."""
         try:
             self.questions = sampling.questions(selected_curves(context))
         except MobiusFlowError as error:
@@ -139,7 +138,6 @@ def show(_operator: Button, context: bpy.types.Context) -> None:
 
 
 def _select(data: bpy.types.Curve, spot: Spot) -> None:
-    """Select the nearest points of a curve, and no others."""
     points = [point for spline in data.splines for point in control_points(spline)]
     chosen = at(np.array([point.co[:3] for point in points]), spot.points)
     for point, wanted in zip(points, chosen.tolist(), strict=True):

@@ -6,8 +6,9 @@ Cheap enough for every redraw, but for `UNEDITED`. Coordinates, and what is draw
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import bpy
 import numpy as np
 
 from ..curves import bake, bevel, sampling
@@ -15,13 +16,10 @@ from ..curves.deforming import what_deforms
 from ..curves.moving import what_moves
 from .requirements import Check, Curves, Remedy, curves_at_hand
 
-if TYPE_CHECKING:
-    import bpy
-
 _FLATTEST = 1e-6  # smallest ratio of an object's scales that 32-bit matrices can be inverted with
 
 
-def _short_spline(obj: "bpy.types.Object") -> dict[str, int] | None:
+def _short_spline(obj: bpy.types.Object) -> dict[str, int] | None:
     for number, spline in enumerate(obj.data.splines, 1):
         fewest = 3 if spline.use_cyclic_u and spline.type != "BEZIER" else 2
         if len(spline.bezier_points if spline.type == "BEZIER" else spline.points) < fewest:
@@ -29,26 +27,26 @@ def _short_spline(obj: "bpy.types.Object") -> dict[str, int] | None:
     return None
 
 
-def _smooth_spline(obj: "bpy.types.Object") -> dict[str, Any] | None:
+def _smooth_spline(obj: bpy.types.Object) -> dict[str, Any] | None:
     splines = enumerate(obj.data.splines, 1)
     return next(({"number": k, "kind": sampling.kind(each)} for k, each in splines if each.type != "POLY"), None)
 
 
-def _has_action(obj: "bpy.types.Object") -> bool:
+def _has_action(obj: bpy.types.Object) -> bool:
     animation = obj.data.animation_data
     return bool(animation and (animation.action or animation.nla_tracks))
 
 
-def _has_driven_points(obj: "bpy.types.Object") -> bool:
+def _has_driven_points(obj: bpy.types.Object) -> bool:
     animation = obj.data.animation_data
     return any(driver.data_path.startswith("splines") for driver in (animation.drivers if animation else ()))
 
 
-def _unless_baked(failure: Callable[["bpy.types.Object"], Any]) -> Callable[["bpy.types.Object"], Any]:
+def _unless_baked(failure: Callable[[bpy.types.Object], Any]) -> Callable[[bpy.types.Object], Any]:
     return lambda obj: not bake.is_baked(obj.data) and failure(obj)
 
 
-def _is_flat(obj: "bpy.types.Object") -> bool:
+def _is_flat(obj: bpy.types.Object) -> bool:
     matrix = np.array(obj.matrix_world, dtype=np.float64)
     scales = np.linalg.svd(matrix[:3, :3], compute_uv=False) if np.isfinite(matrix).all() else np.zeros(3)
     return not scales[2] > _FLATTEST * scales[0]
@@ -165,8 +163,8 @@ POLYGONS = Curves(
 )
 
 
-def needing(objects: Sequence["bpy.types.Object"], remedy: Remedy) -> Iterator["bpy.types.Object"]:
-    """Yield the curve objects that a remedy is the next to help; each is looked at when it is its turn."""
+def needing(objects: Sequence[bpy.types.Object], remedy: Remedy) -> Iterator[bpy.types.Object]:
+    """Yield the curve objects whose first refusal has this remedy, examining each in its turn."""
     several = len(objects) > 1
     checks = [*RELAXABLE.checks, *POLYGONS.checks]
     alone = Curves(*(replace(check, together=check.together and not several) for check in checks))
@@ -176,7 +174,7 @@ def needing(objects: Sequence["bpy.types.Object"], remedy: Remedy) -> Iterator["
             yield obj
 
 
-def closable(objects: Sequence["bpy.types.Object"]) -> Iterator["bpy.types.Object"]:
+def closable(objects: Sequence[bpy.types.Object]) -> Iterator[bpy.types.Object]:
     """Yield the curve objects with open splines that may be closed: keys of a baked curve are about open ones."""
     for obj in objects:
         is_open = not all(spline.use_cyclic_u for spline in obj.data.splines)

@@ -1,7 +1,6 @@
-"""What happens to a live relaxation when a file is loaded or saved, or somebody undoes."""
+"""How a live relaxation responds to undo, and to files that are loaded or saved."""
 
 from collections.abc import Callable
-from functools import wraps
 from typing import Any
 
 import bpy
@@ -14,96 +13,58 @@ from .modal import clear_status
 from .run import Run
 
 
-def _during_run(handle: Callable[[Run], None]) -> Any:
-    """Call a handler with the run that is going on, if there is one."""
-
-    @wraps(handle)
-    def handler(*_: Any) -> None:
-        if run := registry.current():
-            handle(run)
-
-    return persistent(handler)
+def _forget() -> None:
+    """Forget the run of another file; the new one may have been saved automatically during a run."""
+    registry.forget()
+    show_originals()
 
 
-@_during_run
-def _load_pre(run: Run) -> None:
-    run.cancel(Message("A file was loaded; the relaxation of {names} has ended", names=run.name))
-
-
-@persistent  # type: ignore[untyped-decorator]
-def _load_post(*_: Any) -> None:
-    registry.forget()  # it was about another file
-    show_originals()  # of a run during which the file was saved automatically
-
-
-@_during_run
-def _undo_pre(run: Run) -> None:
-    _before(run, registry.history.others)
-
-
-@_during_run
-def _redo_pre(run: Run) -> None:
-    _before(run, registry.history.undone)
-
-
-@persistent  # type: ignore[untyped-decorator]
-def _undo_post(*_: Any) -> None:
-    if run := registry.current():
-        registry.history.undo()
-    _after(run)
-
-
-@persistent  # type: ignore[untyped-decorator]
-def _redo_post(*_: Any) -> None:
-    if run := registry.current():
-        registry.history.undo(-1)
-    _after(run)
-
-
-def _before(run: Run, others: int) -> None:
-    """The curve must be as undo knows it; unless something else is undone or done again, the run is over."""
+def _before_undo(run: Run, others: int) -> None:
+    """Undo must find the originals; the run goes on only if something else is undone or redone."""
     if others and run.endures:
         run.group.hide()
     else:
         run.cancel(Message("Undone; the relaxation of {names} has ended", names=run.name))
 
 
-def _after(run: Run | None) -> None:
-    """Show what the run has reached; without one, Blender may have gone back to the middle of one that is over."""
-    if run:
-        run.group.resume()
-    else:
-        show_originals()
+def _after_undo(run: Run, count: int) -> None:
+    registry.history.undo(count)
+    run.group.resume()
 
 
-@_during_run
-def _save_pre(run: Run) -> None:
+def _before_saving(run: Run) -> None:
     """A file holds curves as they were or with all their keys, and nothing in between."""
     run.complete()
     if not run.state.over:
         run.group.hide()
 
 
-@_during_run
-def _save_post(run: Run) -> None:
-    run.group.resume()
+def _handler(handle: Callable[[Run], None], otherwise: Callable[[], None] = lambda: None) -> Any:
+    def handler(*_: Any) -> None:
+        run = registry.current()
+        handle(run) if run else otherwise()
+
+    return persistent(handler)
 
 
-_HANDLERS = {
-    "load_pre": _load_pre,
-    "load_post": _load_post,
-    "undo_pre": _undo_pre,
-    "redo_pre": _redo_pre,
-    "undo_post": _undo_post,
-    "redo_post": _redo_post,
-    "save_pre": _save_pre,
-    "save_post": _save_post,
-    "save_post_fail": _save_post,
+# after undo without a run, Blender may have gone back to the middle of one that is over
+HANDLERS = {
+    "load_pre": _handler(
+        lambda run: run.cancel(Message("A file was loaded; the relaxation of {names} has ended", names=run.name))
+    ),
+    "load_post": _handler(lambda _run: _forget(), _forget),
+    "undo_pre": _handler(lambda run: _before_undo(run, registry.history.others)),
+    "redo_pre": _handler(lambda run: _before_undo(run, registry.history.undone)),
+    "undo_post": _handler(lambda run: _after_undo(run, 1), show_originals),
+    "redo_post": _handler(lambda run: _after_undo(run, -1), show_originals),
+    "save_pre": _handler(_before_saving),
+    "save_post": _handler(lambda run: run.group.resume()),
+    "save_post_fail": _handler(lambda run: run.group.resume()),
 }
 
 
 def register() -> None:
-    for name, handler in _HANDLERS.items():
+    for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
 
 
@@ -114,5 +75,5 @@ def unregister() -> None:
     registry.forget()
     if bpy.app.timers.is_registered(clear_status):
         bpy.app.timers.unregister(clear_status)
-    for name, handler in _HANDLERS.items():
+    for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)

@@ -15,7 +15,7 @@ _SLICE = 0.02  # seconds of writing at a time
 
 
 class _AbandonedError(Exception):
-    """Nobody waits for the keys any more."""
+    """The keys are no longer wanted."""
 
 
 class KeyWriter:
@@ -30,7 +30,6 @@ class KeyWriter:
         self._pieces: Iterator[None] | None = None
 
     def start(self) -> None:
-        """Begin to choose and prove the keys; all iterates are in the session."""
         self._thread.start()
 
     def abandon(self) -> None:

@@ -1,4 +1,4 @@
-"""A run in a window: its event loop, what operators do meanwhile, and what is said at its end."""
+"""A run in a window: its event loop, the operator that drives it, and the report at its end."""
 
 from typing import Any
 
@@ -67,7 +67,7 @@ class Loop:
             clear_status()
 
     def abandon(self) -> None:
-        """Blender is closing the window of the run, or its file."""
+        """Called when Blender closes the window of the run, or its file."""
         self._abandoned = True
         self.run.cancel(Message("The window was closed; all is as it was"))
 
@@ -79,7 +79,7 @@ class Loop:
 
 
 def clear_status() -> None:
-    """Give the status bars of all windows back to Blender."""
+    """Return the status bars of all windows to Blender."""
     for window in bpy.context.window_manager.windows:
         # Blender takes the place from the context, and crashes where there is none
         with bpy.context.temp_override(window=window):
@@ -87,7 +87,6 @@ def clear_status() -> None:
 
 
 def status_line(run: Run) -> str:
-    """What the status bar says."""
     if run.waits:
         return iface_("{names}: waiting for the render", names=run.name)
     if run.state is State.FINISHING:
@@ -101,7 +100,7 @@ def status_line(run: Run) -> str:
 
 
 def redraw_views(manager: bpy.types.WindowManager) -> None:
-    """Draw the 3D views and their sidebars anew: points moved by Python do not do that by themselves."""
+    """Redraw the 3D views and their sidebars, which points moved by Python do not cause."""
     for window in manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
@@ -121,12 +120,11 @@ def _is_meant(context: bpy.types.Context, event: bpy.types.Event) -> bool:
 
 
 class Listening:
-    """What an operator does in a window while a run goes on."""
+    """An operator that runs the event loop of a run."""
 
     loop: Loop | None = None
 
     def listen(self, context: bpy.types.Context, run: Run) -> set[str]:
-        """Start the event loop of a run."""
         self.loop = Loop(run, context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -135,28 +133,28 @@ class Listening:
         assert self.loop is not None, "invoke makes it"
         result = self.loop.handle(context, event)
         if self.loop.run.state.over:
-            tell_end(self, context.scene, self.loop.run)
+            report_end(self, context.scene, self.loop.run)
         return result
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Blender gives up the operator: its window or its file is closed."""
+        """Called when Blender closes the operator's window or file."""
         if self.loop is not None:
             self.loop.abandon()
 
 
-def tell_end(operator: Any, scene: bpy.types.Scene, run: Run) -> None:
-    """Say how a run ended, and keep showing the shape that was kept."""
+def report_end(operator: Any, scene: bpy.types.Scene, run: Run) -> None:
+    """Report how a run ended, and go to the frame of the shape that was kept."""
     if run.state is State.DONE and run.report is not None:
         if run.report.keys > 1:
             whole = int(run.report.last_frame // 1)
             scene.frame_set(whole, subframe=run.report.last_frame - whole)
-        tell(operator, scene, run.report, failed=run.failed)
+        report_result(operator, scene, run.report, failed=run.failed)
     else:
         operator.report({"ERROR"} if run.failed else {"INFO"}, rpt_(run.message))
 
 
-def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = False) -> None:
-    """Say what was done, and whether the scene shows all of it."""
+def report_result(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = False) -> None:
+    """Report what was done, and whether the scene plays all of it."""
     hidden = unseen(scene, report.scene_range)
     clean = report.clean and not failed and hidden is None
     sentence = Message("{done}. {hidden}", done=report.sentence, hidden=hidden) if hidden else report.sentence
@@ -164,7 +162,7 @@ def tell(operator: Any, scene: bpy.types.Scene, report: Report, failed: bool = F
 
 
 def unseen(scene: bpy.types.Scene, animation: tuple[int, int] | None) -> Message | None:
-    """Say that a scene does not play all frames of an animation, and what helps, or return None if it does."""
+    """The warning that a scene does not play all frames of an animation, or None if it does."""
     if animation is None or (scene.frame_start <= animation[0] and animation[1] <= scene.frame_end):
         return None
     first, last = animation

@@ -80,11 +80,6 @@ class _Style:
         font = _FONT_SHARE * scale * preferences.ui_styles[0].widget.points
         return cls(scale, font, ground, words, legible(theme.view_3d.object_active, ground))
 
-    @property
-    def pale(self) -> Colour:
-        """Halfway from the ground to the words."""
-        return [0.5 * (a + b) for a, b in zip(self.ground[:3], self.words[:3], strict=True)]
-
 
 def _plot(context: bpy.types.Context, run: Run) -> None:
     """Draw the plot in the lower right corner, unless the view is too small for anything else."""
@@ -116,7 +111,8 @@ def _caption(style: _Style, run: Run, start: FloatArray, width: float) -> None:
 def _target(style: _Style, label: str, start: FloatArray, width: float) -> None:
     """Draw a dashed line with its label above it, at the left, where the energy is still high."""
     across = dashes(width, style.scale * _DASH)
-    line(start + np.column_stack([across, np.zeros(len(across))]), style.pale, style.scale, kind="LINES")
+    pale = [0.5 * (a + b) for a, b in zip(style.ground[:3], style.words[:3], strict=True)]
+    line(start + np.column_stack([across, np.zeros(len(across))]), pale, style.scale, kind="LINES")
     text(label, (start[0], start[1] + 4 * style.scale), style.words, style.font)
 
 

@@ -1,4 +1,4 @@
-"""Which run is going on or was the last, and what else has been done in Blender meanwhile: known to Python only."""
+"""The current or last run, and what else has been done in Blender since it began: kept in Python, never in the file."""
 
 from typing import TYPE_CHECKING
 
@@ -11,14 +11,9 @@ _latest: "list[Run]" = []
 
 
 class History:
-    """Counts what is done in Blender during a run: undo is about that first, and about the run when all is undone.
+    """Counts other actions during a run, such as selecting or moving an object: undo takes these back before the run.
 
-    Attributes
-    ----------
-    others
-        Number of things that were done, such as selecting or moving an object, and not undone.
-    undone
-        Number of things that were undone, and may be done again.
+    ``others`` were done and not undone, ``undone`` may be redone.
     """
 
     def __init__(self) -> None:
@@ -30,20 +25,20 @@ class History:
         self._seen = _last_operation()
 
     def look(self) -> None:
-        """See whether something was done; to be called often, as Blender forgets it before it tells of an undo."""
+        """Notice a new action; to be called often, since Blender's list has lost it by the time undo is announced."""
         last = _last_operation()
         if last not in (0, self._seen):
             self.others, self.undone = self.others + 1, 0
         self._seen = last
 
     def undo(self, count: int = 1) -> None:
-        """Take note that something was undone, or with -1 done again."""
+        """Note that an action was undone, or redone if ``count`` is -1."""
         self.others, self.undone = self.others - count, self.undone + count
         self._seen = _last_operation()
 
 
 def _last_operation() -> int:
-    """The operation that Blender lists last in its history; the buttons of a run are not listed there."""
+    """The last operation in Blender's list, where the buttons of a run do not appear."""
     done = bpy.context.window_manager.operators
     return int(done[-1].as_pointer()) if len(done) else 0
 
@@ -52,29 +47,28 @@ history = History()
 
 
 def begin(run: "Run") -> None:
-    """A run goes on from now; there is only one at a time."""
+    """Make a run the current one; there is only one at a time."""
     assert current() is None, "`requirements.idle` says so before"
     _latest[:] = [run]
     history.begin()
 
 
 def current() -> "Run | None":
-    """The run that is going on, if there is one."""
+    """The run in progress, if there is one."""
     run = latest()
     return None if run is None or run.state.over else run
 
 
 def latest() -> "Run | None":
-    """The run that is going on, or else the last one."""
+    """The run in progress, or else the last one."""
     return _latest[0] if _latest else None
 
 
-def shown(obj: "bpy.types.Object | None") -> "Run | None":
-    """The run that is going on, or else the last one, if what is known of it is about an object as it is now."""
+def shown(obj: bpy.types.Object | None) -> "Run | None":
+    """The run in progress, or else the last one if an object is still as the run left it."""
     run = latest()
     return run if run is not None and run.concerns(obj) else None
 
 
 def forget() -> None:
-    """Forget the last run."""
     _latest.clear()

@@ -1,17 +1,16 @@
-"""What operators require of curves and scenes: where a requirement fails, one sentence says so, and what mends it."""
+"""What operators require of curves and scenes: a failed requirement gives a sentence, and a remedy if there is one."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import bpy
 
 from ...core import MobiusFlowError
 from ...core.messages import Message
 from ..curves.surroundings import avoidable
 from . import registry
-
-if TYPE_CHECKING:
-    import bpy
 
 
 class Remedy(Enum):
@@ -28,14 +27,14 @@ class Remedy(Enum):
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why something cannot be done and what helps, in one sentence, and the remedy that does so by itself, if any."""
+    """Why something cannot be done and what helps, in one sentence, and the button that does so, if there is one."""
 
     sentence: Message
     remedy: Remedy | None = None
 
 
-Requirement = Callable[["bpy.types.Context"], Refusal | None]
-_Choice = Callable[["bpy.types.Context"], list["bpy.types.Object"]]
+Requirement = Callable[[bpy.types.Context], Refusal | None]
+_Choice = Callable[[bpy.types.Context], list[bpy.types.Object]]
 
 
 @dataclass(frozen=True)
@@ -47,12 +46,12 @@ class Check:
     """
 
     sentence: str
-    failure: Callable[["bpy.types.Object"], Any]
+    failure: Callable[[bpy.types.Object], Any]
     remedy: Remedy | None = None
     field: str = ""
     together: bool = False
 
-    def refusal(self, obj: "bpy.types.Object") -> Refusal | None:
+    def refusal(self, obj: bpy.types.Object) -> Refusal | None:
         if not (found := self.failure(obj)):
             return None
         values = found if isinstance(found, Mapping) else {self.field: found}
@@ -64,18 +63,18 @@ class Condition:
     """What is required of the scene, or of all that is selected."""
 
     sentence: str
-    fails: Callable[["bpy.types.Context"], bool]
+    fails: Callable[[bpy.types.Context], bool]
 
-    def __call__(self, context: "bpy.types.Context") -> Refusal | None:
+    def __call__(self, context: bpy.types.Context) -> Refusal | None:
         return Refusal(Message(self.sentence)) if self.fails(context) else None
 
 
-def selected_curves(context: "bpy.types.Context") -> list["bpy.types.Object"]:
+def selected_curves(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The curve objects that are relaxed together: all that are selected, whichever is active."""
     return [obj for obj in context.selected_objects if obj.type == "CURVE"]
 
 
-def curves_at_hand(context: "bpy.types.Context") -> list["bpy.types.Object"]:
+def curves_at_hand(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The curve objects that are being edited, or the selected ones where none is."""
     return list(context.objects_in_mode) if context.mode == "EDIT_CURVE" else selected_curves(context)
 
@@ -86,19 +85,17 @@ class Curves:
     def __init__(self, *checks: Check, among: _Choice = selected_curves) -> None:
         self.checks, self._among = checks, among
 
-    def __call__(self, context: "bpy.types.Context") -> Refusal | None:
+    def __call__(self, context: bpy.types.Context) -> Refusal | None:
         objects = self._among(context)
         return idle(context) or (self.of(objects) if objects else _no_curve(context))
 
-    def of(self, objects: Sequence["bpy.types.Object"]) -> Refusal | None:
-        """The first refusal of some curve objects."""
+    def of(self, objects: Sequence[bpy.types.Object]) -> Refusal | None:
         several = len(objects) > 1
         checks = [check for check in self.checks if several or not check.together]
         return next((refusal for obj in objects for check in checks if (refusal := check.refusal(obj))), None)
 
 
-def first(context: "bpy.types.Context", requirements: Sequence[Requirement]) -> Refusal | None:
-    """The first refusal of several requirements."""
+def first(context: bpy.types.Context, requirements: Sequence[Requirement]) -> Refusal | None:
     return next((refusal for each in requirements if (refusal := each(context))), None)
 
 
@@ -108,13 +105,13 @@ def require(*refusals: Refusal | None) -> None:
         raise MobiusFlowError(refused.sentence)
 
 
-def idle(_context: "bpy.types.Context | None" = None) -> Refusal | None:
+def idle(_context: bpy.types.Context | None = None) -> Refusal | None:
     """Require that nothing is being relaxed."""
     run = registry.current()
     return Refusal(Message("{names} is being relaxed; stop that first", names=run.name)) if run else None
 
 
-def _no_curve(context: "bpy.types.Context") -> Refusal:
+def _no_curve(context: bpy.types.Context) -> Refusal:
     """Say what is wrong with the active object where no curve is selected; hiding deselects."""
     obj = context.active_object
     if obj is not None and obj.type == "CURVE" and not obj.visible_get():
@@ -129,23 +126,21 @@ def _no_curve(context: "bpy.types.Context") -> Refusal:
     )
 
 
-def convertible(context: "bpy.types.Context") -> list["bpy.types.Object"]:
+def convertible(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The selected objects of this file that lines can be made of: texts, and meshes of edges alone."""
     own = (obj for obj in context.selected_objects if not (obj.library or obj.override_library))
     return [obj for obj in own if obj.type == "FONT" or _is_wire(obj)]
 
 
-def _is_wire(obj: "bpy.types.Object") -> bool:
+def _is_wire(obj: bpy.types.Object) -> bool:
     return obj.type == "MESH" and len(obj.data.edges) > 0 and not len(obj.data.polygons)
 
 
-def avoided(context: "bpy.types.Context", name: str | None = None) -> list["bpy.types.Object"]:
+def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.types.Object]:
     """The visible objects of the scene's collection to avoid, or of one given by name, but for the selected curves.
 
     An empty name means to avoid nothing; raises MobiusFlowError if there is no collection of that name.
     """
-    import bpy
-
     collection = context.scene.mobius_flow_surroundings.avoid if name is None else bpy.data.collections.get(name)
     if name and collection is None:
         raise MobiusFlowError(Message("There is no collection '{name}' to avoid", name=name))

@@ -1,15 +1,15 @@
 """One live relaxation: takes in the worker's iterates, shows them in the curves, and ends cleanly whatever happens.
 
-The curves themselves move; what they were is put back unless the run is to be kept.
+The objects show what has been reached; their originals come back unless the run is kept.
 """
 
 import math
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING
+
+import bpy
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.errors import Place
@@ -22,51 +22,65 @@ from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
 from .key_writer import KeyWriter
-from .refresh import Refresh
-
-if TYPE_CHECKING:
-    import bpy
 
 _CANCELLED = Message("Cancelled; all is as it was")
 _SLICE = 0.02  # seconds of taking in iterates at a time
+_REST = 2.0  # times as long as drawing takes nothing is drawn after it: drawing gets a third of the time
 
 
 class State(Enum):
-    RUNNING = "running"
-    PAUSED = "paused"
-    FINISHING = "finishing"
-    DONE = "done"
-    CANCELLED = "cancelled"
-    LOST = "lost"
+    RUNNING = Message("Running")
+    PAUSED = Message("Paused")
+    FINISHING = Message("Finishing")
+    DONE = Message("Done")
+    CANCELLED = Message("Cancelled")
+    LOST = Message("Lost")
 
     @property
     def over(self) -> bool:
         return self in (State.DONE, State.CANCELLED, State.LOST)
 
 
-class Run:
-    """A session that is fed by a worker, while its curves are shown.
+class Refresh:
+    """Decides which iterates are shown: every so many; 0: as often as leaves two thirds of the time to the rest."""
 
-    Attributes
-    ----------
-    state, message, failed
-        Where it stands, and what is to be said of its end.
-    energies
-        The objective at all iterates that were taken in.
-    trouble
-        Where on the objects the reason is why it failed or got stuck, if it is somewhere.
-    """
+    def __init__(self, every: int = 0, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._every, self._clock = every, clock
+        self._shown: float | None = None
+        self._next = clock()
+
+    def shown(self) -> None:
+        """Note that an iterate is being shown; Blender draws it before it sends the next event."""
+        self._shown = self._clock()
+
+    def drawn(self) -> None:
+        """Note that an event has come: what was shown last has been drawn."""
+        if self._shown is not None:
+            now = self._clock()
+            self._next = now + _REST * (now - self._shown)
+            self._shown = None
+
+    def ends_batch(self, index: int) -> bool:
+        """Whether an iterate must be shown before the next one is taken in."""
+        return self._every > 0 and index % self._every == 0
+
+    def due(self, index: int) -> bool:
+        """Whether an iterate, the last one taken in, is to be shown now."""
+        return self.ends_batch(index) if self._every else self._clock() >= self._next
+
+
+class Run:
+    """A session that is fed by a worker, while its curves are shown."""
 
     def __init__(self, session: Session, refresh: Refresh) -> None:
         self.state = State.RUNNING
-        self.message = ""
-        self.failed = False
+        self.message, self.failed = "", False  # what is to be said of its end
         self.on_end: Callable[[], None] = lambda: None
         self.last: Iterate | None = None
         self.report: Report | None = None
         self.shown: Iterate | None = None
         self.energies: list[float] = []
-        self.trouble: list[Spot] = []
+        self.trouble: list[Spot] = []  # where the reason is why it failed or got stuck, if it is somewhere
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self._session, self._refresh = session, refresh
         try:
@@ -82,12 +96,10 @@ class Run:
 
     @property
     def name(self) -> str:
-        """The names of the objects, as messages show them."""
         return self.group.title
 
     @property
     def avoided(self) -> tuple[str, ...]:
-        """The names of what they avoid."""
         return self._session.surroundings.names
 
     @cached_property
@@ -95,30 +107,30 @@ class Run:
         """The least energy that there can be."""
         return target_of(self._session.task, self._session.options)
 
-    def concerns(self, obj: "bpy.types.Object | None") -> bool:
-        """Whether it is about an object: always while it goes on, and afterwards if the object is as it was left."""
+    def concerns(self, obj: bpy.types.Object | None) -> bool:
+        """Whether it concerns an object: always while in progress, afterwards if the object is as the run left it."""
         if self._left is None:
             return True
         return obj is not None and obj.type == "CURVE" and self._left.get(obj.session_uid) == digest(obj.data)
 
     @property
-    def spots(self) -> dict["bpy.types.Object", Spot]:
-        """The places of trouble by their objects, those that are still there."""
+    def spots(self) -> dict[bpy.types.Object, Spot]:
+        """The places of trouble by object, for the objects that still exist."""
         found = {self.group.member(spot.member): spot for spot in self.trouble}
         return {obj: spot for obj, spot in found.items() if obj is not None}
 
     @property
     def waits(self) -> bool:
-        """Whether Blender renders the curve, which must not move then."""
+        """Whether it waits for a render, during which curves must not move."""
         return not self.state.over and is_rendering()
 
     @property
     def endures(self) -> bool:
-        """Whether it can go on from wherever undo puts the curves."""
+        """Whether it survives an undo of something else."""
         return self.state in (State.RUNNING, State.PAUSED)
 
     def toggle_pause(self) -> None:
-        """Show no more iterates, or go on; meanwhile the worker fills its queue and then waits too."""
+        """Stop or resume taking in iterates; during a pause the worker fills its queue and then waits too."""
         self._show()
         self.state = {State.RUNNING: State.PAUSED, State.PAUSED: State.RUNNING}.get(self.state, self.state)
 
@@ -138,15 +150,12 @@ class Run:
         self._keys.start()
 
     def cancel(self, message: str = _CANCELLED) -> None:
-        """Put the curve back as it was."""
         if not self.state.over:
             self._close(State.CANCELLED, message)
-            self.group.discard()
-            self._leave()
 
     @property
     def recoverable(self) -> bool:
-        """Whether it has ended with the curves put back, but what it had found is still known."""
+        """Whether it ended with the curves put back, while its iterates are still known."""
         return self.state in (State.CANCELLED, State.LOST) and self.last is not None
 
     def recover(self) -> None:
@@ -159,31 +168,23 @@ class Run:
 
     def tick(self) -> None:
         """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
-        if self.state.over or self.waits:
-            return
-        with self._failing():
+        if not (self.state.over or self.waits):
+            self._advance()
+
+    def complete(self) -> None:
+        """Finish writing keys once begun: a saved file must not hold half of them."""
+        if self.state is State.FINISHING and self._keys.has_begun:
+            self._advance(math.inf)
+
+    def _advance(self, seconds: float | None = None) -> None:
+        """Take in some iterates, or write keys for so long, by default a moment; end the run if that fails."""
+        try:
             if reason := self._session.lost():
                 self._lose(reason)
             elif self.state is State.RUNNING:
                 self._take()
             elif self.state is State.FINISHING:
-                self._write(self._keys.advance())
-
-    def complete(self) -> None:
-        """Write the rest of keys whose writing has begun: a file that is saved must not hold half of them."""
-        if self.state is not State.FINISHING or not self._keys.has_begun:
-            return
-        with self._failing():
-            if reason := self._session.lost():
-                self._lose(reason)
-            else:
-                self._write(self._keys.advance(math.inf))
-
-    @contextmanager
-    def _failing(self) -> Iterator[None]:
-        """End the run if what is done in it fails."""
-        try:
-            yield
+                self._write(self._keys.advance(seconds))
         except MobiusFlowError as error:
             self._fail(str(error), error.place if isinstance(error, CurveError) else None)
         except MemoryError:
@@ -231,13 +232,11 @@ class Run:
             self._refresh.shown()
 
     def _write(self, report: Report | None) -> None:
-        """Take in what was done, once all keys are written."""
         self.report = report
         if report is not None:
             assert self.last is not None, "it was kept"
             self.trouble = self.group.spots(report.outcome.place, self.last.curve)
-            self._close(State.DONE, report.sentence)
-            self._leave()
+            self._close(State.DONE, report.sentence, discard=False)
 
     def _fail(self, message: str, place: Place | None = None) -> None:
         self.failed = True
@@ -245,21 +244,19 @@ class Run:
         self.cancel(message)
 
     def _lose(self, reason: Message) -> None:
-        """End because of what somebody did to an object; what else there is is put back."""
+        """End because an object was changed from outside; the others are put back."""
         ended = Message("{reason}; the relaxation has ended", reason=reason)
-        self._close(State.LOST, ended)
-        restored = self.group.discard()
+        restored = self._close(State.LOST, ended)
         more = Message("and every curve is as it was") if restored else Message("and the others are as they were")
         if restored or len(self.group.names) > 1:
             self.message = Message("{ended}, {more}", ended=ended, more=more)
-        self._leave()
 
-    def _leave(self) -> None:
-        """Note how the objects are at the end."""
-        self._left = {obj.session_uid: digest(obj.data) for obj in self.group.objects}
-
-    def _close(self, state: State, message: str) -> None:
+    def _close(self, state: State, message: str, discard: bool = True) -> bool:
+        """End, putting the curves back or not; return whether all are as they were."""
         self.state, self.message = state, message
         self._worker.close()
         self._keys.abandon()
         self.on_end()
+        restored = discard and self.group.discard()
+        self._left = {obj.session_uid: digest(obj.data) for obj in self.group.objects}
+        return restored

@@ -33,26 +33,26 @@ def follow(
 ) -> "bpy.types.Object":
     """Add a camera that sees the whole tube in every frame, and keep the floor just below it.
 
-    Parameters
-    ----------
-    collection, size
-        Where the camera belongs, and the width and height of its pictures, in any unit.
-    stage, floor
-        Where the curve is shown; the floor is at the height of the stage's middle.
-    points, radii, frames
-        Vertices, (n, 3), radius of the tube and scene frame of every key.
+    ``size`` is that of its pictures, in any unit; the floor is at the height of the stage's middle; points are the
+    vertices, (n, 3), of every key.
     """
+    import bpy
+
     axes = _view_axes(stage)
-    camera = _camera(collection, stage, axes)
+    data = bpy.data.cameras.new("Camera")
+    data.lens, data.sensor_width = _LENS, _SENSOR
+    camera = add(collection, "Camera", data)
+    place(camera, stage.middle + axes[2], stage.middle, stage.axes[2])
     every = np.arange(np.floor(frames[0]), np.ceil(frames[-1]) + 1)
     seen = [(p - stage.middle) @ axes.T for p in points]
-    eyes = _eyes(seen, radii, _slopes(size) / _MARGIN, frames, every)
+    slopes = 0.5 * _SENSOR / _LENS * np.array(size) / max(size)  # tangents of half the angles of view
+    eyes = _eyes(seen, radii, slopes / _MARGIN, frames, every)
     heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - _LIFT * radii
     lows = -_calm(-np.interp(every, frames, heights))
     _move(camera, stage.middle + eyes @ axes, every)
     _move(floor, stage.middle + lows[:, None] * stage.axes[2], every)
     distances = eyes[:, 2]
-    camera.data.clip_start, camera.data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
+    data.clip_start, data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
     return camera
 
 
@@ -60,21 +60,6 @@ def _view_axes(stage: Stage) -> FloatArray:
     """Right, up and backward of the camera, which looks down on the stage; rows."""
     backward = np.array([0.0, -np.cos(_ELEVATION), np.sin(_ELEVATION)]) @ stage.axes
     return np.array([stage.axes[0], np.cross(backward, stage.axes[0]), backward])
-
-
-def _camera(collection: "bpy.types.Collection", stage: Stage, axes: FloatArray) -> "bpy.types.Object":
-    import bpy
-
-    data = bpy.data.cameras.new("Camera")
-    data.lens, data.sensor_width = _LENS, _SENSOR
-    camera = add(collection, "Camera", data)
-    place(camera, stage.middle + axes[2], stage.middle, stage.axes[2])
-    return camera
-
-
-def _slopes(size: tuple[float, float]) -> FloatArray:
-    """Tangents of half the horizontal and vertical angle of view."""
-    return np.asarray(0.5 * _SENSOR / _LENS * np.array(size) / max(size))
 
 
 def _eyes(

@@ -1,7 +1,7 @@
 """Keyframed scenes, movies and pictures of a relaxation: what the command line calls.
 
 Each starts from an empty factory scene, so what is open in Blender is gone afterwards; writes the whole file
-or none; and returns whether everything it shows was proved free of contact.
+or none; and returns whether everything it shows was proved free of contact, in Blender's own numbers.
 """
 
 import os
@@ -51,22 +51,8 @@ def require_blender() -> None:
 def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
     """Write a .blend in which the relaxation plays, ready to render, where the extension is not installed too.
 
-    Parameters
-    ----------
-    path
-        The file; it appears whole or not at all.
-    iterates
-        The iterates of a run, from the start to the last.
-
-    Returns
-    -------
-    bool
-        Whether the animation was proved free of contact, in Blender's own numbers.
-
-    Raises
-    ------
-    MobiusFlowError
-        If Blender's module is missing or the file cannot be written.
+    ``iterates`` are those of a run, from the start to the last. Raises MobiusFlowError if Blender's module is missing
+    or the file cannot be written.
     """
     motion, origin = film.recorded(iterates)
     keys = motion.keys(is_free, _MAX_KEYS)
@@ -117,7 +103,6 @@ def write_picture(path: Target, curve: Curve, width: int, height: int) -> None:
 
 
 def _render(path: Target, keys: Keys, mesh: Mesh, width: int, height: int, samples: int) -> None:
-    """Render the only key."""
     scene = _empty_scene()
     rendering.use_cycles(scene, width, height, samples)
     film.compose(scene, keys, np.ones(1), mesh)

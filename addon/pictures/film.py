@@ -49,12 +49,11 @@ class Origin:
         return cls(location, scale)
 
     def link(self, mesh: Mesh) -> Link:
-        """All components of a curve in one object here."""
         return Link((Placement(self.scale * np.eye(3), self.location),), (len(mesh.component_sizes),))
 
 
 def spatial(vertices: FloatArray) -> FloatArray:
-    """Put planar vertices into space; shape (n, 3)."""
+    """Vertices of a curve in the plane or in space, shape (n, 3)."""
     return np.pad(vertices, ((0, 0), (0, 3 - vertices.shape[1])))
 
 
@@ -65,13 +64,7 @@ def check_dimension(curve: Curve) -> None:
 
 
 def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
-    """Collect the iterates of a run in the numbers that Blender will store.
-
-    Raises
-    ------
-    MobiusFlowError
-        If the curve is not in the plane or in space, or keyframes cannot follow its changes of mesh.
-    """
+    """Collect the iterates of a run in the numbers that Blender will store; raises MobiusFlowError if it cannot."""
     start = iterates[0].curve
     check_dimension(start)
     origin = Origin.of(spatial(start.vertices))
@@ -90,7 +83,9 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
     data = new_curve_data("Curve", mesh)
     data.bevel_depth, data.bevel_resolution = float(radii.max()), _BEVEL_RESOLUTION
     data.use_fill_caps = True  # at the ends of arcs
-    obj = _add_object(scene, data)
+    obj = stage.add(scene.collection, "Curve", data)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
     if len(points) > 1:
         write_shape_keys(obj, keys, frames, radii / radii.max())
     else:
@@ -107,16 +102,6 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
         _put(scene, origin)
     scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
     scene.frame_set(scene.frame_start)
-
-
-def _add_object(scene: "bpy.types.Scene", data: "bpy.types.Curve") -> "bpy.types.Object":
-    import bpy
-
-    obj = bpy.data.objects.new("Curve", data)
-    scene.collection.objects.link(obj)
-    obj.select_set(True)
-    bpy.context.view_layer.objects.active = obj
-    return obj
 
 
 def _put(scene: "bpy.types.Scene", origin: Origin) -> None:

@@ -4,7 +4,8 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import bpy
 
 from ...core import MobiusFlowError
 from ...core.errors import OutputError, choice
@@ -13,14 +14,11 @@ from . import rendering, stage, staging
 from .movie import Reel, copied, sweep
 from .rendering import is_rendering
 
-if TYPE_CHECKING:
-    import bpy
-
 SUFFIX = ".mp4"
 _SAMPLES = 32
 
 
-def _quick(scene: "bpy.types.Scene") -> None:
+def _quick(scene: bpy.types.Scene) -> None:
     rendering.look_plain(scene)
     if direction := staging.key_direction(scene):
         stage.light_workbench(scene, direction)
@@ -32,7 +30,7 @@ class Look:
 
     label: str
     description: str
-    set_up: "Callable[[bpy.types.Scene], None]"
+    set_up: Callable[[bpy.types.Scene], None]
 
 
 LOOKS = {
@@ -49,24 +47,11 @@ LOOKS = {
 class Filming(Reel):
     """One film of the frames that a scene plays, in the size of its renders, through its camera.
 
-    Parameters
-    ----------
-    scene
-        What is filmed; it stays as it is.
-    path
-        The file, with Blender's ``//`` for the directory of the open file; ``.mp4`` is added to a name without suffix.
-    look
-        One of `LOOKS`.
-    overwrite
-        Whether a file that is there may be replaced.
-
-    Raises
-    ------
-    MobiusFlowError
-        If the film cannot be made; the message says why.
+    The scene stays as it is. In the path, Blender's ``//`` is the directory of the open file, and ``.mp4`` is added to
+    a name without suffix. Raises MobiusFlowError if the film cannot be made.
     """
 
-    def __init__(self, scene: "bpy.types.Scene", path: str, look: str = "SCENE", overwrite: bool = False) -> None:
+    def __init__(self, scene: bpy.types.Scene, path: str, look: str = "SCENE", overwrite: bool = False) -> None:
         if look not in LOOKS:
             raise MobiusFlowError(f"{look!r} is no look of films; {choice(look, LOOKS)}")
         place = target(path)
@@ -96,8 +81,6 @@ class Filming(Reel):
 
 def target(path: str) -> Path:
     """Where a film of that name goes; raises MobiusFlowError if it is no film's, or beside a file never saved."""
-    import bpy
-
     if not path.strip():
         raise MobiusFlowError(Message("The film has no name; give it a file"))
     if path.startswith("//") and not bpy.data.filepath:
@@ -112,7 +95,7 @@ def target(path: str) -> Path:
     return found if found.suffix else found.with_suffix(SUFFIX)
 
 
-def _check(scene: "bpy.types.Scene", path: Path, overwrite: bool) -> None:
+def _check(scene: bpy.types.Scene, path: Path, overwrite: bool) -> None:
     """Raise a MobiusFlowError for what would go wrong after minutes of rendering."""
     render = scene.render
     sides = [side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y)]

@@ -1,17 +1,14 @@
 """Icons of the table's knots, drawn when they are first asked for."""
 
 from functools import cache
-from typing import TYPE_CHECKING
 
+import bpy.utils.previews
 import numpy as np
 
 from ...core.knots import smooth_knot
 from ...core.types import FloatArray
 from ..engine.knot_list import thumbnail
 from ..engine.placement import Frame
-
-if TYPE_CHECKING:
-    import bpy.utils.previews
 
 _ICON, _IMAGE = 32, 96  # pixels, in menus and in galleries
 
@@ -29,17 +26,13 @@ def icon(name: str) -> int:
 
 def forget() -> None:
     """Remove all icons: Blender does not do so by itself."""
-    import bpy.utils.previews
-
     if _drawn.cache_info().currsize:
         bpy.utils.previews.remove(_drawn())
         _drawn.cache_clear()
 
 
 @cache
-def _drawn() -> "bpy.utils.previews.ImagePreviewCollection":
-    import bpy.utils.previews
-
+def _drawn() -> bpy.utils.previews.ImagePreviewCollection:
     return bpy.utils.previews.new()
 
 

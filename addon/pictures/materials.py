@@ -13,15 +13,7 @@ _GLAZE = {"Roughness": 0.32, "Coat Weight": 0.6, "Coat Roughness": 0.08}
 
 
 def colour_components(data: "bpy.types.Curve", first: int = 0) -> None:
-    """Give every spline the colour of its component, in slots after those that there are.
-
-    Parameters
-    ----------
-    data
-        The curve data.
-    first
-        Number of the first spline among the components of its link.
-    """
+    """Give every spline the colour of its component, the ``first`` onwards, in slots after those that there are."""
     slots: dict[int, int] = {}
     for component, spline in enumerate(data.splines, first):
         hue = component % len(PALETTE)

@@ -24,15 +24,7 @@ _COMPRESSION = 5  # percent: the pictures live for a minute
 
 
 class Reel:
-    """A scene made for one film, which is rendered beside its place and moved there if it is whole.
-
-    Attributes
-    ----------
-    path
-        The film's file.
-    frames
-        Number of its frames.
-    """
+    """A scene made for one film, which is rendered beside its place and moved there if it is whole."""
 
     def __init__(self, scene: "bpy.types.Scene", path: Path) -> None:
         self.path = path
@@ -79,28 +71,12 @@ class Reel:
 
 
 def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None = None, oversampling: int = 1) -> None:
-    """Render all frames to an MP4 that plays everywhere.
+    """Render all frames of a scene made for that, in which F-curves alone move things, to an MP4 that plays everywhere.
 
-    Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand, or after the seconds in which
-    the frames are put together; nothing is left behind then. A frame in which nothing has moved is the frame before
-    again.
-
-    Parameters
-    ----------
-    scene
-        What to render, made for that: its frame and its settings for pictures change. All that moves is moved by
-        F-curves.
-    path
-        The file; it appears whole or not at all.
-    progress
-        Gets the number of frames done and of all frames.
-    oversampling
-        A pixel of the film is the mean of so many times so many rendered ones.
-
-    Raises
-    ------
-    OSError, RuntimeError
-        If the film cannot be written.
+    ``progress`` gets the number of frames done and of all frames; a pixel of the film is the mean of ``oversampling``²
+    rendered ones. Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand, or after the
+    seconds in which the frames are put together, and leaves nothing behind. A frame in which nothing has moved is the
+    frame before again. Raises OSError or RuntimeError if the film cannot be written.
     """
     try:
         with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room:
@@ -145,7 +121,6 @@ def length_of(path: Path) -> int:
 
 
 def _pictures(scene: "bpy.types.Scene", room: Path, progress: Progress) -> Iterator[Path]:
-    """Render a scene's frames; the same picture may come more than once."""
     frames = frames_of(scene)
     curves = list(all_fcurves())
     shown, picture = None, room

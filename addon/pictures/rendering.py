@@ -33,10 +33,7 @@ def use_cycles(scene: "bpy.types.Scene", width: int, height: int, samples: int, 
 
 
 def look_fine(scene: "bpy.types.Scene", samples: int, draft: bool = False) -> None:
-    """Let a scene be rendered by Cycles, with soft shadows.
-
-    A draft has softer ones: it is denoised from its colours alone, which takes a third of the time.
-    """
+    """Let a scene be rendered by Cycles; a draft is denoised from its colours alone, in a third of the time."""
     cycles = scene.cycles
     scene.render.engine = "CYCLES"
     scene.view_settings.view_transform = "AgX"
@@ -72,7 +69,6 @@ def look_plain(scene: "bpy.types.Scene") -> None:
 
 
 def skip_frames(scene: "bpy.types.Scene") -> None:
-    """Render every second frame only, for as long a film."""
     scene.frame_step, scene.render.fps = 2, FRAME_RATE // 2
 
 
@@ -84,10 +80,7 @@ def _set_size(scene: "bpy.types.Scene", width: int, height: int) -> None:
 
 
 def workbench_works() -> bool:
-    """Try Workbench in a process of its own, since without a graphics driver it ends the process it runs in.
-
-    It is isolated: neither the working directory nor the environment tells where its modules are.
-    """
+    """Try Workbench in an isolated process, since without a graphics driver it ends the process it runs in."""
     import bpy
 
     with tempfile.TemporaryDirectory() as room:
@@ -103,13 +96,7 @@ def workbench_works() -> bool:
 
 
 def render_still(scene: "bpy.types.Scene", path: Path, compression: int = 15) -> None:
-    """Render the current frame to a PNG; ``compression`` is in percent.
-
-    Raises
-    ------
-    OSError
-        If the file is not whole, which Blender does not notice.
-    """
+    """Render the current frame to a PNG; raises OSError if it is not whole, which Blender does not notice."""
     import bpy
 
     settings = scene.render.image_settings

@@ -24,21 +24,11 @@ _WIDTH = 60.0  # of the floor: the camera sees no end of it
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """Where things stand: an orthonormal frame whose third axis is up, a middle, and a size to measure by.
+    """Where things stand: an orthonormal frame whose third axis is up, a middle, and a size to measure by."""
 
-    Attributes
-    ----------
-    axes
-        Rows are the stage's x (to the right of the picture), y (away from it) and z (up).
-    middle
-        Centre of what is shown.
-    size
-        Largest distance of what is shown from the middle.
-    """
-
-    axes: FloatArray
+    axes: FloatArray  # rows: to the right of the picture, away from it, and up
     middle: FloatArray
-    size: float
+    size: float  # largest distance of what is shown from the middle
 
     @classmethod
     def around(cls, shown: Sequence[Frame | FloatArray], axes: FloatArray) -> "Stage":
@@ -80,12 +70,10 @@ def light_workbench(scene: "bpy.types.Scene", direction: npt.ArrayLike) -> None:
 
 
 def towards_key(stage: Stage) -> FloatArray:
-    """Direction of the key light from the middle of a stage, (3,)."""
     return np.asarray(_KEY @ stage.axes)
 
 
 def add(collection: "bpy.types.Collection", name: str, data: "bpy.types.ID") -> "bpy.types.Object":
-    """Add an object to a collection."""
     import bpy
 
     obj = bpy.data.objects.new(name, data)

@@ -5,8 +5,8 @@ collection holds on to them, and gives them back.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import CurveError
@@ -14,41 +14,30 @@ from ..curves.neighbours import STAGE
 from ..curves.world_motion import WorldMotion
 from . import camera, stage
 
-if TYPE_CHECKING:
-    import bpy
-
 _NAME = "Stage"
 _CAMERA, _WORLD = "mobius_flow_camera", "mobius_flow_world"  # of its collection: what the scene had before
 
 
 def set_up(
-    scene: "bpy.types.Scene",
-    objects: Sequence["bpy.types.Object"],
+    scene: bpy.types.Scene,
+    objects: Sequence[bpy.types.Object],
     use_camera: bool = True,
     use_world: bool = True,
-) -> "bpy.types.Collection":
+) -> bpy.types.Collection:
     """Put a camera, lights and a floor around curve objects for as long as they move; a stage there was is replaced.
 
-    Parameters
-    ----------
-    scene
-        Where the objects are; the camera's pictures have the shape of its renders.
-    objects
-        Curve objects, their transforms evaluated.
-    use_camera, use_world
-        Whether the scene is rendered by the stage's camera and under its sky, instead of those that it has.
-
-    Raises
-    ------
-    CurveError
-        If splines cannot be read, or are a single point; nothing has changed then.
+    The objects' transforms are evaluated. ``use_camera`` and ``use_world`` say whether the scene is rendered by the
+    stage's camera and under its sky, instead of its own. Raises CurveError if splines cannot be read, or are a single
+    point; nothing has changed then.
     """
     motion = WorldMotion.of(scene, objects)
     ground = stage.Stage.around(motion.points, stage.level_axes(motion.points[-1]))
     if not ground.size:
         raise CurveError("All points of the curves are the same; move them apart")
     strike(scene)
-    collection = _collection(scene)
+    collection = bpy.data.collections.new(_NAME)
+    scene.collection.children.link(collection)
+    collection[STAGE] = _aspect(scene)
     floor = stage.build(collection, ground)
     floor.hide_select = True  # it is in the way of every click
     eye = camera.follow(collection, _shape(scene), ground, floor, motion.points, motion.radii, motion.frames)
@@ -57,11 +46,13 @@ def set_up(
     if use_camera:
         collection[_CAMERA], scene.camera = scene.camera, eye
     if use_world:
-        collection[_WORLD], scene.world = scene.world, _sky()
+        collection[_WORLD], scene.world = scene.world, bpy.data.worlds.new(_NAME)
+        scene.world[STAGE] = True
+        stage.add_sky(scene.world)
     return collection
 
 
-def strike(scene: "bpy.types.Scene") -> None:
+def strike(scene: bpy.types.Scene) -> None:
     """Take a scene's stage away, if it has one; what somebody else put into its collection stays."""
     collection = own_stage(scene)
     if collection is None:
@@ -79,19 +70,18 @@ def strike(scene: "bpy.types.Scene") -> None:
         _remove(collection)
 
 
-def own_stage(scene: "bpy.types.Scene") -> "bpy.types.Collection | None":
-    """The collection of a scene's stage, if there is one."""
+def own_stage(scene: bpy.types.Scene) -> bpy.types.Collection | None:
     return next((each for each in scene.collection.children_recursive if STAGE in each), None)
 
 
-def key_direction(scene: "bpy.types.Scene") -> "Sequence[float] | None":
+def key_direction(scene: bpy.types.Scene) -> "Sequence[float] | None":
     """Where the key light of a scene's stage shines from, if there is one; a direction of the world."""
     collection = own_stage(scene)
     lights = [obj for obj in collection.objects if obj.type == "LIGHT" and STAGE in obj] if collection else []
     return tuple(lights[0].matrix_world.col[2][:3]) if lights else None
 
 
-def fits(scene: "bpy.types.Scene") -> bool:
+def fits(scene: bpy.types.Scene) -> bool:
     """Whether a scene renders pictures of the shape that its stage's camera was made for, if it has one."""
     collection = own_stage(scene)
     if collection is None or scene.camera is None or STAGE not in scene.camera:
@@ -99,36 +89,17 @@ def fits(scene: "bpy.types.Scene") -> bool:
     return bool(np.isclose(collection[STAGE], _aspect(scene)))
 
 
-def _collection(scene: "bpy.types.Scene") -> "bpy.types.Collection":
-    import bpy
-
-    collection = bpy.data.collections.new(_NAME)
-    scene.collection.children.link(collection)
-    collection[STAGE] = _aspect(scene)
-    return collection
-
-
-def _sky() -> "bpy.types.World":
-    import bpy
-
-    world = bpy.data.worlds.new(_NAME)
-    world[STAGE] = True
-    stage.add_sky(world)
-    return world
-
-
-def _shape(scene: "bpy.types.Scene") -> tuple[float, float]:
-    """Width and height of a scene's pictures."""
+def _shape(scene: bpy.types.Scene) -> tuple[float, float]:
     render = scene.render
     return render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
 
 
-def _aspect(scene: "bpy.types.Scene") -> float:
+def _aspect(scene: bpy.types.Scene) -> float:
     width, height = _shape(scene)
     return width / height
 
 
-def _remove_object(obj: "bpy.types.Object") -> None:
+def _remove_object(obj: bpy.types.Object) -> None:
     """Remove an object with all that nothing else uses: its data, their materials, its motion."""
     data, animation = obj.data, obj.animation_data
     materials = list(getattr(data, "materials", ()))
@@ -139,7 +110,5 @@ def _remove_object(obj: "bpy.types.Object") -> None:
             _remove(block)
 
 
-def _remove(block: "bpy.types.ID") -> None:
-    import bpy
-
+def _remove(block: bpy.types.ID) -> None:
     bpy.data.batch_remove([block])

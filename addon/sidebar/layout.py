@@ -27,8 +27,7 @@ class InSidebar:
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        for draw in self.rows:
-            draw(self.layout, context)
+        _fill(self.layout, context, self.rows)
 
 
 class SubPanel(InSidebar):
@@ -46,11 +45,16 @@ def button(name: str, icon: str) -> Draw:
 
 
 def row(*parts: Draw) -> Draw:
-    return lambda layout, context: [draw(within, context) for within in [layout.row(align=True)] for draw in parts]
+    return lambda layout, context: _fill(layout.row(align=True), context, parts)
 
 
 def column(*parts: Draw) -> Draw:
-    return lambda layout, context: [draw(within, context) for within in [layout.column(align=True)] for draw in parts]
+    return lambda layout, context: _fill(layout.column(align=True), context, parts)
+
+
+def _fill(layout: bpy.types.UILayout, context: bpy.types.Context, parts: Sequence[Draw]) -> None:
+    for draw in parts:
+        draw(layout, context)
 
 
 def settings(*names: str, of: str = "mobius_flow") -> Draw:

@@ -21,8 +21,6 @@ _OPERATORS = (
 
 
 class VIEW3D_MT_mobius_flow(bpy.types.Menu):
-    """All that can be done with curves that are there"""
-
     bl_idname = "VIEW3D_MT_mobius_flow"
     bl_label = "Möbius Flow"
 
@@ -37,12 +35,9 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):
 
 
 class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):
-    """Knots to add: common ones, the whole table, and families."""
-
     bl_label = "Knot"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Show common ones with their pictures, then the rest."""
         layout = self.layout
         layout.operator_context = "INVOKE_REGION_WIN"
         for name in COMMON:
@@ -59,19 +54,16 @@ class VIEW3D_MT_mobius_flow_knots(bpy.types.Menu):
 
 
 def search(layout: bpy.types.UILayout, _context: bpy.types.Context) -> None:
-    """Offer the list of the whole table."""
     column = layout.column()
     column.operator_context = "INVOKE_DEFAULT"
     operator(column, "pick_knot", text="Search...", icon="VIEWZOOM")
 
 
 def _add_knot(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    """Offer knots in Add > Curve."""
     menu.layout.menu(VIEW3D_MT_mobius_flow_knots.__name__, icon="CURVE_NCIRCLE")
 
 
 def _flow(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    """Offer the rest in Object, and in Edit Mode in Curve."""
     menu.layout.separator()
     menu.layout.menu(VIEW3D_MT_mobius_flow.bl_idname)
 

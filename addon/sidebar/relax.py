@@ -18,15 +18,6 @@ from ..live.run import Run, State
 from ..translations import iface_
 from .layout import InSidebar, operator, refused, sentence, value
 
-_STATES = {
-    State.RUNNING: Message("Running"),
-    State.PAUSED: Message("Paused"),
-    State.FINISHING: Message("Finishing"),
-    State.DONE: Message("Done"),
-    State.CANCELLED: Message("Cancelled"),
-    State.LOST: Message("Lost"),
-}
-
 
 def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """The large buttons; when Relax is disabled, the reason stands below it."""
@@ -66,7 +57,7 @@ def _warning(layout: bpy.types.UILayout, context: bpy.types.Context, objects: Se
 def _state(run: Run) -> Message:
     if run.waits:
         return Message("Waiting for the render")
-    return Message("Failed") if run.failed and run.state is State.CANCELLED else _STATES[run.state]
+    return Message("Failed") if run.failed and run.state is State.CANCELLED else run.state.value
 
 
 def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -119,5 +110,4 @@ class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):
     rows = (_buttons, _progress, _quality, _add_knot)
 
     def draw_header_preset(self, _context: bpy.types.Context) -> None:
-        """Put the menu of presets into the panel's head."""
         VIEW3D_PT_mobius_flow_presets.draw_panel_header(self.layout)

@@ -82,12 +82,11 @@ def open_sidebar() -> Steps:
 
 def open_panels(*names: str) -> None:
     """Let these sub-panels be open, such as ``film``, and no others; to be called before the sidebar is first drawn."""
-    for module in addon("sidebar")._MODULES:
-        for panel in module.CLASSES:
-            if getattr(panel, "bl_parent_id", ""):
-                bpy.utils.unregister_class(panel)
-                panel.bl_options = set() if module.__name__.rpartition(".")[2] in names else {"DEFAULT_CLOSED"}
-                bpy.utils.register_class(panel)
+    for panel in addon("registration").CLASSES:
+        if getattr(panel, "bl_parent_id", ""):
+            bpy.utils.unregister_class(panel)
+            panel.bl_options = set() if panel.__name__.rpartition("_")[2] in names else {"DEFAULT_CLOSED"}
+            bpy.utils.register_class(panel)
 
 
 def button(operator: str) -> Steps:

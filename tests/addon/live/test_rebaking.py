@@ -160,18 +160,17 @@ def test_undo_of_something_else_does_not_end_a_run(operator):
     operator.reach(2)
     registry.history.others = 2
     assert operator.event("Z", ctrl=True) == {"PASS_THROUGH"}
-    handlers._undo_pre()
+    handlers.HANDLERS["undo_pre"]()
     restored(obj, before)
     shown = operator.run.shown.curve.vertices.astype(np.float32)
-    handlers._undo_post()
+    handlers.HANDLERS["undo_post"]()
     np.testing.assert_array_equal(stored(obj.data), shown)
     operator.reach(operator.run.last.index + 1)
-    for before_it, after_it in ((handlers._redo_pre, handlers._redo_post), (handlers._undo_pre, handlers._undo_post)):
-        before_it()
-        after_it()
+    for name in ("redo_pre", "redo_post", "undo_pre", "undo_post"):
+        handlers.HANDLERS[name]()
     assert (registry.history.others, registry.history.undone) == (1, 1)
     registry.history.others = 0
-    handlers._undo_pre()
+    handlers.HANDLERS["undo_pre"]()
     assert registry.current() is None
     restored(obj, before)
 

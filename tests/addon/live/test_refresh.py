@@ -1,7 +1,10 @@
 """Drawing gets a third of the time at most, however long it takes; or every so many iterates are shown."""
 
 import pytest
-from mobius_flow.addon.live.refresh import Refresh
+
+pytest.importorskip("bpy")
+
+from mobius_flow.addon.live.run import Refresh
 
 
 class Window:
