@@ -10,6 +10,7 @@ from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.placement import Frame, Link, Placement
 from . import sampling
+from .splines import coordinates, read
 
 if TYPE_CHECKING:
     import bpy
@@ -43,7 +44,7 @@ def closed(data: "bpy.types.Curve") -> tuple[bool, ...]:
 def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
     """The polygons of all splines in the object's coordinates, (n, 3) each; raises as `read_link` does."""
     smooth = sampling.smooth_splines(obj.data)
-    frames = sampling.sampled(obj) if smooth else [spline_points(spline) for spline in obj.data.splines]
+    frames = sampling.sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
     for k, frame in enumerate(frames, 1):
         bad = np.flatnonzero(~(np.abs(frame) < _FAR).all(axis=1))
         if bad.size:
@@ -64,25 +65,25 @@ def stretch(obj: "bpy.types.Object") -> float:
     return float(np.linalg.norm(np.array(obj.matrix_world)[:3, :3], 2))
 
 
-def spline_points(spline: "bpy.types.Spline") -> Frame:
-    """Coordinates of a spline's points as stored; shape (n, 3)."""
-    points = np.empty(4 * len(spline.points), dtype=np.float32)
-    spline.points.foreach_get("co", points)
-    return points.reshape(-1, 4)[:, :3]
+def length(scene: "bpy.types.Scene", value: float) -> str:
+    """Write a length with its unit, in four digits or so."""
+    import bpy
+
+    units = scene.unit_settings
+    text = bpy.utils.units.to_string(
+        units.system, "LENGTH", value * units.scale_length, precision=4, split_unit=units.use_separate
+    )
+    return str(text).strip()
 
 
 def key_points(block: "bpy.types.ShapeKey") -> Frame:
     """Coordinates of all points at a shape key; shape (n, 3)."""
-    points = np.empty(3 * len(block.data), dtype=np.float32)
-    block.data.foreach_get("co", points)
-    return points.reshape(-1, 3)
+    return read(block.data, "co", 3)
 
 
 def key_radii(block: "bpy.types.ShapeKey") -> Frame:
     """Radii of all points at a shape key, relative to the bevel depth; shape (n,)."""
-    radii = np.empty(len(block.data), dtype=np.float32)
-    block.data.foreach_get("radius", radii)
-    return radii
+    return read(block.data, "radius")
 
 
 def write_points(data: "bpy.types.Curve", frame: Frame) -> None:

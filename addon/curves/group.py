@@ -15,9 +15,10 @@ from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame, Spot, spots
 from ..engine.words import in_blenders_words, named, spline_names
-from .exchange import read_link, spline_points
+from .exchange import read_link
 from .member import Member
 from .pins import pinned_vertices
+from .splines import coordinates
 
 if TYPE_CHECKING:
     import bpy
@@ -126,7 +127,7 @@ class Group:
     @property
     def stored(self) -> Frame:
         """The splines' vertices as Blender stores them; shape (n, 3)."""
-        return np.concatenate([spline_points(spline) for obj in self.objects for spline in obj.data.splines])
+        return np.concatenate([coordinates(spline) for obj in self.objects for spline in obj.data.splines])
 
     def show(self, start: Curve, frame: Frame) -> None:
         """Move all points; shape (n, 3), each object's own coordinates.

@@ -15,9 +15,9 @@ from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame, Placement
 from . import bake, bevel, keyframes
-from .deforming import what_deforms
 from .exchange import write_points
 from .fcurves import own_action
+from .moving import what_deforms
 from .reference import Reference
 from .splines import Splines, shape
 

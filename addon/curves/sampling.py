@@ -8,6 +8,7 @@ import numpy as np
 from ...core import CurveError
 from ...core.messages import Message
 from ..engine.placement import Frame
+from .splines import read
 
 if TYPE_CHECKING:
     import bpy
@@ -103,10 +104,7 @@ def _strip(data: "bpy.types.Curve") -> None:
 
 def _loops(mesh: "bpy.types.Mesh") -> list[Frame]:
     """The chains of a mesh: vertices one after the other, each joined to the next."""
-    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    edges = np.empty(2 * len(mesh.edges), dtype=np.int32)
-    mesh.vertices.foreach_get("co", points)
-    mesh.edges.foreach_get("vertices", edges)
-    low, high = np.sort(edges.reshape(-1, 2), axis=1).T
+    points, edges = read(mesh.vertices, "co", 3), read(mesh.edges, "vertices", 2, np.int32)
+    low, high = np.sort(edges, axis=1).T
     starts = np.setdiff1d(np.arange(len(mesh.vertices)), high[high - low == 1])
-    return np.split(points.reshape(-1, 3), starts[1:]) if len(starts) else []
+    return np.split(points, starts[1:]) if len(starts) else []

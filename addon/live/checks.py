@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..curves import bake, bevel, sampling
-from ..curves.deforming import what_deforms
-from ..curves.moving import what_moves
+from ..curves.moving import what_deforms, what_moves
 from .requirements import Check, Curves, Remedy, curves_at_hand
 
 if TYPE_CHECKING:

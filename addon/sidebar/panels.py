@@ -4,9 +4,8 @@ import bpy
 
 from ...core.messages import Message
 from ..curves import bake, bevel, pins
-from ..curves.exchange import stretch
-from ..curves.standing import unsteady
-from ..curves.units import length
+from ..curves.exchange import length, stretch
+from ..curves.moving import unsteady
 from ..engine.key_options import Output
 from ..engine.knot_list import labels
 from ..engine.size import Measure
