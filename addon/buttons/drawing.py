@@ -11,7 +11,7 @@ from ...core import Curve, CurveError
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_link
-from ..engine.drawing_plane import DrawingPlane
+from ..engine.turning import DrawingPlane
 from ..live.requirements import Condition, selected_curves
 from ..translations import iface_, rpt_
 from .adding import OBJECT_MODE, AddsKnot

@@ -26,24 +26,12 @@ if TYPE_CHECKING:
 class BakedKeys:
     """What baked curve objects are at each of their keys.
 
-    Parameters
-    ----------
-    objects
-        Baked curve objects, their transforms evaluated.
+    Raises MobiusFlowError if they have not equally many keys, so that they were not baked together.
 
-    Attributes
-    ----------
-    mesh
-        Connectivity of all their splines as one link.
-    link
-        Where its vertices are stored.
-    frames
-        The vertices at each key as stored, (n, 3).
+    ``objects``: baked curve objects, their transforms evaluated.
 
-    Raises
-    ------
-    MobiusFlowError
-        If they have not equally many keys, so that they were not baked together.
+    ``mesh``: connectivity of all their splines as one link; ``link``: where its vertices are stored; ``frames``: the
+    vertices at each key as stored, (n, 3).
     """
 
     def __init__(self, objects: Sequence["bpy.types.Object"]) -> None:

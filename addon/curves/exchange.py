@@ -23,11 +23,8 @@ def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
 
     Splines that are not cyclic are open components. Smooth splines are read as the polygons drawn for them.
 
-    Raises
-    ------
-    CurveError
-        If a coordinate is not finite, or as good as infinite, or no polygon is drawn for a smooth spline; the message
-        names the spline and its object.
+    Raises CurveError if a coordinate is not finite, or as good as infinite, or no polygon is drawn for a smooth spline;
+    the message names the spline and its object.
     """
     placements = tuple(Placement.from_matrix(obj.matrix_world) for obj in objects)
     components = [read_splines(obj) for obj in objects]

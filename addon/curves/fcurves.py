@@ -92,15 +92,7 @@ def _own_collections(block: "bpy.types.ID") -> Iterator[Any]:
 
 
 class FCurves:
-    """The F-curves of the action on a datablock, which gets a new one if it has none.
-
-    Parameters
-    ----------
-    block
-        The datablock.
-    name
-        What a new action is called.
-    """
+    """The F-curves of the action on a datablock, which gets a new one if it has none."""
 
     def __init__(self, block: "bpy.types.ID", name: str) -> None:
         if not (block.animation_data and block.animation_data.action):

@@ -181,7 +181,6 @@ def _is_animated(block: "bpy.types.ID | None") -> bool:
 
 
 def _is_changing(modifier: "bpy.types.Modifier") -> bool:
-    """Whether a modifier shows something else at every frame."""
     if modifier.type == "PARTICLE_SYSTEM":
         return bool(modifier.particle_system.settings.type == "EMITTER")
     return _is_of(modifier, _CHANGING, _CHANGING_NODES)

@@ -65,16 +65,8 @@ def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, 
 
     Ends of open splines are closed where the curve fills its caps.
 
-    Parameters
-    ----------
-    obj
-        The curve object.
-    recorded
-        Its shapes.
-    radii
-        Radii of the tube in its coordinates, (keys, n).
-    sides
-        Number of vertices of a ring; those of curve vertex i are i · sides and the ones that follow.
+    ``obj``: the curve object; ``recorded``: its shapes; ``radii``: radii of the tube in its coordinates, (keys, n);
+    ``sides``: number of vertices of a ring; those of curve vertex i are i · sides and the ones that follow.
     """
     import bpy
 
@@ -156,20 +148,10 @@ def smooth_objects(
 ) -> tuple[list["bpy.types.Object"], SmoothFit]:
     """Make curve objects of smooth splines where others are, with their bevels and materials.
 
-    Parameters
-    ----------
-    objects
-        The other objects.
-    link
-        Their splines as polygons in the world.
-    points
-        Number of points of each spline, see `fitted`.
-    kind
-        'BEZIER' or 'NURBS': the same curve, with other points to edit.
+    ``objects``: the other objects; ``link``: their splines as polygons in the world; ``points``: number of points of
+    each spline, see `fitted`; ``kind``: 'BEZIER' or 'NURBS': the same curve, with other points to edit.
 
-    Returns
-    -------
-    The objects, and the splines as they are stored in them, in the world.
+    Returns the objects, and the splines as they are stored in them, in the world.
     """
     wanted = iter(fitted(link, points).points)
     made, shown = [], []

@@ -25,26 +25,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """The shapes of one curve object, straight in between, in its own coordinates.
+    """The shapes of one curve object, straight in between, in its own coordinates."""
 
-    Attributes
-    ----------
-    mesh
-        Its splines as polygons, a component each.
-    frames
-        Scene frames of the shapes, (keys,); a curve that was not baked here has one shape at frame 0.
-    points
-        Vertices, (keys, n, 3).
-    radii
-        Their radii relative to the bevel depth, (keys, n).
-    keys
-        Vertices at shape keys, which may be at other frames, or at the last frame where there are none; (shapes, n, 3).
-    """
-
-    mesh: Mesh
-    frames: FloatArray
-    points: FloatArray
-    radii: FloatArray
+    mesh: Mesh  # its splines as polygons, a component each
+    frames: FloatArray  # scene frames of the shapes, (keys,); a curve that was not baked here has one shape at frame 0
+    points: FloatArray  # vertices, (keys, n, 3)
+    radii: FloatArray  # their radii relative to the bevel depth, (keys, n)
+    # vertices at shape keys, which may be at other frames, or at the last frame where there are none; (shapes, n, 3)
     keys: FloatArray
 
     @classmethod
@@ -111,21 +98,11 @@ def _radii(data: "bpy.types.Curve", mesh: Mesh) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class WorldMotion:
-    """Several curve objects in time; between its frames points move straight, or nearly so where something moves them.
+    """Curve objects in time; between its frames points move straight, or nearly so where something moves them."""
 
-    Attributes
-    ----------
-    frames
-        Ascending scene frames; (frames,).
-    points
-        Points of all objects at each of them; (n, 3).
-    radii
-        Radius of the thickest tube at each of them; (frames,).
-    """
-
-    frames: FloatArray
-    points: list[FloatArray]
-    radii: FloatArray
+    frames: FloatArray  # ascending scene frames; (frames,)
+    points: list[FloatArray]  # points of all objects at each of them; (n, 3)
+    radii: FloatArray  # radius of the thickest tube at each of them; (frames,)
 
     @classmethod
     def of(cls, scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "WorldMotion":
@@ -168,7 +145,6 @@ def _placements(
 
 @contextmanager
 def _frame_kept(scene: "bpy.types.Scene") -> Iterator[None]:
-    """Put a scene's frame back at the end."""
     frame, subframe = scene.frame_current, scene.frame_subframe
     try:
         yield

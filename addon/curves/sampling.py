@@ -53,10 +53,7 @@ def _joined(kinds: Sequence[str]) -> str:
 def sampled(obj: "bpy.types.Object") -> list[Frame]:
     """Points of all splines, each of shape (n, 3): smooth ones as drawn, at their own preview resolution.
 
-    Raises
-    ------
-    CurveError
-        If no polygon is drawn for a spline.
+    Raises CurveError if no polygon is drawn for a spline.
     """
     loops = _drawn(obj.data)
     if len(loops) != len(obj.data.splines):

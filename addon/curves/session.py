@@ -47,47 +47,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Report:
-    """What a finished session did.
+    """What a finished session did."""
 
-    Attributes
-    ----------
-    names
-        The objects' names.
-    outcome
-        How the relaxation ended.
-    keys
-        Number of keys of what was relaxed; 1 without animation.
-    continues
-        Whether the first of them is the last of those that were there.
-    last_frame
-        Scene frame of the last key.
-    scene_range
-        First and last frame of the animation with its rests, if there is one.
-    certified
-        Whether every motion shown was proved free of contact, of each curve with itself, of all with each other, and
-        with what they avoid.
-    radius
-        Radius of the tube in the world if it was fitted.
-    modified
-        Whether modifiers change what is shown: proofs are about the curves themselves.
-    avoided
-        Names of the objects that were avoided.
-    """
-
-    names: tuple[str, ...]
-    outcome: Outcome
-    keys: int
-    continues: bool
-    last_frame: float
-    scene_range: tuple[int, int] | None
+    names: tuple[str, ...]  # the objects' names
+    outcome: Outcome  # how the relaxation ended
+    keys: int  # number of keys of what was relaxed; 1 without animation
+    continues: bool  # whether the first of them is the last of those that were there
+    last_frame: float  # scene frame of the last key
+    scene_range: tuple[int, int] | None  # first and last frame of the animation with its rests, if there is one
+    # whether every motion shown was proved free of contact, of each curve with itself, of all with each other, and
+    # with what they avoid
     certified: bool
-    radius: float | None
-    modified: bool
-    avoided: tuple[str, ...]
+    radius: float | None  # radius of the tube in the world if it was fitted
+    modified: bool  # whether modifiers change what is shown: proofs are about the curves themselves
+    avoided: tuple[str, ...]  # names of the objects that were avoided
 
     @property
     def sentence(self) -> Message:
-        """The same in words."""
         told: dict[str, Any] = {
             "names": named(self.names),
             "outcome": self.outcome.message,
@@ -133,32 +109,15 @@ class Prepared:
 class Session:
     """A relaxation of curve objects as one link.
 
-    Parameters
-    ----------
-    objects
-        Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
-    options, key_options
-        The requested options.
-    continues
-        Whether baked curves are relaxed on from the ends of their animations; the keys are added to theirs then.
-    surroundings
-        What they avoid.
+    Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for their keys; the message says why.
 
-    Attributes
-    ----------
-    group
-        The objects, which show stand-ins until the session's end or `Group.discard`.
-    options
-        The requested options, with what is pinned and what is avoided.
-    surroundings
-        What is avoided.
-    outcome
-        How the relaxation ended, once it has.
+    ``objects``: curve objects that `checks.refusal` has nothing against, their transforms evaluated; ``options``,
+    ``key_options``: the requested options; ``continues``: whether baked curves are relaxed on from the ends of their
+    animations; the keys are added to theirs then; ``surroundings``: what they avoid.
 
-    Raises
-    ------
-    MobiusFlowError
-        If the curves cannot be relaxed, or there is no room for their keys; the message says why.
+    ``group``: the objects, which show stand-ins until the session's end or `Group.discard`; ``options``: the requested
+    options, with what is pinned and what is avoided; ``surroundings``: what is avoided; ``outcome``: how the relaxation
+    ended, once it has.
     """
 
     def __init__(
@@ -208,10 +167,7 @@ class Session:
     def run(self) -> Report:
         """Do the whole job. Objects are touched at its end only, and put back if that fails.
 
-        Raises
-        ------
-        MobiusFlowError
-            If the curves cannot be relaxed, or an object is gone.
+        Raises MobiusFlowError if the curves cannot be relaxed, or an object is gone.
         """
         try:
             prepared = self._relaxed()
@@ -237,7 +193,6 @@ class Session:
 
     @property
     def _avoided(self) -> tuple[Obstacle, ...]:
-        """What is avoided, in the common space."""
         return in_common_space(self.task.obstacles, self.group.link)
 
     def lost(self) -> Message | None:
@@ -251,11 +206,9 @@ class Session:
         return CurveError(Sentence("{reason}", reason=self.group.told(str(error))), error.place)
 
     def end(self, outcome: Outcome) -> None:
-        """Take in how the relaxation ended."""
         self.outcome = replace(outcome, clauses=tuple(map(self.group.told, outcome.clauses)))
 
     def take(self, iterate: Iterate) -> None:
-        """Take in an iterate."""
         self._motion.add(self._sized(iterate))
 
     def _sized(self, iterate: Iterate) -> Iterate:
@@ -288,10 +241,7 @@ class Session:
     def reopen(self) -> None:
         """Go on after `Group.discard` with curves that are still what they were when the session began.
 
-        Raises
-        ------
-        MobiusFlowError
-            If they are not.
+        Raises MobiusFlowError if they are not.
         """
         changed = Message("{names} changed since the relaxation ended; relax anew", names=self.group.title)
         objects = self.group.objects
@@ -323,7 +273,6 @@ class Session:
         yield from self.group.writing(self._mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii)
 
     def report(self, prepared: Prepared) -> Report:
-        """What was done, once it is written."""
         assert self.outcome is not None, "what is written has ended"
         keys, frames, group = prepared.keys, prepared.frames, self.group
         return Report(

@@ -24,11 +24,8 @@ def surfaces(
 ) -> list[list[Surface]]:
     """What each of some objects shows, piece by piece.
 
-    Raises
-    ------
-    MobiusFlowError
-        If one of them is hidden, or shows what cannot be avoided: something else than faces and edges, or a copy of
-        an object that does not stand still while others are relaxed.
+    Raises MobiusFlowError if one of them is hidden, or shows what cannot be avoided: something else than faces and
+    edges, or a copy of an object that does not stand still while others are relaxed.
     """
     shown: dict[int, list[Surface]] = {obj.session_uid: [] for obj in objects}
     looked_at: set[int] = set()

@@ -38,10 +38,7 @@ def avoidable(
 def add(scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "bpy.types.Collection":
     """Add objects to the collection that the scene's curves avoid, which is made where there is none.
 
-    Raises
-    ------
-    MobiusFlowError
-        If the collection belongs to another file.
+    Raises MobiusFlowError if the collection belongs to another file.
     """
     import bpy
 
@@ -65,7 +62,6 @@ class _Place:
     placement: Placement
 
     def lost(self) -> Message | None:
-        """Say what somebody did to the object."""
         obj = self.reference.get()
         if obj is None or not obj.users_scene:
             return Message("'{name}' was deleted", name=self.reference.name)
@@ -78,25 +74,17 @@ class _Place:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Objects that are avoided; nothing of them is touched.
+    """Objects that are avoided; nothing of them is touched."""
 
-    Attributes
-    ----------
-    obstacles
-        What they show, in the world.
-    """
-
-    obstacles: tuple[Obstacle, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()  # what they show, in the world
     _places: tuple[_Place, ...] = ()
 
     @classmethod
     def of(cls, avoided: Sequence["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> "Surroundings":
         """Read objects as they are shown at the current frame.
 
-        Raises
-        ------
-        MobiusFlowError
-            If one of them is hidden, moves, or shows nothing that can be avoided, or a curve that is relaxed moves.
+        Raises MobiusFlowError if one of them is hidden, moves, or shows nothing that can be avoided, or a curve that is
+        relaxed moves.
         """
         import bpy
 
@@ -110,7 +98,6 @@ class Surroundings:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The objects' names."""
         return tuple(place.reference.name for place in self._places)
 
     def lost(self) -> Message | None:

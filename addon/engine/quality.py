@@ -12,19 +12,11 @@ from ...core import METHODS
 
 @dataclass(frozen=True, kw_only=True)
 class Quality:
-    """A level of quality.
+    """A level of quality."""
 
-    Attributes
-    ----------
-    label, purpose
-        Its title, and what it is for.
-    method, tolerance, max_iterations
-        Options of a relaxation; the number of vertices is left to the core at all levels.
-    """
-
-    label: str
+    label: str  # its title, and what it is for
     purpose: str
-    method: str
+    method: str  # options of a relaxation; the number of vertices is left to the core at all levels
     tolerance: float
     max_iterations: int
 

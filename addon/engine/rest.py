@@ -15,27 +15,16 @@ _ITERATIONS = 100  # that lead from points rounded to Blender's numbers back to 
 
 @dataclass(frozen=True)
 class Rest:
-    """Where a curve rests.
+    """Where a curve rests."""
 
-    Attributes
-    ----------
-    index
-        Number of independent directions that lead down, None if it is not at rest.
-    words
-        The same in words.
-    """
-
-    index: int | None
-    words: str
+    index: int | None  # number of independent directions that lead down, None if it is not at rest
+    words: str  # the same in words
 
     @classmethod
     def of(cls, curve: Curve | Task, options: RelaxOptions) -> "Rest":
         """Look at the end of a relaxation that was done with these options.
 
-        Raises
-        ------
-        MobiusFlowError
-            If the curve has too many points, or the options leave no way to tell.
+        Raises MobiusFlowError if the curve has too many points, or the options leave no way to tell.
         """
         task = Task.of(curve)
         if len(task.curve) > MAX_POINTS:

@@ -34,17 +34,10 @@ class SmoothFit:
     """Uniform cubic splines that follow the components of a curve, clamped at the ends of those that are open.
 
     The parameter is the share of a component's length for the polygon, and of the number of segments for its spline.
-
-    Attributes
-    ----------
-    curve
-        The polygons.
-    points
-        Control points (de Boor points) of each component's spline, (k, 3).
     """
 
-    curve: Curve
-    points: tuple[FloatArray, ...]
+    curve: Curve  # the polygons
+    points: tuple[FloatArray, ...]  # control points (de Boor points) of each component's spline, (k, 3)
 
     @cached_property
     def error(self) -> float:
@@ -121,13 +114,8 @@ def _evaluated(points: FloatArray, t: FloatArray, closed: bool) -> FloatArray:
 def fitted(curve: Curve, points: int | None = None) -> SmoothFit:
     """Fit splines to the vertices of each component by least squares.
 
-    Parameters
-    ----------
-    curve
-        The polygons, in space.
-    points
-        Number of control points of each spline, at least 4; None takes as few as are close, and at most half as many as
-        there are vertices.
+    ``curve``: the polygons, in space; ``points``: number of control points of each spline, at least 4; None takes as
+    few as are close, and at most half as many as there are vertices.
     """
     if points is not None:
         return SmoothFit(curve, _control_points(curve, points))
