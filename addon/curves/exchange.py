@@ -45,15 +45,11 @@ def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
     for k, frame in enumerate(frames, 1):
         bad = np.flatnonzero(~(np.abs(frame) < _FAR).all(axis=1))
         if bad.size:
-            raise CurveError(
-                Message(
-                    "Point {point} of spline {spline} of '{name}' is not finite, or further away than anything; "
-                    "repair or delete it",
-                    point=bad[0] + 1,
-                    spline=k,
-                    name=obj.name,
-                )
+            sentence = (
+                "Point {point} of spline {spline} of '{name}' is not finite, or further away than anything; repair or"
+                " delete it"
             )
+            raise CurveError(Message(sentence, point=bad[0] + 1, spline=k, name=obj.name))
     return [frame.astype(np.float64) for frame in frames]
 
 

@@ -57,23 +57,15 @@ def sampled(obj: "bpy.types.Object") -> list[Frame]:
     """
     loops = _drawn(obj.data)
     if len(loops) != len(obj.data.splines):
-        raise CurveError(
-            Message(
-                "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first",
-                name=obj.name,
-            )
-        )
+        sentence = "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first"
+        raise CurveError(Message(sentence, name=obj.name))
     for k, (loop, spline) in enumerate(zip(loops, obj.data.splines, strict=True), 1):
         if len(loop) < (3 if spline.use_cyclic_u else 2):
-            raise CurveError(
-                Message(
-                    "Spline {number} of '{name}' is drawn with only {count} points; "
-                    "raise its Resolution U, or give it more points",
-                    number=k,
-                    name=obj.name,
-                    count=len(loop),
-                )
+            sentence = (
+                "Spline {number} of '{name}' is drawn with only {count} points; raise its Resolution U, or give it "
+                "more points"
             )
+            raise CurveError(Message(sentence, number=k, name=obj.name, count=len(loop)))
     return loops
 
 

@@ -3,7 +3,6 @@
 Chords between keys are proved whatever their times: a key's frame says when it is passed, not where the curve goes.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -40,7 +39,12 @@ class Course:
 
     def share(self, pace: Pace) -> FloatArray:
         """Share of the time passed at each frame, from 0 to 1."""
-        return _SHARES[pace](self)
+        if pace is Pace.ITERATE:
+            return _share(self.iterates, self.iterates)
+        passed = _share(self.flow_time if pace is Pace.FLOW_TIME else self.distance, self.iterates)
+        if pace is Pace.EVEN:
+            return _EVENNESS * passed + (1 - _EVENNESS) * _share(self.iterates, self.iterates)
+        return passed
 
 
 def _share(passed: FloatArray, otherwise: FloatArray) -> FloatArray:
@@ -49,30 +53,6 @@ def _share(passed: FloatArray, otherwise: FloatArray) -> FloatArray:
         if np.ptp(each) > 0:
             return np.asarray((each - each[0]) / np.ptp(each))
     return np.zeros(len(passed))
-
-
-def _of_iterates(course: Course) -> FloatArray:
-    return _share(course.iterates, course.iterates)
-
-
-def _of_distance(course: Course) -> FloatArray:
-    return _share(course.distance, course.iterates)
-
-
-def _of_flow_time(course: Course) -> FloatArray:
-    return _share(course.flow_time, course.iterates)
-
-
-def _of_both(course: Course) -> FloatArray:
-    return _EVENNESS * _of_distance(course) + (1 - _EVENNESS) * _of_iterates(course)
-
-
-_SHARES: dict[Pace, Callable[[Course], FloatArray]] = {
-    Pace.EVEN: _of_both,
-    Pace.DISTANCE: _of_distance,
-    Pace.FLOW_TIME: _of_flow_time,
-    Pace.ITERATE: _of_iterates,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,50 +72,31 @@ class Timing:
 
     def __post_init__(self) -> None:
         if not abs(self.start_frame) <= LAST_FRAME:  # not a number is refused too
-            raise OptionError(
-                Message(
-                    "Start Frame is {frame:.12g}; it must be from {first} to {last}",
-                    frame=self.start_frame,
-                    first=-LAST_FRAME,
-                    last=LAST_FRAME,
-                )
-            )
+            sentence = "Start Frame is {frame:.12g}; it must be from {first} to {last}"
+            raise OptionError(Message(sentence, frame=self.start_frame, first=-LAST_FRAME, last=LAST_FRAME))
         low, high = FRAMES_PER_ITERATE
         if not low <= self.frames_per_iterate <= high:
-            raise OptionError(
-                Message(
-                    "Frames/Iterate is {value:g}; it must be from {low:g} to {high:g}",
-                    value=self.frames_per_iterate,
-                    low=low,
-                    high=high,
-                )
-            )
+            sentence = "Frames/Iterate is {value:g}; it must be from {low:g} to {high:g}"
+            raise OptionError(Message(sentence, value=self.frames_per_iterate, low=low, high=high))
         if min(self.hold_start, self.hold_end) < 0:
             raise OptionError(Message("Hold at Start and Hold at End must be 0 frames or more"))
         if self.pace is not Pace.ITERATE and self.length < 2 + self.hold_start + self.hold_end:
-            raise OptionError(
-                Message(
-                    "Length is {length} frames, which leaves none to move in; "
-                    "it must be at least {least}, or the holds shorter",
-                    length=self.length,
-                    least=2 + self.hold_start + self.hold_end,
-                )
+            sentence = (
+                "Length is {length} frames, which leaves none to move in; it must be at least {least}, or the holds "
+                "shorter"
             )
+            raise OptionError(Message(sentence, length=self.length, least=2 + self.hold_start + self.hold_end))
 
     def check_room(self, iterations: int) -> None:
         """Raise an OptionError if so many iterations would take frames beyond the last one that a scene may have."""
         _, end = self._motion(iterations)
         last = end + self.hold_end
         if last > LAST_FRAME:
-            raise OptionError(
-                Message(
-                    "The animation would go on to frame {frame:.0f}, but Blender's last is {last}; "
-                    "give a smaller {what}",
-                    frame=last,
-                    last=LAST_FRAME,
-                    what=_BY_ITERATE if self.pace is Pace.ITERATE else _BY_LENGTH,
-                )
+            sentence = (
+                "The animation would go on to frame {frame:.0f}, but Blender's last is {last}; give a smaller {what}"
             )
+            what = _BY_ITERATE if self.pace is Pace.ITERATE else _BY_LENGTH
+            raise OptionError(Message(sentence, frame=last, last=LAST_FRAME, what=what))
 
     def frames(self, course: Course) -> FloatArray:
         """Frame of each key as Blender stores it, a 32-bit number, each later than the one before; (keys,)."""

@@ -28,13 +28,8 @@ class Rest:
         """
         task = Task.of(curve)
         if len(task.curve) > MAX_POINTS:
-            raise CurveError(
-                Message(
-                    "The curves have {count} points; minimum or saddle is told up to {most}",
-                    count=len(task.curve),
-                    most=MAX_POINTS,
-                )
-            )
+            sentence = "The curves have {count} points; minimum or saddle is told up to {most}"
+            raise CurveError(Message(sentence, count=len(task.curve), most=MAX_POINTS))
         options = replace(options.at_rest(task.curve), max_iterations=_ITERATIONS, stability=True)
         result = minimize(task, options)
         index = result.outcome.negative_eigenvalues
