@@ -111,26 +111,27 @@ def _nodes_of(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]"
 def unsteady(avoided: Iterable["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> Message | None:
     """Say what of objects that are avoided, or of curves that avoid them, does not stay as it is, or return None."""
     avoided = list(avoided)
-    moving = next((said for obj in avoided if (said := unsteady_object(obj, relaxed))), None)
-    return moving or (next((said for obj in relaxed if (said := _unsteady_curve(obj))), None) if avoided else None)
+    moving = (said for obj in avoided if (said := unsteady_object(obj, relaxed)))
+    carried = (said for obj in relaxed if avoided and (said := _unsteady_curve(obj)))
+    return next(chain(moving, carried), None)
 
 
 def unsteady_object(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> Message | None:
     """Say why an object cannot be avoided, since it does not stand still, or return None if it does."""
-    mover = what_changes(obj, relaxed)
     sentence = (
         "'{name}' is moved by {mover}, and what is avoided must stand still; "
         "remove that, or leave it out of what is avoided"
     )
+    mover = what_changes(obj, relaxed)
     return Message(sentence, name=obj.name, mover=mover) if mover else None
 
 
 def _unsteady_curve(obj: "bpy.types.Object") -> Message | None:
-    mover = what_moves(obj)
     sentence = (
         "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
         "remove that, or avoid nothing"
     )
+    mover = what_moves(obj)
     return Message(sentence, name=obj.name, mover=mover) if mover else None
 
 
