@@ -11,9 +11,8 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..core import RelaxOptions
 from ..core.option import Option, declared
-from .engine.key_options import KeyOptions, Output
+from .engine.key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output, Pace, Timing
 from .engine.size import Measure
-from .engine.timing import FRAMES_PER_ITERATE, LAST_FRAME, Pace, Timing
 
 _TINY = 1e-37  # just above the smallest of 32-bit numbers that are computed with
 _Item = tuple[str, str, str, str, int]

@@ -25,7 +25,7 @@ from .curves.baked_keys import BakedKeys
 from .curves.pins import Held
 from .curves.session import Report, Session
 from .curves.surroundings import Surroundings
-from .engine.timing import Pace
+from .engine.key_options import Pace
 from .live.checks import BAKED, CLEARABLE, POLYGONS, READABLE, RELAXABLE, UNEDITED
 from .live.requirements import idle, require
 from .pictures import staging

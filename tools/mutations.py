@@ -482,10 +482,10 @@ MUTANTS = (
     ),
     Mutant(
         "keys before the first frame",
-        "addon/engine/timing.py",
+        "addon/engine/key_options.py",
         "last if len(stored) > 1 and stored[0] < last else stored[-1]",
         "last",
-        f"{ENGINE}/test_timing.py::test_keys_that_all_fall_on_one_frame_begin_there",
+        f"{ENGINE}/test_key_options.py::test_keys_that_all_fall_on_one_frame_begin_there",
     ),
     Mutant(
         "tubes of no thickness",

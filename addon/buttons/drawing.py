@@ -10,7 +10,7 @@ from ...core.knots import Drawing, knot_type
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_link
-from ..engine.drawing_plane import DrawingPlane
+from ..engine.turning import DrawingPlane
 from ..live.requirements import Condition, selected_curves
 from ..translations import iface_, rpt_
 from .adding import OBJECT_MODE, AddsKnot

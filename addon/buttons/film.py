@@ -6,7 +6,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from ...core import MobiusFlowError
-from ..curves.world_motion import drawn_radius
+from ..curves.recorded import drawn_radius
 from ..engine.words import named
 from ..live.checks import READABLE
 from ..live.requirements import Condition, idle, selected_curves

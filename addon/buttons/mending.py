@@ -6,7 +6,7 @@ import bpy
 
 from ...core import MobiusFlowError
 from ...core.messages import Message
-from ..curves import copying, mending
+from ..curves import remedies
 from ..live.checks import needing
 from ..live.requirements import Refusal, Remedy, convertible, idle, selected_curves
 from .button import Button
@@ -51,35 +51,35 @@ class CURVE_OT_mobius_flow_make_local(_Mending, bpy.types.Operator):
     """Make the selected curves of other files this file's own; their materials stay linked"""
 
     bl_label = "Make Local"
-    mend = staticmethod(mending.make_local)
+    mend = staticmethod(remedies.make_local)
 
 
 class CURVE_OT_mobius_flow_single_user(_Mending, bpy.types.Operator):
     """Give each of the selected objects curve data of its own; other objects keep what they share"""
 
     bl_label = "Make Single User"
-    mend = staticmethod(mending.make_single_user)
+    mend = staticmethod(remedies.make_single_user)
 
 
 class CURVE_OT_mobius_flow_make_3d(_Mending, bpy.types.Operator):
     """Let the points of the selected curves leave the plane"""
 
     bl_label = "Make 3D"
-    mend = staticmethod(mending.make_3d)
+    mend = staticmethod(remedies.make_3d)
 
 
 class CURVE_OT_mobius_flow_to_poly(_Mending, bpy.types.Operator):
     """Replace Bézier and NURBS splines of the selected curves by the polygons drawn for them"""
 
     bl_label = "Convert to Poly"
-    mend = staticmethod(mending.to_poly)
+    mend = staticmethod(remedies.to_poly)
 
 
 class CURVE_OT_mobius_flow_copy(_Mending, bpy.types.Operator):
     """Copy curves as they are shown now, without keys, modifiers that move points, and all else that moves them"""
 
     bl_label = "Make Still Copy"
-    mend = staticmethod(copying.still_copy)
+    mend = staticmethod(remedies.still_copy)
 
     @classmethod
     def concerned(cls, context: bpy.types.Context) -> Iterable[bpy.types.Object]:
@@ -92,7 +92,7 @@ class CURVE_OT_mobius_flow_to_curve(_Mending, bpy.types.Operator):
     """Make curves of the selected texts, and of meshes that are edges without faces; these stay as they are"""
 
     bl_label = "Convert to Curve"
-    mend = staticmethod(mending.to_curve)
+    mend = staticmethod(remedies.to_curve)
 
     @classmethod
     def concerned(cls, context: bpy.types.Context) -> Iterable[bpy.types.Object]:

@@ -9,14 +9,11 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 from ...core import Curve
 from ...core.collision import check_embedded
 from ...core.messages import Message
-from ..curves import bevel, tube_mesh
-from ..curves.exchange import stretch
-from ..curves.outputs import put_beside
+from ..curves import bevel, outputs
+from ..curves.exchange import length, stretch
+from ..curves.outputs import put_beside, smooth_objects
 from ..curves.recorded import Recorded, in_world
-from ..curves.smooth_curve import smooth_objects
-from ..curves.units import length
-from ..engine.cubic_spline import FEWEST
-from ..engine.smooth_fit import SmoothFit
+from ..engine.smooth_fit import FEWEST, SmoothFit
 from ..engine.tube_mesh import places_between
 from ..engine.vertex_values import COLOURINGS, COMPONENT, DISTANCE, ENERGY, vertex_values
 from ..engine.words import named
@@ -101,11 +98,11 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         values, radii, first, made = vertex_values(link), self._radii(objects, recorded, link), 0, []
         colours = None if self.color == _PLAIN else COLOURINGS[self.color](values[self.color])
         for obj, each, own in zip(objects, recorded, radii, strict=True):
-            tube = tube_mesh.tube_object(obj, each, own, self.sides)
+            tube = outputs.tube_object(obj, each, own, self.sides)
             part = slice(first, first := first + each.mesh.size)
-            tube_mesh.write_values(tube.data, {name: array[part] for name, array in values.items()})
+            outputs.write_values(tube.data, {name: array[part] for name, array in values.items()})
             if colours is not None:
-                tube_mesh.write_colours(tube.data, colours[part], vertex_colours(tube_mesh.COLOUR))
+                outputs.write_colours(tube.data, colours[part], vertex_colours(outputs.COLOUR))
             made.append(tube)
         self._report(objects, recorded)
         return made

@@ -6,7 +6,7 @@ import numpy as np
 from ...core import MobiusFlowError
 from ...core.messages import Message
 from ...core.types import BoolArray
-from ..curves import bake, mending, neighbours, pins, surroundings
+from ..curves import bake, pins, remedies, surroundings
 from ..engine.words import named
 from ..live.checks import PINNABLE, closable
 from ..live.requirements import Condition, avoided, curves_at_hand, idle, selected_curves
@@ -15,7 +15,7 @@ from .button import Button, button
 
 
 def _near(context: bpy.types.Context) -> list[bpy.types.Object]:
-    return neighbours.near(context, selected_curves(context), avoided(context))
+    return surroundings.near(context, selected_curves(context), avoided(context))
 
 
 def _has_no_pins(context: bpy.types.Context) -> bool:
@@ -93,7 +93,7 @@ def _report_count(operator: Button, context: bpy.types.Context) -> None:
 def close(_operator: Button, context: bpy.types.Context) -> None:
     """Join the two ends of every open spline of the selected curves"""
     for obj in closable(selected_curves(context)):
-        mending.close(obj)
+        remedies.close(obj)
 
 
 @button("Add to Avoid", idle, _NEARBY)

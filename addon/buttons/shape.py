@@ -5,8 +5,8 @@ from bpy.props import EnumProperty
 
 from ...core.messages import Message
 from ..curves import turned
-from ..curves.fitting import fit_tubes
-from ..curves.resized import keep_size
+from ..curves.baked_keys import keep_size
+from ..curves.bevel import fit_tubes
 from ..engine.size import Measure
 from ..engine.words import named
 from ..live.checks import CLEARABLE, FITTABLE, PAINTABLE, RELAXABLE, UNEDITED

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..engine.key_options import KeyOptions, Output
-from ..engine.timing import Timing
+from ..engine.key_options import KeyOptions, Output, Timing
 from . import keyframes
 from .exchange import key_points
 from .fcurves import count_own
@@ -29,7 +28,6 @@ def remember(data: "bpy.types.Curve", before: "bpy.types.Curve", timing: Timing)
 
 
 def original(data: "bpy.types.Curve") -> "bpy.types.Curve":
-    """What baked curve data was before."""
     return data[_RECORD]["original"]
 
 

@@ -12,10 +12,12 @@ from ...core.curve import Mesh
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.placement import Frame, Link, Placement
+from ..engine.size import Measure, Size
 from ..engine.words import named
-from . import bake
-from .exchange import closed
-from .rewriting import keyed_points, move_keys, scale_tube
+from . import bake, pins
+from .exchange import closed, key_points, key_radii, write_points
+from .keyframes import coordinate_curves
+from .splines import read
 
 if TYPE_CHECKING:
     import bpy
@@ -24,24 +26,12 @@ if TYPE_CHECKING:
 class BakedKeys:
     """What baked curve objects are at each of their keys.
 
-    Parameters
-    ----------
-    objects
-        Baked curve objects, their transforms evaluated.
+    Raises MobiusFlowError if they have not equally many keys, so that they were not baked together.
 
-    Attributes
-    ----------
-    mesh
-        Connectivity of all their splines as one link.
-    link
-        Where its vertices are stored.
-    frames
-        The vertices at each key as stored, (n, 3).
+    ``objects``: baked curve objects, their transforms evaluated.
 
-    Raises
-    ------
-    MobiusFlowError
-        If they have not equally many keys, so that they were not baked together.
+    ``mesh``: connectivity of all their splines as one link; ``link``: where its vertices are stored; ``frames``: the
+    vertices at each key as stored, (n, 3).
     """
 
     def __init__(self, objects: Sequence["bpy.types.Object"]) -> None:
@@ -70,9 +60,9 @@ class BakedKeys:
         """Give the keys other shapes, in the world, and what is drawn around them other sizes, by factors, (keys,)."""
         self.frames = [self.link.to_stored(self.mesh, curve.vertices).astype(np.float32) for curve in curves]
         for obj, vertices in zip(self._objects, self.link.slices(self.mesh), strict=True):
-            move_keys(obj.data, [frame[vertices] for frame in self.frames])
+            _move_keys(obj.data, [frame[vertices] for frame in self.frames])
             if factors is not None:
-                scale_tube(obj.data, factors)
+                _scale_tube(obj.data, factors)
             bake.renew(obj.data)
 
     @property
@@ -80,3 +70,57 @@ class BakedKeys:
         """Number of straight motions from key to key, as stored, that are not proved free of contact."""
         common = [self.link.to_common(self.mesh, frame) for frame in self.frames]
         return sum(not is_free(self.mesh, a, b) for a, b in pairwise(common))
+
+
+def keep_size(objects: Sequence["bpy.types.Object"], measure: Measure, reference: int) -> BakedKeys:
+    """Scale all keys about their barycenters to the size of one of them, and the tubes drawn around them alike.
+
+    `engine.size` says why that makes no contact; what the rounded keys are is to be proved once more. Raises
+    MobiusFlowError if the objects were not baked together, or points of them are pinned.
+    """
+    if any(pins.count(obj.data) for obj in objects):
+        raise MobiusFlowError(Message("Scaling would move pinned points; unpin them first"))
+    keys = BakedKeys(objects)
+    curves = keys.curves
+    size = Size.of(measure, curves[reference])
+    keys.rewrite([size.given_to(curve) for curve in curves], np.array([size.factor(curve) for curve in curves]))
+    return keys
+
+
+def keyed_points(data: "bpy.types.Curve") -> list[Frame]:
+    """Points of a curve at each of its keys, (n, 3)."""
+    if data.shape_keys:
+        return [key_points(block) for block in data.shape_keys.key_blocks]
+    columns = [_keys_of(curve)[:, 1] for curve in coordinate_curves(data)]
+    if len({len(column) for column in columns}) > 1:
+        raise MobiusFlowError(Message("Keys of '{name}' were edited; undo that, or Bake Again", name=data.name))
+    return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
+
+
+def _move_keys(data: "bpy.types.Curve", frames: Sequence[Frame]) -> None:
+    """Move the points at each key, (n, 3), and leave its time; the curve itself gets those of the last one."""
+    if data.shape_keys:
+        for block, frame in zip(data.shape_keys.key_blocks, frames, strict=True):
+            block.data.foreach_set("co", frame.ravel())
+    else:
+        values = np.stack(frames).reshape(len(frames), -1)
+        for curve, column in zip(coordinate_curves(data), values.T, strict=True):
+            places = _keys_of(curve)
+            places[:, 1] = column
+            curve.keyframe_points.foreach_set("co", places.ravel())
+            curve.update()
+    write_points(data, frames[-1])
+
+
+def _scale_tube(data: "bpy.types.Curve", factors: FloatArray) -> None:
+    """Scale what is drawn around a curve by a factor for each key; where only points are keyed, by the last of them."""
+    if not data.shape_keys:
+        bake.scale_bevel(data, float(factors[-1]))
+        return
+    for block, factor in zip(data.shape_keys.key_blocks, factors, strict=True):
+        block.data.foreach_set("radius", key_radii(block) * np.float32(factor))
+
+
+def _keys_of(curve: "bpy.types.FCurve") -> Frame:
+    """Frames and values; shape (keys, 2)."""
+    return read(curve.keyframe_points, "co", 2)

@@ -1,4 +1,4 @@
-"""The tube drawn around a curve object: as thick as it can be without touching itself.
+"""The tube drawn around curve objects: as thick as it can be without touching.
 
 A bevel is the artist's own until somebody asks to have it fitted. Depths that were fitted are noted on the curve data.
 A curve that has one of them, wherever undo or *Clear* have brought it back from, is fitted again when it is relaxed;
@@ -10,8 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core import Curve, Obstacle
+from ...core import Curve, CurveError, Obstacle
+from ...core.collision import check_embedded
+from ...core.types import FloatArray
 from ..engine.tube import free_radius, radius_beside, thickest_radius
+from ..engine.words import in_blenders_words, spline_names
+from .exchange import stretch
+from .recorded import Recorded, in_world
+from .splines import radii
 
 if TYPE_CHECKING:
     import bpy
@@ -23,7 +29,7 @@ _RESOLUTION = 6
 def can_fit(data: "bpy.types.Curve") -> bool:
     """Whether a curve is drawn as a line or a plain round tube; any other shape is the user's own."""
     plain = data.bevel_mode == "ROUND" and data.taper_object is None and not data.extrude and not data.offset
-    return plain and all(_radii_are_one(spline) for spline in data.splines)
+    return plain and all((radii(spline) == 1).all() for spline in data.splines)
 
 
 def is_fitted(data: "bpy.types.Curve") -> bool:
@@ -49,8 +55,31 @@ def draw(data: "bpy.types.Curve", radius: float) -> None:
     data.bevel_depth = radius
 
 
-def _radii_are_one(spline: "bpy.types.Spline") -> bool:
-    points = spline.bezier_points if spline.type == "BEZIER" else spline.points
-    values = np.empty(len(points), dtype=np.float32)
-    points.foreach_get("radius", values)
-    return bool((values == 1).all())
+def fit_tubes(objects: Sequence["bpy.types.Object"]) -> None:
+    """Fit the bevels of curve objects that are shown together.
+
+    Where all have the same number of shape keys, tubes are fitted at each of them, and otherwise at the end. Raises
+    CurveError if their splines cannot be read, or touch at a key: no tube is thin enough then.
+    """
+    recorded = [Recorded.of(obj) for obj in objects]
+    keys = [each.keys for each in recorded]
+    if len({len(shapes) for shapes in keys}) > 1:
+        keys = [shapes[-1:] for shapes in keys]
+    links = [in_world(objects, recorded, shapes) for shapes in zip(*keys, strict=True)]
+    splines = spline_names([obj.name for obj in objects], [len(each.mesh.component_sizes) for each in recorded])
+    for link in links:
+        try:
+            check_embedded(link)
+        except CurveError as error:
+            raise CurveError(in_blenders_words(str(error), splines)) from error
+    fitting = np.array([fitting_radius(link) for link in links])
+    for obj in objects:
+        _fit_keys(obj.data, fitting / stretch(obj))
+
+
+def _fit_keys(data: "bpy.types.Curve", wanted: FloatArray) -> None:
+    fit(data, float(wanted[-1]))
+    for k, block in enumerate(data.shape_keys.key_blocks if data.shape_keys else ()):
+        relative = wanted[min(k, len(wanted) - 1)] / wanted[-1]
+        block.data.foreach_set("radius", np.full(len(block.data), relative, dtype=np.float32))
+    data.update_tag()

@@ -10,6 +10,7 @@ from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.placement import Frame, Link, Placement
 from . import sampling
+from .splines import coordinates, read
 
 if TYPE_CHECKING:
     import bpy
@@ -22,11 +23,8 @@ def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
 
     Splines that are not cyclic are open components. Smooth splines are read as the polygons drawn for them.
 
-    Raises
-    ------
-    CurveError
-        If a coordinate is not finite, or as good as infinite, or no polygon is drawn for a smooth spline; the message
-        names the spline and its object.
+    Raises CurveError if a coordinate is not finite, or as good as infinite, or no polygon is drawn for a smooth spline;
+    the message names the spline and its object.
     """
     placements = tuple(Placement.from_matrix(obj.matrix_world) for obj in objects)
     components = [read_splines(obj) for obj in objects]
@@ -43,19 +41,15 @@ def closed(data: "bpy.types.Curve") -> tuple[bool, ...]:
 def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
     """The polygons of all splines in the object's coordinates, (n, 3) each; raises as `read_link` does."""
     smooth = sampling.smooth_splines(obj.data)
-    frames = sampling.sampled(obj) if smooth else [spline_points(spline) for spline in obj.data.splines]
+    frames = sampling.sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
     for k, frame in enumerate(frames, 1):
         bad = np.flatnonzero(~(np.abs(frame) < _FAR).all(axis=1))
         if bad.size:
-            raise CurveError(
-                Message(
-                    "Point {point} of spline {spline} of '{name}' is not finite, or further away than anything; "
-                    "repair or delete it",
-                    point=bad[0] + 1,
-                    spline=k,
-                    name=obj.name,
-                )
+            sentence = (
+                "Point {point} of spline {spline} of '{name}' is not finite, or further away than anything; repair or"
+                " delete it"
             )
+            raise CurveError(Message(sentence, point=bad[0] + 1, spline=k, name=obj.name))
     return [frame.astype(np.float64) for frame in frames]
 
 
@@ -64,25 +58,25 @@ def stretch(obj: "bpy.types.Object") -> float:
     return float(np.linalg.norm(np.array(obj.matrix_world)[:3, :3], 2))
 
 
-def spline_points(spline: "bpy.types.Spline") -> Frame:
-    """Coordinates of a spline's points as stored; shape (n, 3)."""
-    points = np.empty(4 * len(spline.points), dtype=np.float32)
-    spline.points.foreach_get("co", points)
-    return points.reshape(-1, 4)[:, :3]
+def length(scene: "bpy.types.Scene", value: float) -> str:
+    """Write a length with its unit, in four digits or so."""
+    import bpy
+
+    units = scene.unit_settings
+    text = bpy.utils.units.to_string(
+        units.system, "LENGTH", value * units.scale_length, precision=4, split_unit=units.use_separate
+    )
+    return str(text).strip()
 
 
 def key_points(block: "bpy.types.ShapeKey") -> Frame:
     """Coordinates of all points at a shape key; shape (n, 3)."""
-    points = np.empty(3 * len(block.data), dtype=np.float32)
-    block.data.foreach_get("co", points)
-    return points.reshape(-1, 3)
+    return read(block.data, "co", 3)
 
 
 def key_radii(block: "bpy.types.ShapeKey") -> Frame:
     """Radii of all points at a shape key, relative to the bevel depth; shape (n,)."""
-    radii = np.empty(len(block.data), dtype=np.float32)
-    block.data.foreach_get("radius", radii)
-    return radii
+    return read(block.data, "radius")
 
 
 def write_points(data: "bpy.types.Curve", frame: Frame) -> None:

@@ -1,6 +1,6 @@
 """F-curves and their actions, in all versions of Blender."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,8 @@ def all_fcurves() -> Iterator["bpy.types.FCurve"]:
     import bpy
 
     for action in bpy.data.actions:
-        for fcurves in _collections(action):
+        slotted = hasattr(action, "slots")  # not in Blender 4.3 and before
+        for fcurves in _collections(action, action.slots) if slotted else [action.fcurves]:
             yield from fcurves
 
 
@@ -69,38 +70,23 @@ def _drop_action(animation: "bpy.types.AnimData") -> None:
         action.slots.remove(slot)
 
 
-def _collections(action: "bpy.types.Action") -> Iterator[Any]:
-    if not hasattr(action, "slots"):  # Blender 4.3 and before
-        yield action.fcurves
-        return
+def _collections(action: "bpy.types.Action", slots: "Iterable[bpy.types.ActionSlot]") -> Iterator[Any]:
     for layer in action.layers:
         for strip in layer.strips:
-            for channels in strip.channelbags:
-                yield channels.fcurves
+            channels = (strip.channelbag(slot) for slot in slots)
+            yield from (each.fcurves for each in channels if each)
 
 
 def _own_collections(block: "bpy.types.ID") -> Iterator[Any]:
     animation = block.animation_data
     if not hasattr(animation.action, "slots"):  # Blender 4.3 and before
         yield animation.action.fcurves
-        return
-    for layer in animation.action.layers:
-        for strip in layer.strips:
-            channels = animation.action_slot and strip.channelbag(animation.action_slot)
-            if channels:
-                yield channels.fcurves
+    elif animation.action_slot:
+        yield from _collections(animation.action, [animation.action_slot])
 
 
 class FCurves:
-    """The F-curves of the action on a datablock, which gets a new one if it has none.
-
-    Parameters
-    ----------
-    block
-        The datablock.
-    name
-        What a new action is called.
-    """
+    """The F-curves of the action on a datablock, which gets a new one if it has none."""
 
     def __init__(self, block: "bpy.types.ID", name: str) -> None:
         if not (block.animation_data and block.animation_data.action):

@@ -15,9 +15,10 @@ from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame, Spot, spots
 from ..engine.words import in_blenders_words, named, spline_names
-from .exchange import read_link, spline_points
+from .exchange import read_link
 from .member import Member
 from .pins import pinned_vertices
+from .splines import coordinates
 
 if TYPE_CHECKING:
     import bpy
@@ -26,27 +27,14 @@ if TYPE_CHECKING:
 class Group:
     """Curve objects, the link that their splines are, and what is written to them.
 
-    Parameters
-    ----------
-    objects
-        Curve objects that `checks.refusal` has nothing against, their transforms evaluated. They show stand-ins until
-        all is written, or until `discard`.
-    continues
-        Whether baked curves are relaxed on from the ends of their animations, and not from how they were before.
+    Raises CurveError if the splines cannot be read; the message says why.
 
-    Attributes
-    ----------
-    curve
-        All splines as polygons in world space, open where they are not cyclic.
-    link
-        Where their vertices are stored.
-    continues
-        The same.
+    ``objects``: curve objects that `checks.refusal` has nothing against, their transforms evaluated. They show
+    stand-ins until all is written, or until `discard`; ``continues``: whether baked curves are relaxed on from the ends
+    of their animations, and not from how they were before.
 
-    Raises
-    ------
-    CurveError
-        If the splines cannot be read; the message says why.
+    ``curve``: all splines as polygons in world space, open where they are not cyclic; ``link``: where their vertices
+    are stored.
     """
 
     def __init__(self, objects: Sequence["bpy.types.Object"], continues: bool = False) -> None:
@@ -63,7 +51,6 @@ class Group:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The objects' names."""
         return tuple(member.name for member in self._members)
 
     @property
@@ -73,7 +60,6 @@ class Group:
 
     @property
     def objects(self) -> list["bpy.types.Object"]:
-        """The objects that are still there."""
         return [obj for member in self._members if (obj := member.object) is not None]
 
     def member(self, number: int) -> "bpy.types.Object | None":
@@ -126,7 +112,7 @@ class Group:
     @property
     def stored(self) -> Frame:
         """The splines' vertices as Blender stores them; shape (n, 3)."""
-        return np.concatenate([spline_points(spline) for obj in self.objects for spline in obj.data.splines])
+        return np.concatenate([coordinates(spline) for obj in self.objects for spline in obj.data.splines])
 
     def show(self, start: Curve, frame: Frame) -> None:
         """Move all points; shape (n, 3), each object's own coordinates.
@@ -151,7 +137,6 @@ class Group:
             member.hide()
 
     def resume(self) -> None:
-        """Show after `hide` what was shown before."""
         for member in self._members:
             member.resume()
         if self._shown is not None:

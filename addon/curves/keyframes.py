@@ -26,19 +26,10 @@ def writing(
 
     The curve itself keeps the last key, so that removing the keys leaves the relaxed curve.
 
-    Parameters
-    ----------
-    obj
-        A curve object with neither keys nor animation, or with those of an earlier call; the first of the new keys is
-        the last of those then.
-    keys
-        What to write.
-    frames
-        Scene frame of each key, ascending; (keys,).
-    output
-        As what to write them.
-    radii
-        Relative radius of all points at each key, (keys,); None keeps what the points have.
+    ``obj``: A curve object with neither keys nor animation, or with those of an earlier call; the first of the new keys
+    is the last of those then; ``keys``: what to write; ``frames``: scene frame of each key, ascending; (keys,);
+    ``output``: as what to write them; ``radii``: relative radius of all points at each key, (keys,); None keeps what
+    the points have.
     """
     yield from _WRITERS[output](obj, keys, frames, radii)
 
@@ -171,7 +162,6 @@ def coordinate_curves(data: "bpy.types.Curve") -> "list[bpy.types.FCurve]":
 def _result(
     obj: "bpy.types.Object", keys: Keys, _frames: FloatArray, _radii: FloatArray | None = None
 ) -> Iterator[None]:
-    """The last key alone, without animation."""
     write_points(obj.data, keys.keys[-1].points)
     yield
 

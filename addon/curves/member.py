@@ -15,9 +15,9 @@ from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
 from ..engine.placement import Frame, Placement
 from . import bake, bevel, keyframes
-from .deforming import what_deforms
 from .exchange import write_points
 from .fcurves import own_action
+from .moving import what_deforms
 from .reference import Reference
 from .splines import Splines, shape
 
@@ -30,12 +30,8 @@ _MARK = "mobius_flow_stand_in"  # custom property of stand-ins
 class Member:
     """A curve object of a run.
 
-    Parameters
-    ----------
-    obj
-        A curve object that `checks.refusal` has nothing against; nothing of it is touched before `begin`.
-    continues
-        Whether a baked curve is relaxed on from the end of its animation, and not from how it was before.
+    ``obj``: A curve object that `checks.refusal` has nothing against; nothing of it is touched before `begin`;
+    ``continues``: whether a baked curve is relaxed on from the end of its animation, and not from how it was before.
     """
 
     def __init__(self, obj: "bpy.types.Object", continues: bool = False) -> None:

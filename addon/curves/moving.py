@@ -1,7 +1,12 @@
-"""What moves an object: places of curves that are relaxed together must stay."""
+"""What moves objects, their points, or what they show.
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+Curves that are relaxed together, or avoid something, must keep their places, and what is avoided its shape too. A proof
+about a curve's points says nothing of what is shown when something moves these after its keys have.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
+from typing import TYPE_CHECKING, Any
 
 from ...core.messages import Message
 from .fcurves import fcurves_of
@@ -10,6 +15,24 @@ if TYPE_CHECKING:
     import bpy
 
 _TRANSFORMS = ("location", "rotation", "scale", "delta_", "matrix", "parent")
+_SHAPING = ("modifiers", "pose")  # beginnings of paths of F-curves of an object
+# fmt: off
+_DEFORMING = {
+    "ARMATURE", "CAST", "CLOTH", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
+    "LATTICE", "MESH_CACHE", "MESH_DEFORM", "MESH_SEQUENCE_CACHE", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY",
+    "SURFACE_DEFORM", "WARP", "WAVE",
+}
+_CHANGING = {
+    "BUILD", "CLOTH", "DYNAMIC_PAINT", "EXPLODE", "FLUID", "MESH_CACHE", "MESH_SEQUENCE_CACHE", "OCEAN",
+    "PARTICLE_INSTANCE", "SOFT_BODY", "WAVE",
+}
+# fmt: on
+_DEFORMING_PARENTS = {"ARMATURE", "LATTICE"}  # types of parenting
+_DEFORMING_NODES = {"GeometryNodeSetPosition", "GeometryNodeSetCurveHandlePositions"}
+_CHANGING_NODES = {"GeometryNodeInputSceneTime", "GeometryNodeSimulationInput"}
+
+
+# -- objects --------------------------------------------------------------------------------------------------------
 
 
 def what_moves(obj: "bpy.types.Object") -> Message | None:
@@ -21,9 +44,9 @@ def _movers(obj: "bpy.types.Object") -> Iterator[Message]:
     animation = obj.animation_data
     if animation and animation.nla_tracks:
         yield Message("an NLA track")
-    if animation and animation.action and _transforms(fcurves_of(obj)):
+    if animation and animation.action and _any_of(fcurves_of(obj), _TRANSFORMS):
         yield Message("animation")
-    if animation and _transforms(animation.drivers):
+    if animation and _any_of(animation.drivers, _TRANSFORMS):
         yield Message("a driver")
     if any(not constraint.mute for constraint in obj.constraints):
         yield Message("a constraint")
@@ -41,5 +64,164 @@ def _parental(obj: "bpy.types.Object") -> Iterator[Message]:
         yield Message("{mover} of its parent", mover=reason) if reason != "its parent" else reason
 
 
-def _transforms(curves: "Iterator[bpy.types.FCurve]") -> bool:
-    return any(curve.data_path.startswith(_TRANSFORMS) for curve in curves)
+def _any_of(curves: "Iterable[bpy.types.FCurve]", paths: tuple[str, ...] | str) -> bool:
+    return any(curve.data_path.startswith(paths) for curve in curves)
+
+
+# -- points of curves -----------------------------------------------------------------------------------------------
+
+
+def what_deforms(obj: "bpy.types.Object") -> Message | None:
+    """Say what may move an object's points, of all that is shown, or return None if nothing does."""
+    if obj.parent and obj.parent_type in _DEFORMING_PARENTS:
+        return Message("The parent of '{name}'", name=obj.name)
+    shown = (each for each in obj.modifiers if each.show_viewport or each.show_render)
+    first = next((each for each in shown if deforms(each)), None)
+    return Message("The modifier '{modifier}' of '{name}'", modifier=first.name, name=obj.name) if first else None
+
+
+def deforms(modifier: "bpy.types.Modifier") -> bool:
+    """Whether a modifier may move points of a curve.
+
+    Others add to what is drawn, as a bevel does; of geometry nodes those do that have no node for positions.
+    """
+    return _is_of(modifier, _DEFORMING, _DEFORMING_NODES)
+
+
+def _is_of(modifier: "bpy.types.Modifier", types: set[str], nodes: set[str]) -> bool:
+    if modifier.type == "NODES":
+        return any(node.bl_idname in nodes for node in _nodes_of(modifier.node_group, set()))
+    return modifier.type in types
+
+
+def _nodes_of(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]") -> "Iterator[bpy.types.Node]":
+    """Yield the nodes of a tree and of the groups in it that are not muted, each tree once."""
+    if tree is None or tree in seen:
+        return
+    seen.add(tree)
+    for node in tree.nodes:
+        if not node.mute:
+            yield node
+            yield from _nodes_of(getattr(node, "node_tree", None), seen)
+
+
+# -- what is avoided ------------------------------------------------------------------------------------------------
+
+
+def unsteady(avoided: Iterable["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> Message | None:
+    """Say what of objects that are avoided, or of curves that avoid them, does not stay as it is, or return None."""
+    avoided = list(avoided)
+    moving = (said for obj in avoided if (said := unsteady_object(obj, relaxed)))
+    carried = (said for obj in relaxed if avoided and (said := _unsteady_curve(obj)))
+    return next(chain(moving, carried), None)
+
+
+def unsteady_object(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> Message | None:
+    """Say why an object cannot be avoided, since it does not stand still, or return None if it does."""
+    sentence = (
+        "'{name}' is moved by {mover}, and what is avoided must stand still; "
+        "remove that, or leave it out of what is avoided"
+    )
+    mover = what_changes(obj, relaxed)
+    return Message(sentence, name=obj.name, mover=mover) if mover else None
+
+
+def _unsteady_curve(obj: "bpy.types.Object") -> Message | None:
+    sentence = (
+        "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
+        "remove that, or avoid nothing"
+    )
+    mover = what_moves(obj)
+    return Message(sentence, name=obj.name, mover=mover) if mover else None
+
+
+def what_changes(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"] = ()) -> Message | None:
+    """Say what may move an object or change its shape, or return None if nothing does.
+
+    What its shape is made with may be relaxed, or move or change itself.
+    """
+    return _changed(obj, relaxed, set())
+
+
+def _changed(
+    obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"], seen: "set[bpy.types.ID]"
+) -> Message | None:
+    seen.add(obj)
+    return what_moves(obj) or next(_changes(obj, relaxed, seen), None)
+
+
+def _changes(
+    obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"], seen: "set[bpy.types.ID]"
+) -> Iterator[Message]:
+    """Reasons why a shape may change, but for what was seen already."""
+
+    def changing(blocks: "Iterable[bpy.types.ID]") -> bool:
+        found = (each for each in blocks if each not in seen)
+        return any(_changed(each, relaxed, seen) if each.id_type == "OBJECT" else _is_animated(each) for each in found)
+
+    if obj in relaxed:
+        yield Message("the relaxation itself")
+    if any(map(_is_animated, (obj, obj.data, getattr(obj.data, "shape_keys", None)))):
+        yield Message("animation of its shape")
+    if obj.pose is not None and any(not each.mute for bone in obj.pose.bones for each in bone.constraints):
+        yield Message("a constraint")
+    if obj.data is not None and changing(chain(_ingredients(obj.data), _metaballs(obj))):
+        yield Message("an object that its shape is made with")
+    for modifier in obj.modifiers:
+        if modifier.show_viewport and (_is_changing(modifier) or changing(_ingredients(modifier))):
+            yield Message("the modifier '{modifier}'", modifier=modifier.name)
+
+
+def _is_animated(block: "bpy.types.ID | None") -> bool:
+    """Whether a datablock has animation that may change a shape; `what_moves` says where an object goes."""
+    if block is None or block.animation_data is None:
+        return False
+    animation = block.animation_data
+    curves = [*(fcurves_of(block) if animation.action else ()), *animation.drivers]
+    return bool(animation.nla_tracks) or _any_of(curves, _SHAPING if block.id_type == "OBJECT" else "")
+
+
+def _is_changing(modifier: "bpy.types.Modifier") -> bool:
+    if modifier.type == "PARTICLE_SYSTEM":
+        return bool(modifier.particle_system.settings.type == "EMITTER")
+    return _is_of(modifier, _CHANGING, _CHANGING_NODES)
+
+
+def _ingredients(block: "bpy.types.bpy_struct") -> Iterator["bpy.types.ID"]:
+    """Yield what a modifier or other data refers to: objects, also those of collections, textures and node trees."""
+    import bpy
+
+    for each in chain(_pointers(block), _inputs(block)):
+        if isinstance(each, bpy.types.Collection):
+            yield from each.all_objects
+        elif isinstance(each, bpy.types.Object | bpy.types.Texture):
+            yield each
+        elif isinstance(each, bpy.types.GeometryNodeTree):
+            yield each
+            for node in _nodes_of(each, set()):
+                yield from _ingredients(node)
+
+
+def _pointers(block: "bpy.types.bpy_struct") -> "Iterator[Any]":
+    return (getattr(block, each.identifier) for each in block.bl_rna.properties if each.type == "POINTER")
+
+
+def _inputs(block: "bpy.types.bpy_struct") -> "Iterator[Any]":
+    """Values of sockets: of a node, and of a modifier, which before Blender 5.2 has them as custom properties."""
+    import bpy
+
+    if isinstance(block, bpy.types.Node):
+        yield from (getattr(socket, "default_value", None) for socket in block.inputs)
+    elif isinstance(block, bpy.types.NodesModifier) and hasattr(block, "properties"):
+        yield from (getattr(socket, "value", None) for socket in _pointers(block.properties.inputs))
+    elif isinstance(block, bpy.types.NodesModifier):
+        yield from (value for _, value in block.items())
+
+
+def _metaballs(obj: "bpy.types.Object") -> Iterator["bpy.types.Object"]:
+    """Yield the metaballs that are one surface with a metaball: those called the same up to the first dot."""
+    import bpy
+
+    if obj.type == "META":
+        stem = obj.name.partition(".")[0]
+        yield from (each for each in bpy.data.objects if each.type == "META" and each.name.partition(".")[0] == stem)

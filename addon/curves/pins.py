@@ -25,22 +25,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Held:
-    """What is pinned beside the points that are marked.
+    """What is pinned beside the points that are marked."""
 
-    Attributes
-    ----------
-    points
-        Indices of points, counted from 0 through all splines of all objects.
-    tangents
-        Whether the neighbours of pinned points in the refined curve are pinned too.
-    """
-
-    points: tuple[int, ...] = ()
-    tangents: bool = False
+    points: tuple[int, ...] = ()  # indices of points, counted from 0 through all splines of all objects
+    tangents: bool = False  # whether the neighbours of pinned points in the refined curve are pinned too
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> "Held":
-        """What settings ask for."""
         return cls(values.get("pins", ()), values["pin_tangents"])
 
 
@@ -50,7 +41,6 @@ _PINNED, _FREE = 100.0, 1.0
 
 
 def marked(spline: "bpy.types.Spline") -> BoolArray:
-    """Which points of a spline are pinned; (points,)."""
     return np.asarray(_weights(spline) == _PINNED)
 
 
@@ -78,7 +68,6 @@ def selected(spline: "bpy.types.Spline") -> BoolArray:
 
 
 def count(data: "bpy.types.Curve") -> int:
-    """Number of points that are pinned."""
     return sum(int(marked(spline).sum()) for spline in data.splines)
 
 
@@ -91,14 +80,7 @@ def places(data: "bpy.types.Curve") -> Frame:
 def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None:
     """Raise a CurveError if points of a spline lie on no polygon that can be drawn for it.
 
-    Parameters
-    ----------
-    obj
-        The curve object.
-    number
-        Index of the spline.
-    chosen
-        The points, (points,).
+    ``obj``: the curve object; ``number``: index of the spline; ``chosen``: the points, (points,).
     """
     spline = obj.data.splines[number]
     if spline.type != "POLY" and (chosen & ~ends(spline)).any():
@@ -112,17 +94,9 @@ def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None
 def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[int, ...]:
     """The pinned vertices of the link that curve objects are, ascending.
 
-    Parameters
-    ----------
-    objects
-        The curve objects.
-    mesh
-        Their splines as polygons, a component each.
+    Raises CurveError if a pinned point is between the ends of a smooth spline.
 
-    Raises
-    ------
-    CurveError
-        If a pinned point is between the ends of a smooth spline.
+    ``objects``: the curve objects; ``mesh``: their splines as polygons, a component each.
     """
     found: list[IntArray] = []
     for obj in objects:

@@ -1,6 +1,7 @@
-"""Shapes of curve objects in time: those of their keys, or the one that they have."""
+"""Curve objects in time: their shapes at their keys, or the one that they have, and where these are in the world."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,38 +13,25 @@ from ...core.types import FloatArray
 from ..engine.interpolation import along, interpolated
 from ..engine.placement import Placement
 from . import bake
-from .exchange import closed, key_points, key_radii, read_splines
+from .exchange import closed, key_points, key_radii, read_splines, stretch
 from .fcurves import fcurves_of
 from .keyframes import coordinate_curves
+from .moving import what_moves
+from .splines import radii
 
 if TYPE_CHECKING:
     import bpy
 
-_LINEAR = "LINEAR"
-
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """The shapes of one curve object, straight in between, in its own coordinates.
+    """The shapes of one curve object, straight in between, in its own coordinates."""
 
-    Attributes
-    ----------
-    mesh
-        Its splines as polygons, a component each.
-    frames
-        Scene frames of the shapes, (keys,); a curve that was not baked here has one shape at frame 0.
-    points
-        Vertices, (keys, n, 3).
-    radii
-        Their radii relative to the bevel depth, (keys, n).
-    keys
-        Vertices at shape keys, which may be at other frames, or at the last frame where there are none; (shapes, n, 3).
-    """
-
-    mesh: Mesh
-    frames: FloatArray
-    points: FloatArray
-    radii: FloatArray
+    mesh: Mesh  # its splines as polygons, a component each
+    frames: FloatArray  # scene frames of the shapes, (keys,); a curve that was not baked here has one shape at frame 0
+    points: FloatArray  # vertices, (keys, n, 3)
+    radii: FloatArray  # their radii relative to the bevel depth, (keys, n)
+    # vertices at shape keys, which may be at other frames, or at the last frame where there are none; (shapes, n, 3)
     keys: FloatArray
 
     @classmethod
@@ -52,17 +40,15 @@ class Recorded:
         data = obj.data
         if not bake.is_baked(data):
             splines = read_splines(obj)
-            mesh = Mesh(tuple(map(len, splines)), closed(data))
-            radii = [_radii(spline, len(points)) for spline, points in zip(data.splines, splines, strict=True)]
-            points = np.concatenate(splines)[None]
-            return cls(mesh, np.zeros(1), points, np.concatenate(radii)[None], points)
+            mesh, points = Mesh(tuple(map(len, splines)), closed(data)), np.concatenate(splines)[None]
+            return cls(mesh, np.zeros(1), points, _radii(data, mesh)[None], points)
         mesh = Mesh(tuple(len(spline.points) for spline in data.splines), closed(data))
-        return cls(mesh, *(_from_shape_keys(data) if data.shape_keys else _from_fcurves(data)))
+        return cls(mesh, *(_from_shape_keys(data) if data.shape_keys else _from_fcurves(data, mesh)))
 
     def at(self, places: FloatArray) -> "Recorded":
         """The shapes at places among the keys, see `interpolated`."""
-        frames, points, radii = (interpolated(array, places) for array in (self.frames, self.points, self.radii))
-        return replace(self, frames=frames, points=points, radii=radii)
+        frames, points, thickness = (interpolated(array, places) for array in (self.frames, self.points, self.radii))
+        return replace(self, frames=frames, points=points, radii=thickness)
 
 
 def in_world(
@@ -77,42 +63,97 @@ def in_world(
     return Curve.from_components(components, [flag for each in recorded for flag in each.mesh.closed])
 
 
-def _shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray]:
-    """Vertices and relative radii of all shape keys; (keys, n, 3) and (keys, n)."""
-    blocks = data.shape_keys.key_blocks
-    points, radii = (np.stack([read(block) for block in blocks]) for read in (key_points, key_radii))
-    return points.astype(np.float64), radii.astype(np.float64)
-
-
 def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     (curve,) = fcurves_of(data.shape_keys)
-    frames = _frames([curve])
-    points, radii = _shape_keys(data)
+    frames, blocks = _frames([curve]), data.shape_keys.key_blocks
+    points, thickness = (
+        np.stack([read(block) for block in blocks]).astype(np.float64) for read in (key_points, key_radii)
+    )
     place = np.array([curve.evaluate(frame) for frame in frames]).clip(0, len(points) - 1)
-    return frames, interpolated(points, place), interpolated(radii, place), points
+    return frames, interpolated(points, place), interpolated(thickness, place), points
 
 
-def _from_fcurves(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def _from_fcurves(data: "bpy.types.Curve", mesh: Mesh) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     curves = coordinate_curves(data)
     frames = _frames(curves)
     values = np.array([[curve.evaluate(frame) for curve in curves] for frame in frames])
-    radii = np.concatenate([_radii(spline, len(spline.points)) for spline in data.splines])
     points = values.reshape(len(frames), -1, 3)
-    return frames, points, np.tile(radii, (len(frames), 1)), points[-1:]
+    return frames, points, np.tile(_radii(data, mesh), (len(frames), 1)), points[-1:]
 
 
 def _frames(curves: Sequence["bpy.types.FCurve"]) -> FloatArray:
     """Frames between which F-curves run straight: those of their keys, or all where somebody has bent them."""
     keys = [point for curve in curves for point in curve.keyframe_points]
     frames = np.unique([point.co[0] for point in keys])
-    if any(point.interpolation != _LINEAR for point in keys):
+    if any(point.interpolation != "LINEAR" for point in keys):
         frames = np.union1d(frames[[0, -1]], np.arange(np.ceil(frames[0]), np.floor(frames[-1]) + 1))
     return np.asarray(frames, dtype=np.float64)
 
 
-def _radii(spline: "bpy.types.Spline", size: int) -> FloatArray:
-    """Radii at the points drawn for a spline."""
-    points = spline.bezier_points if spline.type == "BEZIER" else spline.points
-    values = np.empty(len(points), dtype=np.float32)
-    points.foreach_get("radius", values)
-    return along(values, size, spline.use_cyclic_u)
+def _radii(data: "bpy.types.Curve", mesh: Mesh) -> FloatArray:
+    """Radii at the points drawn for all splines."""
+    pieces = zip(data.splines, mesh.component_sizes, strict=True)
+    return np.concatenate([along(radii(spline), size, spline.use_cyclic_u) for spline, size in pieces])
+
+
+@dataclass(frozen=True, eq=False)
+class WorldMotion:
+    """Curve objects in time; between its frames points move straight, or nearly so where something moves them."""
+
+    frames: FloatArray  # ascending scene frames; (frames,)
+    points: list[FloatArray]  # points of all objects at each of them; (n, 3)
+    radii: FloatArray  # radius of the thickest tube at each of them; (frames,)
+
+    @classmethod
+    def of(cls, scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "WorldMotion":
+        """Look at curve objects at all their keys; where something moves them, at all frames of the scene too.
+
+        Modifiers are not looked at. Raises CurveError if splines cannot be read.
+        """
+        recorded = [Recorded.of(obj) for obj in objects]
+        moving = any(what_moves(obj) for obj in objects)
+        frames = _all_frames(scene, recorded, moving)
+        placements = _placements(scene, objects, frames if moving else frames[:1])
+        points, thickness = [], []
+        for obj, each in zip(objects, recorded, strict=True):
+            shown = each.at(np.interp(frames, each.frames, np.arange(len(each.frames))))
+            there = placements[obj.name] if moving else placements[obj.name] * len(frames)
+            points.append([place.to_world(shape) for place, shape in zip(there, shown.points, strict=True)])
+            thickness.append(drawn_radius(obj) * shown.radii.max(axis=1))
+        return cls(frames, [np.concatenate(shapes) for shapes in zip(*points, strict=True)], np.max(thickness, axis=0))
+
+
+def _all_frames(scene: "bpy.types.Scene", recorded: Sequence[Recorded], moving: bool) -> FloatArray:
+    keyed = [each.frames for each in recorded if len(each.frames) > 1]
+    every = [np.arange(scene.frame_start, scene.frame_end + 1, dtype=np.float64)] if moving else []
+    return np.unique(np.concatenate([*keyed, *every])) if keyed or every else np.array([float(scene.frame_start)])
+
+
+def _placements(
+    scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"], frames: FloatArray
+) -> dict[str, list[Placement]]:
+    """Places of objects by their names, at each of some frames; at a single one as they are now."""
+    found: dict[str, list[Placement]] = {obj.name: [] for obj in objects}
+    with _frame_kept(scene):
+        for frame in frames:
+            if len(frames) > 1:
+                scene.frame_set(int(frame // 1), subframe=float(frame % 1))
+            for obj in objects:
+                found[obj.name].append(Placement.from_matrix(obj.matrix_world))
+    return found
+
+
+@contextmanager
+def _frame_kept(scene: "bpy.types.Scene") -> Iterator[None]:
+    frame, subframe = scene.frame_current, scene.frame_subframe
+    try:
+        yield
+    finally:
+        if (scene.frame_current, scene.frame_subframe) != (frame, subframe):
+            scene.frame_set(frame, subframe=subframe)
+
+
+def drawn_radius(obj: "bpy.types.Object") -> float:
+    """How far what is drawn around an object's curve reaches from it where the radius is 1, in the world."""
+    data = obj.data
+    return float((data.bevel_depth + data.extrude + abs(data.offset)) * stretch(obj))

@@ -9,10 +9,7 @@ if TYPE_CHECKING:
 class Reference:
     """An object or curve data, whatever it is called now; after undo, Python's own references dangle.
 
-    Attributes
-    ----------
-    name
-        Its name when it was last looked up.
+    ``name``: its name when it was last looked up.
     """
 
     def __init__(self, block: "bpy.types.ID") -> None:

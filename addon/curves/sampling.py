@@ -8,6 +8,7 @@ import numpy as np
 from ...core import CurveError
 from ...core.messages import Message
 from ..engine.placement import Frame
+from .splines import read
 
 if TYPE_CHECKING:
     import bpy
@@ -52,30 +53,19 @@ def _joined(kinds: Sequence[str]) -> str:
 def sampled(obj: "bpy.types.Object") -> list[Frame]:
     """Points of all splines, each of shape (n, 3): smooth ones as drawn, at their own preview resolution.
 
-    Raises
-    ------
-    CurveError
-        If no polygon is drawn for a spline.
+    Raises CurveError if no polygon is drawn for a spline.
     """
     loops = _drawn(obj.data)
     if len(loops) != len(obj.data.splines):
-        raise CurveError(
-            Message(
-                "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first",
-                name=obj.name,
-            )
-        )
+        sentence = "'{name}' has splines that Blender draws nothing for; delete them, or convert all to Poly first"
+        raise CurveError(Message(sentence, name=obj.name))
     for k, (loop, spline) in enumerate(zip(loops, obj.data.splines, strict=True), 1):
         if len(loop) < (3 if spline.use_cyclic_u else 2):
-            raise CurveError(
-                Message(
-                    "Spline {number} of '{name}' is drawn with only {count} points; "
-                    "raise its Resolution U, or give it more points",
-                    number=k,
-                    name=obj.name,
-                    count=len(loop),
-                )
+            sentence = (
+                "Spline {number} of '{name}' is drawn with only {count} points; raise its Resolution U, or give it "
+                "more points"
             )
+            raise CurveError(Message(sentence, number=k, name=obj.name, count=len(loop)))
     return loops
 
 
@@ -103,10 +93,7 @@ def _strip(data: "bpy.types.Curve") -> None:
 
 def _loops(mesh: "bpy.types.Mesh") -> list[Frame]:
     """The chains of a mesh: vertices one after the other, each joined to the next."""
-    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    edges = np.empty(2 * len(mesh.edges), dtype=np.int32)
-    mesh.vertices.foreach_get("co", points)
-    mesh.edges.foreach_get("vertices", edges)
-    low, high = np.sort(edges.reshape(-1, 2), axis=1).T
+    points, edges = read(mesh.vertices, "co", 3), read(mesh.edges, "vertices", 2, np.int32)
+    low, high = np.sort(edges, axis=1).T
     starts = np.setdiff1d(np.arange(len(mesh.vertices)), high[high - low == 1])
-    return np.split(points.reshape(-1, 3), starts[1:]) if len(starts) else []
+    return np.split(points, starts[1:]) if len(starts) else []

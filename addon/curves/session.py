@@ -26,7 +26,6 @@ from ...core import (
     relax,
 )
 from ...core.collision import is_free
-from ...core.curve import Mesh
 from ...core.messages import Message, Sentence
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions, Output
@@ -47,52 +46,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Report:
-    """What a finished session did.
+    """What a finished session did."""
 
-    Attributes
-    ----------
-    names
-        The objects' names.
-    outcome
-        How the relaxation ended.
-    keys
-        Number of keys of what was relaxed; 1 without animation.
-    continues
-        Whether the first of them is the last of those that were there.
-    last_frame
-        Scene frame of the last key.
-    scene_range
-        First and last frame of the animation with its rests, if there is one.
-    certified
-        Whether every motion shown was proved free of contact, of each curve with itself, of all with each other, and
-        with what they avoid.
-    radius
-        Radius of the tube in the world if it was fitted.
-    modified
-        Whether modifiers change what is shown: proofs are about the curves themselves.
-    avoided
-        Names of the objects that were avoided.
-    """
-
-    names: tuple[str, ...]
-    outcome: Outcome
-    keys: int
-    continues: bool
-    last_frame: float
-    scene_range: tuple[int, int] | None
+    names: tuple[str, ...]  # the objects' names
+    outcome: Outcome  # how the relaxation ended
+    keys: int  # number of keys of what was relaxed; 1 without animation
+    continues: bool  # whether the first of them is the last of those that were there
+    last_frame: float  # scene frame of the last key
+    scene_range: tuple[int, int] | None  # first and last frame of the animation with its rests, if there is one
+    # whether every motion shown was proved free of contact, of each curve with itself, of all with each other, and
+    # with what they avoid
     certified: bool
-    radius: float | None
-    modified: bool
-    avoided: tuple[str, ...]
+    radius: float | None  # radius of the tube in the world if it was fitted
+    modified: bool  # whether modifiers change what is shown: proofs are about the curves themselves
+    avoided: tuple[str, ...]  # names of the objects that were avoided
 
     @property
     def sentence(self) -> Message:
-        """The same in words."""
-        told: dict[str, Any] = {
-            "names": named(self.names),
-            "outcome": self.outcome.message,
-            "proof": self._proof,
-        }
+        told: dict[str, Any] = {"names": named(self.names), "outcome": self.outcome.message, "proof": self._proof}
         if self.keys == 1:
             return Message("{names} {outcome}; {proof}", **told)
         told |= {"count": self.keys - self.continues, "frame": self.last_frame}
@@ -133,32 +104,11 @@ class Prepared:
 class Session:
     """A relaxation of curve objects as one link.
 
-    Parameters
-    ----------
-    objects
-        Curve objects that `checks.refusal` has nothing against, their transforms evaluated.
-    options, key_options
-        The requested options.
-    continues
-        Whether baked curves are relaxed on from the ends of their animations; the keys are added to theirs then.
-    surroundings
-        What they avoid.
+    Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for their keys; the message says why.
 
-    Attributes
-    ----------
-    group
-        The objects, which show stand-ins until the session's end or `Group.discard`.
-    options
-        The requested options, with what is pinned and what is avoided.
-    surroundings
-        What is avoided.
-    outcome
-        How the relaxation ended, once it has.
-
-    Raises
-    ------
-    MobiusFlowError
-        If the curves cannot be relaxed, or there is no room for their keys; the message says why.
+    ``objects``: curve objects that `checks.refusal` has nothing against, their transforms evaluated; they show
+    stand-ins until the session's end or `Group.discard`. ``continues``: whether baked curves are relaxed on from the
+    ends of their animations; the keys are added to theirs then. ``outcome``: how the relaxation ended, once it has.
     """
 
     def __init__(
@@ -187,12 +137,8 @@ class Session:
     def _task(self, held: Held) -> Task:
         """The curves with what is pinned and avoided; raises MobiusFlowError if they do not go together."""
         pins = tuple(sorted({*held.points, *self.group.pins}))
-        task = Task(
-            curve=self.group.curve,
-            obstacles=self.surroundings.obstacles,
-            pins=pins,
-            pin_tangents=held.tangents and bool(pins),
-        )
+        curve, obstacles = self.group.curve, self.surroundings.obstacles
+        task = Task(curve=curve, obstacles=obstacles, pins=pins, pin_tangents=held.tangents and bool(pins))
         if task.pins or task.obstacles:
             self._key_options.check_place()
         return task
@@ -206,13 +152,7 @@ class Session:
         return options
 
     def run(self) -> Report:
-        """Do the whole job. Objects are touched at its end only, and put back if that fails.
-
-        Raises
-        ------
-        MobiusFlowError
-            If the curves cannot be relaxed, or an object is gone.
-        """
+        """Do the whole job; raises MobiusFlowError if the curves cannot be relaxed, or an object is gone."""
         try:
             prepared = self._relaxed()
             if reason := self.lost():
@@ -237,7 +177,6 @@ class Session:
 
     @property
     def _avoided(self) -> tuple[Obstacle, ...]:
-        """What is avoided, in the common space."""
         return in_common_space(self.task.obstacles, self.group.link)
 
     def lost(self) -> Message | None:
@@ -251,11 +190,9 @@ class Session:
         return CurveError(Sentence("{reason}", reason=self.group.told(str(error))), error.place)
 
     def end(self, outcome: Outcome) -> None:
-        """Take in how the relaxation ended."""
         self.outcome = replace(outcome, clauses=tuple(map(self.group.told, outcome.clauses)))
 
     def take(self, iterate: Iterate) -> None:
-        """Take in an iterate."""
         self._motion.add(self._sized(iterate))
 
     def _sized(self, iterate: Iterate) -> Iterate:
@@ -269,10 +206,8 @@ class Session:
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
         timing, motion = self._key_options.timing, self._motion
-        if self._key_options.animated:
-            keys = motion.keys(proof, self._key_options.max_keys, timing.pace)
-        else:
-            keys = motion.result(proof)
+        animated, limit = self._key_options.animated, self._key_options.max_keys
+        keys = motion.keys(proof, limit, timing.pace) if animated else motion.result(proof)
         radii = self._radii(keys) if self.group.fits(self._key_options) else None
         return Prepared(keys, timing.frames(motion.course(keys)), radii)
 
@@ -281,18 +216,12 @@ class Session:
         # an animation that goes on may have shape keys whatever is asked for, see `Member.writing`
         shape_keys = self._key_options.output is Output.SHAPE_KEYS or self.group.continues
         shown = keys.keys if shape_keys else keys.keys[-1:]
-        mesh, common = self._mesh, self.group.link.to_common
+        mesh, common = self.start.mesh, self.group.link.to_common
         beside = self._avoided
         return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh), beside) for key in shown])
 
     def reopen(self) -> None:
-        """Go on after `Group.discard` with curves that are still what they were when the session began.
-
-        Raises
-        ------
-        MobiusFlowError
-            If they are not.
-        """
+        """Go on after `Group.discard`; raises MobiusFlowError if the curves are not what they were at the start."""
         changed = Message("{names} changed since the relaxation ended; relax anew", names=self.group.title)
         objects = self.group.objects
         if len(objects) < len(self.group.names) or self.surroundings.lost():
@@ -313,17 +242,14 @@ class Session:
         """Vertices of the last iterate as Blender will store them."""
         return self._motion.frame
 
-    @property
-    def _mesh(self) -> Mesh:
-        return self.start.mesh
-
     def writing(self, prepared: Prepared) -> Iterator[None]:
         """Write in short pieces, so that a window can be drawn in between; all objects must be there."""
         self.group.make_polygons(self.start)
-        yield from self.group.writing(self._mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii)
+        yield from self.group.writing(
+            self.start.mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii
+        )
 
     def report(self, prepared: Prepared) -> Report:
-        """What was done, once it is written."""
         assert self.outcome is not None, "what is written has ended"
         keys, frames, group = prepared.keys, prepared.frames, self.group
         return Report(

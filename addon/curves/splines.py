@@ -41,7 +41,6 @@ class _Spline:
         return cls(spline.type, len(points), settings, arrays)
 
     def put(self, spline: "bpy.types.Spline") -> None:
-        """Fill a new spline of this type."""
         points = control_points(spline)
         points.add(self.count - len(points))
         for name, array in self.points.items():
@@ -59,7 +58,6 @@ class Splines:
 
     @classmethod
     def of(cls, data: "bpy.types.Curve") -> "Splines":
-        """Copy the splines of curve data."""
         active = next((k for k, spline in enumerate(data.splines) if spline == data.splines.active), None)
         return cls([_Spline.of(spline) for spline in data.splines], active)
 
@@ -68,12 +66,8 @@ class Splines:
 
         New points have values between those of their neighbours; all other settings stay.
 
-        Parameters
-        ----------
-        drawn
-            The polygons that are drawn for the splines, a component each.
-        refined
-            The same with more vertices.
+        ``drawn``: the polygons that are drawn for the splines, a component each; ``refined``: the same with more
+        vertices.
         """
         made = []
         for k, spline in enumerate(self.each):
@@ -107,7 +101,6 @@ class SplineShape:
 
 
 def shape(data: "bpy.types.Curve") -> list[SplineShape]:
-    """The shapes of all splines."""
     return [SplineShape(each.type, len(control_points(each)), bool(each.use_cyclic_u)) for each in data.splines]
 
 

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from ...core import MobiusFlowError
 from ...core.messages import Message
 from ..engine.obstacles import Surface
 from ..engine.placement import Placement
-from .standing import unsteady_object
+from .moving import unsteady_object
+from .splines import read
 
 if TYPE_CHECKING:
     import bpy
@@ -24,11 +24,8 @@ def surfaces(
 ) -> list[list[Surface]]:
     """What each of some objects shows, piece by piece.
 
-    Raises
-    ------
-    MobiusFlowError
-        If one of them is hidden, or shows what cannot be avoided: something else than faces and edges, or a copy of
-        an object that does not stand still while others are relaxed.
+    Raises MobiusFlowError if one of them is hidden, or shows what cannot be avoided: something else than faces and
+    edges, or a copy of an object that does not stand still while others are relaxed.
     """
     shown: dict[int, list[Surface]] = {obj.session_uid: [] for obj in objects}
     looked_at: set[int] = set()
@@ -86,17 +83,12 @@ def _surface(instance: "bpy.types.DepsgraphObjectInstance") -> Surface | None:
         return None
     try:
         mesh.calc_loop_triangles()
-        points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-        mesh.vertices.foreach_get("co", points)
-        triangles, edges = _indices(mesh.loop_triangles, 3), _indices(mesh.edges, 2)
+        points = read(mesh.vertices, "co", 3)
+        triangles, edges = (
+            read(mesh.loop_triangles, "vertices", 3, np.int32),
+            read(mesh.edges, "vertices", 2, np.int32),
+        )
         placement = Placement.from_matrix(instance.matrix_world)
-        return Surface.of_mesh(points.reshape(-1, 3), triangles, edges, placement)
+        return Surface.of_mesh(points, triangles, edges, placement)
     finally:
         obj.to_mesh_clear()
-
-
-def _indices(items: "bpy.types.bpy_prop_collection", corners: int) -> npt.NDArray[np.int32]:
-    """Vertices of all edges or triangles of a mesh; (n, corners)."""
-    numbers = np.empty(corners * len(items), dtype=np.int32)
-    items.foreach_get("vertices", numbers)
-    return numbers.reshape(-1, corners)

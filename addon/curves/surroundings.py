@@ -1,20 +1,28 @@
-"""What curves avoid: objects that are not relaxed, as the 3D view shows them when a relaxation begins."""
+"""What curves avoid, as the 3D view shows it when a relaxation begins, and what lies near and is not avoided."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...core import MobiusFlowError, Obstacle
 from ...core.messages import Message
+from ...core.types import FloatArray
 from ..engine.obstacles import obstacles
 from ..engine.placement import Placement
+from ..engine.words import named
+from .moving import unsteady
 from .reference import Reference
-from .standing import unsteady
-from .surfaces import WITHOUT_SHAPE, surfaces
+from .splines import read
+from .surfaces import SOLID, WITHOUT_SHAPE, surfaces
 
 if TYPE_CHECKING:
     import bpy
+
+STAGE = "mobius_flow_stage"  # custom property of what only surrounds curves, to be seen with them
+_MARGIN = 0.1  # of the diagonal of the curves' box
 
 
 def avoidable(
@@ -30,10 +38,7 @@ def avoidable(
 def add(scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "bpy.types.Collection":
     """Add objects to the collection that the scene's curves avoid, which is made where there is none.
 
-    Raises
-    ------
-    MobiusFlowError
-        If the collection belongs to another file.
+    Raises MobiusFlowError if the collection belongs to another file.
     """
     import bpy
 
@@ -57,7 +62,6 @@ class _Place:
     placement: Placement
 
     def lost(self) -> Message | None:
-        """Say what somebody did to the object."""
         obj = self.reference.get()
         if obj is None or not obj.users_scene:
             return Message("'{name}' was deleted", name=self.reference.name)
@@ -70,25 +74,17 @@ class _Place:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Objects that are avoided; nothing of them is touched.
+    """Objects that are avoided; nothing of them is touched."""
 
-    Attributes
-    ----------
-    obstacles
-        What they show, in the world.
-    """
-
-    obstacles: tuple[Obstacle, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()  # what they show, in the world
     _places: tuple[_Place, ...] = ()
 
     @classmethod
     def of(cls, avoided: Sequence["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> "Surroundings":
         """Read objects as they are shown at the current frame.
 
-        Raises
-        ------
-        MobiusFlowError
-            If one of them is hidden, moves, or shows nothing that can be avoided, or a curve that is relaxed moves.
+        Raises MobiusFlowError if one of them is hidden, moves, or shows nothing that can be avoided, or a curve that is
+        relaxed moves.
         """
         import bpy
 
@@ -102,7 +98,6 @@ class Surroundings:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The objects' names."""
         return tuple(place.reference.name for place in self._places)
 
     def lost(self) -> Message | None:
@@ -111,3 +106,44 @@ class Surroundings:
 
 
 NOTHING = Surroundings()
+
+
+def warning(
+    context: "bpy.types.Context", objects: Sequence["bpy.types.Object"], avoided: Sequence["bpy.types.Object"] = ()
+) -> Message | None:
+    """Name what is visible near curve objects, and neither one of them nor avoided by them, or return None."""
+    if not (found := near(context, objects, avoided)):
+        return None
+    names = named([obj.name for obj in found])
+    if len(found) > 1:
+        return Message("{names} nearby are neither selected nor avoided, and may be crossed", names=names)
+    return Message("{names} nearby is neither selected nor avoided, and may be crossed", names=names)
+
+
+def near(
+    context: "bpy.types.Context", objects: Sequence["bpy.types.Object"], avoided: Sequence["bpy.types.Object"] = ()
+) -> list["bpy.types.Object"]:
+    """Other visible objects with a surface or a line whose boxes in the world overlap those of the curves, enlarged.
+
+    Cheap enough for every redraw.
+    """
+    everything = context.view_layer.objects
+    together = set(objects)
+    mine = np.array([obj in together for obj in everything], dtype=bool)
+    if not mine.any():
+        return []
+    low, high = _boxes(everything)
+    lowest, highest = low[mine].min(axis=0), high[mine].max(axis=0)
+    margin = _MARGIN * np.linalg.norm(highest - lowest)
+    overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
+    candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
+    others = (obj for obj in candidates if obj.type in SOLID and obj not in avoided)
+    return [obj for obj in others if STAGE not in obj and obj.visible_get()]
+
+
+def _boxes(objects: "bpy.types.bpy_prop_collection") -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest coordinates of objects in the world, each of shape (n, 3)."""
+    matrices = read(objects, "matrix_world", 16).reshape(-1, 4, 4)  # column by column
+    corners = read(objects, "bound_box", 24)
+    world = corners.reshape(-1, 8, 3) @ matrices[:, :3, :3] + matrices[:, 3:, :3]
+    return world.min(axis=1), world.max(axis=1)

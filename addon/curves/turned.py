@@ -23,16 +23,13 @@ _SQUARE = 1e-5  # cosines of angles that are right but for the rounding of Blend
 def lay_flat(objects: Sequence["bpy.types.Object"]) -> int:
     """Turn curves so that they extend least upwards; one that is animated, least along its own Z axis.
 
+    Raises MobiusFlowError if one of them is moved by something, or would be sheared by its parent's scale, and is not
+    the only one, or has no keys that could be turned; or if all of their points are the same.
+
     Returns
     -------
     int
         Number of motions of keys that are not proved any more.
-
-    Raises
-    ------
-    MobiusFlowError
-        If one of them is moved by something, or would be sheared by its parent's scale, and is not the only one, or has
-        no keys that could be turned; or if all of their points are the same.
     """
     flat = np.array(objects[0].matrix_world, dtype=np.float64)[:3, :3].T if what_moves(objects[0]) else np.eye(3)
     return _turn(objects, orthonormal(flat))
@@ -58,7 +55,6 @@ def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
 
 
 def _obstacles(obj: "bpy.types.Object", objects: Sequence["bpy.types.Object"], turn: Turn) -> Iterator[Message]:
-    """Say why an object cannot be turned."""
     if mover := what_moves(obj):
         yield Message("'{name}' is moved by {mover}", name=obj.name, mover=mover)
     elif obj.parent and not any(each in objects for each in _ancestors(obj)) and _shears(obj, turn):

@@ -1,12 +1,129 @@
-"""How a relaxation becomes an animation."""
+"""How a relaxation becomes an animation: what is keyed, in which size, and at which frames.
+
+Chords between keys are proved whatever their times: a key's frame says when it is passed, not where the curve goes.
+"""
 
 from dataclasses import dataclass, field
 from enum import Enum
 
+import numpy as np
+
 from ...core import OptionError
 from ...core.messages import Message
+from ...core.types import FloatArray
 from .size import Measure
-from .timing import Timing
+
+LAST_FRAME = 1_048_574  # of any scene; up to it, 32-bit numbers tell a sixteenth of a frame apart
+FRAMES_PER_ITERATE = (0.1, 10_000.0)
+_BY_ITERATE = Message("Start Frame, Frames/Iterate or Max Iterations")  # what the last frame depends on
+_BY_LENGTH = Message("Start Frame or Length")
+_EVENNESS = 0.85  # share of distance in an even motion; the rest leaves the last, small steps some frames too
+
+
+class Pace(Enum):
+    """What passes evenly from frame to frame; the values name it for people."""
+
+    EVEN = "Even Motion"
+    DISTANCE = "By Distance"
+    FLOW_TIME = "By Flow Time"
+    ITERATE = "By Iterate"
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """How far a relaxation has come at each of several frames; ascending arrays of shape (frames,)."""
+
+    iterates: FloatArray  # number of iterates passed
+    distance: FloatArray  # length of the way travelled, in the root mean square over the vertices
+    flow_time: FloatArray  # sum of the step sizes
+
+    def share(self, pace: Pace) -> FloatArray:
+        """Share of the time passed at each frame, from 0 to 1."""
+        if pace is Pace.ITERATE:
+            return _share(self.iterates, self.iterates)
+        passed = _share(self.flow_time if pace is Pace.FLOW_TIME else self.distance, self.iterates)
+        if pace is Pace.EVEN:
+            return _EVENNESS * passed + (1 - _EVENNESS) * _share(self.iterates, self.iterates)
+        return passed
+
+
+def _share(passed: FloatArray, otherwise: FloatArray) -> FloatArray:
+    """From 0 to 1 as something passes, or as something else does if that stands still."""
+    for each in (passed, otherwise):
+        if np.ptp(each) > 0:
+            return np.asarray((each - each[0]) / np.ptp(each))
+    return np.zeros(len(passed))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timing:
+    """Which frames an animation takes.
+
+    Raises OptionError if a value is outside its range.
+    """
+
+    pace: Pace = Pace.EVEN  # what passes evenly from frame to frame
+    start_frame: float = 1.0  # frame at which the animation begins
+    # number of frames, those at rest among them; with `Pace.ITERATE` it follows from the number of iterates
+    length: int = 250
+    frames_per_iterate: float = 1.0  # frames from one iterate to the next, for `Pace.ITERATE`
+    hold_start: int = 0  # frames at rest before and after the motion
+    hold_end: int = 0
+
+    def __post_init__(self) -> None:
+        if not abs(self.start_frame) <= LAST_FRAME:  # not a number is refused too
+            sentence = "Start Frame is {frame:.12g}; it must be from {first} to {last}"
+            raise OptionError(Message(sentence, frame=self.start_frame, first=-LAST_FRAME, last=LAST_FRAME))
+        low, high = FRAMES_PER_ITERATE
+        if not low <= self.frames_per_iterate <= high:
+            sentence = "Frames/Iterate is {value:g}; it must be from {low:g} to {high:g}"
+            raise OptionError(Message(sentence, value=self.frames_per_iterate, low=low, high=high))
+        if min(self.hold_start, self.hold_end) < 0:
+            raise OptionError(Message("Hold at Start and Hold at End must be 0 frames or more"))
+        if self.pace is not Pace.ITERATE and self.length < 2 + self.hold_start + self.hold_end:
+            sentence = (
+                "Length is {length} frames, which leaves none to move in; it must be at least {least}, or the holds "
+                "shorter"
+            )
+            raise OptionError(Message(sentence, length=self.length, least=2 + self.hold_start + self.hold_end))
+
+    def check_room(self, iterations: int) -> None:
+        """Raise an OptionError if so many iterations would take frames beyond the last one that a scene may have."""
+        _, end = self._motion(iterations)
+        last = end + self.hold_end
+        if last > LAST_FRAME:
+            sentence = (
+                "The animation would go on to frame {frame:.0f}, but Blender's last is {last}; give a smaller {what}"
+            )
+            what = _BY_ITERATE if self.pace is Pace.ITERATE else _BY_LENGTH
+            raise OptionError(Message(sentence, frame=last, last=LAST_FRAME, what=what))
+
+    def frames(self, course: Course) -> FloatArray:
+        """Frame of each key as Blender stores it, a 32-bit number, each later than the one before; (keys,)."""
+        begin, end = self._motion(course.iterates[-1])
+        return _apart(begin + (end - begin) * course.share(self.pace))
+
+    def scene_range(self, frames: FloatArray) -> tuple[int, int]:
+        """First and last frame of an animation with its rests, as whole frames."""
+        return int(np.floor(frames[0] - self.hold_start)), int(np.ceil(frames[-1] + self.hold_end))
+
+    def _motion(self, iterations: float) -> tuple[float, float]:
+        begin = self.start_frame + self.hold_start
+        if self.pace is Pace.ITERATE:
+            return begin, begin + self.frames_per_iterate * iterations
+        return begin, self.start_frame + self.length - 1 - self.hold_end
+
+
+def _apart(frames: FloatArray) -> FloatArray:
+    """Ascending frames as different 32-bit numbers; where they crowd at the end, the last one stays where it is."""
+    stored = frames.astype(np.float32)
+    last = stored[-1]
+    for k in range(1, len(stored)):
+        stored[k] = max(stored[k], np.nextafter(stored[k - 1], np.float32(np.inf)))
+    stored[-1] = last if len(stored) > 1 and stored[0] < last else stored[-1]
+    for k in range(len(stored) - 1, 0, -1):
+        stored[k - 1] = min(stored[k - 1], np.nextafter(stored[k], np.float32(-np.inf)))
+    return stored.astype(np.float64)
 
 
 class Output(Enum):
@@ -19,29 +136,16 @@ class Output(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class KeyOptions:
-    """How a relaxation becomes an animation.
+    """How a relaxation becomes an animation."""
 
-    Parameters
-    ----------
-    output
-        What is left on the object.
-    timing
-        Which frames it takes.
-    max_keys
-        Wanted number of keys, see `Motion.keys`.
-    fit_bevel
-        Draw curves whose tubes were fitted before as the thickest tubes that do not touch, at every key.
-    any_bevel
-        Do so with every curve that is drawn as a line or a plain round tube, also where its depth is the artist's own.
-    keep_size
-        What stays as it is at the first key; where it is not the length, which the flow keeps, keys are scaled.
-    """
-
-    output: Output = Output.SHAPE_KEYS
-    timing: Timing = field(default_factory=Timing)
-    max_keys: int | None = None
+    output: Output = Output.SHAPE_KEYS  # what is left on the object
+    timing: Timing = field(default_factory=Timing)  # which frames it takes
+    max_keys: int | None = None  # wanted number of keys, see `Motion.keys`
+    # draw curves whose tubes were fitted before as the thickest tubes that do not touch, at every key
     fit_bevel: bool = False
+    # do so with every curve that is drawn as a line or a plain round tube, also where its depth is the artist's own
     any_bevel: bool = False
+    # what stays as it is at the first key; where it is not the length, which the flow keeps, keys are scaled
     keep_size: Measure = Measure.LENGTH
 
     @property

@@ -14,8 +14,8 @@ from ...core import Curve, Iterate, MobiusFlowError
 from ...core.curve import Mesh
 from ...core.curve.refine import subdivide, subdivision
 from ...core.types import FloatArray
+from .key_options import Course, Pace
 from .placement import Frame, Link
-from .timing import Course, Pace
 
 Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
 
@@ -32,23 +32,15 @@ class Key:
 
 @dataclass(frozen=True, eq=False)
 class Keys:
-    """The keys of an animation.
+    """The keys of an animation."""
 
-    Attributes
-    ----------
-    keys
-        In order of time.
-    unproved
-        Number of gaps between keys whose straight motion could not be proved free of contact; rounding the start
-        to Blender's numbers counts as one more gap.
-    """
-
-    keys: tuple[Key, ...]
+    keys: tuple[Key, ...]  # in order of time
+    # number of gaps between keys whose straight motion could not be proved free of contact; rounding the start to
+    # Blender's numbers counts as one more gap
     unproved: int
 
     @property
     def certified(self) -> bool:
-        """Whether the whole animation was proved free of contact."""
         return self.unproved == 0
 
     def part(self, vertices: slice) -> "Keys":
@@ -68,12 +60,8 @@ class Motion:
     All have as many points as the last one: where edges are split on the way, those of earlier frames are split too,
     at the same fractions.
 
-    Parameters
-    ----------
-    link
-        Where the vertices of the iterates are stored, and in which space their motions are proved.
-    first
-        The start as it is stored already, where keys are added to others; None rounds the first iterate.
+    ``link``: where the vertices of the iterates are stored, and in which space their motions are proved; ``first``: the
+    start as it is stored already, where keys are added to others; None rounds the first iterate.
     """
 
     def __init__(self, link: Link, first: Frame | None = None) -> None:
@@ -87,10 +75,8 @@ class Motion:
     def add(self, iterate: Iterate) -> None:
         """Append an iterate with the legs that lead to it.
 
-        Raises
-        ------
-        MobiusFlowError
-            If its mesh is another one than that of the last iterate, and not only by edges that are split.
+        Raises MobiusFlowError if its mesh is another one than that of the last iterate, and not only by edges that are
+        split.
         """
         if self._last is not None and iterate.curve.mesh != self._last.curve.mesh:
             self._split(iterate.curve)
@@ -131,15 +117,9 @@ class Motion:
     def keys(self, free: Proof, limit: int | None = None, pace: Pace = Pace.ITERATE) -> Keys:
         """Choose the keys of an animation from the start to the last iterate.
 
-        Parameters
-        ----------
-        free
-            ``free(mesh, start, end)`` proves a straight motion free of contact.
-        limit
-            Wanted number of keys, at least 2, spread evenly over the frames; None keys every iterate. Keys are
-            added beyond it where the straight motion from one to the next cannot be proved.
-        pace
-            What passes evenly from frame to frame.
+        ``free``: ``free(mesh, start, end)`` proves a straight motion free of contact; ``limit``: wanted number of keys,
+        at least 2, spread evenly over the frames; None keys every iterate. Keys are added beyond it where the straight
+        motion from one to the next cannot be proved; ``pace``: what passes evenly from frame to frame.
         """
         chosen = self._spread(limit, pace)
         keys, unproved = [self._keys[chosen[0]]], int(not self._rounds_freely(self.start, 0, free))
@@ -174,7 +154,6 @@ class Motion:
 
     @property
     def start(self) -> Iterate:
-        """The first iterate."""
         assert self._start is not None, "a relaxation yields at least its start"
         return self._start
 
@@ -185,7 +164,6 @@ class Motion:
 
     @property
     def last(self) -> Iterate:
-        """The last iterate."""
         assert self._last is not None, "a relaxation yields at least its start"
         return self._last
 

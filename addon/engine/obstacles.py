@@ -17,21 +17,11 @@ _WORLD = Placement(np.eye(3), np.zeros(3))
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles, and the edges of none of them, in the world.
+    """Triangles, and the edges of none of them, in the world."""
 
-    Attributes
-    ----------
-    vertices
-        Positions, shape (k, 3).
-    triangles
-        Indices of their corners, shape (f, 3).
-    edges
-        Indices of the ends of those edges, shape (e, 2).
-    """
-
-    vertices: FloatArray
-    triangles: IntArray
-    edges: IntArray
+    vertices: FloatArray  # positions, shape (k, 3)
+    triangles: IntArray  # indices of their corners, shape (f, 3)
+    edges: IntArray  # indices of the ends of those edges, shape (e, 2)
 
     @classmethod
     def of_mesh(
@@ -58,10 +48,7 @@ def _loose(edges: IntArray, triangles: IntArray) -> IntArray:
 def obstacles(name: str, surfaces: Sequence[Surface]) -> Iterator[Obstacle]:
     """Yield what an object shows, all of its parts together: its triangles, and its edges without any.
 
-    Raises
-    ------
-    CurveError
-        If there is nothing, or a coordinate is not finite, or as good as infinite.
+    Raises CurveError if there is nothing, or a coordinate is not finite, or as good as infinite.
     """
     ends = np.cumsum([0, *(len(each.vertices) for each in surfaces)])
     vertices = np.concatenate([np.empty((0, 3)), *(each.vertices for each in surfaces)])

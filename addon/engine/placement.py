@@ -59,17 +59,10 @@ class Link:
     one common space, the coordinates of the first object: the rounded points, mapped there in doubles. Invertible
     affine maps create no contact and undo none, so what is free there is free in the world, and for a single object
     wherever that object goes.
-
-    Attributes
-    ----------
-    placements
-        One for each object.
-    counts
-        Number of components of the link that each object has; they are numbered object by object.
     """
 
-    placements: tuple[Placement, ...]
-    counts: tuple[int, ...]
+    placements: tuple[Placement, ...]  # one for each object
+    counts: tuple[int, ...]  # number of components of the link that each object has; they are numbered object by object
 
     @cached_property
     def _to_first(self) -> tuple[Placement, ...]:
@@ -105,21 +98,11 @@ class Link:
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """Points of one object.
+    """Points of one object."""
 
-    Attributes
-    ----------
-    member
-        Number of the object among those that are relaxed together.
-    points
-        The points to select, in the object's coordinates; shape (k, 3).
-    marks
-        The places to mark, likewise; one for the object at which the place is, none for others.
-    """
-
-    member: int
-    points: FloatArray
-    marks: FloatArray
+    member: int  # number of the object among those that are relaxed together
+    points: FloatArray  # the points to select, in the object's coordinates; shape (k, 3)
+    marks: FloatArray  # the places to mark, likewise; one for the object at which the place is, none for others
 
 
 def spots(place: Place, curve: Curve, link: Link) -> list[Spot]:

@@ -14,18 +14,10 @@ _ROOM = 0.06  # of the height, kept free above and below
 
 @dataclass(frozen=True, eq=False)
 class Plot:
-    """What is drawn, in pixels from the lower left corner.
+    """What is drawn, in pixels from the lower left corner."""
 
-    Attributes
-    ----------
-    line
-        The energies; shape (k, 2), at most two points for a pixel's width.
-    target
-        Height of the target's line, if there is one.
-    """
-
-    line: FloatArray
-    target: float | None
+    line: FloatArray  # the energies; shape (k, 2), at most two points for a pixel's width
+    target: float | None  # height of the target's line, if there is one
 
 
 def plot(energies: Sequence[float], target: Target | None, width: float, height: float) -> Plot:

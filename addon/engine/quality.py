@@ -10,17 +10,9 @@ import numpy as np
 from ...core import METHODS
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Quality:
-    """A level of quality.
-
-    Attributes
-    ----------
-    label, purpose
-        Its title, and what it is for.
-    method, tolerance, max_iterations
-        Options of a relaxation; the number of vertices is left to the core at all levels.
-    """
+    """A level of quality: its title, what it is for, and options of a relaxation."""
 
     label: str
     purpose: str
@@ -31,12 +23,7 @@ class Quality:
     @property
     def values(self) -> dict[str, Any]:
         """The settings that it stands for; 0 vertices are as many as the core thinks right."""
-        return {
-            "method": self.method,
-            "tolerance": self.tolerance,
-            "max_iterations": self.max_iterations,
-            "vertices": 0,
-        }
+        return {name: getattr(self, name) for name in ("method", "tolerance", "max_iterations")} | {"vertices": 0}
 
     @property
     def description(self) -> str:
@@ -55,29 +42,12 @@ def _same(one: Any, other: Any) -> bool:
     return bool(np.float32(one) == np.float32(other)) if isinstance(other, float) else bool(one == other)
 
 
+_EXACT = "The shape of least energy to many digits, in two or three times the time"
 QUALITIES: Mapping[str, Quality] = MappingProxyType(
     {
-        "PREVIEW": Quality(
-            label="Preview",
-            purpose="Untangled and nearly at rest, to look at",
-            method="lbfgs",
-            tolerance=1e-2,
-            max_iterations=300,
-        ),
-        "GOOD": Quality(
-            label="Good",
-            purpose="At rest as far as the eye can tell",
-            method="lbfgs",
-            tolerance=1e-4,
-            max_iterations=2000,
-        ),
-        "EXACT": Quality(
-            label="Exact",
-            purpose="The shape of least energy to many digits, in two or three times the time",
-            method="trust-region",
-            tolerance=1e-8,
-            max_iterations=2000,
-        ),
+        "PREVIEW": Quality("Preview", "Untangled and nearly at rest, to look at", "lbfgs", 1e-2, 300),
+        "GOOD": Quality("Good", "At rest as far as the eye can tell", "lbfgs", 1e-4, 2000),
+        "EXACT": Quality("Exact", _EXACT, "trust-region", 1e-8, 2000),
     }
 )
 """The levels by their identifiers, which are in files."""

@@ -15,37 +15,21 @@ _ITERATIONS = 100  # that lead from points rounded to Blender's numbers back to 
 
 @dataclass(frozen=True)
 class Rest:
-    """Where a curve rests.
+    """Where a curve rests."""
 
-    Attributes
-    ----------
-    index
-        Number of independent directions that lead down, None if it is not at rest.
-    words
-        The same in words.
-    """
-
-    index: int | None
-    words: str
+    index: int | None  # number of independent directions that lead down, None if it is not at rest
+    words: str  # the same in words
 
     @classmethod
     def of(cls, curve: Curve | Task, options: RelaxOptions) -> "Rest":
         """Look at the end of a relaxation that was done with these options.
 
-        Raises
-        ------
-        MobiusFlowError
-            If the curve has too many points, or the options leave no way to tell.
+        Raises MobiusFlowError if the curve has too many points, or the options leave no way to tell.
         """
         task = Task.of(curve)
         if len(task.curve) > MAX_POINTS:
-            raise CurveError(
-                Message(
-                    "The curves have {count} points; minimum or saddle is told up to {most}",
-                    count=len(task.curve),
-                    most=MAX_POINTS,
-                )
-            )
+            sentence = "The curves have {count} points; minimum or saddle is told up to {most}"
+            raise CurveError(Message(sentence, count=len(task.curve), most=MAX_POINTS))
         options = replace(options.at_rest(task.curve), max_iterations=_ITERATIONS, stability=True)
         result = minimize(task, options)
         index = result.outcome.negative_eigenvalues

@@ -42,26 +42,16 @@ def barycenter(curve: Curve) -> FloatArray:
 
 @dataclass(frozen=True)
 class Size:
-    """A size that all curves of a motion are given.
+    """A size that all curves of a motion are given."""
 
-    Attributes
-    ----------
-    measure
-        What is measured.
-    value
-        How much of it they are to have.
-    """
-
-    measure: Measure
-    value: float
+    measure: Measure  # what is measured
+    value: float  # how much of it they are to have
 
     @classmethod
     def of(cls, measure: Measure, curve: Curve) -> "Size":
-        """The size of a curve."""
         return cls(measure, measure.of(curve))
 
     def factor(self, curve: Curve) -> float:
-        """By what a curve is to be scaled."""
         return self.value / self.measure.of(curve)
 
     def given_to(self, curve: Curve) -> Curve:

@@ -1,4 +1,8 @@
-"""Smooth curves that follow polygons: cubic splines, as NURBS and Bézier curves, and how far off they are."""
+"""Smooth curves that follow polygons: cubic splines, as NURBS and Bézier curves, and how far off they are.
+
+Splines are uniform: periodic, or clamped from their first control point to their last, as Blender has them at
+*Endpoint*. Their parameter runs from 0 to 1 through segments of equal length.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,16 +10,18 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.interpolate import BSpline
 from scipy.sparse.linalg import splu
 
 from ...core import Curve
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.curve.distances import points_along, vertex_positions
-from ...core.types import FloatArray
-from .cubic_spline import basis, bezier_points, evaluated
+from ...core.types import FloatArray, IntArray
 from .tube import free_radius, strand_gap, thickest_radius
 
+FEWEST = 4  # control points of a cubic spline
+_DEGREE = 3
 _FIRST = 8  # control points tried first
 _GROWTH = 2**0.25  # of their number, until the spline is near enough
 _SAMPLES = 8  # per segment of the spline, where it is compared with the polygon
@@ -28,22 +34,10 @@ class SmoothFit:
     """Uniform cubic splines that follow the components of a curve, clamped at the ends of those that are open.
 
     The parameter is the share of a component's length for the polygon, and of the number of segments for its spline.
-
-    Attributes
-    ----------
-    curve
-        The polygons.
-    points
-        Control points (de Boor points) of each component's spline, (k, 3).
     """
 
-    curve: Curve
-    points: tuple[FloatArray, ...]
-
-    @cached_property
-    def bezier(self) -> tuple[FloatArray, ...]:
-        """Bézier points of each component's segments, from end to end; (k, 4, 3)."""
-        return tuple(map(bezier_points, self.points, self.curve.mesh.closed))
+    curve: Curve  # the polygons
+    points: tuple[FloatArray, ...]  # control points (de Boor points) of each component's spline, (k, 3)
 
     @cached_property
     def error(self) -> float:
@@ -75,20 +69,53 @@ class SmoothFit:
         vertices = _shares_of_length(self.curve)
         t = [_merged(own, _SAMPLES * len(points)) for own, points in zip(vertices, self.points, strict=True)]
         mesh = Mesh(tuple(map(len, t)), self.curve.mesh.closed)
-        spline = np.concatenate([evaluated(each, own) for each, own in zip(self.bezier, t, strict=True)])
+        pieces = zip(self.points, t, self.curve.mesh.closed, strict=True)
+        spline = np.concatenate([_evaluated(points, own, closed) for points, own, closed in pieces])
         return Curve(_on_polygon(self.curve, t), mesh), Curve(spline, mesh)
+
+
+def bezier_points(points: FloatArray, closed: bool = True) -> FloatArray:
+    """Bézier points of a spline's segments, from end to end; control points (k, 3) to (segments, 4, 3).
+
+    A periodic spline has as many segments as control points, a clamped one three less.
+    """
+    knots = _knots(len(points), closed)
+    joints = knots[_DEGREE:-_DEGREE]
+    spline = BSpline(knots, points[_wrapped(len(points), closed)], _DEGREE)
+    place, handle = spline(joints), spline(joints, 1) / _DEGREE
+    return np.stack([place[:-1], place[:-1] + handle[:-1], place[1:] - handle[1:], place[1:]], axis=1)
+
+
+def _knots(count: int, closed: bool) -> FloatArray:
+    """Knots 0, 1, 2, … with three more on each side: beyond the ends of a period, or at those of a clamped spline."""
+    if closed:
+        return np.arange(-_DEGREE, count + _DEGREE + 1, dtype=np.float64)
+    return np.pad(np.arange(count - _DEGREE + 1, dtype=np.float64), _DEGREE, mode="edge")
+
+
+def _wrapped(count: int, closed: bool) -> IntArray:
+    """The control point that belongs to each B-spline; that of a period's first segment begins before it."""
+    return np.arange(-1, count + _DEGREE - 1) % count if closed else np.arange(count)
+
+
+def _basis(t: FloatArray, count: int, closed: bool) -> sp.csr_array:
+    """Values at parameters of the B-splines of so many control points; (parameters, count)."""
+    segments = count if closed else count - _DEGREE
+    values = sp.csr_array(BSpline.design_matrix(t * segments, _knots(count, closed), _DEGREE))
+    owner = _wrapped(count, closed)
+    return values @ sp.csr_array((np.ones(len(owner)), (np.arange(len(owner)), owner)))
+
+
+def _evaluated(points: FloatArray, t: FloatArray, closed: bool) -> FloatArray:
+    """Points of a spline with these control points at parameters; (parameters, 3)."""
+    return np.asarray(_basis(t, len(points), closed) @ points)
 
 
 def fitted(curve: Curve, points: int | None = None) -> SmoothFit:
     """Fit splines to the vertices of each component by least squares.
 
-    Parameters
-    ----------
-    curve
-        The polygons, in space.
-    points
-        Number of control points of each spline, at least 4; None takes as few as are close, and at most half as many as
-        there are vertices.
+    ``curve``: the polygons, in space; ``points``: number of control points of each spline, at least 4; None takes as
+    few as are close, and at most half as many as there are vertices.
     """
     if points is not None:
         return SmoothFit(curve, _control_points(curve, points))
@@ -125,7 +152,7 @@ def _least_squares(
 
     The first and the last control point of a clamped spline are its ends, and those of the polygon.
     """
-    a, b = basis(vertices[0], count, closed), basis(edges[0], count, closed)
+    a, b = _basis(vertices[0], count, closed), _basis(edges[0], count, closed)
     matrix = sp.csc_matrix(a.T @ a + _OF_EDGES * (b.T @ b))
     right = a.T @ vertices[1] + _OF_EDGES * (b.T @ edges[1])
     if closed:

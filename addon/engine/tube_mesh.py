@@ -26,16 +26,8 @@ def rings(points: FloatArray, radii: FloatArray, mesh: Mesh, sides: int) -> Floa
     Rings lie in the planes that halve the angle between two edges, and are stretched where these meet at a corner so
     that the tube is as thick along the edges as it should be.
 
-    Parameters
-    ----------
-    points
-        Vertices of the polygons at every key, (keys, n, 3).
-    radii
-        Radius of the tube at each of them, (keys, n).
-    mesh
-        Their connectivity.
-    sides
-        Number of vertices of a ring.
+    ``points``: vertices of the polygons at every key, (keys, n, 3); ``radii``: radius of the tube at each of them,
+    (keys, n); ``mesh``: their connectivity; ``sides``: number of vertices of a ring.
     """
     each = zip(mesh.slices, mesh.closed, strict=True)
     pieces = [_rings(points[:, s], radii[:, s], sides, closed) for s, closed in each]
@@ -62,12 +54,7 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
     Straight lines between two rings make the tube thinner. No gap is halved more than five times: what turns through
     itself is never smooth.
 
-    Parameters
-    ----------
-    points
-        Vertices of polygons at every key, (keys, n, 3).
-    mesh
-        Their connectivity.
+    ``points``: vertices of polygons at every key, (keys, n, 3); ``mesh``: their connectivity.
     """
     places = np.arange(len(points), dtype=np.float64)
     for _ in range(_HALVINGS):
@@ -120,16 +107,9 @@ def edges_around(points: FloatArray, closed: bool) -> tuple[FloatArray, FloatArr
 def normals(points: FloatArray, closed: bool = True) -> FloatArray:
     """Unit normals at the vertices of one polygon in motion, the same turned as little as possible later.
 
-    Parameters
-    ----------
-    points
-        Vertices at every key, (keys, n, 3).
-    closed
-        Whether it is closed.
+    ``points``: vertices at every key, (keys, n, 3); ``closed``: whether it is closed.
 
-    Returns
-    -------
-    array (keys, n, 3)
+    Returns array (keys, n, 3).
     """
     tau = tangents(points, closed)
     bare = _transported(tau)
@@ -164,7 +144,6 @@ def signed_angle(start: FloatArray, end: FloatArray, tau: FloatArray) -> FloatAr
 
 
 def unit(vectors: FloatArray) -> FloatArray:
-    """Vectors of length 1; (..., 3) to the same."""
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), _TINY))
 
 

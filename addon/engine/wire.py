@@ -34,7 +34,6 @@ _VALUES = tuple(field.name for field in fields(Iterate) if field.name not in ("c
 
 
 def write(stream: IO[bytes], message: Packet) -> None:
-    """Write a message and flush."""
     header, arrays = message
     text = json.dumps({**header, "shapes": [a.shape for a in arrays]}).encode()
     data = [np.ascontiguousarray(a, dtype=np.float64).tobytes() for a in arrays]
@@ -60,7 +59,6 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
 
 
 def pack_job(task: Task, options: RelaxOptions, link: Link) -> Packet:
-    """What the worker is asked to do."""
     header = {**_pack_mesh(task.curve.mesh), "options": asdict(options), "counts": link.counts}
     header |= {
         "pins": task.pins,
@@ -74,7 +72,6 @@ def pack_job(task: Task, options: RelaxOptions, link: Link) -> Packet:
 
 
 def unpack_job(message: Packet) -> tuple[Task, RelaxOptions, Link]:
-    """The inverse of `pack_job`."""
     header, (vertices, linear, origins, *arrays) = message
     link = Link(tuple(map(Placement, linear, origins)), tuple(header["counts"]))
     faces = [each.astype(np.intp) for each in arrays[1::2]]
@@ -103,7 +100,6 @@ def pack_iterate(iterate: Iterate, proved: Sequence[str]) -> Packet:
 
 
 def unpack_iterate(message: Packet) -> tuple[Iterate, list[str]]:
-    """The inverse of `pack_iterate`."""
     header, (vertices, *path) = message
     values = {name: header[name] for name in _VALUES}
     curve = Curve(vertices, _unpack_mesh(header))
@@ -112,20 +108,17 @@ def unpack_iterate(message: Packet) -> tuple[Iterate, list[str]]:
 
 
 def pack_outcome(outcome: Outcome) -> Packet:
-    """How the relaxation ended, after the last iterate."""
     clauses = list(map(_pack_message, outcome.clauses))
     return {"outcome": asdict(outcome) | {"status": outcome.status.value, "clauses": clauses}}, []
 
 
 def unpack_outcome(message: Packet) -> Outcome:
-    """The inverse of `pack_outcome`."""
     values = message[0]["outcome"]
     values |= {"status": Status(values["status"]), "place": _place(values["place"])}
     return Outcome(**values | {"clauses": tuple(map(_unpack_message, values["clauses"]))})
 
 
 def pack_error(error: MobiusFlowError) -> Packet:
-    """Why a job cannot be done."""
     place = error.place if isinstance(error, CurveError) else None
     header = {"error": _pack_message(str(error)), "place": None if place is None else asdict(place)}
     return header | {"of_option": isinstance(error, OptionError)}, []
@@ -146,7 +139,6 @@ def _pack_message(fact: Any) -> Any:
 
 
 def _unpack_message(packed: Any) -> Any:
-    """The inverse of `_pack_message`."""
     if not isinstance(packed, dict):
         return packed
     return Message(packed["template"], **{name: _unpack_message(fact) for name, fact in packed["facts"].items()})

@@ -68,12 +68,8 @@ class WorkerError(MobiusFlowError):
 class Worker:
     """A relaxation in another process, or in a thread where no process can be started.
 
-    Parameters
-    ----------
-    task, options
-        What is to be relaxed, as for `core.relax`.
-    link
-        Where Blender stores the vertices: motions of the stored ones are proved too.
+    ``task``, ``options``: what is to be relaxed, as for `core.relax`; ``link``: where Blender stores the vertices:
+    motions of the stored ones are proved too.
     """
 
     def __init__(self, task: Task, options: RelaxOptions, link: Link) -> None:
@@ -89,10 +85,7 @@ class Worker:
     def poll(self) -> Iterate | Outcome | None:
         """Take the next iterate if there is one; after the last one comes the outcome.
 
-        Raises
-        ------
-        MobiusFlowError
-            If the curve cannot be relaxed, or the worker is gone.
+        Raises MobiusFlowError if the curve cannot be relaxed, or the worker is gone.
         """
         try:
             message = self._queue.get_nowait()
@@ -162,7 +155,6 @@ def _replies(process: "subprocess.Popen[bytes]", job: wire.Packet) -> Iterator[w
 
 
 def _pipes(process: "subprocess.Popen[bytes]") -> tuple[IO[bytes], IO[bytes]]:
-    """The standard input and output of the worker."""
     assert process.stdin is not None
     assert process.stdout is not None
     return process.stdin, process.stdout

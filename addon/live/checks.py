@@ -12,8 +12,7 @@ import bpy
 import numpy as np
 
 from ..curves import bake, bevel, sampling
-from ..curves.deforming import what_deforms
-from ..curves.moving import what_moves
+from ..curves.moving import what_deforms, what_moves
 from .requirements import Check, Curves, Remedy, curves_at_hand
 
 _FLATTEST = 1e-6  # smallest ratio of an object's scales that 32-bit matrices can be inverted with

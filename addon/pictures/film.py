@@ -12,9 +12,9 @@ from ...core.types import FloatArray
 from ..curves.exchange import new_curve_data, write_points
 from ..curves.keyframes import write_shape_keys
 from ..engine import tube
+from ..engine.key_options import Pace, Timing
 from ..engine.motion import Keys, Motion
 from ..engine.placement import Link, Placement
-from ..engine.timing import Pace, Timing
 from . import camera, stage
 from .materials import colour_components
 

@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 
 from ...core import CurveError
-from ..curves.neighbours import STAGE
-from ..curves.world_motion import WorldMotion
+from ..curves.recorded import WorldMotion
+from ..curves.surroundings import STAGE
 from . import camera, stage
 
 _NAME = "Stage"

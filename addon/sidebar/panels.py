@@ -4,13 +4,11 @@ import bpy
 
 from ...core.messages import Message
 from ..curves import bake, bevel, pins
-from ..curves.exchange import stretch
-from ..curves.standing import unsteady
-from ..curves.units import length
-from ..engine.key_options import Output
+from ..curves.exchange import length, stretch
+from ..curves.moving import unsteady
+from ..engine.key_options import Output, Pace
 from ..engine.knot_list import labels
 from ..engine.size import Measure
-from ..engine.timing import Pace
 from ..engine.words import named
 from ..live.modal import unseen
 from ..live.requirements import avoided, curves_at_hand, selected_curves

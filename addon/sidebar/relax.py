@@ -6,9 +6,9 @@ import bpy
 
 from ...core.messages import Message
 from ..buttons.presets import VIEW3D_PT_mobius_flow_presets
-from ..curves import neighbours
-from ..curves.standing import unsteady
-from ..curves.units import length
+from ..curves import surroundings
+from ..curves.exchange import length
+from ..curves.moving import unsteady
 from ..engine.quality import QUALITIES
 from ..engine.words import named
 from ..live import registry
@@ -49,7 +49,7 @@ def _warning(layout: bpy.types.UILayout, context: bpy.types.Context, objects: Se
     found = avoided(context)
     if moving := unsteady(found, selected_curves(context)):
         sentence(layout, context, moving, icon="ERROR")
-    elif unguarded := neighbours.warning(context, objects, found):
+    elif unguarded := surroundings.warning(context, objects, found):
         sentence(layout, context, unguarded, icon="ERROR")
         operator(layout, "avoid", icon="ADD")
 

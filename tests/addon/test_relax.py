@@ -110,7 +110,7 @@ def test_refinement_interpolates_what_points_have():
     before = {name: values(spline, name) for name in ("radius", "tilt", "weight_softbody")}
     start = stored(obj.data)
     relax(vertices=100, max_iterations=0, keyframes="RESULT")
-    points = stored(obj.data)
+    points, (spline,) = stored(obj.data), obj.data.splines
     assert len(points) == 100
     old = np.array([np.abs(points - p).max(axis=1).argmin() for p in start])
     np.testing.assert_array_equal(points[old], start)
@@ -132,6 +132,7 @@ def test_everything_else_stays():
     data.splines[0].use_smooth = False
     data.bevel_depth, data.bevel_resolution, data.resolution_u = 0.125, 3, 5
     relax(vertices=60, **BOTTOM)
+    data = obj.data
     assert [slot.name for slot in data.materials] == ["Red", "Blue"]
     assert [spline.material_index for spline in data.splines] == [0, 1]
     assert [spline.use_smooth for spline in data.splines] == [False, True]

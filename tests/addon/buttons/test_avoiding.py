@@ -7,7 +7,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, linked, sentence  # noqa: E402
-from mobius_flow.addon.curves.neighbours import warning  # noqa: E402
+from mobius_flow.addon.curves.surroundings import warning  # noqa: E402
 from mobius_flow.addon.live.requirements import avoided  # noqa: E402
 from shapes import regular_polygon  # noqa: E402
 

@@ -7,7 +7,7 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil, contents, evaluated, sentence, stored  # noqa: E402
 from mobius_flow.addon.curves import member  # noqa: E402
-from mobius_flow.addon.curves.deforming import deforms, what_deforms  # noqa: E402
+from mobius_flow.addon.curves.moving import deforms, what_deforms  # noqa: E402
 from mobius_flow.addon.curves.session import Session  # noqa: E402
 from mobius_flow.addon.engine.key_options import KeyOptions  # noqa: E402
 from mobius_flow.addon.live.checks import RELAXABLE  # noqa: E402

@@ -7,7 +7,7 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, fcurves, relax, show, stored  # noqa: E402
 from mathutils import Euler  # noqa: E402
-from mobius_flow.addon.curves.neighbours import warning  # noqa: E402
+from mobius_flow.addon.curves.surroundings import warning  # noqa: E402
 from shapes import hopf_link, regular_polygon  # noqa: E402
 
 

@@ -5,7 +5,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, show  # noqa: E402
-from mobius_flow.addon.curves.standing import unsteady, what_changes  # noqa: E402
+from mobius_flow.addon.curves.moving import unsteady, what_changes  # noqa: E402
 from shapes import regular_polygon  # noqa: E402
 
 

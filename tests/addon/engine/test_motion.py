@@ -4,9 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from mobius_flow.addon.engine.key_options import Pace
 from mobius_flow.addon.engine.motion import Motion
 from mobius_flow.addon.engine.placement import Link, Placement
-from mobius_flow.addon.engine.timing import Pace
 from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, relax
 from mobius_flow.core.collision import free_motion, is_free
 from mobius_flow.core.curve.refine import subdivide, subdivision

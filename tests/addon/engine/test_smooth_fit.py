@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine.smooth_fit import SmoothFit, fitted
+from mobius_flow.addon.engine.smooth_fit import SmoothFit, _evaluated, bezier_points, fitted
 from mobius_flow.addon.engine.tube import free_radius, thickest_radius
 from mobius_flow.core import Curve, Mesh
+from scipy.interpolate import BSpline
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 
 
@@ -23,7 +24,8 @@ def brute_error(fit, samples=4000):
     """Distance between splines and polygon, each seen from the other, by many points."""
     t = np.arange(samples) / samples
     worst = 0.0
-    for bezier, polygon in zip(fit.bezier, fit.curve.components, strict=True):
+    for points, polygon in zip(fit.points, fit.curve.components, strict=True):
+        bezier = bezier_points(points)
         k = (t * len(bezier)).astype(int)
         u = (t * len(bezier) - k)[:, None]
         a, b, c, d = (bezier[k, i] for i in range(4))
@@ -100,7 +102,9 @@ def test_the_spline_of_an_arc_runs_from_end_to_end():
     assert fit.proved
     assert fit.error <= 0.05 * free_radius(arc, thickest_radius(arc))
     np.testing.assert_array_equal(fit.points[0][[0, -1]], arc.vertices[[0, -1]])
-    np.testing.assert_allclose(fit.bezier[0][[0, -1], [0, 3]], arc.vertices[[0, -1]], atol=1e-12)
+    np.testing.assert_allclose(
+        bezier_points(fit.points[0], closed=False)[[0, -1], [0, 3]], arc.vertices[[0, -1]], atol=1e-12
+    )
 
 
 def test_a_segment_is_its_own_spline():
@@ -113,4 +117,38 @@ def test_an_arc_beside_a_ring():
     link = Curve.from_components([ring, half_circle(50).vertices + 3], (True, False))
     fit = fitted(link)
     assert fit.proved
-    assert [len(bezier) for bezier in fit.bezier] == [len(fit.points[0]), len(fit.points[1]) - 3]
+    bezier = map(bezier_points, fit.points, (True, False))
+    assert list(map(len, bezier)) == [len(fit.points[0]), len(fit.points[1]) - 3]
+
+
+POINTS = np.random.default_rng(3).normal(size=(9, 3))
+
+
+def test_bezier_points_are_those_of_the_b_spline():
+    spline = BSpline(np.arange(-3, 13), np.concatenate([POINTS, POINTS[:3]]), 3)
+    bezier = bezier_points(np.roll(POINTS, -1, axis=0))
+    for k, segment in enumerate(bezier):
+        np.testing.assert_allclose(segment[0], spline(k), atol=1e-12)
+        np.testing.assert_allclose(segment[-1], spline(k + 1 if k < 8 else 0), atol=1e-12)
+        np.testing.assert_allclose(3 * (segment[1] - segment[0]), spline(k, 1), atol=1e-12)
+
+
+def test_a_clamped_spline_runs_from_its_first_point_to_its_last():
+    bezier = bezier_points(POINTS, closed=False)
+    assert bezier.shape == (6, 4, 3)
+    np.testing.assert_allclose(bezier[[0, -1], [0, 3]], POINTS[[0, -1]], atol=1e-12)
+    np.testing.assert_allclose(bezier[0, 1], POINTS[1], atol=1e-12)
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_the_bezier_segments_are_the_spline(closed):
+    bezier = bezier_points(POINTS, closed)
+    u = np.linspace(0, 1, 9)[:-1]
+    weights = np.stack([(1 - u) ** 3, 3 * u * (1 - u) ** 2, 3 * u**2 * (1 - u), u**3])
+    t = (np.arange(len(bezier))[:, None] + u).ravel() / len(bezier)
+    drawn = np.einsum("bu,sbi->sui", weights, bezier).reshape(-1, 3)
+    np.testing.assert_allclose(_evaluated(POINTS, t, closed), drawn, atol=1e-12)
+
+
+def test_four_points_are_one_clamped_segment():
+    np.testing.assert_allclose(bezier_points(POINTS[:4], closed=False), POINTS[None, :4], atol=1e-12)

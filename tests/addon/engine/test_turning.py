@@ -1,11 +1,11 @@
-"""Rotations that lay curves flat."""
+"""Rotations that lay curves flat, and the planes of drawings."""
 
 import numpy as np
 import pytest
 from mobius_flow.addon.engine.size import barycenter
-from mobius_flow.addon.engine.turning import Turn, orthonormal, principal_axes
-from mobius_flow.core import Curve
-from shapes import regular_polygon
+from mobius_flow.addon.engine.turning import DrawingPlane, Turn, orthonormal, principal_axes
+from mobius_flow.core import Curve, CurveError
+from shapes import regular_polygon, torus_trefoil
 
 ELLIPSE = regular_polygon(80).vertices * np.array([3.0, 1.0, 1.0]) + np.linspace(0, 0.1, 80)[:, None] ** 2
 
@@ -61,3 +61,29 @@ def test_axes_made_orthonormal():
     np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(axes) == pytest.approx(1.0)
     assert axes[2] @ np.array([0.1, 0.0, 3.0]) == pytest.approx(np.hypot(0.1, 3.0))
+
+
+def test_level_drawings_keep_their_coordinates():
+    curve = regular_polygon(30)
+    curve = curve.with_vertices(curve.vertices + np.array([3, 4, 5]))
+    plane = DrawingPlane.of(curve)
+    assert plane.flattened(curve).vertices == pytest.approx(curve.vertices[:, :2])
+    assert plane.raised(np.array([[1.0, 2.0, 3.0]])) == pytest.approx(np.array([[1.0, 2.0, 8.0]]))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_there_and_back(seed):
+    q, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    curve = regular_polygon(30)
+    curve = curve.with_vertices(curve.vertices @ q + [1, 2, 3])
+    plane = DrawingPlane.of(curve)
+    flat = plane.flattened(curve).vertices
+    assert plane.raised(np.column_stack([flat, np.zeros(30)])) == pytest.approx(curve.vertices)
+    assert plane.axes @ plane.axes.T == pytest.approx(np.eye(3))
+    assert np.linalg.det(plane.axes) == pytest.approx(1)
+    assert plane.axes[2][abs(plane.axes[2]).argmax()] > 0
+
+
+def test_what_is_not_flat_is_refused():
+    with pytest.raises(CurveError, match="not flat"):
+        DrawingPlane.of(torus_trefoil(40))

@@ -8,7 +8,7 @@ bpy = pytest.importorskip("bpy")
 from blender_scenes import add_curve, add_trefoil, drawn, relax  # noqa: E402
 from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
 from mathutils import Vector  # noqa: E402
-from mobius_flow.addon.curves import neighbours  # noqa: E402
+from mobius_flow.addon.curves import surroundings  # noqa: E402
 from mobius_flow.addon.pictures import stage, staging  # noqa: E402
 from mobius_flow.core import CurveError  # noqa: E402
 from shapes import lattice_knot  # noqa: E402
@@ -186,4 +186,4 @@ def test_the_stage_is_no_neighbour_to_be_warned_of():
     obj, scene = baked(), bpy.context.scene
     staging.set_up(scene, [obj])
     bpy.context.view_layer.update()
-    assert neighbours.warning(bpy.context, [obj]) is None
+    assert surroundings.warning(bpy.context, [obj]) is None

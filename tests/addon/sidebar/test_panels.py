@@ -9,7 +9,7 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_trefoil  # noqa: E402
 from mobius_flow.addon import registration  # noqa: E402
-from mobius_flow.addon.curves.units import length  # noqa: E402
+from mobius_flow.addon.curves.exchange import length  # noqa: E402
 from mobius_flow.addon.sidebar import menus, panels, relax  # noqa: E402
 from mobius_flow.addon.sidebar.layout import wrapped  # noqa: E402
 

@@ -98,7 +98,7 @@ def one_alone(before: list[np.ndarray]) -> Steps:
         window().view_layer.objects.active = rings()[1]
         bpy.ops.ed.undo_push(message="One selected")
         assert bpy.ops.curve.mobius_flow_relax.poll()
-        named = addon("curves.neighbours").warning(bpy.context, [rings()[1]])
+        named = addon("curves.surroundings").warning(bpy.context, [rings()[1]])
     assert named == "'A' nearby is neither selected nor avoided, and may be crossed", named
     yield from picture("links-5-one-selected")
     yield from button("curve.mobius_flow_relax")

@@ -90,4 +90,4 @@ def pinned() -> int:
 
 def keyed() -> list[np.ndarray]:
     """The points at all keys."""
-    return list(addon("curves.rewriting").keyed_points(obj().data))
+    return list(addon("curves.baked_keys").keyed_points(obj().data))

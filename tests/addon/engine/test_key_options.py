@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 from families import family
+from mobius_flow.addon.engine.key_options import LAST_FRAME, Course, Pace, Timing
 from mobius_flow.addon.engine.motion import Motion
 from mobius_flow.addon.engine.placement import Link, Placement
-from mobius_flow.addon.engine.timing import LAST_FRAME, Course, Pace, Timing
 from mobius_flow.core import OptionError, RelaxOptions, relax
 from mobius_flow.core.collision import is_free
 from mobius_flow.core.knots import knot
