@@ -26,7 +26,7 @@ LINK = Curve.from_components([BENT.vertices, BENT.vertices[:, [0, 2, 1]] * [1.0,
 KINDS = {
     "plain": wanted(torus_trefoil(36)),
     "pinned": wanted(BENT, pins=(0, 9, 17), mesh="fixed"),
-    "around a rod": wanted(BENT, avoid=(rod(0.1, 0.05),)),
+    "around a rod": wanted(BENT, avoid=(rod(0.1, 0.05),), pins=(0,)),  # along the rod it would slide at no cost
     "in a box": wanted(BENT, avoid=(box(-1.4, 1.4),), pins=(0, 9, 17)),
     "arc": wanted(ARC),
     "link": wanted(LINK),
