@@ -24,7 +24,6 @@ def gauss_legendre(points: int) -> tuple[FloatArray, FloatArray]:
 class Rule:
     """A quadrature rule: points t_i in [0, 1] and as many weights ω_i, which add up to 1, or an OptionError says so."""
 
-    # points, weights: t_i in [0, 1] and ω_i, as many of one as of the other; the weights add up to 1
     points: tuple[float, ...]
     weights: tuple[float, ...]
 

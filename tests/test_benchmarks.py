@@ -36,7 +36,7 @@ def run(name, *arguments):
     return finished([sys.executable, str(BENCHMARKS / f"{name}.py"), *arguments])
 
 
-QUICK = {"collision", "hierarchy", "metric", "obstacles", "repulsion"}
+QUICK = {"collision", "metric", "obstacles"}
 NAMES = [pytest.param(each, marks=() if each in QUICK else pytest.mark.slow) for each in ARGUMENTS]
 
 

@@ -45,7 +45,7 @@ class HierarchicalMoebiusEnergy:
     without: EdgePairIndices | None = None  # near pairs of edges that are left out, because something stands for them
     order: int = number(4, most=MAX_ORDER)  # of the expansions
     theta: float = number(0.19, most=OUTDATED)  # separation parameter of blocks
-    leaf: int = number(16)  # edges up to which clusters are not halved; halving leaves 8 to 16, as much work near as far
+    leaf: int = number(16)  # edges up to which clusters are not halved; halving leaves 8 to 16
 
     name = "moebius"
     rule = MIDPOINT

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from families import family
 from mobius_flow.core import Curve, CurveError, Mesh, OptionError, RelaxOptions, Result, Status, minimize
 from mobius_flow.core.diagrams import linking_numbers, quick_invariants
 from mobius_flow.core.driver import Trajectory
@@ -39,7 +40,7 @@ def test_half_circles_become_straight(dimension: int) -> None:
     assert result.certified == (dimension < 4)
 
 
-@pytest.mark.parametrize("method", ["cg", "trust-region", "flow-h3-2", "implicit-h2", "penalty-lbfgs"])
+@pytest.mark.parametrize("method", family(["cg", "trust-region", "flow-h3-2", "implicit-h2", "penalty-lbfgs"], every=2))
 def test_methods(tmp_path: Path, method: str) -> None:
     walk = np.cumsum(np.random.default_rng(3).normal(size=(9, 3)), axis=0)
     result = relaxed(tmp_path, opened(Curve(walk), 0), method=method, vertices=50, max_iterations=300)

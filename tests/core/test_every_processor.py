@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from families import crossed
 from mobius_flow.core import Curve, Mesh, Obstacle, Result, minimize
 from scipy.spatial.transform import Rotation
 from shapes import torus_trefoil
@@ -25,7 +26,7 @@ LINK = Curve.from_components([BENT.vertices, BENT.vertices[:, [0, 2, 1]] * [1.0,
 KINDS = {
     "plain": wanted(torus_trefoil(36)),
     "pinned": wanted(BENT, pins=(0, 9, 17), mesh="fixed"),
-    "around a rod": wanted(BENT, avoid=(rod(0.1, 0.05),)),
+    "around a rod": wanted(BENT, avoid=(rod(0.1, 0.05),), pins=(0,)),  # along the rod it would slide at no cost
     "in a box": wanted(BENT, avoid=(box(-1.4, 1.4),), pins=(0, 9, 17)),
     "arc": wanted(ARC),
     "link": wanted(LINK),
@@ -45,10 +46,12 @@ def relaxed(kind: str, seed: int | None, method: str, tolerance: float) -> Resul
     return minimize(replace(task, curve=task.curve.with_vertices(moved), obstacles=walls), options)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize(("method", "tolerance"), [("lbfgs", 1e-4), ("trust-region", 1e-4), ("trust-region", 1e-7)])
-def test_rounding_decides_nothing(kind: str, method: str, tolerance: float) -> None:
+@pytest.mark.parametrize(
+    ("kind", "rule"), crossed(KINDS, [("lbfgs", 1e-4), ("trust-region", 1e-4), ("trust-region", 1e-7)])
+)
+def test_rounding_decides_nothing(kind: str, rule: tuple[str, float]) -> None:
     """Not how a run ends, and of its energy what the tolerance leaves open, its square at most, as rounding does."""
+    method, tolerance = rule
     usual = relaxed(kind, None, method, tolerance)
     assert usual.outcome.converged
     scale = max(usual.last.energy, 4.0)

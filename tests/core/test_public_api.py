@@ -252,3 +252,21 @@ def test_results_show_as_a_line():
     for value in (found, found.last, found.outcome, history, info(TREFOIL), knots.knot_type(TREFOIL), METHODS["lbfgs"]):
         assert len(repr(value)) < 250
         assert "\n" not in repr(value)
+
+
+def test_what_is_public_has_a_docstring() -> None:
+    exported = {name: getattr(core, name) for name in core.__all__}
+    members = {
+        f"{owner}.{name}": getattr(member, "__func__", member)
+        for owner, each in exported.items()
+        if inspect.isclass(each)
+        for name, member in vars(each).items()
+        if not name.startswith("_")
+    }
+    wanted = {
+        name: each
+        for name, each in (exported | members).items()
+        if inspect.isroutine(each) or inspect.isclass(each) or isinstance(each, property)
+    }
+    assert len(wanted) > 60
+    assert not [name for name, each in wanted.items() if not inspect.getdoc(each)]

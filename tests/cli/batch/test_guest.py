@@ -187,6 +187,7 @@ def test_a_batch_that_is_killed_between_its_tables_goes_on(place: Path) -> None:
     assert main([*words, *QUICK]) == 0
 
 
+@pytest.mark.slow
 def test_results_that_are_called_like_unfinished_ones_are_not_swept_away(place: Path) -> None:
     name = ".mobius-flow-x.partial"
     (place / "ring.txt").rename(place / f"{name}.txt")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from families import family
 from mobius_flow.core.knots.shapes import QUANTUM, Shape, shapes
 
 _FILE = Path(__file__).resolve().parents[3] / "tools" / "knot_shapes.py"
@@ -14,7 +15,7 @@ _SPEC.loader.exec_module(tool)
 
 
 @pytest.mark.kernels
-@pytest.mark.parametrize("name", ["3_1", "4_1", "L2a1"])
+@pytest.mark.parametrize("name", family(["3_1", "4_1", "L2a1"], every=2))
 def test_shapes_are_made_anew_as_they_are_stored(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """To a few quanta, as linear algebra may round otherwise than where they were made; no axis fits a circle best."""
     monkeypatch.setattr(tool, "KEPT", tmp_path)
