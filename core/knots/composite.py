@@ -5,7 +5,6 @@ two parts' energies less the circle's 4 and never gets there.  A relaxation make
 looked for: lifted to the paraboloid (x, |x|²), balls are half spaces, and a ball round an arc is a separating plane.
 """
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain, compress, product
@@ -14,8 +13,7 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse.csgraph import connected_components
 
-from ..arguments import checked_fields
-from ..checks import check_fields
+from ..arguments import checked_fields, number
 from ..curve import Curve
 from ..diagrams import linking_numbers, quick_invariants
 from ..diagrams.invariants import TRIVIAL
@@ -30,13 +28,12 @@ _MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above roun
 class BallSearch:
     """How thoroughly balls are searched for."""
 
-    arcs: int = 24  # places where arcs of a knot begin and end; in links these are shared by the components
-    shortest: float = 1 / 8  # arc, as a fraction of its component
-    samples: int = 120  # vertices of the curve that balls are fitted to
-    trials: int = 3000  # balls that are fitted at most, which takes a few seconds; other links are not searched
-
-    def __post_init__(self) -> None:
-        check_fields(self, arcs=(1, math.inf), shortest=(0, 0.5), samples=(5, math.inf), trials=(0, math.inf))
+    arcs: int = number(
+        24, above=1
+    )  # places where arcs of a knot begin and end; in links these are shared by the components
+    shortest: float = number(1 / 8, most=0.5)  # arc, as a fraction of its component
+    samples: int = number(120, above=5)  # vertices of the curve that balls are fitted to
+    trials: int = number(3000)  # balls that are fitted at most, which takes a few seconds; other links are not searched
 
     def places(self, components: int) -> int:
         """Places on each component."""

@@ -5,10 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from math import inf, prod
+from math import prod
 
-from ..arguments import checked, checked_fields
-from ..checks import check_fields
+from ..arguments import checked, checked_fields, number
 from ..curve import Curve
 from ..diagrams import (
     Diagram,
@@ -35,13 +34,12 @@ SIGNATURE, DOUBLED, LINKING = "the signature", "the Jones polynomial of the doub
 class Effort:
     """How much is done to identify a type, in counts, so that results do not depend on a clock."""
 
-    vertices: int = 20_000  # of the largest curve whose crossings are looked for, which takes seconds
-    views: int = 12  # directions that the curve is looked at from: one of many crossings simplifies better in some
-    doubled: int = 14  # crossings of the largest knots that are compared by the polynomials of their doubles
-    names: int = 16  # in a list of possible ones
-
-    def __post_init__(self) -> None:
-        check_fields(self, **dict.fromkeys(("vertices", "views", "doubled", "names"), (0.0, inf)))
+    vertices: int = number(20_000)  # of the largest curve whose crossings are looked for, which takes seconds
+    views: int = number(
+        12
+    )  # directions that the curve is looked at from: one of many crossings simplifies better in some
+    doubled: int = number(14)  # crossings of the largest knots that are compared by the polynomials of their doubles
+    names: int = number(16)  # in a list of possible ones
 
 
 DEFAULT_EFFORT = Effort()
