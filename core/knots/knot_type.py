@@ -35,10 +35,8 @@ class Effort:
     """How much is done to identify a type, in counts, so that results do not depend on a clock."""
 
     vertices: int = number(20_000)  # of the largest curve whose crossings are looked for, which takes seconds
-    views: int = number(
-        12
-    )  # directions that the curve is looked at from: one of many crossings simplifies better in some
-    doubled: int = number(14)  # crossings of the largest knots that are compared by the polynomials of their doubles
+    views: int = number(12)  # directions to look from: a curve of many crossings simplifies better in some
+    doubled: int = number(14)  # crossings of the largest knots compared by the polynomials of their doubles
     names: int = number(16)  # in a list of possible ones
 
 
