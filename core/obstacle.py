@@ -13,7 +13,7 @@ from .messages import OBSTACLE, Message
 from .types import BoolArray, FloatArray, IntArray, frozen, real
 
 NAMELESS = "obstacle"
-MAX_COORDINATE = 1e40  # as for curves: powers of it are still numbers
+MAX_COORDINATE = 1e40  # and the inverse of the smallest size of a curve: even seventh powers of both are still numbers
 
 
 @dataclass(frozen=True, eq=False)

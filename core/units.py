@@ -7,13 +7,11 @@ import numpy as np
 from .curve import Curve, at_vertices
 from .errors import CurveError
 from .messages import VERTEX, Message
-from .obstacle import Obstacle
+from .obstacle import MAX_COORDINATE, Obstacle
 from .types import FloatArray, frozen
 
-MAX_COORDINATE = 1e40  # coordinate, and the inverse of the smallest size: even seventh powers of both are still numbers
-MAX_REACH = (
-    1e12  # of obstacles, in the program's units: beyond, their repulsion is lost in the rounding of their corners
-)
+# of obstacles, in the program's units: beyond, their repulsion is lost in the rounding of their corners
+MAX_REACH = 1e12
 
 
 def check_units(curve: Curve) -> None:

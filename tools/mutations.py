@@ -281,7 +281,7 @@ MUTANTS = (
         "a verifier that forgets obstacles where the mesh changes",
         "core/verify/check.py",
         "progress.obstacles.doubtful(*way, heads, clearance)",
-        "progress.obstacles.doubtful(*way, heads)",
+        "() if clearance else progress.obstacles.doubtful(*way, heads, clearance)",
         f"{VERIFY}/test_obstacles.py::test_rounding_of_inserted_vertices_is_checked_for_obstacles",
     ),
     Mutant(

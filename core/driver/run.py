@@ -16,7 +16,7 @@ from .outcome import Outcome, converged, degenerate, out_of_iterations
 from .rises import Rises
 from .trajectory import Iterate
 
-LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| of a converged curve: a hundred times less than any figure shows
+LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
 
 
 class Start:

@@ -14,9 +14,8 @@ from ..run import Change, Intervention
 
 MINIMUM = "a minimum"
 ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
-# Sizes against J_C, measured rather than chosen: eigenvalues below ZERO count as 0, as those of rotations and sliding,
-ZERO = 1e-5
-MOEBIUS = 20.0  # and those of Möbius maps on a mesh, in units of (h/L)², h the longest edge: at most 11 at knots.
+ZERO = 1e-5  # eigenvalues against J_C below this count as 0: rotations and sliding are flat directions
+MOEBIUS = 20.0  # and so do Möbius maps on a mesh: in units of (h/L)², h the longest edge, they have 11 at most at knots
 RESOLVED = 1e-5  # residual at which Ritz values count as eigenvalues: their errors are of the order of its square
 
 
