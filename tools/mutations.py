@@ -644,8 +644,8 @@ MUTANTS = (
     Mutant(
         "knots of eleven crossings by names of ten",
         "core/knots/knot_type.py",
-        "doubled: int = 14",
-        "doubled: int = 10",
+        "doubled: int = number(14",
+        "doubled: int = number(10",
         f"{KNOT_TYPE}::test_a_knot_beyond_the_table_is_not_called_by_the_name_of_one_with_its_polynomials",
     ),
     Mutant(
