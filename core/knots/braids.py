@@ -11,7 +11,7 @@ from ..errors import CurveError
 
 Word = tuple[int, ...]
 
-MAX_STRANDS = 500
+MAX_STRANDS = 500  # of braids of any use
 MAX_LETTERS = 20_000
 
 

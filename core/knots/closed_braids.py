@@ -21,7 +21,7 @@ from .inscribed import MAX_VERTICES, check_count, shares, too_few
 _COLUMN = 2.2  # length of a crossing along the innermost strand, in units of the strands' distance
 _EDGE = 0.7  # default edge length in units of the gap; tilted strands are a little nearer than the gap
 _PAGES_PER_EDGE = 8  # half planes in which each edge is compared with the curve
-_MAX_TURNS = 2000  # of torus knots; more would ask for more than MAX_VERTICES
+_MAX_TURNS = 2000  # of torus knots: beyond all use
 _MAX_RADIUS = 1e100  # whose square is still a double
 
 

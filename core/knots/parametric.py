@@ -13,7 +13,7 @@ from ..errors import CurveError
 from ..types import FloatArray
 from .inscribed import inscribed, strand_gap
 
-MAX_FREQUENCY = 40
+MAX_FREQUENCY = 40  # beyond that strands are too near to each other for any use
 _SAMPLES = 160  # for each period of the fastest cosine: enough to represent the smooth curve
 _REACH = 2.1  # of the overhand knot's parameter: beyond it the curve is all but straight
 _FLATNESS = 0.1  # of its third coordinate, which grows with the fifth power

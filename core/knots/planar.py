@@ -22,7 +22,7 @@ from ..types import FloatArray
 from .inscribed import MAX_VERTICES
 
 _ROUNDS = 4  # in which weights grow with the square roots of lengths; with many more some lines collapse
-_LIFT = 0.5  # of the shortest line from a crossing: the height of its strands; at 1 those of neighbours might meet
+_LIFT = 0.5  # of the shortest line from a crossing: the height of its strands above and below the plane
 _CIRCLE = 12  # vertices of a component without crossings
 _GAP = 0.5  # between parts that no crossing joins, all of radius 1
 
