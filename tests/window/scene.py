@@ -61,7 +61,7 @@ def run() -> Any:
 def state() -> str:
     """How the latest run is, or 'none'."""
     latest = addon("live.registry").latest()
-    return latest.state.value if latest else "none"
+    return latest.state.name.lower() if latest else "none"
 
 
 def iterate() -> int:
