@@ -28,10 +28,8 @@ class BakedKeys:
 
     Raises MobiusFlowError if they have not equally many keys, so that they were not baked together.
 
-    ``objects``: baked curve objects, their transforms evaluated.
-
-    ``mesh``: connectivity of all their splines as one link; ``link``: where its vertices are stored; ``frames``: the
-    vertices at each key as stored, (n, 3).
+    The objects' transforms are evaluated. ``mesh``: connectivity of all their splines as one link; ``link``: where its
+    vertices are stored; ``frames``: the vertices at each key as stored, (n, 3).
     """
 
     def __init__(self, objects: Sequence["bpy.types.Object"]) -> None:

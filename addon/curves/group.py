@@ -27,14 +27,11 @@ if TYPE_CHECKING:
 class Group:
     """Curve objects, the link that their splines are, and what is written to them.
 
-    Raises CurveError if the splines cannot be read; the message says why.
-
-    ``objects``: curve objects that `checks.refusal` has nothing against, their transforms evaluated. They show
-    stand-ins until all is written, or until `discard`; ``continues``: whether baked curves are relaxed on from the ends
-    of their animations, and not from how they were before.
-
-    ``curve``: all splines as polygons in world space, open where they are not cyclic; ``link``: where their vertices
-    are stored.
+    ``objects`` are curve objects that `checks.refusal` has nothing against, their transforms evaluated. They show
+    stand-ins until all is written, or until `discard`. Where the run ``continues``, baked curves are relaxed on from
+    the ends of their animations, and not from how they were before. ``curve`` has all splines as polygons in world
+    space, open where they are not cyclic, ``link`` where their vertices are stored. Raises CurveError if the splines
+    cannot be read.
     """
 
     def __init__(self, objects: Sequence["bpy.types.Object"], continues: bool = False) -> None:
@@ -66,7 +63,7 @@ class Group:
         """One of the objects, by its number among those that there were; None if it is gone."""
         return self._members[number].object
 
-    def told(self, message: str) -> str:
+    def reworded(self, message: str) -> str:
         """What the core says of the link and of what it avoids, with the splines named by their objects."""
         return in_blenders_words(message, spline_names(self.names, self.link.counts))
 

@@ -26,10 +26,9 @@ def writing(
 
     The curve itself keeps the last key, so that removing the keys leaves the relaxed curve.
 
-    ``obj``: A curve object with neither keys nor animation, or with those of an earlier call; the first of the new keys
-    is the last of those then; ``keys``: what to write; ``frames``: scene frame of each key, ascending; (keys,);
-    ``output``: as what to write them; ``radii``: relative radius of all points at each key, (keys,); None keeps what
-    the points have.
+    ``obj`` has neither keys nor animation, or those of an earlier call; the first of the new keys is the last of those
+    then. ``frames``: scene frame of each key, ascending, (keys,). ``radii``: relative radius of all points at each key,
+    (keys,); None keeps those that the points have.
     """
     yield from _WRITERS[output](obj, keys, frames, radii)
 
@@ -82,7 +81,7 @@ def _blocks(data: "bpy.types.Curve") -> "dict[str, bpy.types.ID]":
 
 
 def output_of(data: "bpy.types.Curve") -> Output | None:
-    """As what the keys are written that curve data has already, or None if it has none."""
+    """How the keys that curve data already has are written, or None if it has none."""
     if data.shape_keys:
         return Output.SHAPE_KEYS
     return Output.FCURVES if data.animation_data and data.animation_data.action else None

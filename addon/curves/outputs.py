@@ -65,8 +65,8 @@ def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, 
 
     Ends of open splines are closed where the curve fills its caps.
 
-    ``obj``: the curve object; ``recorded``: its shapes; ``radii``: radii of the tube in its coordinates, (keys, n);
-    ``sides``: number of vertices of a ring; those of curve vertex i are i · sides and the ones that follow.
+    ``radii``: of the tube in the object's coordinates, (keys, n). Rings have ``sides`` vertices; those of curve vertex
+    i are i · sides and the ones that follow.
     """
     import bpy
 
@@ -148,8 +148,8 @@ def smooth_objects(
 ) -> tuple[list["bpy.types.Object"], SmoothFit]:
     """Make curve objects of smooth splines where others are, with their bevels and materials.
 
-    ``objects``: the other objects; ``link``: their splines as polygons in the world; ``points``: number of points of
-    each spline, see `fitted`; ``kind``: 'BEZIER' or 'NURBS': the same curve, with other points to edit.
+    ``link``: their splines as polygons in the world; ``points``: number of points of each spline, see `fitted`;
+    ``kind``: 'BEZIER' or 'NURBS', the same curve with other points to edit.
 
     Returns the objects, and the splines as they are stored in them, in the world.
     """

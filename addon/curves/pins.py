@@ -80,7 +80,7 @@ def places(data: "bpy.types.Curve") -> Frame:
 def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None:
     """Raise a CurveError if points of a spline lie on no polygon that can be drawn for it.
 
-    ``obj``: the curve object; ``number``: index of the spline; ``chosen``: the points, (points,).
+    ``number``: index of the spline; ``chosen``: the points, (points,).
     """
     spline = obj.data.splines[number]
     if spline.type != "POLY" and (chosen & ~ends(spline)).any():
@@ -96,7 +96,7 @@ def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[
 
     Raises CurveError if a pinned point is between the ends of a smooth spline.
 
-    ``objects``: the curve objects; ``mesh``: their splines as polygons, a component each.
+    ``mesh``: their splines as polygons, a component each.
     """
     found: list[IntArray] = []
     for obj in objects:

@@ -7,13 +7,10 @@ if TYPE_CHECKING:
 
 
 class Reference:
-    """An object or curve data, whatever it is called now; after undo, Python's own references dangle.
-
-    ``name``: its name when it was last looked up.
-    """
+    """An object or curve data, whatever it is called now; after undo, Python's own references dangle."""
 
     def __init__(self, block: "bpy.types.ID") -> None:
-        self.name = block.name
+        self.name = block.name  # when it was last looked up
         self._uid, self._blocks = block.session_uid, "objects" if block.id_type == "OBJECT" else "curves"
 
     def get(self) -> Any:

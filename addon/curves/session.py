@@ -63,15 +63,15 @@ class Report:
 
     @property
     def sentence(self) -> Message:
-        told: dict[str, Any] = {"names": named(self.names), "outcome": self.outcome.message, "proof": self._proof}
+        facts: dict[str, Any] = {"names": named(self.names), "outcome": self.outcome.message, "proof": self._proof}
         if self.keys == 1:
-            return Message("{names} {outcome}; {proof}", **told)
-        told |= {"count": self.keys - self.continues, "frame": self.last_frame}
-        if self.continues and told["count"] == 1:
-            return Message("{names} {outcome}; 1 new key up to frame {frame:g}, {proof}", **told)
+            return Message("{names} {outcome}; {proof}", **facts)
+        facts |= {"count": self.keys - self.continues, "frame": self.last_frame}
+        if self.continues and facts["count"] == 1:
+            return Message("{names} {outcome}; 1 new key up to frame {frame:g}, {proof}", **facts)
         if self.continues:
-            return Message("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **told)
-        return Message("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **told)
+            return Message("{names} {outcome}; {count} new keys up to frame {frame:g}, {proof}", **facts)
+        return Message("{names} {outcome}; {count} keys up to frame {frame:g}, {proof}", **facts)
 
     @property
     def _proof(self) -> Message:
@@ -170,7 +170,7 @@ class Session:
             for iterate in run:
                 self.take(iterate)
         except CurveError as error:
-            raise self.told(error) from error
+            raise self.reworded(error) from error
         assert run.outcome is not None, "the loop is through"
         self.end(run.outcome)
         return self.prepare(partial(is_free, obstacles=self._avoided))
@@ -183,14 +183,14 @@ class Session:
         """Say what somebody did to one of the objects, or to what they avoid, that makes going on impossible."""
         return self.group.lost(alone=not self.task.obstacles) or self.surroundings.lost()
 
-    def told(self, error: CurveError) -> CurveError:
+    def reworded(self, error: CurveError) -> CurveError:
         """The core's error in Blender's words; those about options use the names that options have."""
         if isinstance(error, OptionError):
             return error
-        return CurveError(Sentence("{reason}", reason=self.group.told(str(error))), error.place)
+        return CurveError(Sentence("{reason}", reason=self.group.reworded(str(error))), error.place)
 
     def end(self, outcome: Outcome) -> None:
-        self.outcome = replace(outcome, clauses=tuple(map(self.group.told, outcome.clauses)))
+        self.outcome = replace(outcome, clauses=tuple(map(self.group.reworded, outcome.clauses)))
 
     def take(self, iterate: Iterate) -> None:
         self._motion.add(self._sized(iterate))

@@ -16,8 +16,8 @@ def along(values: npt.NDArray[np.float32], size: int, closed: bool) -> FloatArra
 def on_refined(values: FloatArray, lengths: FloatArray, refined: FloatArray, closed: bool) -> FloatArray:
     """Values at the vertices of a refined polygon, linear along the edges of the original.
 
-    ``values``: values at the original vertices, (n,); ``lengths``, ``refined``: edge lengths of both polygons, which
-    run through the same points from the same vertex; ``closed``: whether they are closed.
+    ``values``: at the original vertices, (n,); ``lengths``, ``refined``: edge lengths of both polygons, which run
+    through the same points from the same vertex.
     """
     old, new = (np.concatenate([[0.0], np.cumsum(each)]) / each.sum() for each in (lengths, refined))
     # a vertex met a rounding error too early gets its neighbour's value with a weight of 1e-15: none in 32 bits

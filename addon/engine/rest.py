@@ -28,7 +28,7 @@ class Rest:
         """
         task = Task.of(curve)
         if len(task.curve) > MAX_POINTS:
-            sentence = "The curves have {count} points; minimum or saddle is told up to {most}"
+            sentence = "The curves have {count} points; minimum or saddle is decided up to {most}"
             raise CurveError(Message(sentence, count=len(task.curve), most=MAX_POINTS))
         options = replace(options.at_rest(task.curve), max_iterations=_ITERATIONS, stability=True)
         result = minimize(task, options)

@@ -26,8 +26,8 @@ def rings(points: FloatArray, radii: FloatArray, mesh: Mesh, sides: int) -> Floa
     Rings lie in the planes that halve the angle between two edges, and are stretched where these meet at a corner so
     that the tube is as thick along the edges as it should be.
 
-    ``points``: vertices of the polygons at every key, (keys, n, 3); ``radii``: radius of the tube at each of them,
-    (keys, n); ``mesh``: their connectivity; ``sides``: number of vertices of a ring.
+    ``points``: vertices of the polygons at every key, (keys, n, 3); ``radii``: of the tube at each of them, (keys, n);
+    ``sides``: number of vertices of a ring.
     """
     each = zip(mesh.slices, mesh.closed, strict=True)
     pieces = [_rings(points[:, s], radii[:, s], sides, closed) for s, closed in each]
@@ -54,7 +54,7 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
     Straight lines between two rings make the tube thinner. No gap is halved more than five times: what turns through
     itself is never smooth.
 
-    ``points``: vertices of polygons at every key, (keys, n, 3); ``mesh``: their connectivity.
+    ``points``: vertices of polygons at every key, (keys, n, 3).
     """
     places = np.arange(len(points), dtype=np.float64)
     for _ in range(_HALVINGS):
@@ -107,7 +107,7 @@ def edges_around(points: FloatArray, closed: bool) -> tuple[FloatArray, FloatArr
 def normals(points: FloatArray, closed: bool = True) -> FloatArray:
     """Unit normals at the vertices of one polygon in motion, the same turned as little as possible later.
 
-    ``points``: vertices at every key, (keys, n, 3); ``closed``: whether it is closed.
+    ``points``: vertices at every key, (keys, n, 3).
 
     Returns array (keys, n, 3).
     """

@@ -217,7 +217,7 @@ class Run:
         try:
             return self._worker.poll()
         except CurveError as error:
-            raise self._session.told(error) from error
+            raise self._session.reworded(error) from error
         except WorkerError as error:
             if self.last is None:
                 raise

@@ -34,7 +34,7 @@ def test_a_curve_that_was_stopped_on_its_way(monkeypatch):
 
 
 def test_too_many_points():
-    with pytest.raises(CurveError, match=r"have 1501 points; minimum or saddle is told up to 1500$"):
+    with pytest.raises(CurveError, match=r"have 1501 points; minimum or saddle is decided up to 1500$"):
         Rest.of(regular_polygon(1501), OPTIONS)
 
 
