@@ -8,6 +8,7 @@ bpy = pytest.importorskip("bpy")
 
 from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings  # noqa: E402
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored  # noqa: E402
+from families import crossed  # noqa: E402
 from mathutils import Vector  # noqa: E402
 from mobius_flow.addon.curves import keyframes  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
@@ -28,9 +29,7 @@ def link_of_kind(kind):
     return obj
 
 
-@pytest.mark.parametrize("reopened", [False, True])
-@pytest.mark.parametrize("keyframes", KEYED)
-@pytest.mark.parametrize("kind", ["POLY", "BEZIER", "NURBS"])
+@pytest.mark.parametrize(("kind", "keyframes", "reopened"), crossed(["POLY", "BEZIER", "NURBS"], KEYED, [False, True]))
 def test_clear_gives_the_curve_back(tmp_path, kind, keyframes, reopened):
     obj = link_of_kind(kind)
     before, names = contents(), blocks()

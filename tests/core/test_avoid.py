@@ -74,7 +74,9 @@ def test_without_the_wall_it_goes_there():
     assert result.report()["obstacles"] == 0
 
 
-@pytest.mark.parametrize("more", [{"mesh": "adaptive"}, {"mesh": "finer"}, {"hops": 1}, {"escape_saddles": True}])
+@pytest.mark.parametrize(
+    "more", family([{"mesh": "adaptive"}, {"mesh": "finer"}, {"hops": 1}, {"escape_saddles": True}], every=2)
+)
 def test_changes_of_mesh_and_shape_stay_clear(more, tmp_path):
     curve = scramble(knot("3_1", vertices=40), seed=3, moves=150)
     low, high = float(curve.vertices.min()), float(curve.vertices.max())
@@ -83,7 +85,7 @@ def test_changes_of_mesh_and_shape_stay_clear(more, tmp_path):
 
 
 @pytest.mark.kernels
-@pytest.mark.parametrize("half", [1.05, 1.3])
+@pytest.mark.parametrize("half", family([1.05, 1.3]))
 def test_little_is_left_to_gain_where_a_run_has_converged(half):
     """Though the energy of the walls, most of the objective, makes the bound on the gradient wider.
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from changed_interventions import change
+from families import family
 from hard_curves import hard_unknot
 from mobius_flow.core import Curve, Iterate, Outcome, RelaxOptions, Status, Trajectory, minimize
 from mobius_flow.core.curve import Mesh
@@ -86,7 +87,7 @@ def test_a_run_that_is_cut_short_has_all_vertices(least: int, limit: int, monkey
 
 
 @pytest.mark.usefixtures("everywhere")
-@pytest.mark.parametrize("limit", [CoarseStart.min_iterations, 34])
+@pytest.mark.parametrize("limit", family([CoarseStart.min_iterations, 34]))
 def test_a_run_that_is_cut_short_ends_on_the_constraints(limit: int) -> None:
     """Between strands the smooth curve with all vertices is a hundredth off."""
     result = minimize(hard_unknot(20, seed=3), RelaxOptions(vertices=600, max_iterations=limit))
@@ -109,7 +110,7 @@ def test_few_iterations_are_all_for_untangling() -> None:
 
 
 @pytest.mark.usefixtures("everywhere")
-@pytest.mark.parametrize("corners", [3, 4])
+@pytest.mark.parametrize("corners", family([3, 4]))
 def test_no_component_has_more_vertices_at_first_than_in_the_end(corners: int) -> None:
     """A polygon around a ring is coarser than its gap; it may keep that, but what is added could not be left out."""
     square = regular_polygon(corners).vertices[:, [0, 2, 1]] + np.array([1.0, 0.0, 0.0])

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from changed_interventions import change
+from families import family
 from mobius_flow.core import Curve, Objective, RelaxOptions, Result, Status, Trajectory, minimize
 from mobius_flow.core.curve.refine import Resolution, subdivide, subdivision, target_spacing
 from mobius_flow.core.driver.interventions import FinerMesh
@@ -59,7 +60,9 @@ def test_curves_without_near_strands_keep_their_vertices(curve):
 
 
 @pytest.mark.parametrize(
-    "options", [{"vertices": 60}, {"edge_lengths": "equal"}, {"mesh": "fixed"}], ids=["vertices", "lengths", "mesh"]
+    "options",
+    family([{"vertices": 60}, {"edge_lengths": "equal"}, {"mesh": "fixed"}], every=2),
+    ids=["vertices", "lengths", "mesh"],
 )
 def test_what_is_asked_for_is_kept_and_said_to_be_coarse(options):
     start = lattice_knot("5_1")

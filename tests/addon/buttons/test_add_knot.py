@@ -8,7 +8,7 @@ bpy = pytest.importorskip("bpy")
 from blender_scenes import contents, sentence, stored  # noqa: E402
 from mobius_flow.core import Curve  # noqa: E402
 from mobius_flow.core.collision import check_embedded  # noqa: E402
-from mobius_flow.core.curve import strands  # noqa: E402
+from mobius_flow.core.curve import distances  # noqa: E402
 from mobius_flow.core.knots import knot  # noqa: E402
 
 
@@ -102,9 +102,9 @@ def test_not_in_edit_mode():
 def test_strands_wound_tightly_do_not_take_all_pairs_of_points(monkeypatch, p, q):
     """All pairs within the thickest tube of T(60, 61) would be a hundred million."""
     looked_at = []
-    counted = strands.arc_distance_of_vertices
+    counted = distances.arc_distance_of_vertices
     monkeypatch.setattr(
-        strands, "arc_distance_of_vertices", lambda c, i, j: looked_at.append(len(i)) or counted(c, i, j)
+        distances, "arc_distance_of_vertices", lambda c, i, j: looked_at.append(len(i)) or counted(c, i, j)
     )
     bpy.ops.curve.mobius_flow_add_knot(kind="TORUS", p=p, q=q)
     obj = bpy.context.object

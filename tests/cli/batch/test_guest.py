@@ -259,8 +259,8 @@ def test_it_listens_to_nobody_and_leaves_nothing_in_the_temporary_directory(tmp_
             assert listening(process) == set()
             time.sleep(0.1)
         process.terminate()
-        process.communicate()
-    assert process.returncode == 130
+        _, said = process.communicate()
+    assert process.returncode == 130, said
     assert os.listdir(temporary) == []
 
 

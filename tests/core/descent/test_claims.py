@@ -72,10 +72,10 @@ def test_trust_region_ends_superlinearly(minimum):
         ("lbfgs", 1e-5, 1e-6),
         ("cg", 1e-4, 1e-4),
         ("flow-moebius", 1e-3, 1e-3),
-        ("flow-h3-2", 1e-3, 1e-3),
-        ("implicit-moebius", 1e-3, 1e-3),
+        pytest.param("flow-h3-2", 1e-3, 1e-3, marks=pytest.mark.slow),
+        pytest.param("implicit-moebius", 1e-3, 1e-3, marks=pytest.mark.slow),
         ("penalty-lbfgs", 1e-4, 1e-3),
-        ("penalty-cg", 1e-2, 1e-3),
+        pytest.param("penalty-cg", 1e-2, 1e-3, marks=pytest.mark.slow),
         ("penalty-nesterov", 1e-2, 1e-3),
     ],
 )

@@ -110,7 +110,7 @@ def test_what_else_was_to_say_is_said_of_composites_too():
     assert result.outcome.negative_eigenvalues is not None
 
 
-@pytest.mark.parametrize(("name", "vertices"), [("granny", 100), ("L2a1#L2a1", 80)])
+@pytest.mark.parametrize(("name", "vertices"), [("granny", 100), pytest.param("L2a1#L2a1", 80, marks=pytest.mark.slow)])
 def test_relaxing_a_composite_is_no_convergence(name, vertices):
     result = minimize(knot(name), RelaxOptions(vertices=vertices, tolerance=3e-3))
     assert result.status is Status.STALLED

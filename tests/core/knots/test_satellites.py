@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from families import crossed
 from knot_diagrams import pairwise_linking
 from knot_type import UNKNOT, knot_invariants
 from mobius_flow.core import Curve, CurveError
@@ -29,9 +30,9 @@ def test_cables_of_a_trefoil(q: int) -> None:
     assert found.alexander == times((1, 0, -1, 0, 1), torus)
 
 
-@pytest.mark.parametrize("name", ["0_1", "3_1", "4_1", "7_4"])
-@pytest.mark.parametrize(("p", "q"), [(2, 0), (2, 4), (3, -3)])
-def test_links_of_parallel_strands(name: str, p: int, q: int) -> None:
+@pytest.mark.parametrize(("name", "turns"), crossed(["0_1", "3_1", "4_1", "7_4"], [(2, 0), (2, 4), (3, -3)]))
+def test_links_of_parallel_strands(name: str, turns: tuple[int, int]) -> None:
+    p, q = turns
     link = cable(smooth_knot(name), p, q)
     parts = np.gcd(p, q)
     assert set(pairwise_linking(link.components).values()) == {p * q // parts**2}
