@@ -15,7 +15,7 @@ def case() -> Steps:
     yield from relax()
     ended = run()
     bpy.ops.preferences.addon_disable(module=MODULE)
-    assert ended.state.value == "cancelled"
+    assert ended.state.name == "CANCELLED"
     yield
     assert not workers()
     assert not listening()

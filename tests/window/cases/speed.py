@@ -14,7 +14,7 @@ def case() -> Steps:
     yield from reaches(1)
     shown: set[int] = set()
     latest = addon("live.registry").latest()
-    while latest.state.value == "running":
+    while latest.state.name == "RUNNING":
         shown.add(latest.shown.index)
         yield
     seconds = time.perf_counter() - started
