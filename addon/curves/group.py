@@ -154,8 +154,12 @@ class Group:
         """Show the originals for good, unless somebody else changed something; return whether all is as it was."""
         with _outside_edit_mode(self.objects), ExitStack() as everything:
             restored: list[bool] = []
+
+            def discard(member: Member) -> None:
+                restored.append(member.discard())
+
             for member in self._members:  # each of them, even if one fails
-                everything.callback(lambda member=member: restored.append(member.discard()))
+                everything.callback(discard, member)
         return all(restored)
 
 

@@ -175,7 +175,7 @@ class Member:
     def hide(self) -> None:
         """Show the original for a moment, because the file is being saved or something is undone."""
         if not self.keyed and not self.lost():
-            self.object.data = self._original.get()
+            self._object.get().data = self._original.get()
 
     def resume(self) -> None:
         """Show the stand-in again after `hide`; undo may have removed it, or brought another one back."""
@@ -183,7 +183,7 @@ class Member:
         for other in _stand_ins():
             if other != data and other[_MARK]["original"] == original:
                 _show_original(other)
-        if self.object is None or self.object.data not in (original, data):
+        if (obj := self.object) is None or obj.data not in (original, data):
             return
         if data is None:
             self.begin()
