@@ -170,14 +170,14 @@ class MobiusFlowSettings(bpy.types.PropertyGroup):
     __annotations__ = settings(set())
 
 
-def relax_options(values: dict[str, Any]) -> RelaxOptions:
+def relax_options(values: Mapping[str, Any]) -> RelaxOptions:
     """The core's options from the values of the settings; raises OptionError."""
     wanted = {option.name: values[option.name] for option in shown()}
     automatic = [option.name for option in shown() if option.default is None and wanted[option.name] in (0, _AUTOMATIC)]
     return RelaxOptions(**wanted | dict.fromkeys(automatic)).keyed
 
 
-def key_options(values: dict[str, Any]) -> KeyOptions:
+def key_options(values: Mapping[str, Any]) -> KeyOptions:
     """The animation's options from the values of the settings; raises OptionError."""
     timing = Timing(
         pace=Pace[values["timing"]],

@@ -159,8 +159,12 @@ def _jobs(
         trajectory.save(path)
 
     extras = (options.report, partial(_write_report, result, origin)), (options.trajectory, save_trajectory)
-    yield from (_Job(path, write, slow=not is_file(path)) for path, write in extras if path is not None)
-    job = _Job(options.output, lambda path: output.write(path, result, iterates, _shown(options)))
+    yield from (_Job(path, save, slow=not is_file(path)) for path, save in extras if path is not None)
+
+    def write(path: str) -> None:
+        output.write(path, result, iterates, _shown(options))
+
+    job = _Job(options.output, write)
     if output.is_scene:  # a film takes a minute
         plain = partial(write_curve, curve=result.curve)
         yield job._replace(rescue=plain, name=f"{options.output}.obj", slow=True)

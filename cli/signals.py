@@ -14,7 +14,8 @@ from collections.abc import Generator, Iterator
 from types import FrameType
 from typing import Any, TypeVar, cast
 
-_Item, _Result = TypeVar("_Item"), TypeVar("_Result")
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
 
 INTERRUPTED = 130
 _NUMBERS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]

@@ -4,8 +4,7 @@ from itertools import groupby
 from typing import TextIO
 
 from ..curve import Curve
-from .polygons import Polygon
-from .source import Source
+from .source import Polygon, Source
 
 
 def read(source: Source) -> list[Polygon]:
