@@ -191,7 +191,8 @@ def test_a_run_that_goes_on_after_its_time_limit_is_killed(
     assert told == [("failed", "stopped after 0.04 s, long after its time limit")]
     monkeypatch.undo()
     assert pick(batch(ring, *TINY), "status") != [("failed",)]  # in a new process
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"ring", "results.csv", "results.parquet"}
+    left = {path.name for path in (tmp_path / "out").iterdir() if path.suffix != ".partial"}  # killed while it wrote
+    assert left == {"ring", "results.csv", "results.parquet"}
 
 
 @pytest.mark.parametrize("deaths", [2, 3])
