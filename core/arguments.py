@@ -36,10 +36,7 @@ _WORDS: dict[Any, str] = {
 
 
 def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
-    """Let a function raise a MobiusFlowError that names the argument where one is not of its annotated type.
-
-    Contents of arrays, and protocols that are not for run time, are not checked.
-    """
+    """Raise a MobiusFlowError that names an argument not of its annotated type; contents of arrays are not checked."""
     parameters = signature(function)
 
     @wraps(function)

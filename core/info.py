@@ -123,10 +123,7 @@ class Info:
 @BLAS.bounded()
 @checked
 def info(curve: Curve) -> Info:
-    """Measure a curve and identify its type.
-
-    A CurveError if the curve touches itself, or has strands too near, or units too large or small, to compute with.
-    """
+    """Measure a curve and identify its type; a CurveError if it touches itself or cannot be computed with."""
     check_units(curve)
     check_embedded(curve)
     check_gap(curve)

@@ -41,10 +41,7 @@ class Level:
         return cls(upper, np.roll(upper, upper.shape[1] // 2, axis=1), leaves)
 
     def gaps(self, a: IntArray, other: "Level", b: IntArray) -> FloatArray:
-        """Signed gaps to boxes ``b`` of another level from boxes ``a``, which move, along ±each axis at both times.
-
-        The result has shape (2, 2m, pairs).
-        """
+        """Signed gaps from moving boxes ``a`` to boxes ``b`` of another level, ± each axis; shape (2, 2m, pairs)."""
         gaps = self.upper.take(a, axis=2)
         gaps += other.flipped.take(b, axis=2)
         return np.asarray(np.negative(gaps, out=gaps))
@@ -79,10 +76,7 @@ class BoxTree:
         return cls(order, corners, tuple(reversed(levels)))
 
     def pairs(self, near: Test) -> Iterator[tuple[IntArray, IntArray]]:
-        """Yield all pairs of edges without a common vertex whose boxes, and all boxes above them, pass a test.
-
-        See `pairs_with`; every pair is met at most once.
-        """
+        """`pairs_with` itself: each pair of edges once, without those that share a vertex."""
         for a, b in self.pairs_with(self, near):
             common = [p[a] == q[b] for p in self.corners for q in self.corners]
             apart = ~np.logical_or.reduce(common)

@@ -94,10 +94,7 @@ def bending_radii(curve: Curve) -> FloatArray:
 
 
 def closest_points(curve: Curve, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray]:
-    """The closest points of edges ``i`` and ``j``, as lengths from their tails, elementwise.
-
-    Of parallel edges side by side they are one of many closest pairs.
-    """
+    """The closest points of edges ``i`` and ``j``, as lengths from their tails; one of many pairs if parallel."""
     mesh, ell = curve.mesh, curve.edge_lengths
     e, f = curve.edge_vectors[i] / ell[i, None], curve.edge_vectors[j] / ell[j, None]
     D = curve.vertices[mesh.tails[i]] - curve.vertices[mesh.tails[j]]

@@ -48,10 +48,7 @@ def march(start: FloatArray, end: FloatArray, vertices: IntArray, reached: Float
 
 
 def relative_motion(start: FloatArray, end: FloatArray, vertices: IntArray) -> FloatArray:
-    """Return D = x₀ − y₀, e and f, for triangles g too, at both times; shape (2, 3 or 4, m, pairs).
-
-    ``start`` and ``end`` have shape (m, n); ``vertices`` has shape (4, pairs) or (5, pairs): x₀, x₁, y₀, y₁ and y₂.
-    """
+    """D = x₀ − y₀, e and f, for triangles g too, at both times; shape (2, 3 or 4, m, pairs) from points (m, n)."""
     motion = np.empty((2, len(vertices) - 1, len(start), vertices.shape[1]))
     for k, points in enumerate((start, end)):
         x0, x1, y0, *others = points.take(vertices, axis=1).swapaxes(0, 1)

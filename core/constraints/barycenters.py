@@ -39,20 +39,14 @@ class Barycenters:
         return replace(self, target=np.concatenate([np.empty(0), *each]))
 
     def scaled(self, factor: float) -> "Barycenters":
-        """Barycenters stay in place relative to the curve scaled by a factor.
-
-        Σ ℓ_I m_I is a length times a place.
-        """
+        """Barycenters stay where they are: Σ ℓ_I m_I is a length times a place, and lengths grow."""
         return replace(self, target=factor * self.target)
 
     def residual(self, curve: Curve) -> FloatArray:
         return self.on(curve).target - self.target
 
     def error(self, lengths: FloatArray, mesh: Mesh, residual: FloatArray) -> float:
-        """The largest displacement of a barycenter.
-
-        Σ ℓ_I m_I itself is so large on long chains of components that its rounding is above any tolerance.
-        """
+        """The largest displacement of a barycenter; of Σ ℓ_I m_I itself the rounding may exceed any tolerance."""
         totals = [own @ lengths for own in self.memberships(mesh)]
         shifts = [shift / total for shift, total in zip(self._by_part(residual), totals, strict=True)]
         return float(np.max(np.abs(shifts), initial=0.0))

@@ -30,10 +30,7 @@ def vertex_positions(curve: Curve) -> FloatArray:
 
 
 def periods(curve: Curve) -> FloatArray:
-    """Length once round each component, infinite where there is no way round; shape (components,).
-
-    Of two points at a distance d along the curve one way, the other way is the period less d.
-    """
+    """Length once round each component, infinite if it is open; shape (components,)."""
     return np.where(curve.mesh.closed, curve.component_lengths, np.inf)
 
 
@@ -50,10 +47,7 @@ def points_along(curve: Curve, component: IntArray, position: FloatArray) -> Flo
 
 
 def arc_distances(curve: Curve, t_i: float, t_j: float, rows: IntArray, columns: slice) -> FloatArray:
-    """ϱ between the points at t_i and t_j of the edges that begin at some vertices; inf across components.
-
-    Where an arc ends and no edge begins, distances have no meaning, but are numbers.
-    """
+    """ϱ between points at t_i and t_j of edges given by tails; inf across components, any number at arcs' ends."""
     mesh, component = curve.mesh, curve.mesh.component
     start, end = (mesh.at_tails(arc_positions(curve, t)) for t in (t_i, t_j))
     distance = np.subtract.outer(start[rows], end[columns])

@@ -186,10 +186,7 @@ class Mesh:
         )
 
     def index_distance(self, i: IntArray, j: IntArray) -> IntArray:
-        """Number of edges from edge ``i`` to edge ``j`` along the curve, the shorter way round where there are two.
-
-        Edges of different components are further apart than any two of the same: they get the mesh's size.
-        """
+        """Number of edges from ``i`` to ``j`` the shorter way along the curve; the mesh's size across components."""
         gap = np.abs(i - j)
         length = self._periods[self.edge_component[i]]
         together = self.edge_component[i] == self.edge_component[j]

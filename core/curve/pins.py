@@ -18,10 +18,7 @@ NOWHERE: IntArray = frozen(np.empty(0, dtype=np.intp))
 
 @dataclass(frozen=True, eq=False)
 class Pins:
-    """Vertices, ascending, that are held at their very coordinates, shape (k, m), in the user's units.
-
-    By these they are found on any other mesh of the curve: no two vertices of an embedded polygon are equal.
-    """
+    """Vertices, ascending, held at their very coordinates, (k, m), in the user's units; so any mesh finds them."""
 
     vertices: IntArray = field(default_factory=lambda: NOWHERE)
     positions: FloatArray = field(default_factory=lambda: np.empty((0, 0)))

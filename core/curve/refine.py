@@ -107,10 +107,7 @@ def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
 
 
 def affordable_pieces(curve: Curve, spacing: FloatArray, most: int) -> IntArray:
-    """Pieces per edge for the spacing wanted, or for the finest one that is at most so many vertices in all.
-
-    One piece each where the curve has as many already.
-    """
+    """Pieces per edge for a spacing, or for the finest with at most so many vertices; 1 each if there are as many."""
     most, floor = max(len(curve), most) - len(curve.mesh.ends), 0.0
     while True:
         # a little slack, so that a curve that already has the requested spacing stays as it is

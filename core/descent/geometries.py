@@ -33,10 +33,7 @@ class Geometry(Protocol):
         """How far a curve is from the set; shape (rows of the constraints,)."""
 
     def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
-        """The point of the set, or of a level of the residual, that vertices near it are led to; None if too far.
-
-        ``space`` has the metric of the way; its constraints are those of the base point.
-        """
+        """The point of a level of the residual that vertices lead to, in the metric of ``space``; None if too far."""
 
     def transport(self, point: Point, u: FloatArray) -> FloatArray:
         """A vector of another tangent space moved to that of a point; shape (n, m)."""

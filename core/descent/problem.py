@@ -69,10 +69,7 @@ class Problem:
         geometry: "Geometry",
         blocks: Sequence[Block] | None = None,
     ) -> "Problem":
-        """The problem that begins with a curve, whose lengths are to become some others, all in the user's units.
-
-        A CurveError if the curve has too many vertices for the solver, or an obstacle is too far away.
-        """
+        """The problem from a curve on, in the user's units; a CurveError if curve or obstacles are too large for it."""
         units, solver = Units.of(curve), solver.on(curve)
         own = curve.with_vertices(units.from_user(curve.vertices))
         constraints = replace(Constraints.of(own, pins, blocks), lengths=lengths / units.scale)
@@ -92,10 +89,7 @@ class Problem:
         return replace(problem, constraints=constraints).at_curve(curve)
 
     def inner_product(self, curve: Curve) -> InnerProduct:
-        """The metric on functions along a curve, with the stiffness of those terms of the objective that it misses.
-
-        Otherwise steps near an obstacle would be as short as its repulsion changes fast.
-        """
+        """The metric, and the stiffness of terms it misses: without, steps near obstacles would be very short."""
         check_time()
         inner, stiffness = self.metric.at(curve), self.objective.stiffness(curve)
         if not isinstance(inner, InnerProduct):

@@ -88,10 +88,7 @@ def _matrices(knot: Diagram, t: IntArray, prime: int) -> IntArray:
 
 
 def _determinants(matrices: IntArray, prime: int) -> IntArray:
-    """Determinants modulo a prime, by elimination of all matrices together, in place; shape (len(matrices),).
-
-    Few rows of such matrices have an entry in the column that is eliminated; only those are touched.
-    """
+    """Determinants modulo a prime, all together, in place; only the few rows with an entry to eliminate are touched."""
     found = np.ones(len(matrices), dtype=np.int64)
     every = np.arange(len(matrices))
     for k in range(matrices.shape[1]):

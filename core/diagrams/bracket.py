@@ -27,10 +27,7 @@ def jones(diagram: Diagram) -> Laurent | None:
 
 
 def normalized_bracket(diagram: Diagram, writhe: int) -> Laurent | None:
-    """(−A³)^−w ⟨D⟩ by powers of A, 1 for a circle; None if the diagram is too wide.
-
-    With the sum w of the signs of components' crossings with themselves it is the same for all orientations.
-    """
+    """(−A³)^−w ⟨D⟩ by powers of A; None if too wide.  With w of own crossings alone orientations do not matter."""
     found, sign = _bracket(diagram), -1 if writhe % 2 else 1
     return None if found is None else {power - 3 * writhe: sign * c for power, c in found.items()}
 

@@ -78,10 +78,7 @@ def _simple_curve(diagram: Diagram) -> list[_Visit]:
 
 
 def _sides(visits: list[_Visit], chords: list[list[int]]) -> tuple[list[bool], int]:
-    """Whether each crossing's chord lies on the left of the curve, chords that cross on different sides.
-
-    Also how many groups of chords that cross there are, each of which might as well change sides.
-    """
+    """Whether each crossing's chord is on the curve's left, and how many groups of crossing chords may change sides."""
     side: dict[int, bool] = {}
     several = 0
     for start in range(len(chords)):

@@ -41,18 +41,12 @@ def shuffled_down(
 
 
 def is_least(diagram: Diagram) -> bool:
-    """Whether no diagram has fewer crossings than this simplified one, which is so where over and under alternate.
-
-    (Kauffman, Murasugi, Thistlethwaite 1987; moves of single strands leave no nugatory crossings.)
-    """
+    """Whether no diagram has fewer crossings: it alternates (Kauffman, Murasugi, Thistlethwaite 1987)."""
     return all(part[k - 1][1] != part[k][1] for part in diagram.passes for k in range(len(part)))
 
 
 def reduced(diagram: Diagram) -> Diagram:
-    """Undo loops of one crossing and bigons of one strand over another (Reidemeister I and II) until there are none.
-
-    The time grows with the number of passes.
-    """
+    """Undo loops (Reidemeister I) and bigons of one strand over another (II) until there are none."""
     following, before = list(diagram.next), list(diagram.previous)  # linked lists, from which passes are taken out
     sequence, removed = diagram.sequence, set[int]()
     waiting = list(range(len(sequence)))

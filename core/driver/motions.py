@@ -24,10 +24,7 @@ Field = Callable[[FloatArray], FloatArray]
 @checked_fields
 @dataclass(frozen=True)
 class Motion(ABC):
-    """Move along one random field after another, up to a random level of energy, as nearly as the constraints allow.
-
-    Lengths are root mean squares over the vertices, in radii of gyration.
-    """
+    """Move along random fields up to a random energy, within constraints; lengths are RMS in radii of gyration."""
 
     fields: int = number()
     distance: float = number()  # that the curve moves along each of them
@@ -76,10 +73,7 @@ class Motion(ABC):
 @checked_fields
 @dataclass(frozen=True)
 class Push(Motion):
-    """Push the curve where it resists least: along random combinations of soft modes.
-
-    Where strands are about to touch, random flows press them together; a soft mode slides them along each other.
-    """
+    """Push along random soft modes, which slide touching strands along each other; flows would press them together."""
 
     fields: int = number(3)
     distance: float = number(1.0)

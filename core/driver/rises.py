@@ -23,10 +23,7 @@ class Rises:
             self._steps.append(_rise(before, after))
 
     def change(self, before: Iterate, after: Iterate) -> None:
-        """Note a change of mesh, or a motion that goes with it; what follows right after it is part of the same.
-
-        Longer curves have energies of their own.
-        """
+        """Note a change of mesh or shape; what follows at once is part of it, and longer curves have other energies."""
         if before.grown != after.grown:
             return
         if not (self._changes and self._changes[-1][-1].index == before.index):
@@ -61,10 +58,7 @@ def _total(change: list[Iterate]) -> float:
 
 
 def _energies(change: list[Iterate]) -> Message:
-    """The energies before, between if that is the highest (or, where none is above the first, the lowest), and after.
-
-    With as many digits as it takes to see that they are not equal.
-    """
+    """The energies before and after, and the extreme one between, with digits enough to tell them apart."""
     energies = [iterate.energy for iterate in change]
     first, last, highest = energies[0], energies[-1], max(energies)
     between = highest if highest > first else min(energies)

@@ -14,10 +14,7 @@ from .kpoint import KPointEnergy
 
 @dataclass(frozen=True)
 class ArcDensity:
-    """F = 1/r² − 1/ϱ², ϱ the distance along the curve, eq. (12) of [RS21]; between components it is 1/r².
-
-    ∬ F is 4 for a circle, so nothing is added to it.
-    """
+    """F = 1/r² − 1/ϱ², eq. (12) of [RS21], 1/r² between components; ∬ F is 4 for a circle, so nothing is added."""
 
     constant = 0.0
     scale_exponent = -2.0

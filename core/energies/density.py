@@ -154,10 +154,7 @@ class Partials(NamedTuple):
 
 @runtime_checkable
 class Density(Protocol):
-    """F(x, y), unchanged if x and y change places: (a, b) becomes (−b, −a).
-
-    Where ϱ is infinite, F must be finite and its derivative by ϱ zero.
-    """
+    """F(x, y) = F(y, x): (a, b) becomes (−b, −a).  Where ϱ is infinite, F is finite and its derivative by ϱ zero."""
 
     @property
     def constant(self) -> float:

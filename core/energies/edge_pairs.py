@@ -67,10 +67,7 @@ class EdgePairs(NamedTuple):
 
     @classmethod
     def of(cls, mesh: Mesh, p: FloatArray, i: IntArray, j: IntArray) -> "EdgePairs":
-        """The pairs (i, j) of edges between vertices p, shape (n, m), that may be after a complex step.
-
-        The end points are subtracted first: edges may be close and far from the origin.
-        """
+        """Pairs (i, j) of edges between vertices, real or complex; ends are subtracted first, as edges may be close."""
         x0, x1, y0, y1 = p[mesh.tails[i]], p[mesh.heads[i]], p[mesh.tails[j]], p[mesh.heads[j]]
         return cls(0.5 * ((x0 - y0) + (x1 - y1)), x1 - x0, y1 - y0)
 

@@ -65,10 +65,7 @@ def _inner(
 
 
 def graded_points(pairs: EdgePairs) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
-    """Points on the first edges: (pair, s, weight), shapes (panels,), (panels, points) and (panels, points).
-
-    s ∈ [0, 1] is the parameter along the edge; every pair's weights add up to 1.
-    """
+    """Points on first edges, (pair, s ∈ [0, 1], weight), by panels and points; a pair's weights add up to 1."""
     position, distance = _near_singularities(pairs)
     breaks = np.sort(np.clip(np.where(distance < _REACH, position, 0.0), 0.0, 1.0), axis=1)
     breaks = np.pad(breaks, ((0, 0), (1, 1)), constant_values=((0.0, 0.0), (0.0, 1.0)))
@@ -135,10 +132,7 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def moments(h2: FloatArray, a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """L(1, 0) and L(2, k) for k = 0, 1, 2; for arrays h² ≥ 0 and a < b of one shape.
-
-    A point on the edge counts as being 10⁻¹⁶ of the edge's length away, so that nothing is infinite.
-    """
+    """L(1, 0) and L(2, k), k = 0, 1, 2, for h² ≥ 0 and a < b; points on the edge count as 10⁻¹⁶ of its length away."""
     width = b - a
     h2 = np.maximum(h2, (width * CONTACT) ** 2)
     h = np.sqrt(h2)

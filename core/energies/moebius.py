@@ -87,8 +87,5 @@ def energy_of_pairs(curve: Curve, pairs: float) -> float:
 
 
 def moebius_by_length(curve: Curve) -> FloatArray:
-    """Energy of each edge with all others per unit of length, (Σ_J W_IJ)/ℓ_I, shape (edges,); in 1/length.
-
-    Times the lengths it sums up to the energy less what the components add, see `components`.
-    """
+    """(Σ_J W_IJ)/ℓ_I, energy per length of each edge, (edges,), in 1/length; without the components' shares."""
     return np.asarray(MoebiusEnergy().row_energies(curve, np.arange(curve.mesh.edges)) / curve.edge_lengths)

@@ -58,10 +58,7 @@ class Objective:
     def of(
         cls, energy: Energy, obstacles: Iterable[Obstacle] = (), further: Iterable[Weighted] = (), weight: float = 1.0
     ) -> "Objective":
-        """The objective of any energy among obstacles, in the units of curves, whose repulsion has some weight.
-
-        The barrier takes the place of what the energy has of it, or stands beside it.
-        """
+        """An energy among obstacles, in the units of curves; the barrier replaces what the energy has of it."""
         walls = (Weighted(each, weight) for each in Repulsion.of(obstacles))
         return cls(energy, Barrier(replaces_midpoint=energy.contains_midpoint_pairs), (*walls, *further))
 
@@ -134,10 +131,7 @@ class Objective:
         return np.asarray(np.min([nowhere, *walls], axis=0))
 
     def _summands(self, curve: Curve) -> tuple[Weighted, ...]:
-        """The terms at a curve, the energy first; what the barrier would take away of that is not even added.
-
-        At a distance g the difference would be lost in some 1/g² times the rounding error of g.
-        """
+        """The terms, the energy first; what the barrier takes away is never added: rounding would grow like 1/g²."""
         energy, barrier = self.energy, self.barrier
         if barrier.replaces_midpoint:
             energy = cast(WithMidpointPairs, energy).leaving_out(replaced_pairs(curve))

@@ -144,10 +144,7 @@ _COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], Comp
 @checked_fields
 @dataclass(frozen=True)
 class CompressedMetric:
-    """One of the nonlocal metrics by products in O(N log N), with the midpoint rule.
-
-    OptionError if θ or the leaves are out of range.
-    """
+    """A nonlocal metric by products in O(N log N), midpoint rule; OptionError if θ or the leaves are out of range."""
 
     metric: Metric  # the dense one
     tolerances: Tolerances = field(default_factory=Tolerances)  # of what is solved with it

@@ -21,10 +21,7 @@ EdgePairs = tuple[IntArray, IntArray]
 
 
 class PairForms:
-    """Forms on the block list of a curve, summed over ordered pairs of edges.
-
-    Throughout, ``near`` are the weights w of the near pairs, shape (pairs,), ``far`` those of the blocks, (blocks,).
-    """
+    """Forms on a block list over ordered pairs; weights ``near`` are those of near pairs, ``far`` those of blocks."""
 
     def __init__(self, curve: Curve, blocks: BlockList) -> None:
         self._curve, self._blocks = curve, blocks
@@ -43,10 +40,7 @@ class PairForms:
         return sp.csr_array(slope.T @ self._on_edges(near, far) @ slope - _products(weights, first, second, mesh.size))
 
     def of_long_slopes(self, far: FloatArray) -> sp.csr_array:
-        """The part of blocks that are not within components, on running sums of ΔU; shape (edges + 1, edges + 1).
-
-        Where all components are closed it vanishes, because the slopes of a whole one add up to 0.
-        """
+        """The rest of `of_slopes`, on running sums of ΔU, (edges + 1) twice: 0 where all components are closed."""
         a, b, c, d = self._blocks.ranges
         return -_products(np.where(self._in_components, 0.0, far), (a, b), (c, d), self._curve.mesh.edges + 1)
 
@@ -57,10 +51,7 @@ class PairForms:
         return local, -_products(far, (a, b), (c, d), self._curve.mesh.edges + 1)
 
     def of_components(self, near: FloatArray, far: FloatArray) -> sp.csr_array:
-        """`of_values` for functions constant on each component, but for far components; shape (components,) twice.
-
-        Left out are blocks of clusters that hold several components, which would couple all with all.
-        """
+        """`of_values` on functions constant on components, (components,) twice, without blocks that hold several."""
         ell, component = self._curve.edge_lengths, self._curve.mesh.edge_component
         (i, j), (c, d), single = self._blocks.near, self._blocks.middles, self._in_components
         first = component[np.concatenate([i, c[single]])]

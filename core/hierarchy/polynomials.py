@@ -105,10 +105,7 @@ def polynomials(dimension: int, degree: int) -> Polynomials:
 
 
 def kernel_derivatives(table: Polynomials, d: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
-    """∂^α 1/|d|², up to a degree, and ∂^α log|d|, up to two more, each of shape (monomials, k); d has shape (m, k).
-
-    The logarithm itself, α = 0, is not needed and left 0.
-    """
+    """∂^α 1/|d|², to a degree, and ∂^α log|d|, α ≠ 0, to two more, each (monomials, k); d has shape (m, k)."""
     s = _inverse_square(table, d, degree + 1)
     log = _logarithm(table, d, s, degree + 2)
     numbers = np.cumprod(np.maximum(np.arange(degree + 3), 1)).astype(np.float64)

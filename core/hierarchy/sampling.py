@@ -104,10 +104,7 @@ class SampledErrors:
     def at(
         cls, energy: HierarchicalMoebiusEnergy, curve: Curve, value: float, u: FloatArray, norm: float
     ) -> "SampledErrors":
-        """Those at a curve, with the energy or objective E, the projected gradient u, shape (n, m), and its norm.
-
-        To first order an error δ of the derivative changes the norm by δ·u/|u|.
-        """
+        """Those of E and of the projected gradient u, (n, m), whose norm an error δ changes by δ·u/|u|."""
         along = slope_error(energy, curve, u).relative(norm) if norm > 0.0 else Estimate(0.0, 0.0)
         scale = energy_scale(curve.mesh, value)
         unit = max(norm, float(np.sqrt(scale)))
@@ -121,10 +118,7 @@ class SampledErrors:
 
 @BLAS.bounded()
 def moebius_energy(curve: Curve) -> tuple[float, float]:
-    """The energy, and a bound of its relative error that holds with 95 % probability: 0 up to `EXACT_UP_TO` vertices.
-
-    Beyond it is the hierarchical sum, whose error dense rows of sampled edges tell.
-    """
+    """The energy and a 95 % bound of its relative error: 0 up to `EXACT_UP_TO` vertices, then by sampled rows."""
     if len(curve) <= EXACT_UP_TO:
         return MoebiusEnergy().value(curve), 0.0
     energy = HierarchicalMoebiusEnergy()

@@ -1,6 +1,4 @@
-"""Knots and links to start from: the named table and its smooth shapes, torus knots, braids, drawings, satellites,
-arcs.
-"""
+"""Knots and links to start from: a table and its smooth shapes, torus knots, braids, drawings, satellites, arcs."""
 
 from .closed_braids import braid_closure, torus_knot
 from .drawings import Drawing

@@ -16,10 +16,7 @@ MAX_LETTERS = 20_000
 
 
 def checked_word(word: Sequence[int], strands: int | None = None) -> tuple[Word, int]:
-    """Check a braid word and its number of strands, by default as few as the letters need.
-
-    Raises CurveError if a letter is 0 or no whole number, or the strands are too few or too many.
-    """
+    """A word and its number of strands, the least by default; CurveError if letters are 0 or strands do not fit."""
     letters = tuple(word)
     for position, letter in enumerate(letters, start=1):
         if int(letter) != letter or letter == 0:
@@ -55,10 +52,7 @@ def cycles(word: Sequence[int], strands: int) -> list[list[int]]:
 
 
 def columns(word: Sequence[int]) -> tuple[list[int], int]:
-    """Place each letter in the first column where its strands are free, and give the number of columns.
-
-    Letters that share no strand commute, so those of one column happen side by side.
-    """
+    """The first column where each letter's strands are free, as letters that share none commute; how many there are."""
     free: dict[int, int] = {}
     places = []
     for letter in word:

@@ -1,7 +1,4 @@
-"""Smooth closed braids around the z axis, among them torus knots, and polygons inscribed in them.
-
-Each polygon is checked to be the same braid.
-"""
+"""Smooth closed braids around the z axis, torus knots among them, and polygons checked to be the same braids."""
 
 import math
 from collections.abc import Callable, Sequence

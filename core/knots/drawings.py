@@ -48,11 +48,7 @@ class Drawing:
     @classmethod
     @checked
     def of(cls, curve: Curve) -> "Drawing":
-        """Find the crossings of closed polygons in the plane.
-
-        Raises CurveError if strands touch without crossing, or more than two meet; the message and its vertex say
-        where.
-        """
+        """Find the crossings of closed plane polygons; CurveError says where strands touch, or more than two meet."""
         if curve.dimension != 2:
             raise CurveError(f"the drawing has dimension {curve.dimension}; it must lie in the plane")
         check_closed(curve, "drawings")
@@ -71,10 +67,7 @@ class Drawing:
         return cls(generic, points, passes, _upper(generic, passes))
 
     def lifted(self, changed: Collection[int] = ()) -> Curve:
-        """Lift the strands at crossings, over and under by turns but for those that are changed, by numbers from 1 on.
-
-        Raises CurveError if there is no crossing of such a number.
-        """
+        """Lift strands over and under by turns, but for crossings ``changed``, from 1; CurveError for other numbers."""
         count = len(self.crossings)
         for number in changed:
             if not 1 <= number <= count:

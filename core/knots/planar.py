@@ -44,10 +44,7 @@ def diagram_knot(code: Sequence[PlanarCrossing], vertices: int | None = None) ->
 
 @checked
 def coded_knot(text: str, vertices: int | None = None, kind: str | None = None) -> Curve:
-    """Make the knot or link of a PD, DT or Gauss code as :func:`diagram_knot` does.
-
-    ``text`` and ``kind`` are read by :func:`~mobius_flow.core.diagrams.codes.diagram_from_code`.
-    """
+    """Make the knot or link of a PD, DT or Gauss code, read by `diagram_from_code`, as :func:`diagram_knot` does."""
     return _refined(drawn(diagram_from_code(text, kind)), vertices)
 
 

@@ -46,10 +46,7 @@ ALIASES: Mapping[str, str] = MappingProxyType(dict(_FILE["other names"]))
 
 
 def larger_name(name: str) -> str | None:
-    """The name, such as K11n34, that is meant by one in small letters (``11n_34``); None if it is none of this form.
-
-    Hoste and Thistlethwaite number alternating and other ones apart, to fourteen crossings.
-    """
+    """The name, such as K11n34, of one in small letters (``11n_34``), as Hoste and Thistlethwaite number; else None."""
     match = _LARGER.fullmatch(name)
     if match is None:
         return None
@@ -58,10 +55,7 @@ def larger_name(name: str) -> str | None:
 
 
 def larger_word(name: str) -> Word:
-    """A braid word of a knot or link that `larger_name` names; raises MobiusFlowError if there is none, or no table.
-
-    Which mirror image is meant is spherogram's (and SnapPy's) choice.
-    """
+    """A braid word by spherogram, of its choice of mirror images; MobiusFlowError if there is none, or no table."""
     try:
         from spherogram import Link
     except ImportError as error:

@@ -84,10 +84,7 @@ def stripes(mesh: Mesh) -> Iterator[Stripe]:
 
 
 class DifferenceForm:
-    """Collects the matrix of U ↦ Σ w_IJ ((B U)_I − (B' U)_J)² over ordered pairs of edges.
-
-    The sum over all terms must not change if edges change places: weights are known for half of the pairs.
-    """
+    """Collects the matrix of U ↦ Σ w_IJ ((B U)_I − (B' U)_J)² over ordered pairs, symmetric in I and J."""
 
     def __init__(self, mesh: Mesh) -> None:
         self._mesh = mesh
@@ -95,10 +92,7 @@ class DifferenceForm:
         self._squares = np.zeros((3, mesh.size))  # of tail and head of each edge, and half of their product
 
     def add(self, stripe: Stripe, weights: FloatArray, left: Stencil, right: Stencil) -> None:
-        """Add a stripe of a term; ``weights`` has shape (rows, columns) and is changed.
-
-        Taking first rows and then columns together at their common vertices is Bᵀ w B' at a few operations an entry.
-        """
+        """Add a stripe of a term, weights (rows, columns) being changed; Bᵀ w B' by rows, then by columns, is cheap."""
         vertices, rows, columns = stripe
         own = vertices.start - columns.start
         # the pairs of the stripe's own edges come in either order, and so count by their rows alone

@@ -58,10 +58,7 @@ class WithModel(Protocol):
 
 
 class IterativeTangentSpace(TangentSpace):
-    """The tangent space of constraints of full rank, with J = A ⊗ Id_m.
-
-    A LinAlgError says if A is not positive definite, or iterations do not suffice.
-    """
+    """Constraints of full rank with J = A ⊗ Id_m; LinAlgError if A is not definite or iterations do not suffice."""
 
     def __init__(self, inner: WithModel, constraints: ConstraintDerivative, tolerances: Tolerances) -> None:
         super().__init__(constraints)
@@ -86,10 +83,7 @@ class IterativeTangentSpace(TangentSpace):
         return u - self.pseudo_inverse(self.constraints.apply(u))
 
     def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
-        """The shortest in the model, solved so exactly that convergence stays quadratic.
-
-        On fine meshes the shortest in the Euclidean metric is too rough: it turns edges by more than they are off.
-        """
+        """The shortest in the model, exact enough for quadratic convergence; Euclidean ones turn fine edges too far."""
         here = ConstraintPreconditioner(self._model, constraints.derivative(curve))
         return here.shortest(-residual, max(float(np.max(np.abs(residual))), MIN_FORCING))
 

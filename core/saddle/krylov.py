@@ -123,10 +123,7 @@ class ConstraintPreconditioner:
         self._held = np.linalg.inv(np.reshape(forced, (len(forced), len(forced))))
 
     def project(self, r: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
-        """Solve for the right side (r, 0): u, shape (n, m), and λ.
-
-        Of what remains normal the length is at most ``tolerance`` times that of u, in the norm of M.
-        """
+        """u, (n, m), and λ for the right side (r, 0); what stays normal is ≤ ``tolerance`` times u in M's norm."""
         free = self._model.solve(r)
         total = float(np.sum(r * free))
 

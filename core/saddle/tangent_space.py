@@ -43,10 +43,7 @@ class TangentSpace(ABC):
         return self.solve(None, xi)[0]
 
     def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:
-        """A short u with DΦ u = −Φ at a curve near by, where a small residual Φ is left: Newton's method; shape (n, m).
-
-        By default the shortest in the Euclidean metric, at O(n); None if there is none so cheap.
-        """
+        """A short u, (n, m), with DΦ u = −Φ near by; by default the Euclidean one in O(n), None if there is none."""
         return euclidean_correction(constraints, curve, residual)
 
     def project(self, u: FloatArray) -> FloatArray:
@@ -59,10 +56,7 @@ class TangentSpace(ABC):
 
 
 class WholeSpace(TangentSpace):
-    """All of R^(n·m), nothing being constrained but pins, with J + Cᵀ w C: how Section 6.4 of [RS21] penalises lengths.
-
-    The weights w ≥ 0 have shape (rows of C,).
-    """
+    """All of R^(n·m) but pins with J + Cᵀ w C, weights w ≥ 0: how Section 6.4 of [RS21] penalises lengths."""
 
     def __init__(self, constraints: ConstraintDerivative, weights: FloatArray) -> None:
         super().__init__(constraints)

@@ -75,10 +75,7 @@ class Obstacles:
 
 
 def _boxes_that_overlap(first: Boxes, second: Boxes) -> Iterator[tuple[IntArray, IntArray]]:
-    """As `overlapping`, by runs of boxes of the first kind, of which those next to each other are near each other.
-
-    The box of a run is made of bounds of its boxes, without rounding, so it overlaps all that they do.
-    """
+    """`overlapping`, by runs of neighbouring boxes, whose own box, made without rounding, overlaps all that they do."""
     starts = np.arange(0, len(first[0]), _RUN)
     runs = np.minimum.reduceat(first[0], starts), np.maximum.reduceat(first[1], starts)
     for run, j in overlapping(runs, second):
@@ -89,10 +86,7 @@ def _boxes_that_overlap(first: Boxes, second: Boxes) -> Iterator[tuple[IntArray,
 
 
 def overlapping(first: Boxes, second: Boxes) -> Iterator[tuple[IntArray, IntArray]]:
-    """Yield the pairs of a box of the one kind and a box of the other that overlap, a bounded number at a time.
-
-    Along the widest axis, of two ranges that overlap one begins within the other.
-    """
+    """Yield pairs of overlapping boxes of two kinds in batches: along the widest axis one begins within the other."""
     axis = int(np.argmax(np.ptp(np.concatenate([first[0], second[0]]), axis=0)))
     ranges = [(low[:, axis], high[:, axis]) for low, high in (first, second)]
     of_second = _beginning_within(*ranges[0], ranges[1][0], "left")

@@ -45,10 +45,7 @@ def meet(start: Sequence[Point], end: Sequence[Point]) -> bool:
 
 
 def meetings(start: Sequence[Point], end: Sequence[Point]) -> Iterator[Root]:
-    """Yield times at which two moving segments meet, among them the first; none if they never do.
-
-    Start and end are the points x₀, x₁, y₀, y₁ at times 0 and 1, in the plane or in space.
-    """
+    """Yield times when segments x₀x₁ and y₀y₁ meet, the first among them; points in R² or R³ at times 0 and 1."""
     x0, x1, y0, y1 = _moving_points(start, end)
     corners = (_minus(x0, y0), _minus(x0, y1), _minus(x1, y0), _minus(x1, y1))
     e, f = _minus(x1, x0), _minus(y1, y0)
@@ -142,10 +139,7 @@ def _cross(u: Vector, v: Vector) -> Vector:
 
 
 def meet_triangle(start: Sequence[Point], end: Sequence[Point]) -> bool:
-    """Whether a segment that moves and a triangle that does not meet at any time in [0, 1].
-
-    Start and end are the points x₀, x₁, y₀, y₁, y₂ at times 0 and 1; the last three are the same at both.
-    """
+    """Whether a moving segment meets a still triangle in [0, 1]; points x₀, x₁, y₀, y₁, y₂ at times 0 and 1."""
     x, triangle = list(start[:2]), list(start[2:])
     if any(pierced_at(p, q, triangle) is not None for p, q in [x, (start[0], end[0]), (start[1], end[1])]):
         return True

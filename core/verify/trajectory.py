@@ -60,10 +60,7 @@ class Stage:
 
 
 def stages(path: Path | str) -> Iterator[Stage]:
-    """Yield the stages of a file, in order; frames of a stage can be read until the next one is requested.
-
-    A TrajectoryError if the file is none or is damaged, also while frames are read.
-    """
+    """Yield the stages in order, frames to be read before the next; a TrajectoryError where the file is damaged."""
     with _opened(path) as archive:
         for number in range(_count(archive)):
             components = _components(archive, number)

@@ -29,10 +29,7 @@ class DifferentCurveError(Exception):
 
 
 def common_vertices(first: FloatArray, second: FloatArray, closed: bool) -> tuple[list[int], list[int]]:
-    """Return the indices, in the first and in the second polygon, both closed or both open, of the vertices they share.
-
-    Shapes (n, m) and (n', m); a DifferentCurveError if there are too few, or not in the same order.
-    """
+    """Indices in both polygons of vertices they share; a DifferentCurveError if these are few or not in order."""
     places = {tuple(p): k for k, p in enumerate(second.tolist())}
     here = [k for k, p in enumerate(first.tolist()) if tuple(p) in places]
     there = [places[tuple(first[k].tolist())] for k in here]
@@ -107,10 +104,7 @@ class HeldVertices:
 
     @classmethod
     def among(cls, frame: FloatArray, points: FloatArray) -> "HeldVertices":
-        """The vertices of a stage's first frame, shape (n, m), at points, shape (k, m).
-
-        A LostPinError if there is none at one of them.
-        """
+        """The vertices of a first frame, (n, m), at points, (k, m); a LostPinError if there is none at one of them."""
         places = {tuple(vertex): k for k, vertex in enumerate(frame.tolist())}
         found = [places.get(tuple(point), -1) for point in points.tolist()]
         if -1 in found:

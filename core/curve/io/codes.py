@@ -35,10 +35,7 @@ read_pd, read_dt, read_gauss = (partial(_read, kind) for kind in ("pd", "dt", "g
 
 
 def read_tsv(source: Source) -> list[Polygon]:
-    """Polygons of coordinates, or of a crossing in each line: its four edges, and 1 or -1 for its sign if it is given.
-
-    Raises CurveFileError naming the line.
-    """
+    """Polygons of coordinates, or of crossings: four edges in a line, and a sign if it is given; or CurveFileError."""
     rows = [(number, line.partition("#")[0].split()) for number, line in enumerate(source.lines, start=1)]
     rows = [(number, words) for number, words in rows if words]
     if not rows or not _EDGES <= len(rows[0][1]) <= _EDGES + 1:

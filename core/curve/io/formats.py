@@ -104,10 +104,7 @@ class CurveFile:
 
 
 def load_curve(path: str | os.PathLike[str], form: Format | None = None, stream: BinaryIO | None = None) -> CurveFile:
-    """As `read_curve`, keeping what errors that come later need.
-
-    ``form`` None leaves the format to the suffix; a ``stream`` is read instead of opening ``path``.
-    """
+    """`read_curve`, keeping what later errors need; in a given format, or the suffix's, from a stream if given."""
     path = Path(path)
     form = format_of(path) if form is None else form
     source = Source.load(path) if stream is None else Source.read(path, stream)

@@ -78,10 +78,7 @@ def check_known(source: Source, index: int, known: int, line: int) -> None:
 
 
 def index_of(source: Source, argument: str, line: int, known: int) -> int:
-    """The vertex, counted from 0, of an argument such as ``vertex`` or ``vertex/texture/normal``.
-
-    ``known`` is the number of vertices before it, from the last of which negative numbers count back.
-    """
+    """The vertex, from 0, of ``vertex`` or ``vertex/texture/normal``; negative numbers count back from ``known``."""
     index = source.integer(argument.partition("/")[0], line)
     if index == 0 or index < -known:
         raise source.error(f"vertex {index} does not exist; OBJ counts from 1, or back from -1", line)

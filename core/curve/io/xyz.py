@@ -63,10 +63,7 @@ def _point(
 
 
 def separated(separator: str, head: bool = False) -> Callable[[Curve, TextIO], None]:
-    """What writes the components, separated by blank lines, under the axes' names or not.
-
-    It raises CurveError beyond three dimensions.
-    """
+    """A writer of components between blank lines, under the axes' names or not; CurveError beyond three dimensions."""
 
     def write(curve: Curve, stream: TextIO) -> None:
         if curve.dimension > 3:

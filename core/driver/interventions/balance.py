@@ -99,10 +99,7 @@ class Balance(Intervention):
         return Change(steps[: run.iterations_left], method=run.method)
 
     def way(self, point: Point) -> tuple[Step, ...]:
-        """Proved steps to the Möbius image with the least bending of those that there is a way to.
-
-        Empty if none is worth it.  The steps end in the problem that is the point's own for the image.
-        """
+        """Proved steps to the reachable Möbius image of least bending, in its own problem; empty if none pays."""
         images = MoebiusImages(point.curve, point.problem.constraints.lengths)
         # against the identity's image too: what smoothing alone takes off is no gain, the flow would put it back
         still = images.at(np.eye(point.curve.dimension + 1)[0])
@@ -118,10 +115,7 @@ class Balance(Intervention):
         return ()
 
     def _way(self, point: Point, images: MoebiusImages, q: FloatArray, problem: Problem) -> tuple[Step, ...]:
-        """Proved steps to the image of q, by those of rotations by smaller angles; empty if strands are in the way.
-
-        Where a step is not proved, a shorter one is tried.
-        """
+        """Proved steps to the image of q by smaller rotations, halved where unproved; empty if strands interfere."""
         sine = float(np.linalg.norm(q[1:]))
         end, axis = np.arctan2(sine, q[0]), q[1:] / sine
         steps: list[Step] = []

@@ -98,10 +98,7 @@ class CoarseStart(Intervention):
         return Change(point=self.run.problem.on(finest, self._lengths))
 
     def _smoother(self) -> Change | None:
-        """The motion to a smooth curve through the vertices of the coarse one, as far as strands leave way for it.
-
-        It ends on the constraints where strands leave way for that too: the run may be at its limit there.
-        """
+        """The motion to a smooth curve through the coarse vertices, as far as free; onto the constraints if it can."""
         if self._coarse is None:
             return None
         start = self.run.iterate.curve

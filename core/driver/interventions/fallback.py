@@ -53,10 +53,7 @@ class Fallback(Intervention):
 
 @dataclass(eq=False)
 class CheckAccuracy(Intervention):
-    """Check the hierarchical solver against dense sums over a sample of edges, on every mesh at first and at the end.
-
-    Where it is not accurate enough, the order of expansions is raised.
-    """
+    """Sample the hierarchical solver's errors on every mesh and at the end; raise its order if they are too large."""
 
     _seen: Mesh | None = field(default=None, init=False)
 

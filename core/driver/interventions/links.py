@@ -108,10 +108,7 @@ def _balls(points: FloatArray, part: IntArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _near(centers: FloatArray, radii: FloatArray, gap: float) -> sp.coo_array:
-    """Which balls are not far enough from each other to be parts; sparse, shape (p, p).
-
-    A k-d tree per octave of radii finds the neighbours among balls that are no larger.
-    """
+    """Which balls are too near to be parts, sparse (p, p); a k-d tree per octave of radii finds those no larger."""
     octave = np.frexp(radii)[1]
     found = []
     for level in np.unique(octave):

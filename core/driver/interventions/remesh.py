@@ -74,10 +74,7 @@ class Remesh(Intervention):
 def proved_remesh(
     problem: Problem, curve: Curve, resolution: Resolution, removable: IntArray, spacing: FloatArray
 ) -> tuple[Step, Remeshed] | None:
-    """The last motion on the old mesh and the change to a new one, with as many collapses as are free of contact.
-
-    None if vertices would coincide in double precision.
-    """
+    """The last motion on the old mesh and the new one, with all collapses that are free; None if vertices coincide."""
     while True:
         change = remesh(curve, resolution, removable, spacing, problem.constraints.pins)
         free = problem.free_motion(curve.vertices, change.moved.vertices)

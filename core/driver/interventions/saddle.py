@@ -34,10 +34,7 @@ class Stability:
 
 
 def stability(point: Point) -> Stability:
-    """The lowest eigenvalues of D²E − Σ λ_I D²Φ_I on ker DΦ, against the metric, which should be J_C.
-
-    Some hundred products and projections, whatever the number of vertices.
-    """
+    """The lowest eigenvalues of D²E − Σ λ_I D²Φ_I on ker DΦ against J_C, by some hundred products."""
     modes = soft_modes(point, smooth_starts(point, np.random.default_rng(1)), RESOLVED)
     return Stability(modes, _unresolved(point.curve))
 

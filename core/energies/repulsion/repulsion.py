@@ -45,10 +45,7 @@ class Repulsion:
 
     @classmethod
     def of(cls, obstacles: Iterable[Obstacle]) -> "tuple[Repulsion, ...]":
-        """That of obstacles, in the units of curves: one for all triangles, one for all segments, if there are any.
-
-        Those without area or length repel nothing, and clusters of them alone would have no centroid.
-        """
+        """One for all triangles, one for all segments, in the units of curves; those of no size repel nothing."""
         kinds = zip(*((obstacle.triangles, obstacle.segments) for obstacle in obstacles), strict=True)
         corners = (np.concatenate(kind).transpose(1, 2, 0) for kind in kinds)
         solid = (each[:, :, Simplices(each).sizes > 0.0] for each in corners)
@@ -82,10 +79,7 @@ class Repulsion:
         return sp.csr_array((changes.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * n, 3 * n))
 
     def stiffness(self, curve: Curve) -> sp.dia_array:
-        """∫ Φ³/(2π²) ds, half of each edge's at either end; diagonal, shape (n, n).
-
-        A plane at the distance h, and so a straight line, has Φ'' = 4π/h³ = Φ³/(2π²).
-        """
+        """∫ Φ³/(2π²) ds, half at either end, diagonal (n, n): a plane or line has Φ'' = 4π/h³ = Φ³/(2π²)."""
         half = 0.25 / np.pi**2 * curve.edge_lengths * self._means(curve) ** 3
         return sp.diags_array(curve.mesh.scatter(half, half))
 

@@ -85,10 +85,7 @@ class _View:
 
 @dataclass(frozen=True, eq=False)
 class Schedule:
-    """Every pair of an edge and a simplex exactly once, but for the panels that edges are cut into.
-
-    Panels see a cluster if (radius of the cluster + half length) < θ (distance of the centers).
-    """
+    """Each edge and simplex once, by panels, which see clusters if radius + half length < θ (distance of centers)."""
 
     curve: Curve  # that it was made for
     single: Groups  # panels that see simplices
