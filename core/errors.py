@@ -9,19 +9,10 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Place:
-    """Where on a curve something is the matter, for those who can point at it.
+    """Where on a curve something is the matter, for those who can point at it."""
 
-    Attributes
-    ----------
-    vertices
-        Indices, from 0 over all components, of the vertices there; for edges their ends. Empty where the matter is with
-        a refined curve, whose vertices nobody has seen.
-    position
-        Coordinates of the place in the curve's units; shape (m,).
-    """
-
-    vertices: tuple[int, ...]
-    position: tuple[float, ...]
+    vertices: tuple[int, ...]  # from 0, for edges their ends; none of a refined curve, whose vertices nobody has seen
+    position: tuple[float, ...]  # coordinates in the curve's units; shape (m,)
 
 
 class MobiusFlowError(ValueError):

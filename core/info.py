@@ -8,7 +8,6 @@ from .collision import check_embedded, check_gap, minimal_gap
 from .collision.gap import thickness
 from .curve import Curve
 from .curve.measures import writhe_and_crossings
-from .descent import Point
 from .driver import RelaxOptions
 from .driver.interventions.saddle import stability
 from .driver.prepare import start_problem
@@ -48,24 +47,12 @@ def measure(curve: Curve, energy: str = "moebius") -> float:
 
 @dataclass(frozen=True)
 class Rest:
-    """Whether a curve is at rest.
+    """Whether a curve is at rest."""
 
-    Attributes
-    ----------
-    objective
-        The Möbius energy with its barrier.
-    gradient_norm
-        Of the projected gradient in the metric J_C, edge lengths being prescribed.
-    bound
-        At most this at rest, as `relax` has it by default (`gradient_bound`).
-    index
-        Number of negative eigenvalues of the Hessian, 0 at a minimum; None away from rest, or if it is not resolved.
-    """
-
-    objective: float
-    gradient_norm: float
-    bound: float
-    index: int | None
+    objective: float  # the Möbius energy with its barrier
+    gradient_norm: float  # of the projected gradient in the metric J_C, edge lengths being prescribed
+    bound: float  # of that at rest, as `relax` has it by default
+    index: int | None  # of the Hessian, 0 at a minimum; None away from rest, or if it is not resolved
 
     @property
     def at_rest(self) -> bool:
@@ -84,32 +71,20 @@ class Rest:
 
 @dataclass(frozen=True)
 class Info:
-    """Measures of a curve, in its own units; None where the number of vertices or the dimension forbids it.
-
-    Attributes
-    ----------
-    energies
-        By the names of :data:`ENERGIES`.
-    thickness
-        See :func:`~mobius_flow.core.collision.gap.thickness`.
-    writhe, average_crossing_number
-        See :func:`~mobius_flow.core.curve.measures.writhe_and_crossings`.
-    gap
-        Least distance of edges that are no neighbours; infinite for a triangle.
-    """
+    """Measures of a curve, in its own units; None where the number of vertices or the dimension forbids it."""
 
     components: tuple[int, ...]
     dimension: int
     type: KnotType
-    energies: Mapping[str, float | None]
+    energies: Mapping[str, float | None]  # by the names of `ENERGIES`
     rest: Rest | None
     length: float
-    thickness: float | None
+    thickness: float | None  # as `collision.gap.thickness`
     writhe: float | None
     average_crossing_number: float | None
     shortest_edge: float
     longest_edge: float
-    gap: float
+    gap: float  # least distance of edges that are no neighbours; infinite for a triangle
 
     def __repr__(self) -> str:
         return f"<Info: {self.type}, {sum(self.components)} vertices, length {self.length:.6g}>"
@@ -146,11 +121,7 @@ def info(curve: Curve) -> Info:
 
 
 def _rest(curve: Curve) -> Rest:
-    point = _point(curve, RelaxOptions(edge_lengths="keep"))
+    point = start_problem(curve, RelaxOptions(edge_lengths="keep")).at_curve(curve)
     bound = gradient_bound(RelaxOptions(), curve.mesh, point.energy)
     index = stability(point).index if point.gradient_norm <= bound else None
     return Rest(point.energy, point.gradient_norm, bound, index)
-
-
-def _point(curve: Curve, options: RelaxOptions) -> Point:
-    return start_problem(curve, options).at_curve(curve)

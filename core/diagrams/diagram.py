@@ -18,23 +18,17 @@ PlanarCrossing = tuple[int, int, int, int]  # edges counterclockwise from the on
 
 @dataclass(frozen=True)
 class Diagram:
-    """A diagram of an oriented link.
+    """A diagram of an oriented link."""
 
-    ``passes`` has for each component the crossings that it passes, in order, and is empty for a circle that crosses
-    nothing; ``signs`` has 1 or −1 for each crossing, numbered from 0.
-    """
-
-    passes: tuple[tuple[Pass, ...], ...]
-    signs: tuple[int, ...]
+    passes: tuple[tuple[Pass, ...], ...]  # of each component, in order; none of a circle that crosses nothing
+    signs: tuple[int, ...]  # 1 or −1 for each crossing, numbered from 0
 
     @property
     def crossings(self) -> int:
-        """Number of crossings."""
         return len(self.signs)
 
     @property
     def writhe(self) -> int:
-        """Sum of the signs."""
         return sum(self.signs)
 
     @cached_property

@@ -19,15 +19,12 @@ _VIEWS = 12  # tried until one is clear, as the first almost always is
 
 @dataclass(frozen=True)
 class QuickInvariants:
-    """What is quickly computed of a knot or link of any size.
+    """What is quickly computed of a knot or link of any size."""
 
-    For each component ``alexander`` has the polynomial's values at roots of unity of order 2, 3, 5 and 7 modulo a
-    prime: of each value, which is defined up to units ±tᵏ, the smallest associate.  ``linking`` has the linking numbers
-    of all pairs of components: of the first with the second, the third, …
-    """
-
+    # of each component the values at roots of unity of order 2, 3, 5 and 7 modulo a prime: of each, which is defined up
+    # to units ±tᵏ, the smallest associate
     alexander: tuple[tuple[int, ...], ...]
-    linking: tuple[int, ...]
+    linking: tuple[int, ...]  # numbers of all pairs of components: of the first with the second, the third, …
 
     @property
     def is_trivial(self) -> bool:

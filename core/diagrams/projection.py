@@ -69,16 +69,11 @@ def _seen(curve: Curve, points: FloatArray, clear: float) -> Diagram | None:
 
 
 class PlaneCrossings(NamedTuple):
-    """Pairs of edges without a common vertex whose inner points cross in the plane.
+    """Pairs of edges without a common vertex whose inner points cross in the plane."""
 
-    ``edges``, shape (2, k), are ascending in each pair; ``at``, shape (2, k), says where on them, as fractions of their
-    lengths; ``turn``, shape (k,), is the cross product of their vectors, positive if the second crosses from right to
-    left.
-    """
-
-    edges: IntArray
-    at: FloatArray
-    turn: FloatArray
+    edges: IntArray  # ascending in each pair; shape (2, k)
+    at: FloatArray  # where on them, as fractions of their lengths; shape (2, k)
+    turn: FloatArray  # cross product of their vectors, positive if the second crosses from right to left; shape (k,)
 
 
 def plane_crossings(mesh: Mesh, points: FloatArray) -> PlaneCrossings:

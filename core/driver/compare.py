@@ -21,33 +21,16 @@ from .trajectory import Iterate
 
 @dataclass(frozen=True)
 class History:
-    """One method's history.
-
-    Attributes
-    ----------
-    method
-        Its name.
-    status
-        "converged", "iteration_limit", "stalled", or "time_limit".
-    seconds, energy, gradient_norm
-        At every iterate, the start first: seconds of processor time since the method began, set-up left out; the
-        objective, without the penalty that some methods add to it; and the norm of the gradient of what is minimised.
-    fallback
-        Iterates to which another method led, because this one was stuck.
-    metric
-        Name of the metric that gradients were taken in.
-    stages
-        The curves of some iterates, by their index.
-    """
+    """One method's history; what there is of every iterate begins with the start."""
 
     method: str
-    status: str
-    seconds: tuple[float, ...]
-    energy: tuple[float, ...]
-    gradient_norm: tuple[float, ...]
-    fallback: tuple[int, ...]
-    metric: str
-    stages: Mapping[int, Curve] = field(default_factory=dict, compare=False)
+    status: str  # the value of a `Status`
+    seconds: tuple[float, ...]  # of processor time since the method began, set-up left out
+    energy: tuple[float, ...]  # the objective, without the penalty that some methods add to it
+    gradient_norm: tuple[float, ...]  # of the gradient of what is minimised
+    fallback: tuple[int, ...]  # iterates to which another method led, because this one was stuck
+    metric: str  # name of the one that gradients were taken in
+    stages: Mapping[int, Curve] = field(default_factory=dict, compare=False)  # curves of some iterates by their index
 
     def __repr__(self) -> str:
         return f"<History of {self.method}: {self.status} after {self.iterations} iterations, {self.energy[-1]:.9g}>"

@@ -83,13 +83,10 @@ def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.
 
 @dataclass(frozen=True)
 class Ring:
-    """A smooth closed curve that runs ``turns`` times around the z axis.
-
-    ``at`` gives distance from the axis and height, shape (k, 2), at angles of shape (k,) from 0 to ``period``.
-    """
+    """A smooth closed curve that runs ``turns`` times around the z axis."""
 
     turns: int
-    at: Callable[[FloatArray], FloatArray]
+    at: Callable[[FloatArray], FloatArray]  # distance from the axis and height, (k, 2), at angles (k,) up to the period
 
     @property
     def period(self) -> float:

@@ -33,17 +33,12 @@ _RAMP = 10  # edges from one crossing to the next, at least
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """Closed curves in the plane that cross themselves and each other clearly, two strands at a time.
-
-    ``curve`` is the drawing; of its c crossings there are the places, shape (c, 2), in the order in which they are come
-    to, the edges of their first and second ``passes``, shape (c, 2), each with the fraction of it as one number, and
-    whether the first pass is the upper one, shape (c,), where over and under alternate, over to begin with.
-    """
+    """Closed curves in the plane that cross themselves and each other clearly, two strands at a time, c times."""
 
     curve: Curve
-    crossings: FloatArray
-    passes: FloatArray
-    first_over: BoolArray
+    crossings: FloatArray  # their places, in the order in which they are come to; shape (c, 2)
+    passes: FloatArray  # first and second edge there, each with the fraction of it as one number; shape (c, 2)
+    first_over: BoolArray  # whether the first is the upper one, over and under alternating from over on; shape (c,)
 
     @classmethod
     @checked

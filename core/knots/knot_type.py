@@ -45,19 +45,14 @@ DEFAULT_EFFORT = Effort()
 
 @dataclass(frozen=True)
 class KnotType:
-    """What is known of a type.
+    """What is known of a type."""
 
-    ``names`` are those of the table that fit, with m for mirror images, # for sums and ⊔ between parts that come apart,
-    in 0_1 ⊔ 0_1 two circles; empty if none fits.  It is ``proved`` if the type certainly is one of the names, as no
-    knot of so few crossings is left out.  ``diagram`` has the fewest crossings that were found, ``evidence`` is what
-    distinguishes the names from others, and ``refusal`` says why no diagram was looked for.
-    """
-
+    # those of the table that fit, if any, with m for mirror images, # for sums and ⊔ between parts that come apart
     names: tuple[str, ...]
-    proved: bool
-    diagram: Diagram | None
-    evidence: tuple[str, ...]
-    refusal: str = ""
+    proved: bool  # whether the type certainly is one of the names, as no knot of so few crossings is left out
+    diagram: Diagram | None  # that of the fewest crossings that were found
+    evidence: tuple[str, ...]  # what distinguishes the names from others
+    refusal: str = ""  # why no diagram was looked for
 
     def __repr__(self) -> str:
         return f"<KnotType: {self.sentence:.100}>"

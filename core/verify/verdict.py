@@ -10,38 +10,18 @@ from ..types import IntArray
 
 @dataclass(frozen=True)
 class Verdict:
-    """What was found.
+    """What was found; numbers of what failed count from 0, and are None if that is not the reason."""
 
-    Attributes
-    ----------
-    accepted
-        True if every leg and every change of stage is proved free of contact.
-    stages, legs
-        How many were checked, including the one that failed.
-    reason
-        Why the trajectory is not accepted; empty if it is.
-    stage, frame
-        Place of the failure: number of the stage and of the frame that the leg begins with, from 0.
-    edges
-        The edges that meet, or the one that meets an obstacle, from 0; None if that is not the reason.
-    obstacles
-        How many there are.
-    pins
-        How many vertices are held, in every frame.
-    obstacle
-        The one that an edge meets, from 0; None if that is not the reason.
-    """
-
-    accepted: bool
-    stages: int
+    accepted: bool  # whether every leg and every change of stage is proved free of contact
+    stages: int  # how many were checked, including the one that failed
     legs: int
-    reason: str = ""
-    stage: int | None = None
-    frame: int | None = None
-    edges: tuple[int, ...] | None = None
-    obstacles: int = 0
-    obstacle: int | None = None
-    pins: int = 0
+    reason: str = ""  # why the trajectory is not accepted; empty if it is
+    stage: int | None = None  # that of the failure
+    frame: int | None = None  # with which the leg begins that failed
+    edges: tuple[int, ...] | None = None  # those that meet, or the one that meets an obstacle
+    obstacles: int = 0  # how many there are
+    obstacle: int | None = None  # the one that an edge meets
+    pins: int = 0  # how many vertices are held, in every frame
 
     def __str__(self) -> str:
         if self.accepted:

@@ -19,15 +19,11 @@ from .source import Polygon, Source, assemble
 
 @dataclass(frozen=True)
 class Format:
-    """How one kind of file is read and written.
+    """How one kind of file is read and written."""
 
-    ``description`` is for help texts; ``read`` raises CurveFileError; ``write`` raises CurveError if the format cannot
-    hold the curve, and is None for what is only read.
-    """
-
-    description: str
-    read: Callable[[Source], list[Polygon]]
-    write: Callable[[Curve, TextIO], None] | None
+    description: str  # for help texts
+    read: Callable[[Source], list[Polygon]]  # raises CurveFileError
+    write: Callable[[Curve, TextIO], None] | None  # raises CurveError for what it cannot hold; None if only read
 
     def text(self, curve: Curve) -> str:
         """What a file of the curve holds; raises CurveError if the format cannot hold it, or is only read."""
