@@ -17,9 +17,9 @@ from .errors import MobiusFlowError, OptionError, choice, shown
 _Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
 _Class = TypeVar("_Class", bound=type)
-_NUMBERS: dict[Any, tuple[type, ...]] = {float: (Real,), int: (Integral,), bool: (bool, np.bool_)}  # NumPy's count too
+_PLAIN: dict[Any, tuple[type, ...]] = {str: (str,), float: (Real,), int: (Integral,), bool: (bool, np.bool_)}
 _BELOW = {float: 2**1023, int: 2**63, bool: 2}  # whole numbers that fit
-_WORDS: dict[Any, str] = {
+WORDS: dict[Any, str] = {
     float: "a number",
     int: "a whole number",
     bool: "True or False",
@@ -95,6 +95,11 @@ def is_list(value: object) -> bool:
     return isinstance(value, Sequence) and not isinstance(value, str | bytes)
 
 
+def is_plain(value: object, kind: object) -> bool:
+    """Whether a value is of a plain type: NumPy's numbers count too, and truth values are no numbers."""
+    return isinstance(value, _PLAIN.get(kind, ())) and isinstance(value, bool | np.bool_) == (kind is bool)
+
+
 @cache
 def _hints(function: Callable[..., object]) -> dict[str, Any]:
     return get_type_hints(function)
@@ -116,20 +121,16 @@ def _fits(value: Any, hint: Any) -> bool:
         wanted = inner if _is_of_fixed_length(hint) or not is_list(value) else inner[:1] * len(value)
         return is_list(value) and len(value) == len(wanted) and all(map(_fits, value, wanted))
     kind = origin or hint
-    if kind in _NUMBERS:
-        is_one = isinstance(value, _NUMBERS[kind]) and isinstance(value, bool | np.bool_) == (kind is bool)
-        return is_one and not (isinstance(value, Integral) and abs(int(value)) >= _BELOW[kind])
+    if kind in _PLAIN:
+        return is_plain(value, kind) and not (isinstance(value, Integral) and abs(int(value)) >= _BELOW[kind])
     if not isinstance(kind, type) or kind.__module__ == "typing" or getattr(kind, "_is_protocol", False):
-        return not _at_run_time(kind) or (isinstance(value, kind) and not isinstance(value, type))
+        at_run_time = getattr(kind, "_is_runtime_protocol", False)
+        return not at_run_time or (isinstance(value, kind) and not isinstance(value, type))
     return isinstance(value, kind)
 
 
 def _is_of_fixed_length(hint: Any) -> bool:
     return get_origin(hint) is tuple and ... not in get_args(hint)
-
-
-def _at_run_time(kind: Any) -> bool:
-    return bool(getattr(kind, "_is_runtime_protocol", False))
 
 
 def _described(value: Any) -> str:
@@ -147,6 +148,6 @@ def _wanted(hint: Any) -> str:
     kind = origin or hint
     if origin in (tuple, list, Sequence):
         count = f" of {len(inner)}" if _is_of_fixed_length(hint) else ""
-        return f"{_WORDS.get(kind, 'a list')}{count}, each {_wanted(inner[0])}"
+        return f"{WORDS.get(kind, 'a list')}{count}, each {_wanted(inner[0])}"
     name = getattr(kind, "__name__", str(kind))
-    return _WORDS.get(kind) or f"{'an' if name[0] in 'AEIO' else 'a'} {name}"
+    return WORDS.get(kind) or f"{'an' if name[0] in 'AEIO' else 'a'} {name}"

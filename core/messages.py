@@ -12,14 +12,8 @@ class Message(str):
     """An English sentence or label, filled in, that knows its template and its facts: translators see templates.
 
     It is used as any string is, and handed on by exceptions: ``str(MobiusFlowError(message))`` is the message.
-    Operations on strings give plain ones, which nobody can translate; facts may be messages.
-
-    Parameters
-    ----------
-    template
-        A format string with named fields. A message without facts marks one for translators.
-    facts
-        What the fields stand for.
+    Operations on strings give plain ones, which nobody can translate; facts may be messages.  The template is a format
+    string with named fields; a message without facts marks one for translators.
 
     Examples
     --------

@@ -24,20 +24,9 @@ class Obstacle:
     meshes have some. So are open meshes, meshes that cross themselves, and triangles of either orientation: there is no
     inside and no outside.
 
-    Parameters
-    ----------
-    vertices
-        Positions in the user's units, shape (k, 3).
-    faces
-        Indices of each simplex's vertices, shape (f, 3) for triangles or (f, 2) for segments.
-    name
-        What users call it.
-
-    Raises
-    ------
-    CurveError
-        If there is no simplex, a coordinate is not finite or too large, an index has no vertex, or a shape or type is
-        wrong; the message says which, counted from 1.
+    ``vertices``, shape (k, 3), are in the user's units, ``faces`` indices of each simplex's vertices, shape (f, 3) for
+    triangles or (f, 2) for segments.  Raises CurveError if there is no simplex, a coordinate is not finite or too
+    large, an index has no vertex, or a shape or type is wrong; the message says which, counted from 1.
     """
 
     vertices: FloatArray

@@ -7,24 +7,12 @@ import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from inspect import cleandoc
-from numbers import Integral, Real
-from types import MappingProxyType
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-import numpy as np
-
-from .arguments import check_known, check_number, is_list
+from .arguments import WORDS, check_known, check_number, is_list, is_plain
 from .errors import OptionError, shown
 
 _Class = TypeVar("_Class", bound=type)
-_KINDS: Mapping[type, tuple[tuple[type, ...], str]] = MappingProxyType(  # what a value may be; NumPy's are welcome
-    {
-        int: ((Integral,), "a whole number"),
-        float: ((Real,), "a number"),
-        str: ((str,), "a name"),
-        bool: ((bool, np.bool_), "True or False"),
-    }
-)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,13 +64,12 @@ class Option:
         return None if value is None and self.default is None else self._checked(value)
 
     def _checked(self, value: Any) -> Any:
-        types, noun = _KINDS.get(self.kind, ((), ""))
+        noun = "a name" if self.kind is str else WORDS.get(self.kind, "")
         if self.objects is not None:
             if self.objects[1](value):
                 return value
             noun = f"{noun} or {self.objects[0]}" if noun else self.objects[0]
-        # bool is a kind of int, but no number
-        if not isinstance(value, types) or (isinstance(value, bool) and bool not in types):
+        if not is_plain(value, self.kind):
             raise OptionError(f"{self.name} is {shown(value)}; it must be {noun}")
         if self.kind in (int, float):
             self._check_number(value)

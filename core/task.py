@@ -25,24 +25,13 @@ _log = logging.getLogger(__name__)
 class Task:
     """A curve among obstacles, some of whose vertices are pinned.
 
-    Parameters
-    ----------
-    curve
-        An embedded polygon, in any units and place.
-    obstacles
-        Surfaces and polylines, in the curve's units, that it must never touch.
-    pins
-        Indices, from 0, of vertices that stay exactly where they are. Nothing can move on an arc that is straight from
-        one of them to the next.
-    pin_tangents
-        Whether the neighbours of pinned vertices in the refined curve are pinned too, and with them its direction.
+    - ``curve``: an embedded polygon, in any units and place.
+    - ``obstacles``: surfaces and polylines, in the curve's units, that it must never touch.
+    - ``pins``: indices, from 0, of vertices that stay exactly where they are.  Nothing can move on an arc that is
+      straight from one of them to the next.
+    - ``pin_tangents``: whether the neighbours of pins in the refined curve are pinned too, and with them its direction.
 
-    Raises
-    ------
-    MobiusFlowError
-        If something is of a wrong type.
-    OptionError
-        If a pin is not a vertex of the curve or is named twice.
+    Raises OptionError if a pin is not a vertex of the curve or is named twice.
     """
 
     curve: Curve

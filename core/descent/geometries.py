@@ -47,17 +47,15 @@ class Geometry(Protocol):
 class Constrained:
     """The manifold {Φ = 0}, to which (42) of [RS21] leads back after a step."""
 
-    tolerance: float = number(
-        1e-11, most=1
-    )  # of lengths, a relative error, and of barycenters: far below any gap that can be proved
+    # of lengths, a relative error, and of barycenters: far below any gap that can be proved
+    tolerance: float = number(1e-11, most=1)
     max_iterations: int = number(15)  # of the modified Newton method (42), and of Newton's for what it leaves over
     # change of an edge vector, relative to its length, up to which `TangentSpace.restoration` is as good as the
     # shortest way back in the metric, and far cheaper. Larger corrections should know where other strands are, not
     # turn edges that are much shorter than others, and not cost the energy the step has gained
     small: float = number(1e-3)
-    contraction: float = number(
-        0.6, most=1
-    )  # least rate of both; where it is slower, a shorter step is cheaper than more iterations
+    # least rate of both; where it is slower, a shorter step is cheaper than more iterations
+    contraction: float = number(0.6, most=1)
     prescribes = True
 
     def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:

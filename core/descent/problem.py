@@ -132,18 +132,14 @@ class Problem:
         return free_motion(self.mesh, start, end, self.obstacles)
 
 
+@dataclass(eq=False, repr=False)
 class Point:
-    """A polygon with the values that methods ask for, each computed at most once.
+    """A polygon with the values that methods ask for, each computed at most once."""
 
-    ``vertices``, shape (n, m), are in the program's units, ``placed`` in the user's, rounded: the doubles that proofs
-    are about and that are written. ``metric_age`` is how many steps ago the metric was that of the curve.
-    """
-
-    def __init__(self, problem: Problem, vertices: FloatArray, placed: FloatArray) -> None:
-        self.problem = problem
-        self.vertices = vertices
-        self.placed = placed
-        self.metric_age = 0
+    problem: Problem
+    vertices: FloatArray  # in the program's units; shape (n, m)
+    placed: FloatArray  # in the user's, rounded: the doubles that proofs are about and that are written
+    metric_age: int = 0  # how many steps ago the metric was that of the curve
 
     def within(self, problem: Problem) -> "Point":
         """The same polygon in another problem on the same mesh."""

@@ -69,24 +69,19 @@ class Hops:
             below = run.iterate.energy - self.gain * energy_scale(run.problem.mesh, run.iterate.energy)
             if below < 0.0:  # arcs that are straight
                 return False
-            found = self._next(motions[self._tried % len(motions)], below)
-            if found is None:
+            motion = motions[self._tried % len(motions)]
+            self._tried += 1
+            try:
+                found = trial(run, motion, self._rng, below)
+            except np.linalg.LinAlgError:
                 continue
             lower = found.run.iterate.energy < below
-            run.charge(found.iterations - lower)  # the hop itself is one iterate
+            run.charged += found.iterations - lower  # the hop itself is one iterate
             if lower:
                 run.hop(found.run.point, found.path, found.certified)
                 self._taken += 1
                 return True
         return False
-
-    def _next(self, motion: Motion, below: float) -> "Trial | None":
-        """The next trial, which begins with a motion; None if numbers fail on the way."""
-        self._tried += 1
-        try:
-            return trial(self.run, motion, self._rng, below)
-        except np.linalg.LinAlgError:
-            return None
 
     def summarised(self, outcome: Outcome) -> Outcome:
         """The outcome with what hops have achieved, or what they might."""

@@ -8,10 +8,11 @@ from ..arguments import checked
 from ..curve import at_edges
 from ..deadline import TimeIsUp, TimeLimit
 from ..descent import NoStep, Step
+from ..messages import Message
 from .interventions import INTERVENTIONS
 from .interventions.fallback import with_errors
 from .interventions.grow import with_growth
-from .outcome import Outcome, degenerate, out_of_time, stalled
+from .outcome import Outcome, Status, degenerate, stalled
 from .run import Change, Event, Intervention, Run, Start
 from .trajectory import Iterate
 
@@ -19,13 +20,7 @@ Relaxation = Generator[Iterate, None, Outcome]
 
 
 class WithOutcome:
-    """The iterates of a relaxation for a ``for`` loop, which by itself would lose the outcome.
-
-    Attributes
-    ----------
-    outcome
-        How it ended; None before the loop is through.
-    """
+    """The iterates of a relaxation for a ``for`` loop, which by itself loses the ``outcome``: None until its end."""
 
     @checked
     def __init__(self, relaxation: Relaxation) -> None:
@@ -48,7 +43,8 @@ def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
         except TimeIsUp as up:
             if up.limit is not limit:
                 raise
-            return out_of_time(limit.seconds)
+            reached = Message("stopped at the time limit ({seconds:g} s)", seconds=limit.seconds)
+            return Outcome(Status.TIME_LIMIT, (reached,))
         yield iterate
 
 

@@ -24,20 +24,12 @@ class Status(Enum):
 class Outcome:
     """How a relaxation ended.
 
-    Attributes
-    ----------
-    status
-        Why it ended.
-    clauses
-        The same in words, and what else there is to say.
-    negative_eigenvalues
-        Of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum, more at a saddle.
-    sampled_errors
-        Of the hierarchical solver, when they were last looked at: in the end, unless that came of a sudden; else None.
-    place
-        Where on the last curve the reason is, if it is somewhere.
-    unbounded
-        Whether strands pull tight without limit, so that there is no least energy to look for.
+    - ``status``: why it ended.
+    - ``clauses``: the same in words, and what else there is to say.
+    - ``negative_eigenvalues``: of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum.
+    - ``sampled_errors``: those of the hierarchical solver when last looked at: in the end, unless that came suddenly.
+    - ``place``: where on the last curve the reason is, if it is somewhere.
+    - ``unbounded``: whether strands pull tight without limit, so that there is no least energy to look for.
     """
 
     status: Status
@@ -77,19 +69,8 @@ class Outcome:
 
 
 def converged(norm: float, bound: float) -> Outcome:
-    """The projected gradient is small enough."""
     message = Message("converged: projected gradient {norm:.3g} ≤ {bound:.3g}", norm=norm, bound=bound)
     return Outcome(Status.CONVERGED, (message,))
-
-
-def out_of_iterations(count: int) -> Outcome:
-    """The limit is reached."""
-    return Outcome(Status.ITERATION_LIMIT, (Message("stopped at the iteration limit ({count})", count=count),))
-
-
-def out_of_time(seconds: float) -> Outcome:
-    """The time is up."""
-    return Outcome(Status.TIME_LIMIT, (Message("stopped at the time limit ({seconds:g} s)", seconds=seconds),))
 
 
 def stalled(reason: str, place: Place | None = None) -> Outcome:
@@ -98,7 +79,6 @@ def stalled(reason: str, place: Place | None = None) -> Outcome:
 
 
 def degenerate(error: Exception) -> Message:
-    """Why linear algebra fails."""
     return Message("the curve has become too degenerate: {error}", error=str(error).rstrip("."))
 
 

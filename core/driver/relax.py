@@ -33,22 +33,13 @@ WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that 
 class Result:
     """How a relaxation ended, and where.
 
-    Attributes
-    ----------
-    outcome
-        Why it ended.
-    last
-        The last iterate.
-    energies
-        The objective at every iterate, the start first.
-    fallback_steps
-        Iterates reached by the fallback method.
-    seconds
-        Wall-clock time.
-    method
-        Name of the requested method.
-    task
-        What was to be relaxed.
+    - ``outcome``: why it ended.
+    - ``last``: the last iterate.
+    - ``energies``: the objective at every iterate, the start first.
+    - ``fallback_steps``: iterates reached by the fallback method.
+    - ``seconds``: wall-clock time.
+    - ``method``: name of the requested method.
+    - ``task``: what was to be relaxed.
     """
 
     outcome: Outcome
@@ -131,19 +122,9 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
     `minimize`.  BLAS runs with one thread while this computes, and as the caller set it between iterates.
 
-    Parameters
-    ----------
-    curve
-        An embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.
-    options
-        How to relax; None means the defaults.
-
-    Raises
-    ------
-    CurveError
-        If the curve touches itself or an obstacle, or is degenerate; the message says where.
-    OptionError
-        If options contradict the task or each other.
+    The curve is an embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.  Raises
+    CurveError if it touches itself or an obstacle, or is degenerate; the message says where.  Raises OptionError if
+    options contradict the task or each other.
     """
     began = time.perf_counter()
     options = RelaxOptions() if options is None else options

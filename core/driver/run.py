@@ -10,9 +10,10 @@ from ..curve.refine import Resolution
 from ..descent import METHODS, Method, NoStep, Point, Problem, State, Step
 from ..energies.components import energy_scale
 from ..hierarchy import SampledErrors
+from ..messages import Message
 from ..types import FloatArray
 from .options import RelaxOptions
-from .outcome import Outcome, converged, degenerate, out_of_iterations
+from .outcome import Outcome, Status, converged, degenerate
 from .rises import Rises
 from .trajectory import Iterate
 
@@ -55,7 +56,7 @@ class Run:
         self.rises = Rises()
         self.point = problem.at_curve(start).anchored
         self._memory = State()
-        self._charged = 0
+        self.charged = 0  # iterations of trials
         self._certified = problem.certifiable  # an embedded start, and so far no motion
         self.iterate = self._described(0)
 
@@ -75,11 +76,7 @@ class Run:
     @property
     def iterations(self) -> int:
         """Those so far, including those of rejected trials."""
-        return self.iterate.index + self._charged
-
-    def charge(self, iterations: int) -> None:
-        """Charge a trial's iterations to the budget."""
-        self._charged += iterations
+        return self.iterate.index + self.charged
 
     def step(self) -> Step | NoStep:
         """The present method's next step, ending at a point of the present problem."""
@@ -146,7 +143,8 @@ class Run:
 
     def at_limit(self) -> Outcome:
         """How the run ends at the iteration limit."""
-        outcome = out_of_iterations(self.iterations)
+        reached = Message("stopped at the iteration limit ({count})", count=self.iterations)
+        outcome = Outcome(Status.ITERATION_LIMIT, (reached,))
         if self._feasible:
             return outcome
         uneven = "lengths are still up to {percent:.2g} % off target"

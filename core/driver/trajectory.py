@@ -22,33 +22,20 @@ from ..types import BoolArray, FloatArray, IntArray
 class Iterate:
     """One accepted curve of a relaxation, immutable, in the user's units.
 
-    Attributes
-    ----------
-    index
-        0 for the (refined) start, then 1, 2, ...
-    curve
-        The polygon; the iterates of a run have the same vertices where the mesh is ``fixed``.
-    energy
-        The objective: the energy that is minimised, and the barrier.
-    gradient_norm
-        Norm of the projected gradient at this curve (dimensionless), in the metric that the method takes it in: that of
-        this curve, or of one up to two steps before.
-    step_size
-        Step size τ that led here, 0 for the start and where the mesh changes.
-    path
-        The motion from the previous iterate to this one: vertices, each (n, m), at the ends of its straight
-        legs; the last is this curve, the start (the previous curve) is left out. Empty for the start, and where the
-        mesh changes: there this is the previous curve with other vertices on its edges.
-    certified
-        True if every leg from the start of the run to here was proved free of contact.
-    edge_length_error
-        max |log ℓ/ℓ⁰| over the edges.
-    method
-        Name of the method that took the step: the fallback method where the requested one was stuck.
-    grown
-        How many times the lengths of the start, as they were to be there, those of this curve are to be.
-    pins
-        Pinned vertices of this curve, counted from 0, and those that cannot move between them.
+    - ``index``: 0 for the (refined) start, then 1, 2, ...
+    - ``curve``: the polygon; the iterates of a run have the same vertices where the mesh is ``fixed``.
+    - ``energy``: the objective, which is the energy that is minimised, and the barrier.
+    - ``gradient_norm``: of the projected gradient (dimensionless), in the metric that the method takes it in: that of
+      this curve, or of one up to two steps before.
+    - ``step_size``: the step size τ that led here, 0 for the start and where the mesh changes.
+    - ``path``: the motion from the previous iterate: vertices, each (n, m), at the ends of its straight legs, of which
+      the last is this curve.  Empty for the start, and where the mesh changes: there this is the previous curve with
+      other vertices on its edges.
+    - ``certified``: whether every leg from the start of the run to here was proved free of contact.
+    - ``edge_length_error``: max |log ℓ/ℓ⁰| over the edges.
+    - ``method``: name of the one that took the step, which is the fallback method where the requested one was stuck.
+    - ``grown``: how many times the lengths of the start, as they were to be there, those of this curve are to be.
+    - ``pins``: pinned vertices of this curve, counted from 0, and those that cannot move between them.
     """
 
     index: int
@@ -76,14 +63,7 @@ class Trajectory:
     What was avoided is in ``obstacle_000_vertices``, shape (k, 3), and ``obstacle_000_faces``, shape (f, 3) or (f, 2),
     ….  ``pins``, shape (k, m), are the places of the vertices that were held, if there were any.  Coordinates are the
     user's, in double: what was proved is about exactly these numbers.  Where the run came from is kept as JSON in
-    ``provenance``, an array of one string, which `verify` does not look at.
-
-    Parameters
-    ----------
-    provenance
-        Plain values, such as the version and the options; None leaves the array out.
-    obstacles
-        What the run avoids.
+    ``provenance``, plain values as an array of one string, which `verify` does not look at and None leaves out.
     """
 
     @checked
@@ -102,13 +82,11 @@ class Trajectory:
     def add(self, iterate: Iterate) -> None:
         """Append the motion that led to an iterate (for the first one: the start).
 
-        Raises
-        ------
-        MobiusFlowError
-            If the iterate cannot follow the last one, by its number or its mesh: nobody has proved the motion between
-            them.  That the iterates are those of one run is up to the caller, and found out by `verify`.
+        Raises MobiusFlowError if it cannot follow the last one, by its number or its mesh: nobody has proved the motion
+        between them.  That the iterates are those of one run is up to the caller, and found out by `verify`.
         """
-        if not self._follows(iterate):
+        fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
+        if iterate.index != self._last_index + 1 or not fits:
             raise MobiusFlowError(
                 f"iterate {iterate.index} does not follow the {self._last_index + 1} iterates of this trajectory; "
                 "it takes all iterates of one run, in order: make a new Trajectory for another run"
@@ -120,10 +98,6 @@ class Trajectory:
         if self._last is None:
             self._pins = iterate.curve.vertices[list(iterate.pins)]
         self._last, self._last_index = iterate.curve, iterate.index
-
-    def _follows(self, iterate: Iterate) -> bool:
-        fits = not iterate.path or (self._last is not None and iterate.curve.mesh == self._last.mesh)
-        return iterate.index == self._last_index + 1 and fits
 
     def arrays(self) -> dict[str, FloatArray | IntArray | BoolArray | NDArray[np.str_]]:
         """The arrays of the file, by name."""

@@ -28,7 +28,14 @@ ENERGIES: Mapping[str, Energy] = MappingProxyType(
 )
 """Every energy that users can choose, by name; the first is the default."""
 
-TERMS: Mapping[str, Term] = MappingProxyType({term.name: term for term in [Bending()]})
+TERMS: Mapping[str, Term] = MappingProxyType(
+    {
+        term.name: term
+        for term in [
+            Bending(),
+        ]
+    }
+)
 """What users can add to an energy, by name."""
 
 __all__ = [

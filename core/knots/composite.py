@@ -28,9 +28,7 @@ _MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above roun
 class BallSearch:
     """How thoroughly balls are searched for."""
 
-    arcs: int = number(
-        24, above=1
-    )  # places where arcs of a knot begin and end; in links these are shared by the components
+    arcs: int = number(24, above=1)  # places where arcs of a knot begin and end; components of a link share them
     shortest: float = number(1 / 8, most=0.5)  # arc, as a fraction of its component
     samples: int = number(120, above=5)  # vertices of the curve that balls are fitted to
     trials: int = number(3000)  # balls that are fitted at most, which takes a few seconds; other links are not searched

@@ -29,9 +29,7 @@ class CoarseStart(Intervention):
 
     min_vertices: int = number(1500)  # from which it is worth while
     min_gain: float = number(2.0, above=1)  # factor by which there must be fewer at first
-    min_iterations: int = number(
-        30
-    )  # the way there and back takes a dozen: with fewer nothing would be left for untangling
+    min_iterations: int = number(30)  # the way there and back takes a dozen, and leaves some for untangling
     min_share: float = number(0.05, most=1)  # of the way to the smooth curve, below which the curve stays as it is
     _coarse: Curve | None = field(default=None, init=False)
 

@@ -38,9 +38,7 @@ class Grow(Intervention):
     slowest: float = number(0.01)
     # of the objective, by its scale, in one motion: more is made by contacts that it takes long to relax from
     rise: float = number(0.25)
-    settled: float = number(
-        0.01
-    )  # decrease of the objective in a step, by its scale, from which on the next motion may come
+    settled: float = number(0.01)  # decrease of the objective in a step, by its scale, after which the next may come
     later: float = number(0.1, most=1)  # factor of that after no motion was found
     edges_per_gap: float = number(2.0)  # what is packed bends as narrowly as strands are near
     most: int = number(FinerMesh.most)  # vertices, unless there are more
