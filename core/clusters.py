@@ -42,7 +42,6 @@ class ClusterTree:
 
     @property
     def size(self) -> int:
-        """Number of clusters."""
         return len(self.start)
 
     @property

@@ -56,12 +56,10 @@ class Rest:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the gradient is within the bound."""
         return self.gradient_norm <= self.bound
 
     @property
     def sentence(self) -> str:
-        """The same in words."""
         if not self.at_rest:
             return "not at rest"
         if self.index is None:
@@ -91,7 +89,6 @@ class Info:
 
     @property
     def ropelength(self) -> float | None:
-        """Length over thickness."""
         return None if self.thickness is None else self.length / self.thickness
 
 

@@ -122,6 +122,21 @@ def strand_gaps(curve: Curve, radius: float) -> FloatArray:
     return gaps
 
 
+def near_by_octave(points: FloatArray, sizes: FloatArray, reach: float) -> tuple[IntArray, IntArray, FloatArray]:
+    """Pairs of a larger and a smaller point and their distances, below ``reach`` times the largest size of the octave.
+
+    A k-d tree per octave of sizes keeps them few when sizes differ a lot.  Within an octave a pair is found twice.
+    """
+    octave, found = np.frexp(sizes)[1], []
+    for level in np.unique(octave):
+        large, small = np.flatnonzero(octave == level), np.flatnonzero(octave <= level)
+        tree, others = cKDTree(points[large]), cKDTree(points[small])
+        near = tree.sparse_distance_matrix(others, reach * float(sizes[large].max()), output_type="ndarray")
+        found.append((large[near["i"]], small[near["j"]], near["v"]))
+    i, j, distance = (np.concatenate(each) for each in zip(*found, strict=True))
+    return i, j, distance
+
+
 def _distances(curve: Curve, i: IntArray, j: IntArray) -> FloatArray:
     return np.asarray(np.linalg.norm(curve.vertices[i] - curve.vertices[j], axis=1))
 

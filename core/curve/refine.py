@@ -29,16 +29,11 @@ SAMPLES_PER_SPACING = 4.0  # sample points per default edge length when gaps are
 
 @dataclass(frozen=True)
 class Resolution:
-    """How long edges may be.
+    """How long edges may be."""
 
-    ``vertices`` is how many there would be if no strands were near, None for 200 per component; ``edges_per_gap`` how
-    many edges fit in between near strands; ``clearance`` gives the distance of obstacles from each edge of a curve,
-    shape (edges,), or inf.
-    """
-
-    vertices: int | None = None
-    edges_per_gap: float = 1.0
-    clearance: Callable[[Curve], FloatArray | float] = lambda _: np.inf
+    vertices: int | None = None  # how many there would be if no strands were near; None for 200 per component
+    edges_per_gap: float = 1.0  # how many edges fit in between near strands
+    clearance: Callable[[Curve], FloatArray | float] = lambda _: np.inf  # of obstacles from each edge, (edges,) or inf
 
 
 @checked

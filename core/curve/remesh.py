@@ -71,17 +71,12 @@ def onto_chords(curve: Curve, vertices: IntArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Remeshed:
-    """A change of mesh.
+    """A change of mesh."""
 
-    ``moved`` is the old polygon after its superfluous vertices have moved onto their chords, and ``curve`` the new one:
-    the same set of points, up to rounding.  ``lengths``, shape (edges',), are wanted on the new mesh and add up to the
-    total of each arc between pins; ``pins`` are the old ones on it.
-    """
-
-    moved: Curve
-    curve: Curve
-    lengths: FloatArray
-    pins: Pins
+    moved: Curve  # the old polygon after its superfluous vertices have moved onto their chords
+    curve: Curve  # the new one: the same set of points, up to rounding
+    lengths: FloatArray  # wanted on the new mesh; they add up to the total of each arc between pins; shape (edges',)
+    pins: Pins  # the old ones on the new mesh
 
 
 def remesh(

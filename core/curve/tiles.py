@@ -12,15 +12,11 @@ ROWS_TIMES_COLUMNS = 24_000  # doubles in one tile array; some ten of them shoul
 
 
 class Tile(NamedTuple):
-    """A block of edge pairs (I, J), I in ``rows`` and J in ``columns``.
-
-    ``excluded`` marks the pairs, as (row, column) positions in the block, that do not count: edges with a
-    common vertex, and pairs that another tile (or the transposed place in this one) has already.
-    """
+    """A block of edge pairs (I, J), I in ``rows`` and J in ``columns``."""
 
     rows: slice
     columns: slice
-    excluded: BoolArray
+    excluded: BoolArray  # pairs that do not count: edges with a common vertex, and what is in another tile or place
 
 
 class RowTile(NamedTuple):

@@ -13,10 +13,10 @@ from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.spatial import cKDTree
 
 from ..arguments import checked_fields
 from ..curve import Curve
+from ..curve.distances import near_by_octave
 from ..curve.tiles import EdgePairIndices
 from ..types import BoolArray, FloatArray, IntArray
 from .complex_steps import change, stepped
@@ -149,23 +149,11 @@ def is_replaced(curve: Curve, i: IntArray, j: IntArray) -> BoolArray:
 def near_pairs(curve: Curve) -> tuple[IntArray, IntArray]:
     """Unordered pairs of edges with q < 9/4 that the barrier counts, as two index arrays, no longer edge first.
 
-    A k-d tree per octave of edge lengths keeps the candidates few when lengths differ a lot: a near pair
-    has |Δ| < 3 max(ℓ_I, ℓ_J), so each edge is searched within 3 lengths among edges no longer than its octave.
-    The last answers are kept, because energy and barrier ask the same.
+    A near pair has |Δ| < 3 max(ℓ_I, ℓ_J).  The last answers are kept, because energy and barrier ask the same.
     """
-    ell, midpoints = curve.edge_lengths, curve.midpoints
+    ell = curve.edge_lengths
+    j, i, distance = near_by_octave(curve.midpoints, ell, 2.0 * np.sqrt(FAR))
     octave = np.frexp(ell)[1]
-    found: list[FloatArray] = []
-    for level in np.unique(octave):
-        long = np.flatnonzero(octave == level)
-        short = np.flatnonzero(octave <= level)
-        reach = 2.0 * np.sqrt(FAR) * float(np.max(ell[long]))
-        tree = cKDTree(midpoints[long])
-        near = tree.sparse_distance_matrix(cKDTree(midpoints[short]), reach, output_type="ndarray")
-        found.append(np.stack([short[near["j"]], long[near["i"]], near["v"]]))
-    table = np.concatenate(found, axis=1)
-    i, j, distance = table[0].astype(np.intp), table[1].astype(np.intp), table[2]
-    # within one octave every pair is found twice
     kept = (distance**2 < FAR * (ell[i] + ell[j]) ** 2) & ((octave[i] != octave[j]) | (i < j))
     i, j = i[kept], j[kept]
     kept = curve.mesh.index_distance(i, j) >= MIN_INDEX_DISTANCE

@@ -64,7 +64,6 @@ def columns(word: Sequence[int]) -> tuple[list[int], int]:
 
 
 def mirror(word: Sequence[int]) -> Word:
-    """Mirror image: every crossing changed."""
     return tuple(-letter for letter in word)
 
 

@@ -90,7 +90,6 @@ class Ring:
 
     @property
     def period(self) -> float:
-        """The angle after which the curve closes."""
         return 2 * math.pi * self.turns
 
     def points(self, theta: FloatArray) -> FloatArray:

@@ -34,7 +34,6 @@ class BallSearch:
     trials: int = number(3000)  # balls that are fitted at most, which takes a few seconds; other links are not searched
 
     def places(self, components: int) -> int:
-        """Places on each component."""
         return max(int(1 / self.shortest), self.arcs // components)
 
     def lengths(self, components: int) -> range:
@@ -54,7 +53,6 @@ class Ball:
     radius: float
 
     def contains(self, points: FloatArray) -> BoolArray:
-        """Whether points, shape (n, 3), lie inside."""
         return np.asarray(np.linalg.norm(points - self.center, axis=1) < self.radius)
 
     def is_clear_of(self, obstacle: Obstacle) -> bool:

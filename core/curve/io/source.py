@@ -51,10 +51,9 @@ class Source:
         text = _decode(path, data).replace("\r\n", "\n").replace("\r", "\n")
         if text.count("\n") > MAX_LINES:
             raise CurveFileError(path, f"more than {MAX_LINES} lines, more than this program reads")
-        source = cls(path, text, hashlib.sha256(data).hexdigest())
-        if not source.text.strip():
-            raise source.error("the file is empty")
-        return source
+        if not text.strip():
+            raise CurveFileError(path, "the file is empty")
+        return cls(path, text, hashlib.sha256(data).hexdigest())
 
     @cached_property
     def lines(self) -> list[str]:
@@ -62,7 +61,6 @@ class Source:
         return self.text.split("\n")
 
     def error(self, reason: str, line: int | None = None) -> CurveFileError:
-        """Make the error that names this file, the line and the reason."""
         return CurveFileError(self.path, reason, line)
 
     def number(self, token: str, line: int) -> float:
@@ -75,7 +73,6 @@ class Source:
             raise self.error(f"{shown(token)} is not a number", line) from None
 
     def integer(self, token: str, line: int) -> int:
-        """Parse a count or an index."""
         if not _INTEGER.fullmatch(token) or len(token) > _MAX_DIGITS:
             raise self.error(f"{shown(token)} is not a whole number", line)
         return int(token)
@@ -100,21 +97,15 @@ def _decode(path: Path, data: bytes) -> str:
 
 @dataclass(frozen=True)
 class Polygon:
-    """One component as found in a file.
-
-    ``line_of`` gives the line where the vertex of an index (from 0) was read; ``numbers`` is what the file counts its
-    vertices as, from 0, where these can be in another order than along the curve.  It is also closed if the last vertex
-    repeats the first.
-    """
+    """One component as found in a file."""
 
     points: Sequence[Sequence[float]]
-    line_of: Callable[[int], int | None]
-    closed: bool = True
-    numbers: Sequence[int] | None = None
+    line_of: Callable[[int], int | None]  # where the vertex of an index, from 0, was read
+    closed: bool = True  # it also is if the last vertex repeats the first
+    numbers: Sequence[int] | None = None  # that the file counts vertices by, from 0, if not in order along the curve
 
     @property
     def repeats_first(self) -> bool:
-        """Whether the last vertex is at the first."""
         return len(self.points) > 1 and list(self.points[0]) == list(self.points[-1])
 
 

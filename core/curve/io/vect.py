@@ -24,7 +24,6 @@ class _Words:
 
     @property
     def left(self) -> int:
-        """How many words are left."""
         return len(self.words) - self.position
 
     def error(self, reason: str) -> CurveFileError:
@@ -38,16 +37,13 @@ class _Words:
             raise self.source.error(f"the file is truncated: {count} {what} announced, {self.left} found", last)
 
     def integers(self, count: int, what: str) -> list[int]:
-        """Take ``count`` whole numbers."""
         self.demand(count, what)
         return [self.source.integer(*self.take()) for _ in range(count)]
 
     def numbers(self, count: int) -> list[float]:
-        """Take ``count`` numbers."""
         return [self.source.number(*self.take()) for _ in range(count)]
 
     def take(self) -> tuple[str, int]:
-        """Take one word."""
         self.position += 1
         return self.words[self.position - 1]
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from ...arguments import checked_fields, number
 from ...constraints import Barycenters, Parts
 from ...curve import Curve
+from ...curve.distances import near_by_octave
 from ...descent import Step
 from ...hierarchy import moebius_energy
 from ...knots.composite import is_searchable, knotted_ball
@@ -108,17 +108,10 @@ def _balls(points: FloatArray, part: IntArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _near(centers: FloatArray, radii: FloatArray, gap: float) -> sp.coo_array:
-    """Which balls are too near to be parts, sparse (p, p); a k-d tree per octave of radii finds those no larger."""
-    octave = np.frexp(radii)[1]
-    found = []
-    for level in np.unique(octave):
-        large, small = np.flatnonzero(octave == level), np.flatnonzero(octave <= level)
-        reach = (2.0 + gap) * float(radii[large].max())
-        near = cKDTree(centers[large]).sparse_distance_matrix(cKDTree(centers[small]), reach, output_type="ndarray")
-        i, j = large[near["i"]], small[near["j"]]
-        kept = near["v"] < radii[i] + radii[j] + gap * np.maximum(radii[i], radii[j])
-        found.append(np.stack([i[kept], j[kept]]))
-    i, j = np.concatenate(found, axis=1)
+    """Which balls are not far enough from each other to be parts; sparse, shape (p, p)."""
+    i, j, distance = near_by_octave(centers, radii, 2.0 + gap)
+    near = distance < radii[i] + radii[j] + gap * np.maximum(radii[i], radii[j])
+    i, j = i[near], j[near]
     return sp.coo_array((np.ones(len(i), dtype=bool), (i, j)), shape=(len(radii), len(radii)))
 
 
