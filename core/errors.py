@@ -68,8 +68,6 @@ def shown(value: object) -> str:
 def counted(number: int, noun: str) -> str:
     """Say how many things there are, one or several.
 
-    Examples
-    --------
     >>> counted(1, "stage"), counted(56, "leg")
     ('1 stage', '56 legs')
     """
@@ -79,8 +77,6 @@ def counted(number: int, noun: str) -> str:
 def choice(name: str, known: Iterable[str]) -> str:
     """Say what can be chosen instead of an unknown name, the likeliest first.
 
-    Examples
-    --------
     >>> choice("lbgfs", ["lbfgs", "cg"])
     'did you mean lbfgs? choose one of lbfgs, cg'
     """

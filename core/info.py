@@ -49,10 +49,10 @@ def measure(curve: Curve, energy: str = "moebius") -> float:
 class Rest:
     """Whether a curve is at rest."""
 
-    objective: float  # the Möbius energy with its barrier
-    gradient_norm: float  # of the projected gradient in the metric J_C, edge lengths being prescribed
-    bound: float  # of that at rest, as `relax` has it by default
-    index: int | None  # of the Hessian, 0 at a minimum; None away from rest, or if it is not resolved
+    objective: float  #: the Möbius energy with its barrier
+    gradient_norm: float  #: of the projected gradient in the metric J_C, edge lengths being prescribed
+    bound: float  #: of that at rest, as `relax` has it by default
+    index: int | None  #: of the Hessian, 0 at a minimum; None away from rest, or if it is not resolved
 
     @property
     def at_rest(self) -> bool:
@@ -74,15 +74,15 @@ class Info:
     components: tuple[int, ...]
     dimension: int
     type: KnotType
-    energies: Mapping[str, float | None]  # by the names of `ENERGIES`
+    energies: Mapping[str, float | None]  #: by the names of `ENERGIES`
     rest: Rest | None
     length: float
-    thickness: float | None  # as `collision.gap.thickness`
+    thickness: float | None  #: radius of the thickest tube around it
     writhe: float | None
     average_crossing_number: float | None
     shortest_edge: float
     longest_edge: float
-    gap: float  # least distance of edges that are no neighbours; infinite for a triangle
+    gap: float  #: least distance of edges that are no neighbours; infinite for a triangle
 
     def __repr__(self) -> str:
         return f"<Info: {self.type}, {sum(self.components)} vertices, length {self.length:.6g}>"

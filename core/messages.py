@@ -15,8 +15,6 @@ class Message(str):
     Operations on strings give plain ones, which nobody can translate; facts may be messages.  The template is a format
     string with named fields; a message without facts marks one for translators.
 
-    Examples
-    --------
     >>> closed = Message("{name} is {state}", name="'A'", state=Message("closed"))
     >>> closed
     "'A' is closed"

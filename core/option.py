@@ -96,12 +96,12 @@ def option(default: Any, label: str, help: str, **more: Any) -> Any:
 
 def declared(owner: type) -> list[Option]:
     hints = get_type_hints(owner)
-    return [Option(name=f.name, default=f.default, **_type(hints[f.name]), **f.metadata) for f in fields(owner)]
-
-
-def _type(hint: Any) -> dict[str, Any]:
-    """The type of an option's values, or of their items: int of ``int``, ``int | None`` and ``tuple[int, ...]``."""
-    return {"kind": (get_args(hint) or (hint,))[0], "repeated": get_origin(hint) is tuple}
+    found = []
+    for each in fields(owner):
+        hint = hints[each.name]  # int, int | None or tuple[int, ...]: the kind is int
+        kind, repeated = (get_args(hint) or (hint,))[0], get_origin(hint) is tuple
+        found.append(Option(name=each.name, default=each.default, kind=kind, repeated=repeated, **each.metadata))
+    return found
 
 
 def documented(owner: _Class) -> _Class:

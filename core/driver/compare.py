@@ -24,13 +24,13 @@ class History:
     """One method's history; what there is of every iterate begins with the start."""
 
     method: str
-    status: str  # the value of a `Status`
-    seconds: tuple[float, ...]  # of processor time since the method began, set-up left out
-    energy: tuple[float, ...]  # the objective, without the penalty that some methods add to it
-    gradient_norm: tuple[float, ...]  # of the gradient of what is minimised
-    fallback: tuple[int, ...]  # iterates to which another method led, because this one was stuck
-    metric: str  # name of the one that gradients were taken in
-    stages: Mapping[int, Curve] = field(default_factory=dict, compare=False)  # curves of some iterates by their index
+    status: str  #: the value of a `Status`
+    seconds: tuple[float, ...]  #: of processor time since the method began, set-up left out
+    energy: tuple[float, ...]  #: the objective, without the penalty that some methods add to it
+    gradient_norm: tuple[float, ...]  #: of the gradient of what is minimised
+    fallback: tuple[int, ...]  #: iterates to which another method led, because this one was stuck
+    metric: str  #: name of the one that gradients were taken in
+    stages: Mapping[int, Curve] = field(default_factory=dict, compare=False)  #: curves of some iterates by their index
 
     def __repr__(self) -> str:
         return f"<History of {self.method}: {self.status} after {self.iterations} iterations, {self.energy[-1]:.9g}>"

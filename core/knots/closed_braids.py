@@ -34,8 +34,6 @@ def braid_closure(word: Sequence[int], vertices: int | None = None, *, strands: 
     few strands and as many vertices as needed, unless given.  Raises CurveError if it is no braid word or the vertices
     are too few.
 
-    Examples
-    --------
     >>> len(braid_closure([1, 1]).mesh.component_sizes)
     2
     """

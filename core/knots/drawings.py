@@ -36,9 +36,9 @@ class Drawing:
     """Closed curves in the plane that cross themselves and each other clearly, two strands at a time, c times."""
 
     curve: Curve
-    crossings: FloatArray  # their places, in the order in which they are come to; shape (c, 2)
-    passes: FloatArray  # first and second edge there, each with the fraction of it as one number; shape (c, 2)
-    first_over: BoolArray  # whether the first is the upper one, over and under alternating from over on; shape (c,)
+    crossings: FloatArray  #: their places, in the order in which they are come to; shape (c, 2)
+    passes: FloatArray  #: first and second edge there, each with the fraction of it as one number; shape (c, 2)
+    first_over: BoolArray  #: whether the first is the upper one, over and under alternating from over on; shape (c,)
 
     @classmethod
     @checked

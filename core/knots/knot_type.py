@@ -47,12 +47,12 @@ DEFAULT_EFFORT = Effort()
 class KnotType:
     """What is known of a type."""
 
-    # those of the table that fit, if any, with m for mirror images, # for sums and ⊔ between parts that come apart
+    #: those of the table that fit, if any, with m for mirror images, # for sums and ⊔ between parts that come apart
     names: tuple[str, ...]
-    proved: bool  # whether the type certainly is one of the names, as no knot of so few crossings is left out
-    diagram: Diagram | None  # that of the fewest crossings that were found
-    evidence: tuple[str, ...]  # what distinguishes the names from others
-    refusal: str = ""  # why no diagram was looked for
+    proved: bool  #: whether the type certainly is one of the names, as no knot of so few crossings is left out
+    diagram: Diagram | None  #: that of the fewest crossings that were found
+    evidence: tuple[str, ...]  #: what distinguishes the names from others
+    refusal: str = ""  #: why no diagram was looked for
 
     def __repr__(self) -> str:
         return f"<KnotType: {self.sentence:.100}>"

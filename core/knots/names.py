@@ -48,8 +48,6 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     ``vertices`` is the total number; by default edges are shorter than strands are apart.  Raises UnknownKnotError for
     other names, and CurveError if the vertices are too few or a number is not allowed.
 
-    Examples
-    --------
     >>> knot("T(2,4)", 100).mesh.component_sizes
     (50, 50)
     """

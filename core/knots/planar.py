@@ -34,8 +34,6 @@ def diagram_knot(code: Sequence[PlanarCrossing], vertices: int | None = None) ->
     The code has for each crossing its four edges, counterclockwise from the one that comes in below; nugatory crossings
     are left out.  Raises CurveError if there is no such diagram, or the vertices are too few or too many.
 
-    Examples
-    --------
     >>> len(diagram_knot([(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]))
     12
     """

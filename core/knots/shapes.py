@@ -58,8 +58,6 @@ def smooth_knot(name: str, vertices: int | None = None) -> Curve:
     Raises UnknownKnotError if no shape is stored for the name, and CurveError if the vertices are too few to follow the
     strands.
 
-    Examples
-    --------
     >>> smooth_knot("hopf link", 60).mesh.component_sizes
     (30, 30)
     """

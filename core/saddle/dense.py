@@ -31,13 +31,7 @@ class WithInverse(Protocol):
 
 
 class DenseTangentSpace(TangentSpace):
-    """The tangent space of constraints of full rank, with J = A ⊗ Id_m.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If A or the Schur complement is not positive definite to working precision.
-    """
+    """Constraints of full rank, J = A ⊗ Id_m; LinAlgError unless A and the Schur complement are positive definite."""
 
     def __init__(self, inner: WithInverse, constraints: ConstraintDerivative) -> None:
         super().__init__(constraints)
@@ -55,7 +49,6 @@ class DenseTangentSpace(TangentSpace):
         return free - self._inner.solve(c.apply_transpose(multipliers)), multipliers
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """J u."""
         return self._inner.apply(u)
 
 
@@ -77,7 +70,6 @@ class DenseWholeSpace(WholeSpace):
         return free - self._inner.solve(self.constraints.apply_transpose(pull))
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """(J + Cᵀ w C) u."""
         c = self.constraints
         return self._inner.apply(u) + c.apply_transpose(self.weights * c.apply(u))
 

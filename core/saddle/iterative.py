@@ -58,7 +58,7 @@ class WithModel(Protocol):
 
 
 class IterativeTangentSpace(TangentSpace):
-    """Constraints of full rank with J = A ⊗ Id_m; LinAlgError if A is not definite or iterations do not suffice."""
+    """Constraints of full rank with J = A ⊗ Id_m; LinAlgError unless A is definite and iterations suffice."""
 
     def __init__(self, inner: WithModel, constraints: ConstraintDerivative, tolerances: Tolerances) -> None:
         super().__init__(constraints)

@@ -12,16 +12,16 @@ from ..types import IntArray
 class Verdict:
     """What was found; numbers of what failed count from 0, and are None if that is not the reason."""
 
-    accepted: bool  # whether every leg and every change of stage is proved free of contact
-    stages: int  # how many were checked, including the one that failed
+    accepted: bool  #: whether every leg and every change of stage is proved free of contact
+    stages: int  #: how many were checked, including the one that failed
     legs: int
-    reason: str = ""  # why the trajectory is not accepted; empty if it is
-    stage: int | None = None  # that of the failure
-    frame: int | None = None  # with which the leg begins that failed
-    edges: tuple[int, ...] | None = None  # those that meet, or the one that meets an obstacle
-    obstacles: int = 0  # how many there are
-    obstacle: int | None = None  # the one that an edge meets
-    pins: int = 0  # how many vertices are held, in every frame
+    reason: str = ""  #: why the trajectory is not accepted; empty if it is
+    stage: int | None = None  #: that of the failure
+    frame: int | None = None  #: with which the leg begins that failed
+    edges: tuple[int, ...] | None = None  #: those that meet, or the one that meets an obstacle
+    obstacles: int = 0  #: how many there are
+    obstacle: int | None = None  #: the one that an edge meets
+    pins: int = 0  #: how many vertices are held, in every frame
 
     def __str__(self) -> str:
         if self.accepted:

@@ -105,7 +105,9 @@ class CoarseStart(Intervention):
         way = smoothed(self._coarse, start.mesh, old, pins.vertices).vertices - start.vertices
         way[pins.vertices] = 0.0
         self._coarse = None
-        return self._motion(way, _restored) or self._motion(way, lambda end: end)
+        # back on the constraints, unless that is too far
+        restored = self._motion(way, lambda end: end.retract(end.vertices, np.zeros_like(end.residual)))
+        return restored or self._motion(way, lambda end: end)
 
     def _motion(self, way: FloatArray, ending: Callable[[Point], Point | None]) -> Change | None:
         """The longest part of a way that can be gone straight to where it is to end; None if that is hardly any."""
@@ -126,8 +128,3 @@ def _kept(problem: Problem) -> IntArray:
     """Pins, and the first vertices of their components: so arcs come in the same order on all meshes."""
     mesh, pins = problem.mesh, problem.constraints.pins.vertices
     return np.union1d(pins, mesh.offsets[mesh.component[pins]])
-
-
-def _restored(point: Point) -> Point | None:
-    """The point on the constraints that one near them is led back to; None if it is too far away."""
-    return point.retract(point.vertices, np.zeros_like(point.residual))
