@@ -4,17 +4,17 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from .inner_product import DenseInnerProduct, InnerProduct, Metric, SparseInnerProduct
-from .local import H1, H2, L2, WithoutRule
+from .local import H1Metric, H2Metric, L2Metric, WithoutRule
 from .moebius import FractionalMetric, MoebiusMetric
 
 METRICS: Mapping[str, Metric] = MappingProxyType(
     {
         metric.name: metric
         for metric in (
-            L2,
-            H1,
+            L2Metric(),
+            H1Metric(),
             FractionalMetric(),
-            H2,
+            H2Metric(),
             MoebiusMetric(),
         )
     }
@@ -25,7 +25,10 @@ __all__ = [
     "METRICS",
     "DenseInnerProduct",
     "FractionalMetric",
+    "H1Metric",
+    "H2Metric",
     "InnerProduct",
+    "L2Metric",
     "Metric",
     "MoebiusMetric",
     "SparseInnerProduct",

@@ -45,24 +45,38 @@ class WithoutRule:
 
 
 @dataclass(frozen=True)
-class LocalMetric(WithoutRule):
-    """∫ u² and, for order s > 0, ∫|u⁽ˢ⁾|², the second derivative by the lumped mass: K M⁻¹ K."""
+class L2Metric(WithoutRule):
+    """∫ u²."""
 
-    name: str
-    description: str
-    order: int
-
-    @property
-    def extends_penalty(self) -> bool:
-        return self.order > 0
+    name = "l2"
+    description = "L²"
+    extends_penalty = False
 
     def at(self, curve: Curve) -> InnerProduct:
-        if not self.order:
-            return SparseInnerProduct(mass(curve))
-        derivative = k = stiffness(curve)
-        if self.order == 2:
-            derivative = k @ sp.diags_array(1.0 / lumped_mass(curve)) @ k
-        return SparseInnerProduct(derivative + mass(curve))
+        return SparseInnerProduct(mass(curve))
 
 
-L2, H1, H2 = LocalMetric("l2", "L²", 0), LocalMetric("h1", "W^{1,2}", 1), LocalMetric("h2", "W^{2,2}", 2)
+@dataclass(frozen=True)
+class H1Metric(WithoutRule):
+    """∫ u'² + ∫ u²."""
+
+    name = "h1"
+    description = "W^{1,2}"
+    extends_penalty = True
+
+    def at(self, curve: Curve) -> InnerProduct:
+        return SparseInnerProduct(stiffness(curve) + mass(curve))
+
+
+@dataclass(frozen=True)
+class H2Metric(WithoutRule):
+    """∫ u''² + ∫ u², the second derivative by the lumped mass: K M⁻¹ K."""
+
+    name = "h2"
+    description = "W^{2,2}"
+    extends_penalty = True
+
+    def at(self, curve: Curve) -> InnerProduct:
+        k = stiffness(curve)
+        bending = k @ sp.diags_array(1.0 / lumped_mass(curve)) @ k
+        return SparseInnerProduct(bending + mass(curve))
