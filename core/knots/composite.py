@@ -13,17 +13,36 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse.csgraph import connected_components
 
+from ..arguments import checked_fields, number
 from ..curve import Curve
 from ..diagrams import linking_numbers, quick_invariants
 from ..diagrams.invariants import TRIVIAL
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 
-MOST_BALLS = 3000  # that are fitted, which takes a few seconds; other links are not searched
-_PLACES = 24  # where arcs of a knot begin and end; components of a link share them, but for
-_LEAST_PLACES = 8  # on each: the shortest arc is one eighth of its component, the longest a half
-_SAMPLES = 120  # vertices of the curve that balls are fitted to
 _MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above rounding
+
+
+@checked_fields
+@dataclass(frozen=True)
+class BallSearch:
+    """How thoroughly balls are searched for."""
+
+    arcs: int = number(24, above=1)  # places where arcs of a knot begin and end; components of a link share them
+    shortest: float = number(1 / 8, most=0.5)  # arc, as a fraction of its component
+    samples: int = number(120, above=5)  # vertices of the curve that balls are fitted to
+    trials: int = number(3000)  # balls that are fitted at most, which takes a few seconds; other links are not searched
+
+    def places(self, components: int) -> int:
+        return max(int(1 / self.shortest), self.arcs // components)
+
+    def lengths(self, components: int) -> range:
+        """Lengths of arcs, from place to place."""
+        places = self.places(components)
+        return range(int(self.shortest * places), places // 2 + 1)
+
+
+DEFAULT_SEARCH = BallSearch()
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,38 +62,31 @@ class Ball:
         return bool(np.linalg.norm(outside, axis=1).min() > self.radius)
 
 
-def knotted_ball(curve: Curve) -> Ball | None:
+def knotted_ball(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> Ball | None:
     """A ball whose sphere meets the curve in two points, both parts being knotted or linked; None if none is found.
 
     A ball proves that the curve is composite.  None proves nothing: parts may have a trivial Alexander polynomial, or
     lie in no round ball, and a link may be beyond `is_searchable`.  Only closed polygons in space can be knots.
     """
-    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve):
+    if curve.dimension != 3 or not curve.mesh.all_closed or not is_searchable(curve, search):
         return None
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())
     normal = curve.with_vertices((curve.vertices - middle) / size)
-    for inside in _arcs(curve):
-        ball = _ball(normal, inside)
+    for inside in _arcs(curve, search):
+        ball = _ball(normal, inside, search.samples)
         if ball is not None and _is_knotted(normal, ball):
             return Ball(middle + size * ball.center, size * ball.radius)
     return None
 
 
-def is_searchable(curve: Curve) -> bool:
+def is_searchable(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> bool:
     """Whether there are few enough ways in which the components of a curve in space can lie about a ball."""
     components = len(curve.mesh.component_sizes)
-    places, lengths = _places(components)
-    arcs = places * len(lengths)
-    if components * arcs > MOST_BALLS:
+    arcs = search.places(components) * len(search.lengths(components))
+    if components * arcs > search.trials:
         return False
-    return arcs * sum(1 << len(groups) for groups in _linked_groups(curve)) <= MOST_BALLS
-
-
-def _places(components: int) -> tuple[int, range]:
-    """Number of places on each component, and lengths of arcs from place to place."""
-    places = max(_LEAST_PLACES, _PLACES // components)
-    return places, range(places // _LEAST_PLACES, places // 2 + 1)
+    return arcs * sum(1 << len(groups) for groups in _linked_groups(curve)) <= search.trials
 
 
 def _linked_groups(curve: Curve) -> list[list[IntArray]]:
@@ -93,11 +105,10 @@ def _linked_groups(curve: Curve) -> list[list[IntArray]]:
     return found
 
 
-def _arcs(curve: Curve) -> Iterator[BoolArray]:
+def _arcs(curve: Curve, search: BallSearch) -> Iterator[BoolArray]:
     """Masks of vertices: an arc of one component, and any of the others as a whole that can lie there together."""
     slices, component = curve.mesh.slices, curve.mesh.component
-    places, lengths_in_places = _places(len(slices))
-    wanted = np.array(lengths_in_places)
+    places, wanted = search.places(len(slices)), np.array(search.lengths(len(slices)))
     for part, groups in zip(slices, _linked_groups(curve), strict=True):
         size = part.stop - part.start
         starts, lengths = np.unique(np.arange(places) * size // places), np.unique(wanted * size // places)
@@ -107,9 +118,9 @@ def _arcs(curve: Curve) -> Iterator[BoolArray]:
             yield inside
 
 
-def _ball(curve: Curve, inside: BoolArray) -> Ball | None:
+def _ball(curve: Curve, inside: BoolArray, samples: int) -> Ball | None:
     """The ball with one part of the vertices inside and the other outside that leaves most room between, if any."""
-    sample = np.arange(0, len(curve), max(1, len(curve) // _SAMPLES))
+    sample = np.arange(0, len(curve), max(1, len(curve) // samples))
     x = curve.vertices[sample]
     side = np.where(inside[sample], 1.0, -1.0)
     lifted = side[:, None] * np.column_stack([x, (x**2).sum(axis=1), np.ones(len(x))])
