@@ -112,10 +112,7 @@ class Group:
         return np.concatenate([coordinates(spline) for obj in self.objects for spline in obj.data.splines])
 
     def show(self, start: Curve, frame: Frame) -> None:
-        """Move all points; shape (n, 3), each object's own coordinates.
-
-        ``start`` is the start with as many vertices.
-        """
+        """Move all points, (n, 3) in each object's own coordinates; ``start``: the start with as many vertices."""
         if self._shown is None or self._shown[0].mesh != start.mesh:
             self.make_polygons(start)
         self._shown = start, frame

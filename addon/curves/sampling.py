@@ -43,11 +43,8 @@ def _question(obj: "bpy.types.Object") -> str:
         one = "'{name}' has a {kind} spline; it becomes a polygon of {points} points"
         return Message(one, name=obj.name, kind=kinds[0], points=points)
     several = "'{name}' has {count} {kinds} splines; they become polygons of {points} points in all"
-    return Message(several, name=obj.name, count=len(smooth), kinds=_joined(kinds), points=points)
-
-
-def _joined(kinds: Sequence[str]) -> str:
-    return Message("{names} and {last}", names=kinds[0], last=kinds[1]) if len(kinds) > 1 else kinds[0]
+    both = Message("{names} and {last}", names=kinds[0], last=kinds[-1])
+    return Message(several, name=obj.name, count=len(smooth), kinds=both if kinds[1:] else kinds[0], points=points)
 
 
 def sampled(obj: "bpy.types.Object") -> list[Frame]:

@@ -193,15 +193,11 @@ class Session:
         self.outcome = replace(outcome, clauses=tuple(map(self.group.reworded, outcome.clauses)))
 
     def take(self, iterate: Iterate) -> None:
-        self._motion.add(self._sized(iterate))
-
-    def _sized(self, iterate: Iterate) -> Iterate:
-        """An iterate as it is shown, in the size that is to be kept."""
-        measure = self._key_options.keep_size
-        if measure is Measure.LENGTH:
-            return iterate
-        self._size = self._size or Size.of(measure, iterate.curve)
-        return self._size.given_to_iterate(iterate)
+        """Record an iterate as it is shown, in the size that is to be kept."""
+        if (measure := self._key_options.keep_size) is not Measure.LENGTH:
+            self._size = self._size or Size.of(measure, iterate.curve)
+            iterate = self._size.given_to_iterate(iterate)
+        self._motion.add(iterate)
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""

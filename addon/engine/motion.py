@@ -194,9 +194,10 @@ class Motion:
         """Keys that lead along one leg in shorter pieces, each proved; empty if that fails."""
         if depth == 0:
             return []
-        middle = Key(0.5 * (start.time + end.time), _midpoint(start.points, end.points))
+        middle = 0.5 * (start.points.astype(np.float64) + end.points.astype(np.float64))
+        middle_key = Key(0.5 * (start.time + end.time), middle.astype(np.float32))
         keys: list[Key] = []
-        for a, b in ((start, middle), (middle, end)):
+        for a, b in ((start, middle_key), (middle_key, end)):
             part = [b] if self._proved(a, b, free) else self._halves(a, b, free, depth - 1)
             if not part:
                 return []
@@ -220,7 +221,3 @@ class Motion:
 def _way(a: FloatArray, b: FloatArray) -> float:
     """Root mean square over the vertices of the way from one frame to another."""
     return float(np.sqrt(np.square(b - a).sum(axis=1).mean()))
-
-
-def _midpoint(a: Frame, b: Frame) -> Frame:
-    return np.asarray(0.5 * (a.astype(np.float64) + b.astype(np.float64)), dtype=np.float32)

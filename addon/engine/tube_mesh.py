@@ -24,10 +24,7 @@ def rings(points: FloatArray, radii: FloatArray, mesh: Mesh, sides: int) -> Floa
     """Vertices of the tube, those of a ring one after the other; (keys, n · sides, 3).
 
     Rings lie in the planes that halve the angle between two edges, and are stretched where these meet at a corner so
-    that the tube is as thick along the edges as it should be.
-
-    ``points``: vertices of the polygons at every key, (keys, n, 3); ``radii``: of the tube at each of them, (keys, n);
-    ``sides``: number of vertices of a ring.
+    that the tube is as thick along the edges as it should be. Points: (keys, n, 3); radii: (keys, n).
     """
     each = zip(mesh.slices, mesh.closed, strict=True)
     pieces = [_rings(points[:, s], radii[:, s], sides, closed) for s, closed in each]
@@ -52,9 +49,7 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
     """Places among keys, 2.5 halfway between the third and the fourth, between which tangents turn by 30° at most.
 
     Straight lines between two rings make the tube thinner. No gap is halved more than five times: what turns through
-    itself is never smooth.
-
-    ``points``: vertices of polygons at every key, (keys, n, 3).
+    itself is never smooth. Points: (keys, n, 3).
     """
     places = np.arange(len(points), dtype=np.float64)
     for _ in range(_HALVINGS):
@@ -105,12 +100,7 @@ def edges_around(points: FloatArray, closed: bool) -> tuple[FloatArray, FloatArr
 
 
 def normals(points: FloatArray, closed: bool = True) -> FloatArray:
-    """Unit normals at the vertices of one polygon in motion, the same turned as little as possible later.
-
-    ``points``: vertices at every key, (keys, n, 3).
-
-    Returns array (keys, n, 3).
-    """
+    """Unit normals at vertices of one polygon in motion, turned as little as possible from key to key; (keys, n, 3)."""
     tau = tangents(points, closed)
     bare = _transported(tau)
     share = _shares_of_length(points) if closed else np.zeros(points.shape[:2])  # of what is missing at the end

@@ -11,7 +11,7 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import IO
@@ -120,17 +120,16 @@ class Worker:
     def _feed(self) -> None:
         """Pass messages on until there are no more or nobody wants them."""
         try:
-            for message in self._messages():
+            for message in messages(self._job) if self.process is None else _replies(self.process, self._job):
                 if not self._put(message):
                     return
             self._put(None)
         except (EOFError, OSError, ValueError):
             self._put(None)
         finally:
-            self._close_streams()
-
-    def _messages(self) -> Iterable[wire.Packet]:
-        return messages(self._job) if self.process is None else _replies(self.process, self._job)
+            for stream in _pipes(self.process) if self.process is not None else ():
+                with contextlib.suppress(OSError):  # what was still to be written goes nowhere
+                    stream.close()
 
     def _put(self, message: wire.Packet | None) -> bool:
         while not self._closed.is_set():
@@ -140,11 +139,6 @@ class Worker:
                 continue
             return True
         return False
-
-    def _close_streams(self) -> None:
-        for stream in _pipes(self.process) if self.process is not None else ():
-            with contextlib.suppress(OSError):  # what was still to be written goes nowhere
-                stream.close()
 
 
 def _replies(process: "subprocess.Popen[bytes]", job: wire.Packet) -> Iterator[wire.Packet]:
