@@ -45,11 +45,10 @@ class BakedKeys:
     @property
     def curves(self) -> list[Curve]:
         """The link at each key, in the world."""
-        return [Curve(self._world(frame), self.mesh) for frame in self.frames]
-
-    def _world(self, frame: Frame) -> FloatArray:
-        pieces, points = zip(self.link.placements, self.link.slices(self.mesh), strict=True), frame.astype(np.float64)
-        return np.concatenate([placement.to_world(points[vertices]) for placement, vertices in pieces])
+        pieces = list(zip(self.link.placements, self.link.slices(self.mesh), strict=True))
+        stored = [frame.astype(np.float64) for frame in self.frames]
+        world = [np.concatenate([place.to_world(points[s]) for place, s in pieces]) for points in stored]
+        return [Curve(points, self.mesh) for points in world]
 
     def rewrite(self, curves: Sequence[Curve], factors: FloatArray | None = None) -> None:
         """Give the keys other shapes, in the world, and what is drawn around them other sizes, by factors, (keys,)."""

@@ -21,8 +21,7 @@ def all_fcurves() -> Iterator["bpy.types.FCurve"]:
 
     for action in bpy.data.actions:
         slotted = hasattr(action, "slots")  # not in Blender 4.3 and before
-        for fcurves in _collections(action, action.slots) if slotted else [action.fcurves]:
-            yield from fcurves
+        yield from chain.from_iterable(_collections(action, action.slots) if slotted else [action.fcurves])
 
 
 def fcurves_of(block: "bpy.types.ID") -> Iterator["bpy.types.FCurve"]:

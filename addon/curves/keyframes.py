@@ -22,13 +22,10 @@ if TYPE_CHECKING:
 def writing(
     obj: "bpy.types.Object", keys: Keys, frames: FloatArray, output: Output, radii: FloatArray | None = None
 ) -> Iterator[None]:
-    """Write keys in short pieces to a curve object that has as many points as they have vertices.
+    """Write keys in short pieces to a curve object with as many points; the curve itself keeps the last key.
 
-    The curve itself keeps the last key, so that removing the keys leaves the relaxed curve.
-
-    ``obj`` has neither keys nor animation, or those of an earlier call; the first of the new keys is the last of those
-    then. ``frames``: scene frame of each key, ascending, (keys,). ``radii``: relative radius of all points at each key,
-    (keys,); None keeps those that the points have.
+    It has no animation, or keys of an earlier call, the last of which is the first of the new ones. ``frames``: scene
+    frame of each key, ascending; ``radii``: relative radius of all points at each; None keeps the points' own; (keys,).
     """
     write_points(obj.data, keys.keys[-1].points)
     if output is Output.SHAPE_KEYS:

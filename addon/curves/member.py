@@ -28,11 +28,7 @@ _MARK = "mobius_flow_stand_in"  # custom property of stand-ins
 
 
 class Member:
-    """A curve object of a run.
-
-    ``obj`` is one that `checks.refusal` has nothing against; nothing of it is touched before `begin`. Where the run
-    ``continues``, a baked curve is relaxed on from the end of its animation, and not from how it was before.
-    """
+    """A curve object of a run, as for `Group`; nothing of it is touched before `begin`."""
 
     def __init__(self, obj: "bpy.types.Object", continues: bool = False) -> None:
         self.name = obj.name

@@ -32,9 +32,6 @@ _DEFORMING_NODES = {"GeometryNodeSetPosition", "GeometryNodeSetCurveHandlePositi
 _CHANGING_NODES = {"GeometryNodeInputSceneTime", "GeometryNodeSimulationInput"}
 
 
-# -- objects --------------------------------------------------------------------------------------------------------
-
-
 def what_moves(obj: "bpy.types.Object") -> Message | None:
     """Say what may move an object or one of its parents by itself, or return None if nothing does."""
     return next(_movers(obj), None)
@@ -61,9 +58,6 @@ def _movers(obj: "bpy.types.Object") -> Iterator[Message]:
 
 def _any_of(curves: "Iterable[bpy.types.FCurve]", paths: tuple[str, ...] | str) -> bool:
     return any(curve.data_path.startswith(paths) for curve in curves)
-
-
-# -- points of curves -----------------------------------------------------------------------------------------------
 
 
 def what_deforms(obj: "bpy.types.Object") -> Message | None:
@@ -98,9 +92,6 @@ def _nodes_of(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]"
         if not node.mute:
             yield node
             yield from _nodes_of(getattr(node, "node_tree", None), seen)
-
-
-# -- what is avoided ------------------------------------------------------------------------------------------------
 
 
 def unsteady(avoided: Iterable["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> Message | None:

@@ -30,7 +30,10 @@ def surfaces(
     shown: dict[int, list[Surface]] = {obj.session_uid: [] for obj in objects}
     looked_at: set[int] = set()
     for obj in objects:
-        _check_shown(obj)
+        if not obj.visible_get():
+            raise MobiusFlowError(Message("'{name}' is hidden; show it first, or leave it out", name=obj.name))
+        if obj.mode != "OBJECT":
+            raise MobiusFlowError(Message("'{name}' is being edited; go back to Object Mode first", name=obj.name))
     for instance in depsgraph.object_instances:
         owner = (instance.parent if instance.is_instance else instance.object).original
         pieces = shown.get(owner.session_uid)
@@ -47,14 +50,6 @@ def surfaces(
         if piece is not None and not any(map(piece.equals, pieces)):
             pieces.append(piece)
     return [shown[obj.session_uid] for obj in objects]
-
-
-def _check_shown(obj: "bpy.types.Object") -> None:
-    """Refuse an object that is hidden, or whose shape is just being changed."""
-    if not obj.visible_get():
-        raise MobiusFlowError(Message("'{name}' is hidden; show it first, or leave it out", name=obj.name))
-    if obj.mode != "OBJECT":
-        raise MobiusFlowError(Message("'{name}' is being edited; go back to Object Mode first", name=obj.name))
 
 
 def _check_kind(obj: "bpy.types.Object", shown: str) -> None:

@@ -57,11 +57,8 @@ def frames_of(link: Link, iterate: Iterate) -> list[Frame]:
 class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
-    All have as many points as the last one: where edges are split on the way, those of earlier frames are split too,
-    at the same fractions.
-
-    ``link``: where the vertices of the iterates are stored, and in which space their motions are proved; ``first``: the
-    start as it is stored already, where keys are added to others; None rounds the first iterate.
+    All have as many points as the last one: where edges are split on the way, those of earlier frames are split too, at
+    the same fractions. ``first``: the start as it is stored already, where keys are added to others.
     """
 
     def __init__(self, link: Link, first: Frame | None = None) -> None:
@@ -73,11 +70,7 @@ class Motion:
         self._steps: list[float] = []  # sizes of the steps that led to the iterates
 
     def add(self, iterate: Iterate) -> None:
-        """Append an iterate with the legs that lead to it.
-
-        Raises MobiusFlowError if its mesh is another one than that of the last iterate, and not only by edges that are
-        split.
-        """
+        """Append an iterate with its legs; raises MobiusFlowError if its mesh differs by more than split edges."""
         if self._last is not None and iterate.curve.mesh != self._last.curve.mesh:
             self._split(iterate.curve)
         frames = frames_of(self._link, iterate)

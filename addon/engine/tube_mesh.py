@@ -53,18 +53,13 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
     """
     places = np.arange(len(points), dtype=np.float64)
     for _ in range(_HALVINGS):
-        far = _least_cosines(interpolated(points, places), mesh) < _COSINE
+        shapes, pieces = interpolated(points, places), zip(mesh.slices, mesh.closed, strict=True)
+        tau = np.concatenate([tangents(shapes[:, s], closed) for s, closed in pieces], axis=1)
+        far = np.einsum("kni,kni->kn", tau[:-1], tau[1:]).min(axis=1) < _COSINE
         if not far.any():
             break
         places = np.sort(np.concatenate([places, 0.5 * (places[:-1] + places[1:])[far]]))
     return places
-
-
-def _least_cosines(points: FloatArray, mesh: Mesh) -> FloatArray:
-    """Cosines of the largest angles that tangents turn by from each key to the next; (keys - 1,)."""
-    pieces = zip(mesh.slices, mesh.closed, strict=True)
-    tau = np.concatenate([tangents(points[:, s], closed) for s, closed in pieces], axis=1)
-    return np.asarray(np.einsum("kni,kni->kn", tau[:-1], tau[1:]).min(axis=1))
 
 
 def _rings(points: FloatArray, radii: FloatArray, sides: int, closed: bool) -> FloatArray:
@@ -104,7 +99,8 @@ def normals(points: FloatArray, closed: bool = True) -> FloatArray:
     tau = tangents(points, closed)
     bare = _transported(tau)
     share = _shares_of_length(points) if closed else np.zeros(points.shape[:2])  # of what is missing at the end
-    angles = -_holonomy(bare, tau)[:, None] * share
+    holonomy = signed_angle(bare[:, 0], carried(bare[:, -1], tau[:, -1], tau[:, 0]), tau[:, 0])
+    angles = -holonomy[:, None] * share
     normal = np.empty_like(bare)
     normal[-1] = turned(bare[-1], tau[-1], angles[-1])
     turns = 0.0
@@ -145,11 +141,6 @@ def _transported(tau: FloatArray) -> FloatArray:
     for i in range(1, tau.shape[1]):
         bare[:, i] = carried(bare[:, i - 1], tau[:, i - 1], tau[:, i])
     return bare
-
-
-def _holonomy(bare: FloatArray, tau: FloatArray) -> FloatArray:
-    """Angles by which normals are turned when they come back to the first vertex; (keys,)."""
-    return signed_angle(bare[:, 0], carried(bare[:, -1], tau[:, -1], tau[:, 0]), tau[:, 0])
 
 
 def _shares_of_length(points: FloatArray) -> FloatArray:

@@ -68,8 +68,7 @@ class WorkerError(MobiusFlowError):
 class Worker:
     """A relaxation in another process, or in a thread where no process can be started.
 
-    ``task``, ``options``: what is to be relaxed, as for `core.relax`; ``link``: where Blender stores the vertices:
-    motions of the stored ones are proved too.
+    ``link``: where Blender stores the vertices; motions of the stored ones are proved too.
     """
 
     def __init__(self, task: Task, options: RelaxOptions, link: Link) -> None:
@@ -160,20 +159,15 @@ def _start() -> "subprocess.Popen[bytes] | None":
     if not Path(sys.executable or "").name.lower().startswith("python"):
         return None
     program = Path(__file__).with_name("child.py")
+    libraries = [Path(inspect.getfile(module)) for module in (scipy, np, threadpoolctl)]
+    places = dict.fromkeys(str(file.parents[file.stem == "__init__"]) for file in libraries)
     try:
         return subprocess.Popen(
             [sys.executable, "-P", "-s", str(program)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env=_environment(),
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(places)},
             creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )
     except OSError:
         return None
-
-
-def _environment() -> dict[str, str]:
-    """The environment, with the places of the libraries in it."""
-    files = [Path(inspect.getfile(module)) for module in (scipy, np, threadpoolctl)]
-    places = dict.fromkeys(str(file.parents[file.stem == "__init__"]) for file in files)
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(places)}
