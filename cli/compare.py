@@ -4,7 +4,7 @@ import argparse
 import csv
 import json
 import sys
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
@@ -58,7 +58,10 @@ def _compare(options: argparse.Namespace) -> int:
     suffix = Path(options.output).suffix.lower()
     if suffix not in WRITERS:
         raise OptionError(f"{options.output}: {wrong_suffix(options.output, WRITERS, 'outputs')}")
-    writer, stages = WRITERS[suffix], [] if options.strip is None else _numbers(options.strip)
+    writer, stages = WRITERS[suffix], list[int]()
+    if options.strip is not None:
+        refusal = "strip has {}; give numbers of iterations, such as 0,10,50"
+        stages = sorted(set(relax_options.listed(options.strip, 0, refusal)))
     if stages and writer is not write_figure:
         raise OptionError(f"{options.output}: a strip is a picture; let OUT end in .png or .svg, or leave --strip out")
     if writer is write_figure:
@@ -73,8 +76,19 @@ def _compare(options: argparse.Namespace) -> int:
             wanted = replace(wanted, max_iterations=min(wanted.max_iterations, stages[-1]))
         planned = compare(task, names, wanted, options.time_limit, stages)
         options.notes.show()
-        runs, ended_by = _collected(planned)
-    if runs and (failures := kept(options.output, lambda path: _write(path, writer, runs))):
+        runs, ended_by = list[History](), None
+        try:
+            for run in signals.interruptible(planned):
+                runs.append(run)
+                print(_line(run), file=sys.stderr, flush=True)
+        except (KeyboardInterrupt, MemoryError) as error:
+            ended_by = error
+
+    def write(path: str) -> None:
+        with writing(path) as temporary:
+            writer(temporary, runs)
+
+    if runs and (failures := kept(options.output, write)):
         raise MobiusFlowError(failures[0])
     if ended_by is not None:
         raise ended_by
@@ -91,29 +105,6 @@ def add_methods(parser: argparse.ArgumentParser) -> None:
 def _methods(_options: argparse.Namespace) -> int:
     emit("\n".join(f"{name}\t{method.sentence}" for name, method in METHODS.items()))
     return 0
-
-
-def _numbers(text: str) -> list[int]:
-    """The iterations of a strip, in ascending order."""
-    numbers = relax_options.listed(text, 0, "strip has {}; give numbers of iterations, such as 0,10,50")
-    return sorted(set(numbers))
-
-
-def _collected(planned: Generator[History, None, None]) -> tuple[list[History], BaseException | None]:
-    """The runs that were finished, and what ended them before all were."""
-    runs: list[History] = []
-    try:
-        for result in signals.interruptible(planned):
-            runs.append(result)
-            print(_line(result), file=sys.stderr, flush=True)
-    except (KeyboardInterrupt, MemoryError) as error:
-        return runs, error
-    return runs, None
-
-
-def _write(path: str, writer: Writer, runs: Sequence[History]) -> None:
-    with writing(path) as temporary:
-        writer(temporary, runs)
 
 
 def _line(run: History) -> str:

@@ -122,13 +122,8 @@ def name_lines(axes: "Axes", lines: Sequence["Line2D"], names: Sequence[str]) ->
     heights -= max(0.0, heights.max() - 1.0) / 2.0  # what is pushed out at the top is shared with the bottom
     for line, name, end, height in zip(lines, names, ends, heights, strict=True):
         leader = {"arrowstyle": "-", "color": line.get_color(), "linewidth": 0.6, "shrinkB": 0, "relpos": (0, 0.5)}
-        places: dict[str, Any] = {
-            "xy": (1.0, end),
-            "xytext": (1.06, height),
-            "xycoords": "axes fraction",
-            "va": "center",
-        }
-        axes.annotate(name, **places, color=line.get_color(), fontsize=9, arrowprops=leader)
+        style: dict[str, Any] = {"xycoords": "axes fraction", "va": "center", "fontsize": 9, "arrowprops": leader}
+        axes.annotate(name, (1.0, end), (1.06, height), color=line.get_color(), **style)
 
 
 def _end(axes: "Axes", line: "Line2D") -> float:
@@ -142,13 +137,7 @@ def _end(axes: "Axes", line: "Line2D") -> float:
 
 
 def draw_curve(axes: "Axes", curve: Curve, color: str, width: float) -> None:
-    """Draw a curve as a strand that passes over and under itself, seen from where it is broadest.
-
-    Parameters
-    ----------
-    width
-        Of the strand, in points.
-    """
+    """Draw a curve as a strand, ``width`` points wide, over and under itself, seen from where it is broadest."""
     from matplotlib.collections import LineCollection
     from matplotlib.colors import to_rgb
 

@@ -9,7 +9,6 @@ from ..core.arguments import check_known
 from ..core.energies import ENERGIES
 from ..core.errors import counted
 from ..core.info import Info, info, measure
-from ..core.knots import KnotType
 from . import curves
 from .streams import emit
 
@@ -83,12 +82,22 @@ def _info(options: argparse.Namespace) -> int:
 
 def _as_json(path: str, found: Info) -> Mapping[str, object]:
     """All of it by names that scripts can rely on; null for what is not known."""
-    rest = found.rest
+    rest, kind = found.rest, found.type
     return {
         "input": path,
         "components": len(found.components),
         "vertices": list(found.components),
-        "type": _type_as_json(found.type),
+        "type": {
+            "name": str(kind),
+            "names": list(kind.names),
+            "proved": kind.proved,
+            "evidence": list(kind.evidence),
+            "crossings": kind.diagram and kind.diagram.crossings,
+            "linking_numbers": kind.diagram and list(kind.diagram.linking_numbers),
+            "alexander": None if kind.alexander is None else list(kind.alexander),
+            "determinant": kind.determinant,
+            "jones": None if kind.jones is None else [[power / 2, c] for power, c in kind.jones.items()],
+        },
         "energies": {**found.energies, "objective": rest and rest.objective},
         **{name: getattr(found, name) for name in _MEASURES},
         "edges": {
@@ -100,21 +109,6 @@ def _as_json(path: str, found: Info) -> Mapping[str, object]:
         "gradient_norm": rest and rest.gradient_norm,
         "at_rest": rest and rest.at_rest,
         "index": rest and rest.index,
-    }
-
-
-def _type_as_json(found: KnotType) -> Mapping[str, object]:
-    polynomial, diagram = found.jones, found.diagram
-    return {
-        "name": str(found),
-        "names": list(found.names),
-        "proved": found.proved,
-        "evidence": list(found.evidence),
-        "crossings": None if diagram is None else diagram.crossings,
-        "linking_numbers": None if diagram is None else list(diagram.linking_numbers),
-        "alexander": None if found.alexander is None else list(found.alexander),
-        "determinant": found.determinant,
-        "jones": None if polynomial is None else [[power / 2, c] for power, c in polynomial.items()],
     }
 
 

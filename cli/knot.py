@@ -1,14 +1,12 @@
 """``mobius-flow knot``: write a named knot as a curve file."""
 
 import argparse
-from typing import Any
 
 from ..core import CurveError
 from ..core.curve.io import WRITTEN_FORMATS
 from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
-from .streams import emit
 
 _EPILOG = """\
 examples:
@@ -46,16 +44,10 @@ def add_knot(parser: argparse.ArgumentParser) -> None:
         "a minimum of the Möbius energy, but not a minimum (default: woven)"
     )
     parser.add_argument("--smooth", action="store_true", help=text)
-    parser.add_argument("--list", action=_List, nargs=0, help="print the names, one per line, and exit")
+    # like --version, it ends the command whatever else is missing
+    names = "\n".join(knot_names())
+    parser.add_argument("--list", action="version", version=names, help="print the names, one per line, and exit")
     parser.set_defaults(run=_run)
-
-
-class _List(argparse.Action):
-    """Ends the command as ``--help`` does, whatever else is missing."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_arguments: Any) -> None:
-        emit("\n".join(knot_names()))
-        parser.exit()
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -58,12 +58,9 @@ OUTPUTS: Mapping[str, Output] = MappingProxyType(
 
 
 def output_for(path: str, name: str | None = None) -> Output:
-    """The kind of output that a path's suffix or ``--format`` asks for, if what it needs is installed.
+    """The kind of output that a path's suffix or ``--format`` asks for.
 
-    Raises
-    ------
-    MobiusFlowError
-        If the suffix is unknown and no format named, or Blender's module is needed and missing.
+    Raises MobiusFlowError if the suffix is unknown and no format named, or Blender's module is needed and missing.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in OUTPUTS:

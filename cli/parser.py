@@ -53,17 +53,15 @@ class Parser(argparse.ArgumentParser):
     ) -> tuple[argparse.Namespace, list[str]]:
         """Parse, and refuse what isn't known."""
         found, unknown = super().parse_known_args(args, namespace)
+        word = unknown[0].partition("=")[0] if unknown else ""
+        if word.startswith("-"):
+            from ..core.errors import likeliest
+
+            known = [option for option in self._option_string_actions if option.startswith("--")]
+            self.error(f"option {word} is unknown; {likeliest(word, known)}".rstrip("; "))
         if unknown:
-            self.error(self._unknown(unknown[0].partition("=")[0]))
+            self.error(f"unexpected argument {word!r}")
         return found, unknown
-
-    def _unknown(self, word: str) -> str:
-        if not word.startswith("-"):
-            return f"unexpected argument {word!r}"
-        from ..core.errors import likeliest
-
-        known = [option for option in self._option_string_actions if option.startswith("--")]
-        return f"option {word} is unknown; {likeliest(word, known)}".rstrip("; ")
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         """End with an exit status, and one line on standard error."""

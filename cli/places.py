@@ -96,15 +96,7 @@ def kept(path: str, write: Write, rescue: Write | None = None, name: str | None 
     """Write a result; where that fails keep it in a temporary directory, and return the sentences that say so.
 
     It is kept there where it is interrupted, too; the sentence is then that of the KeyboardInterrupt, which goes on.
-
-    Parameters
-    ----------
-    path
-        Where it should be.
-    write
-        Writes it to a path.
-    rescue, name
-        Another way to write it, and a file name, for the temporary directory: a curve instead of a film.
+    ``rescue``, ``name``: another way to write it, and a file name, for that directory: a curve instead of a film.
     """
     keep = partial(_elsewhere, rescue or write, os.path.basename(name or path))
     try:

@@ -47,20 +47,16 @@ def add_relax(parser: argparse.ArgumentParser) -> None:
     curves.add_input(parser, "polygons, closed or open")
     text = f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
     parser.add_argument("output", metavar="OUT", help=text)
+    as_device = {curves.STREAM: curves.DEVICE}  # standard output, for reports and trajectories
     for name, metavar, text in (
         ("--report", "R.json", "write a report of the run as JSON; - is standard output"),
         ("--trajectory", "T.npz", "write the certified path, for mobius-flow verify; - is standard output"),
     ):
-        parser.add_argument(name, type=_extra, metavar=metavar, help=text)
+        parser.add_argument(name, type=lambda path: as_device.get(path, path), metavar=metavar, help=text)
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     relax_options.add_to(parser)
     relax_options.add_task(parser)
     parser.set_defaults(run=_run)
-
-
-def _extra(path: str) -> str:
-    """Where a report or trajectory goes: a file, or as a device standard output."""
-    return curves.DEVICE if path == curves.STREAM else path
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ import io
 import logging
 import os
 import sys
-from typing import Any, Self, TextIO
+from typing import Any, Self
 
 
 class OutputStreamError(Exception):
@@ -24,7 +24,9 @@ def mend() -> None:
         sys.stdout = open(os.devnull, encoding="utf-8")  # noqa: SIM115 - for reading only
     elif isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
-    sys.stderr = _forgiving(sys.stderr)
+    encoding = "utf-8" if sys.stderr is None else sys.stderr.encoding
+    file = io.BufferedWriter(_ForgivingFile(2, "w", closefd=False))  # type: ignore[type-var]
+    sys.stderr = io.TextIOWrapper(file, encoding=encoding, errors="backslashreplace", line_buffering=True)
 
 
 def emit(text: str) -> None:
@@ -51,12 +53,6 @@ class _ForgivingFile(io.FileIO):
             return super().write(data)
         except OSError:  # a full device, a terminal that has gone
             return len(data)
-
-
-def _forgiving(stream: TextIO | None) -> TextIO:
-    encoding = "utf-8" if stream is None else stream.encoding
-    file = io.BufferedWriter(_ForgivingFile(2, "w", closefd=False))  # type: ignore[type-var]
-    return io.TextIOWrapper(file, encoding=encoding, errors="backslashreplace", line_buffering=True)
 
 
 class Notes(logging.Handler):

@@ -12,7 +12,7 @@ from typing import BinaryIO
 
 from ..core import MobiusFlowError
 from ..core.errors import reason_of
-from ..core.verify import Verdict, verify
+from ..core.verify import verify
 from .curves import INPUT, STREAM
 from .places import is_file
 from .progress import leg_progress
@@ -46,15 +46,11 @@ def add_verify(parser: argparse.ArgumentParser) -> None:
 def _run(options: argparse.Namespace) -> int:
     with _seekable(options.trajectory) as path, leg_progress(sys.stderr.isatty()) as progress:
         verdict = verify(path, progress)
-    emit(json.dumps(_plain(verdict)) if options.json else str(verdict))
-    return 0 if verdict.accepted else 1
-
-
-def _plain(verdict: Verdict) -> dict[str, object]:
-    """The verdict with edges and the obstacle counted as in its reason, from 1."""
-    edges = verdict.edges and [edge + 1 for edge in verdict.edges]
+    edges = verdict.edges and [edge + 1 for edge in verdict.edges]  # from 1, as in the reason
     obstacle = None if verdict.obstacle is None else verdict.obstacle + 1
-    return asdict(verdict) | {"edges": edges, "obstacle": obstacle}
+    plain = asdict(verdict) | {"edges": edges, "obstacle": obstacle}
+    emit(json.dumps(plain) if options.json else str(verdict))
+    return 0 if verdict.accepted else 1
 
 
 @contextmanager

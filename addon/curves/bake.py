@@ -3,26 +3,27 @@
 import hashlib
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..engine.key_options import KeyOptions, Output, Timing
 from . import keyframes
 from .exchange import key_points
-from .fcurves import count_own
+from .fcurves import animated, count_own
 from .splines import Splines, shape
 
 if TYPE_CHECKING:
     import bpy
 
 _RECORD = "mobius_flow_bake"  # custom property of curve data
+_DRIVEN = ("splines", "eval_time", "key_blocks")  # beginnings of paths of drivers that move points
 _BEVEL = ("bevel_depth", "bevel_resolution", "use_fill_caps")
 
 
 def remember(data: "bpy.types.Curve", before: "bpy.types.Curve", timing: Timing) -> None:
     """Note on curve data that has just been keyed how it was before; nothing is noted on data without keys."""
-    if _animated(data) is not None:
+    if animated(data):
         data[_RECORD] = {"original": before, "holds": [timing.hold_start, timing.hold_end]}
         update(data, timing)
 
@@ -31,19 +32,12 @@ def original(data: "bpy.types.Curve") -> "bpy.types.Curve":
     return data[_RECORD]["original"]
 
 
-def update(data: "bpy.types.Curve", timing: Timing) -> None:
-    """Note how the keys are that were written last; the rest before the first of all is the one that was baked."""
-    record = data[_RECORD]
-    record["fingerprint"] = _fingerprint(data)
-    record["shapes"] = _digest(data)
-    record["bevel_depth"] = data.bevel_depth
-    record["holds"] = [record["holds"][0], timing.hold_end]
-
-
-def renew(data: "bpy.types.Curve") -> None:
-    """Note how the keys are that were there, after they have been changed here."""
+def update(data: "bpy.types.Curve", timing: Timing | None = None) -> None:
+    """Note how the keys are after they were changed here, or, with a timing, more of them were written."""
     record = data[_RECORD]
     record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
+    if timing is not None:  # the rest before the first key of all is the one that was baked
+        record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], timing.hold_end]
 
 
 def scale_bevel(data: "bpy.types.Curve", factor: float) -> None:
@@ -72,16 +66,13 @@ def is_edited(data: "bpy.types.Curve") -> bool:
 
 def scene_range(objects: Sequence["bpy.types.Object"]) -> tuple[int, int] | None:
     """First and last frame of baked objects' animations with their rests, wherever keys have been moved to."""
-    ranges = [_scene_range(obj.data) for obj in objects if is_baked(obj.data)]
-    return (min(first for first, _ in ranges), max(last for _, last in ranges)) if ranges else None
-
-
-def _scene_range(data: "bpy.types.Curve") -> tuple[int, int]:
-    owner = _animated(data)
-    assert owner is not None, "it is baked"
-    first, last = owner.animation_data.action.curve_frame_range
-    before, after = data[_RECORD]["holds"]
-    return int(np.floor(first - before)), int(np.ceil(last + after))
+    firsts, lasts = [], []
+    for data in [obj.data for obj in objects if is_baked(obj.data)]:
+        first, last = animated(data)[0].animation_data.action.curve_frame_range
+        before, after = data[_RECORD]["holds"]
+        firsts.append(int(np.floor(first - before)))
+        lasts.append(int(np.ceil(last + after)))
+    return (min(firsts), max(lasts)) if firsts else None
 
 
 def continued(objects: Sequence["bpy.types.Object"], options: KeyOptions) -> KeyOptions:
@@ -120,23 +111,18 @@ def forget(obj: "bpy.types.Object") -> None:
     obj.data.pop(_RECORD, None)
 
 
-def _animated(data: "bpy.types.Curve") -> "bpy.types.ID | None":
-    """The datablock that has the animation: the shape keys, or the curve itself."""
-    for owner in (data.shape_keys, data):
-        if owner is not None and owner.animation_data is not None and owner.animation_data.action is not None:
-            return owner
-    return None
-
-
 def _fingerprint(data: "bpy.types.Curve") -> list[int]:
     """Numbers of keys, of F-curves and of points, and which splines are open; -1 where somebody else's animation is."""
     keys = data.shape_keys
-    owner: Any = keys or data
+    owner, moved = keys or data, data.animation_data
     blocks = 0 if keys is None else -1 if keys.use_relative else len(keys.key_blocks)
-    own, other = count_own(owner), keys is not None and _moves(data)
+    other = keys is not None and moved is not None and bool(moved.action or moved.nla_tracks)
+    driven = owner.animation_data.drivers if owner.animation_data is not None else ()
+    other = other or any(driver.data_path.startswith(_DRIVEN) for driver in driven)
+    own = None if other else count_own(owner)
     splines = shape(data)
     points, open_ones = sum(each.count for each in splines), [k for k, each in enumerate(splines) if not each.closed]
-    return [blocks, -1 if own is None or other or _driven(owner) else own, points, *open_ones]
+    return [blocks, -1 if own is None else own, points, *open_ones]
 
 
 def _digest(data: "bpy.types.Curve") -> str:
@@ -145,14 +131,3 @@ def _digest(data: "bpy.types.Curve") -> str:
     for block in data.shape_keys.key_blocks if data.shape_keys else ():
         hashed.update(key_points(block).tobytes())
     return hashed.hexdigest()
-
-
-def _moves(block: "bpy.types.ID") -> bool:
-    animation = block.animation_data
-    return animation is not None and bool(animation.action or animation.nla_tracks)
-
-
-def _driven(block: "bpy.types.ID") -> bool:
-    animation = block.animation_data
-    paths = ("splines", "eval_time", "key_blocks")
-    return animation is not None and any(driver.data_path.startswith(paths) for driver in animation.drivers)

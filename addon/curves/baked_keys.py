@@ -15,8 +15,8 @@ from ..engine.placement import Frame, Link, Placement
 from ..engine.size import Measure, Size
 from ..engine.words import named
 from . import bake, pins
-from .exchange import closed, key_points, key_radii, write_points
-from .keyframes import coordinate_curves
+from .exchange import closed, key_points, write_points
+from .keyframes import coordinate_curves, scale_radii
 from .splines import read
 
 if TYPE_CHECKING:
@@ -24,12 +24,9 @@ if TYPE_CHECKING:
 
 
 class BakedKeys:
-    """What baked curve objects are at each of their keys.
+    """What baked curve objects, their transforms evaluated, are at each of their keys; ``frames``: as stored, (n, 3).
 
     Raises MobiusFlowError if they have not equally many keys, so that they were not baked together.
-
-    The objects' transforms are evaluated. ``mesh``: connectivity of all their splines as one link; ``link``: where its
-    vertices are stored; ``frames``: the vertices at each key as stored, (n, 3).
     """
 
     def __init__(self, objects: Sequence["bpy.types.Object"]) -> None:
@@ -48,20 +45,21 @@ class BakedKeys:
     @property
     def curves(self) -> list[Curve]:
         """The link at each key, in the world."""
-        return [Curve(self._world(frame), self.mesh) for frame in self.frames]
-
-    def _world(self, frame: Frame) -> FloatArray:
-        pieces, points = zip(self.link.placements, self.link.slices(self.mesh), strict=True), frame.astype(np.float64)
-        return np.concatenate([placement.to_world(points[vertices]) for placement, vertices in pieces])
+        pieces = list(zip(self.link.placements, self.link.slices(self.mesh), strict=True))
+        stored = [frame.astype(np.float64) for frame in self.frames]
+        world = [np.concatenate([place.to_world(points[s]) for place, s in pieces]) for points in stored]
+        return [Curve(points, self.mesh) for points in world]
 
     def rewrite(self, curves: Sequence[Curve], factors: FloatArray | None = None) -> None:
         """Give the keys other shapes, in the world, and what is drawn around them other sizes, by factors, (keys,)."""
         self.frames = [self.link.to_stored(self.mesh, curve.vertices).astype(np.float32) for curve in curves]
         for obj, vertices in zip(self._objects, self.link.slices(self.mesh), strict=True):
             _move_keys(obj.data, [frame[vertices] for frame in self.frames])
-            if factors is not None:
-                _scale_tube(obj.data, factors)
-            bake.renew(obj.data)
+            if factors is not None and obj.data.shape_keys:
+                scale_radii(obj.data, factors)
+            elif factors is not None:  # only points are keyed
+                bake.scale_bevel(obj.data, float(factors[-1]))
+            bake.update(obj.data)
 
     @property
     def unproved(self) -> int:
@@ -108,15 +106,6 @@ def _move_keys(data: "bpy.types.Curve", frames: Sequence[Frame]) -> None:
             curve.keyframe_points.foreach_set("co", places.ravel())
             curve.update()
     write_points(data, frames[-1])
-
-
-def _scale_tube(data: "bpy.types.Curve", factors: FloatArray) -> None:
-    """Scale what is drawn around a curve by a factor for each key; where only points are keyed, by the last of them."""
-    if not data.shape_keys:
-        bake.scale_bevel(data, float(factors[-1]))
-        return
-    for block, factor in zip(data.shape_keys.key_blocks, factors, strict=True):
-        block.data.foreach_set("radius", key_radii(block) * np.float32(factor))
 
 
 def _keys_of(curve: "bpy.types.FCurve") -> Frame:

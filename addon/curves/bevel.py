@@ -12,7 +12,6 @@ import numpy as np
 
 from ...core import Curve, CurveError, Obstacle
 from ...core.collision import check_embedded
-from ...core.types import FloatArray
 from ..engine.tube import free_radius, radius_beside, thickest_radius
 from ..engine.words import in_blenders_words, spline_names
 from .exchange import stretch
@@ -74,12 +73,9 @@ def fit_tubes(objects: Sequence["bpy.types.Object"]) -> None:
             raise CurveError(in_blenders_words(str(error), splines)) from error
     fitting = np.array([fitting_radius(link) for link in links])
     for obj in objects:
-        _fit_keys(obj.data, fitting / stretch(obj))
-
-
-def _fit_keys(data: "bpy.types.Curve", wanted: FloatArray) -> None:
-    fit(data, float(wanted[-1]))
-    for k, block in enumerate(data.shape_keys.key_blocks if data.shape_keys else ()):
-        relative = wanted[min(k, len(wanted) - 1)] / wanted[-1]
-        block.data.foreach_set("radius", np.full(len(block.data), relative, dtype=np.float32))
-    data.update_tag()
+        data, wanted = obj.data, fitting / stretch(obj)
+        fit(data, float(wanted[-1]))
+        for k, block in enumerate(data.shape_keys.key_blocks if data.shape_keys else ()):
+            relative = wanted[min(k, len(wanted) - 1)] / wanted[-1]
+            block.data.foreach_set("radius", np.full(len(block.data), relative, dtype=np.float32))
+        data.update_tag()

@@ -21,10 +21,8 @@ _FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
 def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
     """Read the splines of curve objects in world space, one component each, and where they are stored.
 
-    Splines that are not cyclic are open components. Smooth splines are read as the polygons drawn for them.
-
-    Raises CurveError if a coordinate is not finite, or as good as infinite, or no polygon is drawn for a smooth spline;
-    the message names the spline and its object.
+    Splines that are not cyclic are open components, smooth ones the polygons drawn for them. Raises CurveError if a
+    coordinate is not finite, or as good as infinite, or no polygon is drawn.
     """
     placements = tuple(Placement.from_matrix(obj.matrix_world) for obj in objects)
     components = [read_splines(obj) for obj in objects]

@@ -1,6 +1,7 @@
 """F-curves and their actions, in all versions of Blender."""
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,17 +21,15 @@ def all_fcurves() -> Iterator["bpy.types.FCurve"]:
 
     for action in bpy.data.actions:
         slotted = hasattr(action, "slots")  # not in Blender 4.3 and before
-        for fcurves in _collections(action, action.slots) if slotted else [action.fcurves]:
-            yield from fcurves
+        yield from chain.from_iterable(_collections(action, action.slots) if slotted else [action.fcurves])
 
 
 def fcurves_of(block: "bpy.types.ID") -> Iterator["bpy.types.FCurve"]:
-    """Yield the F-curves of a datablock that has an action: those of its own slot.
+    """The F-curves of a datablock that has an action: those of its own slot.
 
     Since 4.4 Blender puts keys of an object into the action of its curve, if that has one, and the other way round.
     """
-    for fcurves in _own_collections(block):
-        yield from fcurves
+    return chain.from_iterable(_own_collections(block))
 
 
 def count_own(block: "bpy.types.ID") -> int | None:
@@ -52,22 +51,23 @@ def own_action(block: "bpy.types.ID") -> None:
         animation.action_slot = action.slots[0]
 
 
+def animated(data: "bpy.types.Curve") -> "list[bpy.types.ID]":
+    """The datablocks that have actions: shape keys first, and the curve itself."""
+    owners = [owner for owner in (data.shape_keys, data) if owner is not None]
+    return [owner for owner in owners if owner.animation_data is not None and owner.animation_data.action is not None]
+
+
 def drop_actions(data: "bpy.types.Curve") -> None:
     """Take the actions of a curve and its shape keys away, and remove what nothing else uses of them."""
-    for owner in (data.shape_keys, data):
-        if owner is not None and owner.animation_data is not None and owner.animation_data.action is not None:
-            _drop_action(owner.animation_data)
-
-
-def _drop_action(animation: "bpy.types.AnimData") -> None:
     import bpy
 
-    action, slot = animation.action, getattr(animation, "action_slot", None)
-    animation.action = None
-    if action.users == action.use_fake_user:
-        bpy.data.actions.remove(action)
-    elif slot is not None and not slot.users():
-        action.slots.remove(slot)
+    for animation in [owner.animation_data for owner in animated(data)]:
+        action, slot = animation.action, getattr(animation, "action_slot", None)
+        animation.action = None
+        if action.users == action.use_fake_user:
+            bpy.data.actions.remove(action)
+        elif slot is not None and not slot.users():
+            action.slots.remove(slot)
 
 
 def _collections(action: "bpy.types.Action", slots: "Iterable[bpy.types.ActionSlot]") -> Iterator[Any]:
@@ -89,8 +89,16 @@ class FCurves:
     """The F-curves of the action on a datablock, which gets a new one if it has none."""
 
     def __init__(self, block: "bpy.types.ID", name: str) -> None:
+        import bpy
+
         if not (block.animation_data and block.animation_data.action):
-            _make_action(block, name)
+            animation = block.animation_data_create()
+            animation.action = action = bpy.data.actions.new(name)
+            action[_MARK] = True
+            if hasattr(action, "slots"):  # not in Blender 4.3 and before
+                animation.action_slot = slot = action.slots.new(id_type=block.id_type, name=block.name)
+                strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
+                strip.channelbag(slot, ensure=True)
         (self._fcurves,) = _own_collections(block)
 
     def add(self, path: str, axis: int, frames: FloatArray, values: FloatArray) -> None:
@@ -110,18 +118,3 @@ class FCurves:
         points.foreach_set("co", places.ravel())
         points.foreach_set("interpolation", kinds)
         curve.update()
-
-
-def _make_action(block: "bpy.types.ID", name: str) -> None:
-    import bpy
-
-    animation = block.animation_data_create()
-    action = bpy.data.actions.new(name)
-    action[_MARK] = True
-    animation.action = action
-    if not hasattr(action, "slots"):  # Blender 4.3 and before
-        return
-    slot = action.slots.new(id_type=block.id_type, name=block.name)
-    animation.action_slot = slot
-    strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
-    strip.channelbag(slot, ensure=True)

@@ -27,11 +27,10 @@ if TYPE_CHECKING:
 class Group:
     """Curve objects, the link that their splines are, and what is written to them.
 
-    ``objects`` are curve objects that `checks.refusal` has nothing against, their transforms evaluated. They show
-    stand-ins until all is written, or until `discard`. Where the run ``continues``, baked curves are relaxed on from
-    the ends of their animations, and not from how they were before. ``curve`` has all splines as polygons in world
-    space, open where they are not cyclic, ``link`` where their vertices are stored. Raises CurveError if the splines
-    cannot be read.
+    `checks.refusal` has nothing against the objects, and their transforms are evaluated. They show stand-ins until all
+    is written, or until `discard`. Where the run ``continues``, baked curves are relaxed on from the ends of their
+    animations, and keys are added to theirs. ``curve``: all splines as polygons in world space; ``link``: where their
+    vertices are stored. Raises CurveError if the splines cannot be read.
     """
 
     def __init__(self, objects: Sequence["bpy.types.Object"], continues: bool = False) -> None:
@@ -112,10 +111,7 @@ class Group:
         return np.concatenate([coordinates(spline) for obj in self.objects for spline in obj.data.splines])
 
     def show(self, start: Curve, frame: Frame) -> None:
-        """Move all points; shape (n, 3), each object's own coordinates.
-
-        ``start`` is the start with as many vertices.
-        """
+        """Move all points, (n, 3) in each object's own coordinates; ``start``: the start with as many vertices."""
         if self._shown is None or self._shown[0].mesh != start.mesh:
             self.make_polygons(start)
         self._shown = start, frame

@@ -3,7 +3,7 @@
 Data that has such keys already gets more of them after the last.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,34 +22,31 @@ if TYPE_CHECKING:
 def writing(
     obj: "bpy.types.Object", keys: Keys, frames: FloatArray, output: Output, radii: FloatArray | None = None
 ) -> Iterator[None]:
-    """Write keys in short pieces to a curve object that has as many points as they have vertices.
+    """Write keys in short pieces to a curve object with as many points; the curve itself keeps the last key.
 
-    The curve itself keeps the last key, so that removing the keys leaves the relaxed curve.
-
-    ``obj`` has neither keys nor animation, or those of an earlier call; the first of the new keys is the last of those
-    then. ``frames``: scene frame of each key, ascending, (keys,). ``radii``: relative radius of all points at each key,
-    (keys,); None keeps those that the points have.
+    It has no animation, or keys of an earlier call, the last of which is the first of the new ones. ``frames``: scene
+    frame of each key, ascending; ``radii``: relative radius of all points at each; None keeps the points' own; (keys,).
     """
-    yield from _WRITERS[output](obj, keys, frames, radii)
+    write_points(obj.data, keys.keys[-1].points)
+    if output is Output.SHAPE_KEYS:
+        yield from _shape_keys(obj, keys, frames, radii)
+    elif output is Output.FCURVES:
+        yield from _fcurves(obj, keys, frames)
 
 
 def erase(obj: "bpy.types.Object") -> None:
     """Remove all that `writing` has written but where the points are."""
-    drop_actions(obj.data)
-    _remove_shape_keys(obj)
-    animation = obj.data.animation_data
-    if animation and not (animation.drivers or animation.nla_tracks):
-        obj.data.animation_data_clear()
-
-
-def _remove_shape_keys(obj: "bpy.types.Object") -> None:
     import bpy
 
+    drop_actions(obj.data)
     if obj.data.shape_keys:
         uid = obj.data.shape_keys.session_uid
         obj.shape_key_clear()
         # Blender 5.0 counts a user too many where curve data was copied, and leaves the keys behind
         bpy.data.batch_remove([keys for keys in bpy.data.shape_keys if keys.session_uid == uid])
+    animation = obj.data.animation_data
+    if animation and not (animation.drivers or animation.nla_tracks):
+        obj.data.animation_data_clear()
 
 
 def remove(data: "bpy.types.Curve") -> None:
@@ -95,23 +92,18 @@ def end_of(data: "bpy.types.Curve") -> Frame:
     return np.array(last, dtype=np.float32).reshape(-1, 3)
 
 
-def scale_radii(data: "bpy.types.Curve", factor: float) -> None:
-    """Multiply the points' radii at all keys, because the radius that they are relative to has been divided."""
-    for block in data.shape_keys.key_blocks if data.shape_keys else ():
+def scale_radii(data: "bpy.types.Curve", factors: float | FloatArray) -> None:
+    """Multiply the points' radii at all shape keys by one factor, or one for each, (keys,)."""
+    blocks = data.shape_keys.key_blocks if data.shape_keys else ()
+    for block, factor in zip(blocks, np.broadcast_to(factors, len(blocks)), strict=True):
         block.data.foreach_set("radius", key_radii(block) * np.float32(factor))
-
-
-def write_shape_keys(obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None) -> None:
-    """Write keys as absolute shape keys and an F-curve that runs through them; as `writing`, at once."""
-    for _ in _shape_keys(obj, keys, frames, radii):
-        pass
 
 
 def _shape_keys(
     obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None
 ) -> Iterator[None]:
+    """Absolute shape keys, and an F-curve that runs through them."""
     data = obj.data
-    write_points(data, keys.keys[-1].points)
     there = len(data.shape_keys.key_blocks) if data.shape_keys else 0
     skipped = min(there, 1)  # the first of more keys is there already
     for k, key in enumerate(keys.keys[skipped:], skipped):
@@ -133,11 +125,8 @@ def _shape_keys(
     curves.add("eval_time", 0, frames, there - skipped + np.arange(len(frames), dtype=np.float64))
 
 
-def _fcurves(
-    obj: "bpy.types.Object", keys: Keys, frames: FloatArray, _radii: FloatArray | None = None
-) -> Iterator[None]:
+def _fcurves(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> Iterator[None]:
     """One F-curve for every coordinate of every point, for exporters that know no shape keys."""
-    write_points(obj.data, keys.keys[-1].points)
     curves = FCurves(obj.data, f"{obj.name} Relaxation")
     values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
     for path, point in zip(point_paths(obj.data), values, strict=True):
@@ -156,18 +145,3 @@ def coordinate_curves(data: "bpy.types.Curve") -> "list[bpy.types.FCurve]":
     """The F-curves of all coordinates of a curve that is keyed by them, point by point."""
     found = {(curve.data_path, curve.array_index): curve for curve in fcurves_of(data)}
     return [found[path, axis] for path in point_paths(data) for axis in range(3)]
-
-
-def _result(
-    obj: "bpy.types.Object", keys: Keys, _frames: FloatArray, _radii: FloatArray | None = None
-) -> Iterator[None]:
-    write_points(obj.data, keys.keys[-1].points)
-    yield
-
-
-_Writer = Callable[["bpy.types.Object", Keys, FloatArray, FloatArray | None], Iterator[None]]
-_WRITERS: dict[Output, _Writer] = {
-    Output.SHAPE_KEYS: _shape_keys,
-    Output.FCURVES: _fcurves,
-    Output.RESULT: _result,
-}

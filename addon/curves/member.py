@@ -28,11 +28,7 @@ _MARK = "mobius_flow_stand_in"  # custom property of stand-ins
 
 
 class Member:
-    """A curve object of a run.
-
-    ``obj`` is one that `checks.refusal` has nothing against; nothing of it is touched before `begin`. Where the run
-    ``continues``, a baked curve is relaxed on from the end of its animation, and not from how it was before.
-    """
+    """A curve object of a run, as for `Group`; nothing of it is touched before `begin`."""
 
     def __init__(self, obj: "bpy.types.Object", continues: bool = False) -> None:
         self.name = obj.name
@@ -121,22 +117,18 @@ class Member:
         obj = self.object
         assert obj is not None, "whoever writes looks for it first"
         self.keyed = True
-        if self._baked and self._continues:
-            self._take_keys()
+        if self._baked and self._continues:  # show a copy of the original with its keys, to be added to
+            preview, data = self.data, self._original.get().copy()
+            own_action(data.shape_keys or data)
+            self._show(data)
+            keyframes.remove(preview)
         relative = None
         if radii is not None and self.fits(options):
             depth = obj.data.bevel_depth
             bevel.fit(obj.data, float(radii[-1]))
-            keyframes.scale_radii(obj.data, depth / obj.data.bevel_depth)
+            keyframes.scale_radii(obj.data, depth / obj.data.bevel_depth)  # which are relative to it
             relative = radii / radii[-1]
         yield from keyframes.writing(obj, keys, frames, keyframes.output_of(obj.data) or options.output, relative)
-
-    def _take_keys(self) -> None:
-        """Make the stand-in a copy of the original with its keys, to be added to."""
-        preview, data = self.data, self._original.get().copy()
-        own_action(data.shape_keys or data)
-        self._show(data)
-        keyframes.remove(preview)
 
     def keep(self, options: KeyOptions) -> None:
         """Make what was written final: the stand-in takes over the names and the users of the original.

@@ -32,9 +32,6 @@ _DEFORMING_NODES = {"GeometryNodeSetPosition", "GeometryNodeSetCurveHandlePositi
 _CHANGING_NODES = {"GeometryNodeInputSceneTime", "GeometryNodeSimulationInput"}
 
 
-# -- objects --------------------------------------------------------------------------------------------------------
-
-
 def what_moves(obj: "bpy.types.Object") -> Message | None:
     """Say what may move an object or one of its parents by itself, or return None if nothing does."""
     return next(_movers(obj), None)
@@ -52,23 +49,15 @@ def _movers(obj: "bpy.types.Object") -> Iterator[Message]:
         yield Message("a constraint")
     if obj.rigid_body and obj.rigid_body.type == "ACTIVE":  # a passive one is hit, and stays where it is
         yield Message("physics")
-    if obj.parent:
-        yield from _parental(obj)
-
-
-def _parental(obj: "bpy.types.Object") -> Iterator[Message]:
-    """A parent carries an object along when it moves, and some do when they change their shape or pose."""
-    if obj.parent_type != "OBJECT" or (obj.parent.type == "CURVE" and obj.parent.data.use_path):
+    # a parent carries an object along when it moves, and some do when they change their shape or pose
+    if obj.parent and (obj.parent_type != "OBJECT" or (obj.parent.type == "CURVE" and obj.parent.data.use_path)):
         yield Message("its parent")
-    for reason in _movers(obj.parent):
+    for reason in _movers(obj.parent) if obj.parent else ():
         yield Message("{mover} of its parent", mover=reason) if reason != "its parent" else reason
 
 
 def _any_of(curves: "Iterable[bpy.types.FCurve]", paths: tuple[str, ...] | str) -> bool:
     return any(curve.data_path.startswith(paths) for curve in curves)
-
-
-# -- points of curves -----------------------------------------------------------------------------------------------
 
 
 def what_deforms(obj: "bpy.types.Object") -> Message | None:
@@ -105,15 +94,20 @@ def _nodes_of(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]"
             yield from _nodes_of(getattr(node, "node_tree", None), seen)
 
 
-# -- what is avoided ------------------------------------------------------------------------------------------------
-
-
 def unsteady(avoided: Iterable["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> Message | None:
     """Say what of objects that are avoided, or of curves that avoid them, does not stay as it is, or return None."""
     avoided = list(avoided)
-    moving = (said for obj in avoided if (said := unsteady_object(obj, relaxed)))
-    carried = (said for obj in relaxed if avoided and (said := _unsteady_curve(obj)))
-    return next(chain(moving, carried), None)
+    for obj in avoided:
+        if said := unsteady_object(obj, relaxed):
+            return said
+    for obj in relaxed if avoided else ():
+        if mover := what_moves(obj):
+            sentence = (
+                "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
+                "remove that, or avoid nothing"
+            )
+            return Message(sentence, name=obj.name, mover=mover)
+    return None
 
 
 def unsteady_object(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> Message | None:
@@ -126,26 +120,14 @@ def unsteady_object(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object
     return Message(sentence, name=obj.name, mover=mover) if mover else None
 
 
-def _unsteady_curve(obj: "bpy.types.Object") -> Message | None:
-    sentence = (
-        "'{name}' is moved by {mover}, and curves that avoid something must keep their places; "
-        "remove that, or avoid nothing"
-    )
-    mover = what_moves(obj)
-    return Message(sentence, name=obj.name, mover=mover) if mover else None
-
-
-def what_changes(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"] = ()) -> Message | None:
+def what_changes(
+    obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"] = (), seen: "set[bpy.types.ID] | None" = None
+) -> Message | None:
     """Say what may move an object or change its shape, or return None if nothing does.
 
     What its shape is made with may be relaxed, or move or change itself.
     """
-    return _changed(obj, relaxed, set())
-
-
-def _changed(
-    obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"], seen: "set[bpy.types.ID]"
-) -> Message | None:
+    seen = set() if seen is None else seen  # shared by all that is asked about in turn
     seen.add(obj)
     return what_moves(obj) or next(_changes(obj, relaxed, seen), None)
 
@@ -157,7 +139,9 @@ def _changes(
 
     def changing(blocks: "Iterable[bpy.types.ID]") -> bool:
         found = (each for each in blocks if each not in seen)
-        return any(_changed(each, relaxed, seen) if each.id_type == "OBJECT" else _is_animated(each) for each in found)
+        return any(
+            what_changes(each, relaxed, seen) if each.id_type == "OBJECT" else _is_animated(each) for each in found
+        )
 
     if obj in relaxed:
         yield Message("the relaxation itself")

@@ -61,9 +61,7 @@ def put_beside(made: "bpy.types.Object", obj: "bpy.types.Object", hide: bool) ->
 
 
 def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, sides: int) -> "bpy.types.Object":
-    """Make a mesh object where a curve object is, with its motion as shape keys and its materials.
-
-    Ends of open splines are closed where the curve fills its caps.
+    """Make a mesh object where a curve object is, with its motion as shape keys, its materials and its caps.
 
     ``radii``: of the tube in the object's coordinates, (keys, n). Rings have ``sides`` vertices; those of curve vertex
     i are i · sides and the ones that follow.
@@ -76,7 +74,10 @@ def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, 
     _fill(mesh, surface[0], [quads(curve, sides), ends])
     made = _object_like(obj, mesh)
     corners = np.concatenate([curve.tails.repeat(sides), curve.ends.ravel()])  # a curve vertex of each face
-    _take_materials(mesh, obj.data, curve.component[corners[: len(mesh.polygons)]])
+    for material in obj.data.materials:
+        mesh.materials.append(material)
+    slots = np.array([spline.material_index for spline in obj.data.splines], dtype=np.int32)
+    mesh.polygons.foreach_set("material_index", slots[curve.component[corners[: len(mesh.polygons)]]])
     if len(surface) > 1:
         _write_keys(made, surface, recorded.frames)
     return made
@@ -120,13 +121,6 @@ def _fill(mesh: "bpy.types.Mesh", vertices: FloatArray, faces: Sequence[IntArray
     mesh.update(calc_edges=True)
 
 
-def _take_materials(mesh: "bpy.types.Mesh", data: "bpy.types.Curve", component: IntArray) -> None:
-    for material in data.materials:
-        mesh.materials.append(material)
-    slots = np.array([spline.material_index for spline in data.splines], dtype=np.int32)
-    mesh.polygons.foreach_set("material_index", slots[component])
-
-
 def _write_keys(made: "bpy.types.Object", surface: FloatArray, frames: FloatArray) -> None:
     """Relative shape keys, of which at most two count at a time: what exporters know, and straight from key to key."""
     for frame, shape in zip(frames, surface, strict=True):
@@ -149,9 +143,7 @@ def smooth_objects(
     """Make curve objects of smooth splines where others are, with their bevels and materials.
 
     ``link``: their splines as polygons in the world; ``points``: number of points of each spline, see `fitted`;
-    ``kind``: 'BEZIER' or 'NURBS', the same curve with other points to edit.
-
-    Returns the objects, and the splines as they are stored in them, in the world.
+    ``kind``: 'BEZIER' or 'NURBS'. Returns the objects, and the splines as they are stored in them, in the world.
     """
     wanted = iter(fitted(link, points).points)
     made, shown = [], []
@@ -183,24 +175,20 @@ def _smooth_object(obj: "bpy.types.Object", control: Sequence[Frame], kind: str)
 
 
 def _fill_bezier(spline: "bpy.types.Spline", control: Frame) -> None:
-    closed = bool(spline.use_cyclic_u)
-    left, place, right = _with_handles(bezier_points(control.astype(np.float64), closed), closed)
+    bezier = bezier_points(control.astype(np.float64), bool(spline.use_cyclic_u))
+    place, right, left = bezier[:, 0], bezier[:, 1], bezier[:, 2]
+    if spline.use_cyclic_u:
+        left = np.roll(left, 1, axis=0)
+    else:  # the outer handles mirror the inner ones
+        place = np.concatenate([place, bezier[-1:, 3]])
+        before, after = 2 * place[:1] - right[:1], 2 * place[-1:] - left[-1:]
+        right, left = np.concatenate([right, after]), np.concatenate([before, left])
     points = spline.bezier_points
     points.add(len(place) - 1)
     for point in points:  # aligned handles stay in line when somebody moves them
         point.handle_left_type = point.handle_right_type = "ALIGNED"
     for name, array in (("co", place), ("handle_right", right), ("handle_left", left)):
         points.foreach_set(name, array.astype(np.float32).ravel())
-
-
-def _with_handles(bezier: FloatArray, closed: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Left handles, points and right handles; at the ends of an open spline the outer handles mirror the inner ones."""
-    if closed:
-        return np.roll(bezier[:, 2], 1, axis=0), bezier[:, 0], bezier[:, 1]
-    place = np.concatenate([bezier[:, 0], bezier[-1:, 3]])
-    right, left = bezier[:, 1], bezier[:, 2]
-    before, after = 2 * place[:1] - right[:1], 2 * place[-1:] - left[-1:]
-    return np.concatenate([before, left]), place, np.concatenate([right, after])
 
 
 def _fill_nurbs(spline: "bpy.types.Spline", control: Frame) -> None:

@@ -41,7 +41,7 @@ _PINNED, _FREE = 100.0, 1.0
 
 
 def marked(spline: "bpy.types.Spline") -> BoolArray:
-    return np.asarray(_weights(spline) == _PINNED)
+    return np.asarray(read(control_points(spline), _MARK) == _PINNED)
 
 
 def pin(spline: "bpy.types.Spline", chosen: BoolArray) -> None:
@@ -78,10 +78,7 @@ def places(data: "bpy.types.Curve") -> Frame:
 
 
 def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None:
-    """Raise a CurveError if points of a spline lie on no polygon that can be drawn for it.
-
-    ``number``: index of the spline; ``chosen``: the points, (points,).
-    """
+    """Raise a CurveError if some points, (points,), of a spline lie on no polygon that can be drawn for it."""
     spline = obj.data.splines[number]
     if spline.type != "POLY" and (chosen & ~ends(spline)).any():
         sentence = (
@@ -92,11 +89,9 @@ def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None
 
 
 def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[int, ...]:
-    """The pinned vertices of the link that curve objects are, ascending.
+    """The pinned vertices of the link that curve objects are, ascending; ``mesh`` has a component for each spline.
 
     Raises CurveError if a pinned point is between the ends of a smooth spline.
-
-    ``mesh``: their splines as polygons, a component each.
     """
     found: list[IntArray] = []
     for obj in objects:
@@ -110,11 +105,7 @@ def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[
     return tuple(map(int, np.concatenate(found)))
 
 
-def _weights(spline: "bpy.types.Spline") -> Frame:
-    return read(control_points(spline), _MARK)
-
-
 def _mark(spline: "bpy.types.Spline", chosen: BoolArray, weight: float) -> None:
-    weights = _weights(spline)
+    weights = read(control_points(spline), _MARK)
     weights[chosen] = weight
     control_points(spline).foreach_set(_MARK, weights)

@@ -1,7 +1,6 @@
 """Curve objects in time: their shapes at their keys, or the one that they have, and where these are in the world."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -112,7 +111,9 @@ class WorldMotion:
         """
         recorded = [Recorded.of(obj) for obj in objects]
         moving = any(what_moves(obj) for obj in objects)
-        frames = _all_frames(scene, recorded, moving)
+        keyed = [each.frames for each in recorded if len(each.frames) > 1]
+        every = [np.arange(scene.frame_start, scene.frame_end + 1, dtype=np.float64)] if moving else []
+        frames = np.unique(np.concatenate([*keyed, *every] or [np.array([float(scene.frame_start)])]))
         placements = _placements(scene, objects, frames if moving else frames[:1])
         points, thickness = [], []
         for obj, each in zip(objects, recorded, strict=True):
@@ -123,34 +124,22 @@ class WorldMotion:
         return cls(frames, [np.concatenate(shapes) for shapes in zip(*points, strict=True)], np.max(thickness, axis=0))
 
 
-def _all_frames(scene: "bpy.types.Scene", recorded: Sequence[Recorded], moving: bool) -> FloatArray:
-    keyed = [each.frames for each in recorded if len(each.frames) > 1]
-    every = [np.arange(scene.frame_start, scene.frame_end + 1, dtype=np.float64)] if moving else []
-    return np.unique(np.concatenate([*keyed, *every])) if keyed or every else np.array([float(scene.frame_start)])
-
-
 def _placements(
     scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"], frames: FloatArray
 ) -> dict[str, list[Placement]]:
     """Places of objects by their names, at each of some frames; at a single one as they are now."""
     found: dict[str, list[Placement]] = {obj.name: [] for obj in objects}
-    with _frame_kept(scene):
+    shown, subframe = scene.frame_current, scene.frame_subframe
+    try:
         for frame in frames:
             if len(frames) > 1:
                 scene.frame_set(int(frame // 1), subframe=float(frame % 1))
             for obj in objects:
                 found[obj.name].append(Placement.from_matrix(obj.matrix_world))
-    return found
-
-
-@contextmanager
-def _frame_kept(scene: "bpy.types.Scene") -> Iterator[None]:
-    frame, subframe = scene.frame_current, scene.frame_subframe
-    try:
-        yield
     finally:
-        if (scene.frame_current, scene.frame_subframe) != (frame, subframe):
-            scene.frame_set(frame, subframe=subframe)
+        if (scene.frame_current, scene.frame_subframe) != (shown, subframe):
+            scene.frame_set(shown, subframe=subframe)
+    return found
 
 
 def drawn_radius(obj: "bpy.types.Object") -> float:

@@ -12,7 +12,6 @@ from .splines import Splines
 
 if TYPE_CHECKING:
     import bpy
-    import mathutils
 
 
 def make_3d(obj: "bpy.types.Object") -> None:
@@ -91,7 +90,9 @@ def still_copy(obj: "bpy.types.Object") -> "bpy.types.Object":
     shown.fill(copy.data)
     bpy.context.view_layer.update()
     if copy.matrix_world != world:  # what was taken away held it there
-        _put(copy, world)
+        copy.matrix_world = world
+        bpy.context.view_layer.update()
+        copy.data.transform(copy.matrix_world.inverted_safe() @ world)  # shear, which no object has by itself
     return copy
 
 
@@ -134,12 +135,3 @@ def _strip(obj: "bpy.types.Object") -> None:
     obj.animation_data_clear()
     obj.constraints.clear()
     obj.parent = None
-
-
-def _put(obj: "bpy.types.Object", world: "mathutils.Matrix") -> None:
-    """Put an object somewhere; shear, which no object has by itself, goes into its points."""
-    import bpy
-
-    obj.matrix_world = world
-    bpy.context.view_layer.update()
-    obj.data.transform(obj.matrix_world.inverted_safe() @ world)

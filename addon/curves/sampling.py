@@ -43,11 +43,8 @@ def _question(obj: "bpy.types.Object") -> str:
         one = "'{name}' has a {kind} spline; it becomes a polygon of {points} points"
         return Message(one, name=obj.name, kind=kinds[0], points=points)
     several = "'{name}' has {count} {kinds} splines; they become polygons of {points} points in all"
-    return Message(several, name=obj.name, count=len(smooth), kinds=_joined(kinds), points=points)
-
-
-def _joined(kinds: Sequence[str]) -> str:
-    return Message("{names} and {last}", names=kinds[0], last=kinds[1]) if len(kinds) > 1 else kinds[0]
+    both = Message("{names} and {last}", names=kinds[0], last=kinds[-1])
+    return Message(several, name=obj.name, count=len(smooth), kinds=both if kinds[1:] else kinds[0], points=points)
 
 
 def sampled(obj: "bpy.types.Object") -> list[Frame]:
@@ -70,25 +67,21 @@ def sampled(obj: "bpy.types.Object") -> list[Frame]:
 
 
 def _drawn(data: "bpy.types.Curve") -> list[Frame]:
+    """The line itself, without all that is drawn around it."""
     import bpy
 
     copy = data.copy()
     bare = bpy.data.objects.new("Sampled", copy)
     try:
-        _strip(copy)
+        copy.dimensions = "3D"  # flat curves would be filled
+        copy.bevel_mode, copy.bevel_object, copy.taper_object = "ROUND", None, None
+        copy.bevel_depth = copy.extrude = copy.offset = 0.0
+        copy.bevel_factor_start, copy.bevel_factor_end = 0.0, 1.0
         return _loops(bare.to_mesh())
     finally:
         bare.to_mesh_clear()
         bpy.data.objects.remove(bare)
         bpy.data.curves.remove(copy)
-
-
-def _strip(data: "bpy.types.Curve") -> None:
-    """Leave nothing but the line itself."""
-    data.dimensions = "3D"  # flat curves would be filled
-    data.bevel_mode, data.bevel_object, data.taper_object = "ROUND", None, None
-    data.bevel_depth = data.extrude = data.offset = 0.0
-    data.bevel_factor_start, data.bevel_factor_end = 0.0, 1.0
 
 
 def _loops(mesh: "bpy.types.Mesh") -> list[Frame]:

@@ -91,24 +91,18 @@ class Report:
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """What is to be written: the keys, their frames, and the radius of the tube at each if it is fitted; (keys,).
-
-    Radii are in the common space of `Link`.
-    """
+    """What is to be written; (keys,) each."""
 
     keys: Keys
     frames: FloatArray
-    radii: FloatArray | None
+    radii: FloatArray | None  # of the tube, in the common space of `Link`, if it is fitted
 
 
 class Session:
-    """A relaxation of curve objects as one link.
+    """A relaxation of curve objects as one link; ``objects`` and ``continues`` as for `Group`.
 
-    Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for their keys; the message says why.
-
-    ``objects``: curve objects that `checks.refusal` has nothing against, their transforms evaluated; they show
-    stand-ins until the session's end or `Group.discard`. ``continues``: whether baked curves are relaxed on from the
-    ends of their animations; the keys are added to theirs then. ``outcome``: how the relaxation ended, once it has.
+    Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for their keys. ``outcome``: how the
+    relaxation ended, once it has.
     """
 
     def __init__(
@@ -125,8 +119,9 @@ class Session:
         self._key_options = key_options
         self.group = Group(objects, continues)
         try:
-            self.task = self._task(held)
-            self.options = self._fitting(options)
+            self.task, self.options = self._task(held, options.balance), options
+            if continues:  # the keys that are there have as many points as the curves have now
+                self.options = replace(options, vertices=len(self.group.curve), mesh="fixed")
         except BaseException:
             self.group.discard()
             raise
@@ -134,22 +129,16 @@ class Session:
         self._size: Size | None = None
         self.outcome: Outcome | None = None
 
-    def _task(self, held: Held) -> Task:
+    def _task(self, held: Held, balance: bool) -> Task:
         """The curves with what is pinned and avoided; raises MobiusFlowError if they do not go together."""
         pins = tuple(sorted({*held.points, *self.group.pins}))
         curve, obstacles = self.group.curve, self.surroundings.obstacles
         task = Task(curve=curve, obstacles=obstacles, pins=pins, pin_tangents=held.tangents and bool(pins))
         if task.pins or task.obstacles:
             self._key_options.check_place()
-        return task
-
-    def _fitting(self, options: RelaxOptions) -> RelaxOptions:
-        """The requested options; raises OptionError if they do not go with the task."""
-        if self.task.obstacles and options.balance:
+        if obstacles and balance:
             raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
-        if self.group.continues:  # the keys that are there have as many points as the curves have now
-            return replace(options, vertices=len(self.group.curve), mesh="fixed")
-        return options
+        return task
 
     def run(self) -> Report:
         """Do the whole job; raises MobiusFlowError if the curves cannot be relaxed, or an object is gone."""
@@ -193,15 +182,11 @@ class Session:
         self.outcome = replace(outcome, clauses=tuple(map(self.group.reworded, outcome.clauses)))
 
     def take(self, iterate: Iterate) -> None:
-        self._motion.add(self._sized(iterate))
-
-    def _sized(self, iterate: Iterate) -> Iterate:
-        """An iterate as it is shown, in the size that is to be kept."""
-        measure = self._key_options.keep_size
-        if measure is Measure.LENGTH:
-            return iterate
-        self._size = self._size or Size.of(measure, iterate.curve)
-        return self._size.given_to_iterate(iterate)
+        """Record an iterate as it is shown, in the size that is to be kept."""
+        if (measure := self._key_options.keep_size) is not Measure.LENGTH:
+            self._size = self._size or Size.of(measure, iterate.curve)
+            iterate = self._size.given_to_iterate(iterate)
+        self._motion.add(iterate)
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""

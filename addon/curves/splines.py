@@ -64,10 +64,8 @@ class Splines:
     def polygons(self, drawn: Curve, refined: Curve) -> "Splines":
         """The same as poly splines with the vertices of a refined curve; where their points are is left open.
 
-        New points have values between those of their neighbours; all other settings stay.
-
-        ``drawn``: the polygons that are drawn for the splines, a component each; ``refined``: the same with more
-        vertices.
+        New points have values between those of their neighbours; all other settings stay. ``drawn``: the polygons that
+        are drawn for the splines, a component each.
         """
         made = []
         for k, spline in enumerate(self.each):

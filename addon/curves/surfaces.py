@@ -30,7 +30,10 @@ def surfaces(
     shown: dict[int, list[Surface]] = {obj.session_uid: [] for obj in objects}
     looked_at: set[int] = set()
     for obj in objects:
-        _check_shown(obj)
+        if not obj.visible_get():
+            raise MobiusFlowError(Message("'{name}' is hidden; show it first, or leave it out", name=obj.name))
+        if obj.mode != "OBJECT":
+            raise MobiusFlowError(Message("'{name}' is being edited; go back to Object Mode first", name=obj.name))
     for instance in depsgraph.object_instances:
         owner = (instance.parent if instance.is_instance else instance.object).original
         pieces = shown.get(owner.session_uid)
@@ -39,27 +42,14 @@ def surfaces(
         source = instance.object.original
         if source.session_uid not in looked_at:
             looked_at.add(source.session_uid)
-            _check(source, relaxed)
+            if said := unsteady_object(source, relaxed):
+                raise MobiusFlowError(said)
         _check_kind(source, instance.object.type)
         piece = _surface(instance)
         # curves, texts and so on are shown a second time, as the meshes that are made of them
         if piece is not None and not any(map(piece.equals, pieces)):
             pieces.append(piece)
     return [shown[obj.session_uid] for obj in objects]
-
-
-def _check_shown(obj: "bpy.types.Object") -> None:
-    """Refuse an object that is hidden, or whose shape is just being changed."""
-    if not obj.visible_get():
-        raise MobiusFlowError(Message("'{name}' is hidden; show it first, or leave it out", name=obj.name))
-    if obj.mode != "OBJECT":
-        raise MobiusFlowError(Message("'{name}' is being edited; go back to Object Mode first", name=obj.name))
-
-
-def _check(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> None:
-    """Refuse an object that is shown somewhere and cannot be avoided."""
-    if said := unsteady_object(obj, relaxed):
-        raise MobiusFlowError(said)
 
 
 def _check_kind(obj: "bpy.types.Object", shown: str) -> None:
@@ -84,11 +74,8 @@ def _surface(instance: "bpy.types.DepsgraphObjectInstance") -> Surface | None:
     try:
         mesh.calc_loop_triangles()
         points = read(mesh.vertices, "co", 3)
-        triangles, edges = (
-            read(mesh.loop_triangles, "vertices", 3, np.int32),
-            read(mesh.edges, "vertices", 2, np.int32),
-        )
-        placement = Placement.from_matrix(instance.matrix_world)
-        return Surface.of_mesh(points, triangles, edges, placement)
+        triangles = read(mesh.loop_triangles, "vertices", 3, np.int32)
+        edges = read(mesh.edges, "vertices", 2, np.int32)
+        return Surface.of_mesh(points, triangles, edges, Placement.from_matrix(instance.matrix_world))
     finally:
         obj.to_mesh_clear()

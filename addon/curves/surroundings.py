@@ -9,7 +9,6 @@ import numpy as np
 
 from ...core import MobiusFlowError, Obstacle
 from ...core.messages import Message
-from ...core.types import FloatArray
 from ..engine.obstacles import obstacles
 from ..engine.placement import Placement
 from ..engine.words import named
@@ -132,18 +131,12 @@ def near(
     mine = np.array([obj in together for obj in everything], dtype=bool)
     if not mine.any():
         return []
-    low, high = _boxes(everything)
+    matrices = read(everything, "matrix_world", 16).reshape(-1, 4, 4)  # column by column
+    corners = read(everything, "bound_box", 24).reshape(-1, 8, 3) @ matrices[:, :3, :3] + matrices[:, 3:, :3]
+    low, high = corners.min(axis=1), corners.max(axis=1)
     lowest, highest = low[mine].min(axis=0), high[mine].max(axis=0)
     margin = _MARGIN * np.linalg.norm(highest - lowest)
     overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
     candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
     others = (obj for obj in candidates if obj.type in SOLID and obj not in avoided)
     return [obj for obj in others if STAGE not in obj and obj.visible_get()]
-
-
-def _boxes(objects: "bpy.types.bpy_prop_collection") -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest coordinates of objects in the world, each of shape (n, 3)."""
-    matrices = read(objects, "matrix_world", 16).reshape(-1, 4, 4)  # column by column
-    corners = read(objects, "bound_box", 24)
-    world = corners.reshape(-1, 8, 3) @ matrices[:, :3, :3] + matrices[:, 3:, :3]
-    return world.min(axis=1), world.max(axis=1)

@@ -23,13 +23,8 @@ _SQUARE = 1e-5  # cosines of angles that are right but for the rounding of Blend
 def lay_flat(objects: Sequence["bpy.types.Object"]) -> int:
     """Turn curves so that they extend least upwards; one that is animated, least along its own Z axis.
 
-    Raises MobiusFlowError if one of them is moved by something, or would be sheared by its parent's scale, and is not
-    the only one, or has no keys that could be turned; or if all of their points are the same.
-
-    Returns
-    -------
-    int
-        Number of motions of keys that are not proved any more.
+    Returns the number of motions of keys that are not proved any more. Raises MobiusFlowError if something moves one
+    of them, or its parent's scale would shear it, and it is not alone, or has no keys; or if all points are the same.
     """
     flat = np.array(objects[0].matrix_world, dtype=np.float64)[:3, :3].T if what_moves(objects[0]) else np.eye(3)
     return _turn(objects, orthonormal(flat))
@@ -45,10 +40,22 @@ def face_camera(objects: Sequence["bpy.types.Object"], camera: "bpy.types.Object
 
 
 def _turn(objects: Sequence["bpy.types.Object"], wanted: FloatArray) -> int:
+    import bpy
+    from mathutils import Matrix
+
     turn = Turn.onto(_shape(objects), wanted)
     if why := next((why for obj in objects for why in _obstacles(obj, objects, turn)), None):
-        return _turn_keys(objects, turn, why)
-    _turn_objects(objects, turn)
+        if len(objects) > 1 or not bake.is_baked(objects[0].data):
+            raise MobiusFlowError(Message("{why}; remove that, or bake it and turn it alone", why=why))
+        if bake.is_edited(objects[0].data):
+            raise MobiusFlowError(Message("{why}, and its keys were edited; undo one or the other", why=why))
+        keys = BakedKeys(objects)
+        keys.rewrite([turn.of(curve) for curve in keys.curves])
+        return keys.unproved
+    turned = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}
+    for obj in sorted(objects, key=lambda each: sum(1 for _ in _ancestors(each))):  # parents carry their children along
+        obj.matrix_world = turned[obj]
+        bpy.context.view_layer.update()
     # a single object goes wherever it likes; places of several against each other are rounded anew
     proved = len(objects) > 1 and all(bake.is_baked(obj.data) for obj in objects)
     return BakedKeys(objects).unproved if proved else 0
@@ -70,36 +77,11 @@ def _shears(obj: "bpy.types.Object", turn: Turn) -> bool:
     return not np.allclose(columns.T @ columns, np.eye(3), atol=_SQUARE)
 
 
-def _turn_keys(objects: Sequence["bpy.types.Object"], turn: Turn, why: Message) -> int:
-    if len(objects) > 1 or not bake.is_baked(objects[0].data):
-        raise MobiusFlowError(Message("{why}; remove that, or bake it and turn it alone", why=why))
-    if bake.is_edited(objects[0].data):
-        raise MobiusFlowError(Message("{why}, and its keys were edited; undo one or the other", why=why))
-    keys = BakedKeys(objects)
-    keys.rewrite([turn.of(curve) for curve in keys.curves])
-    return keys.unproved
-
-
 def _shape(objects: Sequence["bpy.types.Object"]) -> Curve:
     """The curves in the world, at the end of their animation if they are baked."""
     if all(bake.is_baked(obj.data) for obj in objects):
         return BakedKeys(objects).curves[-1]
     return read_link(objects)[0]
-
-
-def _turn_objects(objects: Sequence["bpy.types.Object"], turn: Turn) -> None:
-    """Parents first, as they carry their children along."""
-    import bpy
-    from mathutils import Matrix
-
-    wanted = {obj: Matrix(turn.matrix.tolist()) @ obj.matrix_world for obj in objects}
-    for obj in sorted(objects, key=_depth):
-        obj.matrix_world = wanted[obj]
-        bpy.context.view_layer.update()
-
-
-def _depth(obj: "bpy.types.Object") -> int:
-    return sum(1 for _ in _ancestors(obj))
 
 
 def _ancestors(obj: "bpy.types.Object") -> "Iterator[bpy.types.Object]":

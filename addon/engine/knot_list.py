@@ -70,14 +70,9 @@ def name_of(label: str) -> str:
 
 
 def thumbnail(curve: Curve, size: int) -> FloatArray:
-    """Draw a curve as tubes, one colour for each component.
+    """Draw a curve as tubes, one colour for each component; RGBA in [0, 1], bottom row first, (size, size, 4).
 
-    The tube is drawn as balls, each of which covers the pixels behind it.
-
-    Returns
-    -------
-    FloatArray
-        RGBA in [0, 1] with the bottom row first, transparent around the tube; shape (size, size, 4).
+    The tube is drawn as balls, each of which covers the pixels behind it; it is transparent around the tube.
     """
     low, high = curve.vertices.min(axis=0), curve.vertices.max(axis=0)
     room = 1.0 + _RADIUS + _RIM
@@ -93,7 +88,8 @@ def thumbnail(curve: Curve, size: int) -> FloatArray:
         rows, columns, height, normal, which = _balls(points, component, radius, size)
         seen = _topmost(rows, columns, height - sink, depth)
         rows, columns = rows[seen], columns[seen]
-        colors = _TINTS[which[seen] % len(_TINTS)] * _light(normal[seen])[:, None]
+        brightness = _AMBIENT + (1.0 - _AMBIENT) * np.maximum(normal[seen] @ _LIGHT, 0.0)
+        colors = _TINTS[which[seen] % len(_TINTS)] * brightness[:, None]
         picture[rows, columns] = np.column_stack([colors if not sink else colors * _RIM_COLOR, np.ones(len(rows))])
     return picture
 
@@ -131,8 +127,3 @@ def _topmost(rows: IntArray, columns: IntArray, height: FloatArray, depth: Float
     chosen = chosen[height[chosen] > depth[rows[chosen], columns[chosen]]]
     depth[rows[chosen], columns[chosen]] = height[chosen]
     return np.asarray(chosen)
-
-
-def _light(normal: FloatArray) -> FloatArray:
-    """Brightness of surfaces with these normals; shape (n,)."""
-    return np.asarray(_AMBIENT + (1.0 - _AMBIENT) * np.maximum(normal @ _LIGHT, 0.0))

@@ -57,11 +57,8 @@ def frames_of(link: Link, iterate: Iterate) -> list[Frame]:
 class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
-    All have as many points as the last one: where edges are split on the way, those of earlier frames are split too,
-    at the same fractions.
-
-    ``link``: where the vertices of the iterates are stored, and in which space their motions are proved; ``first``: the
-    start as it is stored already, where keys are added to others; None rounds the first iterate.
+    All have as many points as the last one: where edges are split on the way, those of earlier frames are split too, at
+    the same fractions. ``first``: the start as it is stored already, where keys are added to others.
     """
 
     def __init__(self, link: Link, first: Frame | None = None) -> None:
@@ -73,11 +70,7 @@ class Motion:
         self._steps: list[float] = []  # sizes of the steps that led to the iterates
 
     def add(self, iterate: Iterate) -> None:
-        """Append an iterate with the legs that lead to it.
-
-        Raises MobiusFlowError if its mesh is another one than that of the last iterate, and not only by edges that are
-        split.
-        """
+        """Append an iterate with its legs; raises MobiusFlowError if its mesh differs by more than split edges."""
         if self._last is not None and iterate.curve.mesh != self._last.curve.mesh:
             self._split(iterate.curve)
         frames = frames_of(self._link, iterate)
@@ -194,9 +187,10 @@ class Motion:
         """Keys that lead along one leg in shorter pieces, each proved; empty if that fails."""
         if depth == 0:
             return []
-        middle = Key(0.5 * (start.time + end.time), _midpoint(start.points, end.points))
+        middle = 0.5 * (start.points.astype(np.float64) + end.points.astype(np.float64))
+        middle_key = Key(0.5 * (start.time + end.time), middle.astype(np.float32))
         keys: list[Key] = []
-        for a, b in ((start, middle), (middle, end)):
+        for a, b in ((start, middle_key), (middle_key, end)):
             part = [b] if self._proved(a, b, free) else self._halves(a, b, free, depth - 1)
             if not part:
                 return []
@@ -220,7 +214,3 @@ class Motion:
 def _way(a: FloatArray, b: FloatArray) -> float:
     """Root mean square over the vertices of the way from one frame to another."""
     return float(np.sqrt(np.square(b - a).sum(axis=1).mean()))
-
-
-def _midpoint(a: Frame, b: Frame) -> Frame:
-    return np.asarray(0.5 * (a.astype(np.float64) + b.astype(np.float64)), dtype=np.float32)

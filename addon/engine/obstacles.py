@@ -55,19 +55,13 @@ def obstacles(name: str, surfaces: Sequence[Surface]) -> Iterator[Obstacle]:
     kinds = [each.triangles for each in surfaces], [each.edges for each in surfaces]
     found = [np.concatenate([a + k for a, k in zip(kind, ends, strict=False)]) for kind in kinds if any(map(len, kind))]
     if not found:
-        raise CurveError(
-            Message("'{name}' shows neither faces nor edges; leave it out of what is avoided", name=name),
-        )
+        raise CurveError(Message("'{name}' shows neither faces nor edges; leave it out of what is avoided", name=name))
     for simplices in found:
         used, corners = np.unique(simplices, return_inverse=True)
-        _check(name, vertices[used])
+        if not (np.abs(vertices[used]) < _FAR).all():
+            sentence = "A point of '{name}' is not finite, or further away than anything; repair or delete it"
+            raise CurveError(Message(sentence, name=name))
         yield Obstacle(vertices[used], corners.reshape(simplices.shape), name)
-
-
-def _check(name: str, points: FloatArray) -> None:
-    if not (np.abs(points) < _FAR).all():
-        sentence = "A point of '{name}' is not finite, or further away than anything; repair or delete it"
-        raise CurveError(Message(sentence, name=name))
 
 
 def in_common_space(avoid: Iterable[Obstacle], link: Link) -> tuple[Obstacle, ...]:

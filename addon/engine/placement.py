@@ -107,7 +107,9 @@ class Spot:
 
 def spots(place: Place, curve: Curve, link: Link) -> list[Spot]:
     """The spots of a place on a curve in the world, object by object, that with the mark first."""
-    vertices = list(place.vertices) or [_nearest(place, curve)]
+    vertices = list(place.vertices)
+    if not vertices:  # the nearest one
+        vertices = [int(np.linalg.norm(curve.vertices - place.position, axis=1).argmin())]
     stored = link.to_stored(curve.mesh, curve.vertices)
     members = [next(k for k, part in enumerate(link.slices(curve.mesh)) if v < part.stop) for v in vertices]
     mark = link.placements[members[0]].to_local(np.array([place.position]))
@@ -119,10 +121,6 @@ def spots(place: Place, curve: Curve, link: Link) -> list[Spot]:
         )
         for member in dict.fromkeys(members)
     ]
-
-
-def _nearest(place: Place, curve: Curve) -> int:
-    return int(np.linalg.norm(curve.vertices - place.position, axis=1).argmin())
 
 
 def at(points: FloatArray, wanted: FloatArray) -> FloatArray:

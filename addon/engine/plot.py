@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.types import FloatArray, IntArray
+from ...core.types import FloatArray
 from .rest import Target
 
 _DECADE = 10.0  # ratio of energies from which they are drawn on a logarithmic scale
@@ -22,29 +22,20 @@ class Plot:
 
 def plot(energies: Sequence[float], target: Target | None, width: float, height: float) -> Plot:
     """Lay out the energies of the iterates, of which there is at least one, and their target."""
-    chosen = _thinned(len(energies), width)
+    count = len(energies)  # of which the first, the last, and evenly spread ones in between are drawn
+    chosen = np.unique(np.linspace(0, count - 1, min(count, max(2 * int(width), 2))).round().astype(np.intp))
     values = np.asarray(energies, dtype=np.float64)[chosen]
     low = min(values.min(), np.inf if target is None else target.energy)
-    scale = _scale(low, values.max())
+    scale = np.log if low > 0.0 and _DECADE * low < values.max() else np.positive
     bottom, top = scale(np.array([low, values.max()]))
 
     def heights(of: FloatArray) -> FloatArray:
         share = (scale(of) - bottom) / (top - bottom) if top > bottom else np.full(of.shape, 0.5)
         return np.asarray(height * (_ROOM + (1.0 - 2.0 * _ROOM) * share))
 
-    x = width * chosen / max(len(energies) - 1, 1)
+    x = width * chosen / max(count - 1, 1)
     level = None if target is None else float(heights(np.array([target.energy]))[0])
     return Plot(np.column_stack([x, heights(values)]), level)
-
-
-def _thinned(count: int, width: float) -> IntArray:
-    """Indices of the first, the last, and evenly spread ones in between."""
-    chosen = np.linspace(0, count - 1, min(count, max(2 * int(width), 2)))
-    return np.asarray(np.unique(chosen.round().astype(np.intp)))
-
-
-def _scale(low: float, high: float) -> "np.ufunc":
-    return np.log if low > 0.0 and _DECADE * low < high else np.positive
 
 
 def dashes(length: float, period: float) -> FloatArray:

@@ -57,8 +57,7 @@ class SmoothFit:
     def proved(self) -> bool:
         """Whether the straight motion of the polygons onto the splines is proved free of contact: the knot is the same.
 
-        What moves is the polygons with more points on their edges; where it arrives is polygons in the splines, with
-        the points that `error` looks at.
+        It takes the points that `error` looks at from the polygons' edges to polygons in the splines.
         """
         polygon, spline = self._compared
         return is_free(polygon.mesh, polygon.vertices, spline.vertices)
@@ -112,10 +111,9 @@ def _evaluated(points: FloatArray, t: FloatArray, closed: bool) -> FloatArray:
 
 
 def fitted(curve: Curve, points: int | None = None) -> SmoothFit:
-    """Fit splines to the vertices of each component by least squares.
+    """Fit splines to the vertices of each component of a curve in space by least squares.
 
-    ``curve``: the polygons, in space; ``points``: number of control points of each spline, at least 4; None takes as
-    few as are close, and at most half as many as there are vertices.
+    ``points``: number of control points of each, 4 or more; None takes as few as are close, at most half the vertices.
     """
     if points is not None:
         return SmoothFit(curve, _control_points(curve, points))

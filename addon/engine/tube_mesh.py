@@ -24,10 +24,7 @@ def rings(points: FloatArray, radii: FloatArray, mesh: Mesh, sides: int) -> Floa
     """Vertices of the tube, those of a ring one after the other; (keys, n · sides, 3).
 
     Rings lie in the planes that halve the angle between two edges, and are stretched where these meet at a corner so
-    that the tube is as thick along the edges as it should be.
-
-    ``points``: vertices of the polygons at every key, (keys, n, 3); ``radii``: of the tube at each of them, (keys, n);
-    ``sides``: number of vertices of a ring.
+    that the tube is as thick along the edges as it should be. Points: (keys, n, 3); radii: (keys, n).
     """
     each = zip(mesh.slices, mesh.closed, strict=True)
     pieces = [_rings(points[:, s], radii[:, s], sides, closed) for s, closed in each]
@@ -52,24 +49,17 @@ def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
     """Places among keys, 2.5 halfway between the third and the fourth, between which tangents turn by 30° at most.
 
     Straight lines between two rings make the tube thinner. No gap is halved more than five times: what turns through
-    itself is never smooth.
-
-    ``points``: vertices of polygons at every key, (keys, n, 3).
+    itself is never smooth. Points: (keys, n, 3).
     """
     places = np.arange(len(points), dtype=np.float64)
     for _ in range(_HALVINGS):
-        far = _least_cosines(interpolated(points, places), mesh) < _COSINE
+        shapes, pieces = interpolated(points, places), zip(mesh.slices, mesh.closed, strict=True)
+        tau = np.concatenate([tangents(shapes[:, s], closed) for s, closed in pieces], axis=1)
+        far = np.einsum("kni,kni->kn", tau[:-1], tau[1:]).min(axis=1) < _COSINE
         if not far.any():
             break
         places = np.sort(np.concatenate([places, 0.5 * (places[:-1] + places[1:])[far]]))
     return places
-
-
-def _least_cosines(points: FloatArray, mesh: Mesh) -> FloatArray:
-    """Cosines of the largest angles that tangents turn by from each key to the next; (keys - 1,)."""
-    pieces = zip(mesh.slices, mesh.closed, strict=True)
-    tau = np.concatenate([tangents(points[:, s], closed) for s, closed in pieces], axis=1)
-    return np.asarray(np.einsum("kni,kni->kn", tau[:-1], tau[1:]).min(axis=1))
 
 
 def _rings(points: FloatArray, radii: FloatArray, sides: int, closed: bool) -> FloatArray:
@@ -105,16 +95,12 @@ def edges_around(points: FloatArray, closed: bool) -> tuple[FloatArray, FloatArr
 
 
 def normals(points: FloatArray, closed: bool = True) -> FloatArray:
-    """Unit normals at the vertices of one polygon in motion, the same turned as little as possible later.
-
-    ``points``: vertices at every key, (keys, n, 3).
-
-    Returns array (keys, n, 3).
-    """
+    """Unit normals at vertices of one polygon in motion, turned as little as possible from key to key; (keys, n, 3)."""
     tau = tangents(points, closed)
     bare = _transported(tau)
     share = _shares_of_length(points) if closed else np.zeros(points.shape[:2])  # of what is missing at the end
-    angles = -_holonomy(bare, tau)[:, None] * share
+    holonomy = signed_angle(bare[:, 0], carried(bare[:, -1], tau[:, -1], tau[:, 0]), tau[:, 0])
+    angles = -holonomy[:, None] * share
     normal = np.empty_like(bare)
     normal[-1] = turned(bare[-1], tau[-1], angles[-1])
     turns = 0.0
@@ -155,11 +141,6 @@ def _transported(tau: FloatArray) -> FloatArray:
     for i in range(1, tau.shape[1]):
         bare[:, i] = carried(bare[:, i - 1], tau[:, i - 1], tau[:, i])
     return bare
-
-
-def _holonomy(bare: FloatArray, tau: FloatArray) -> FloatArray:
-    """Angles by which normals are turned when they come back to the first vertex; (keys,)."""
-    return signed_angle(bare[:, 0], carried(bare[:, -1], tau[:, -1], tau[:, 0]), tau[:, 0])
 
 
 def _shares_of_length(points: FloatArray) -> FloatArray:

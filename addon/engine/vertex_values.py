@@ -1,6 +1,6 @@
 """Numbers at the vertices of a link that are worth showing as colours."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 from scipy.spatial.distance import cdist
@@ -43,15 +43,12 @@ def strand_distances(curve: Curve) -> FloatArray:
     mere bend is none.  Where nothing passes the distance is the curve's longest one, and where nothing passes anywhere
     its diameter.
     """
-    distances = np.concatenate([_distances(curve, rows) for rows in _blocks(len(curve))])
+    rows = max(1, _BLOCK // len(curve))
+    blocks = np.split(np.arange(len(curve)), np.arange(rows, len(curve), rows))
+    distances = np.concatenate([_distances(curve, block) for block in blocks])
     passing = distances[np.isfinite(distances)]
     furthest = passing.max() if passing.size else np.linalg.norm(np.ptp(curve.vertices, axis=0))
     return np.asarray(np.minimum(distances, furthest))
-
-
-def _blocks(n: int) -> Iterator[IntArray]:
-    rows = max(1, _BLOCK // n)
-    return (np.arange(first, min(first + rows, n)) for first in range(0, n, rows))
 
 
 def _distances(curve: Curve, rows: IntArray) -> FloatArray:

@@ -11,7 +11,7 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import IO
@@ -68,8 +68,7 @@ class WorkerError(MobiusFlowError):
 class Worker:
     """A relaxation in another process, or in a thread where no process can be started.
 
-    ``task``, ``options``: what is to be relaxed, as for `core.relax`; ``link``: where Blender stores the vertices:
-    motions of the stored ones are proved too.
+    ``link``: where Blender stores the vertices; motions of the stored ones are proved too.
     """
 
     def __init__(self, task: Task, options: RelaxOptions, link: Link) -> None:
@@ -120,17 +119,16 @@ class Worker:
     def _feed(self) -> None:
         """Pass messages on until there are no more or nobody wants them."""
         try:
-            for message in self._messages():
+            for message in messages(self._job) if self.process is None else _replies(self.process, self._job):
                 if not self._put(message):
                     return
             self._put(None)
         except (EOFError, OSError, ValueError):
             self._put(None)
         finally:
-            self._close_streams()
-
-    def _messages(self) -> Iterable[wire.Packet]:
-        return messages(self._job) if self.process is None else _replies(self.process, self._job)
+            for stream in _pipes(self.process) if self.process is not None else ():
+                with contextlib.suppress(OSError):  # what was still to be written goes nowhere
+                    stream.close()
 
     def _put(self, message: wire.Packet | None) -> bool:
         while not self._closed.is_set():
@@ -140,11 +138,6 @@ class Worker:
                 continue
             return True
         return False
-
-    def _close_streams(self) -> None:
-        for stream in _pipes(self.process) if self.process is not None else ():
-            with contextlib.suppress(OSError):  # what was still to be written goes nowhere
-                stream.close()
 
 
 def _replies(process: "subprocess.Popen[bytes]", job: wire.Packet) -> Iterator[wire.Packet]:
@@ -166,20 +159,15 @@ def _start() -> "subprocess.Popen[bytes] | None":
     if not Path(sys.executable or "").name.lower().startswith("python"):
         return None
     program = Path(__file__).with_name("child.py")
+    libraries = [Path(inspect.getfile(module)) for module in (scipy, np, threadpoolctl)]
+    places = dict.fromkeys(str(file.parents[file.stem == "__init__"]) for file in libraries)
     try:
         return subprocess.Popen(
             [sys.executable, "-P", "-s", str(program)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env=_environment(),
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(places)},
             creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )
     except OSError:
         return None
-
-
-def _environment() -> dict[str, str]:
-    """The environment, with the places of the libraries in it."""
-    files = [Path(inspect.getfile(module)) for module in (scipy, np, threadpoolctl)]
-    places = dict.fromkeys(str(file.parents[file.stem == "__init__"]) for file in files)
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(places)}

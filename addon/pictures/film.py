@@ -9,10 +9,10 @@ import numpy as np
 from ...core import Curve, Iterate, MobiusFlowError
 from ...core.curve import Mesh
 from ...core.types import FloatArray
-from ..curves.exchange import new_curve_data, write_points
-from ..curves.keyframes import write_shape_keys
+from ..curves import keyframes
+from ..curves.exchange import new_curve_data
 from ..engine import tube
-from ..engine.key_options import Pace, Timing
+from ..engine.key_options import Output, Pace, Timing
 from ..engine.motion import Keys, Motion
 from ..engine.placement import Link, Placement
 from . import camera, stage
@@ -86,10 +86,9 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
     obj = stage.add(scene.collection, "Curve", data)
     obj.select_set(True)
     bpy.context.view_layer.objects.active = obj
-    if len(points) > 1:
-        write_shape_keys(obj, keys, frames, radii / radii.max())
-    else:
-        write_points(data, points[0])
+    output = Output.SHAPE_KEYS if len(points) > 1 else Output.RESULT
+    for _ in keyframes.writing(obj, keys, frames, output, radii / radii.max()):
+        pass
     colour_components(data)
     ground = stage.Stage.around(points, stage.flat_axes(points[-1].astype(np.float64)))
     size = scene.render.resolution_x, scene.render.resolution_y

@@ -33,7 +33,15 @@ def campaign(options: argparse.Namespace) -> None:
     planned = jobs(inputs(options.inputs), options.starts, directory, wanted, still, options.extrapolate)
     rows = _found(planned)
     left = [job for job in planned if job not in rows]
-    _prepare(directory, left)
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(directory, error) from error
+    for name in (CSV, PARQUET):  # what is in the way of results is told before any work
+        check_place(str(directory / name))
+    check_tables(directory)
+    for job in left:
+        check_replaceable(Path(job.folder))
     if left:
         _run(left, rows, directory, options)
     else:
@@ -47,19 +55,6 @@ def campaign(options: argparse.Namespace) -> None:
 def _found(planned: Iterable[Job]) -> dict[Job, Row]:
     """The rows of the runs that are finished."""
     return {job: row for job in planned if (row := finished(job)) is not None}
-
-
-def _prepare(directory: Path, left: list[Job]) -> None:
-    """Make the directory; what is in the way of results is told before any work."""
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(directory, error) from error
-    for name in (CSV, PARQUET):
-        check_place(str(directory / name))
-    check_tables(directory)
-    for job in left:
-        check_replaceable(Path(job.folder))
 
 
 def _run(left: list[Job], rows: dict[Job, Row], directory: Path, options: argparse.Namespace) -> None:

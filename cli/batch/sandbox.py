@@ -57,12 +57,8 @@ class Sandbox:
     def run(self, job: Job) -> Row:
         """The row of a run, which is killed where it goes on long after its time limit.
 
-        Raises
-        ------
-        ChildDiedError
-            If there is none; another sandbox is needed.
-        MobiusFlowError
-            If results cannot be written.
+        Raises ChildDiedError if there is none, so that another sandbox is needed, and MobiusFlowError if results cannot
+        be written.
         """
         seconds = min(GRACE + PATIENCE * job.time_limit, threading.TIMEOUT_MAX)
         watchdog, began = threading.Timer(seconds, self._process.kill), time.monotonic()

@@ -76,26 +76,21 @@ def _relaxed(job: Job) -> Row:
 
 
 def _task(job: Job, file: CurveFile | None) -> Task:
-    """The start with its obstacles, which are read, and its pins, by a file's own numbers if it has some."""
+    """The start, scrambled or not, with its obstacles, which are read, and its pins, by a file's own numbers."""
     still: dict[str, Any] = {name: job.options[name] for name in STILL}
     pins = tuple(still["pins"] if file is None else map(file.index_of, still["pins"]))
-    start = _start(knot(job.name) if file is None else file.curve, job.seed)
-    obstacles = tuple(map(read_obstacle, still["avoid"]))
-    return Task(curve=start, obstacles=obstacles, pins=pins, pin_tangents=still["pin_tangents"])
-
-
-def _start(curve: Curve, seed: int | None) -> Curve:
-    """The curve itself, or scrambled by a seed; a CurveError says if results could not be written."""
-    if curve.dimension > 3:
+    start = knot(job.name) if file is None else file.curve
+    if start.dimension > 3:
         raise CurveError(
-            f"the curve is in dimension {curve.dimension}, and {CURVE} holds curves of dimension 2 or 3: "
+            f"the curve is in dimension {start.dimension}, and {CURVE} holds curves of dimension 2 or 3: "
             "use mobius-flow relax, with an output in .json"
         )
-    if seed is None:
-        return curve
-    check_units(curve)
-    check_embedded(curve)
-    return scramble(curve, seed, gap=GAP * float(curve.edge_lengths.mean()))
+    if job.seed is not None:
+        check_units(start)
+        check_embedded(start)
+        start = scramble(start, job.seed, gap=GAP * float(start.edge_lengths.mean()))
+    obstacles = tuple(map(read_obstacle, still["avoid"]))
+    return Task(curve=start, obstacles=obstacles, pins=pins, pin_tangents=still["pin_tangents"])
 
 
 def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> dict[str, object]:
