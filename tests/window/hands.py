@@ -35,6 +35,11 @@ def addon(module: str = "") -> Any:
     return importlib.import_module(f"bl_ext.user_default.mobius_flow.addon.{module}".rstrip("."))
 
 
+def core(module: str = "") -> Any:
+    """A module of the library inside the extension, such as ``knots``."""
+    return importlib.import_module(f"bl_ext.user_default.mobius_flow.core.{module}".rstrip("."))
+
+
 def move(x: int, y: int) -> Steps:
     """Move the mouse; buttons notice it only if it moves over them."""
     for dx in (1, 0):

@@ -1,10 +1,9 @@
 """How long the knot 7_4 takes in a window and for the worker alone; all iterates are recorded, some are shown."""
 
-import importlib
 import time
 
 from case import Steps, picture
-from hands import addon, button, window
+from hands import addon, button, core, window
 from scene import is_, obj, reaches, ready
 
 
@@ -27,8 +26,7 @@ def case() -> Steps:
     settings = addon("properties")
     values = {name: getattr(window().scene.mobius_flow, name) for name in settings.SETTINGS}
     options = settings.relax_options(values)
-    core = importlib.import_module("bl_ext.user_default.mobius_flow.core")
-    worker = addon("engine.worker").Worker(core.Task(curve=latest.group.curve), options, latest.group.link)
+    worker = addon("engine.worker").Worker(core().Task(curve=latest.group.curve), options, latest.group.link)
     started = 0.0
     while not hasattr(arrived := worker.poll(), "status"):
         if arrived is None:
