@@ -100,15 +100,6 @@ def button(operator: str) -> Steps:
     yield from click(x, y)
 
 
-def below(operator: str) -> Generator[None, None, int]:
-    """The height at which a button of the sidebar ends."""
-    x, y = yield from found(operator)
-    while f"bpy.ops.{operator}(" in _under_mouse(region("UI")):
-        y -= 4
-        yield from move(x, y)
-    return y
-
-
 def found(operator: str) -> Generator[None, None, tuple[int, int]]:
     """Find a button of the sidebar with the mouse, and where it is."""
     sidebar = region("UI")
