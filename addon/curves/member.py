@@ -118,7 +118,9 @@ class Member:
         assert obj is not None, "whoever writes looks for it first"
         self.keyed = True
         if self._baked and self._continues:  # show a copy of the original with its keys, to be added to
-            preview, data = self.data, self._original.get().copy()
+            preview = self.data
+            _name_original(preview)
+            data = self._original.get().copy()
             own_action(data.shape_keys or data)
             self._show(data)
             keyframes.remove(preview)
@@ -137,6 +139,7 @@ class Member:
         """
         data, original = self.data, self._original.get()
         assert data is not None, "it was written a moment ago"
+        _name_original(data)
         start = bake.original(original) if self._baked else original
         names, original.name = keyframes.names(original), f"{original.name} Original"
         del data[_MARK]
@@ -167,6 +170,7 @@ class Member:
     def hide(self) -> None:
         """Show the original for a moment, because the file is being saved or something is undone."""
         if not self.keyed and not self.lost():
+            _name_original(self.data)
             self._object.get().data = self._original.get()
 
     def resume(self) -> None:
@@ -198,7 +202,17 @@ def _stand_ins() -> "list[bpy.types.Curve]":
 
 def _show_original(data: "bpy.types.Curve") -> None:
     """Let the original have the users of its stand-in, which goes."""
+    _name_original(data)
     original = data.pop(_MARK)["original"]
     if original is not None:
         data.user_remap(original)
         keyframes.remove(data)
+
+
+def _name_original(data: "bpy.types.Curve") -> None:
+    """Give the original the name that somebody gave its stand-in."""
+    mark, given = data[_MARK], data.name
+    if given != mark["name"] and mark["original"] is not None:
+        data.name = mark["name"]
+        mark["original"].name = given
+        mark["name"] = data.name

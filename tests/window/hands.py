@@ -35,6 +35,11 @@ def addon(module: str = "") -> Any:
     return importlib.import_module(f"bl_ext.user_default.mobius_flow.addon.{module}".rstrip("."))
 
 
+def core(module: str = "") -> Any:
+    """A module of the library inside the extension, such as ``knots``."""
+    return importlib.import_module(f"bl_ext.user_default.mobius_flow.core.{module}".rstrip("."))
+
+
 def move(x: int, y: int) -> Steps:
     """Move the mouse; buttons notice it only if it moves over them."""
     for dx in (1, 0):
@@ -93,15 +98,6 @@ def button(operator: str) -> Steps:
     """Find a button of the sidebar with the mouse and click it; an operator such as ``curve.mobius_flow_relax``."""
     x, y = yield from found(operator)
     yield from click(x, y)
-
-
-def below(operator: str) -> Generator[None, None, int]:
-    """The height at which a button of the sidebar ends."""
-    x, y = yield from found(operator)
-    while f"bpy.ops.{operator}(" in _under_mouse(region("UI")):
-        y -= 4
-        yield from move(x, y)
-    return y
 
 
 def found(operator: str) -> Generator[None, None, tuple[int, int]]:

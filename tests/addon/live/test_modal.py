@@ -203,6 +203,12 @@ def test_a_new_name_does_not_matter(operator):
     obj.name, obj.data.name = "Other", "Other"
     assert operator.until(lambda: False) == {"FINISHED"}
     assert operator.run.report.names == ("Other",)
+    assert obj.data.name == "Other", "it was given to a stand-in"
+    operator.start()
+    operator.reach(1)
+    obj.data.name = "Another"
+    operator.run.cancel()
+    assert obj.data.name == "Another"
 
 
 def test_topology_change_leaves_what_somebody_made(operator):

@@ -20,7 +20,7 @@ def case() -> Steps:
     yield from look()
     yield from picture("drawing-1-scribble")
     yield from button("curve.mobius_flow_draw_knot")
-    yield from until(lambda: obj().name == "Drawn m3_1", "the drawn trefoil")
+    yield from until(lambda: obj().name == "Drawn 3_1", "the drawn trefoil")
     assert bpy.data.objects["Scribble"].hide_get()
     yield from picture("drawing-2-knot", differs_from="drawing-1-scribble")
     yield from key("Z", ctrl=True)

@@ -1,16 +1,14 @@
-"""The sub-panel with the other options opens, and what is set there is what is relaxed with."""
+"""What is set in the sub-panel with the other options is what is relaxed with."""
 
 import bpy
 from case import Steps, picture
-from hands import below, button, click, region
+from hands import button, open_panels
 from scene import is_, obj, ready, run
 
 
 def case() -> Steps:
+    open_panels("expert")
     yield from ready(vertices=200)
-    y = yield from below("curve.mobius_flow_add_knot")
-    sidebar = region("UI")
-    yield from click(sidebar.x + int(0.33 * sidebar.width), y - 14)
     yield from picture("expert-1-open")
     settings = bpy.context.scene.mobius_flow
     settings.energy, settings.metric, settings.max_iterations = "edge", "h3-2", 3

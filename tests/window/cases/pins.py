@@ -1,11 +1,9 @@
 """An overhand arc by mouse clicks: its ends are pinned in Edit Mode, it is relaxed and keyed; its knot stays on."""
 
-import importlib
-
 import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, button, here, key, open_panels, open_sidebar, window
+from hands import addon, button, core, here, key, open_panels, open_sidebar, window
 from scene import clear, is_, look, obj
 
 
@@ -63,8 +61,7 @@ def look_down() -> Steps:
 
 def add_arc() -> np.ndarray:
     """An overhand knot in an arc, with a tube; its points."""
-    knots = importlib.import_module("bl_ext.user_default.mobius_flow.core.knots")
-    curve = knots.overhand(100)
+    curve = core("knots").overhand(100)
     data = addon("curves.exchange").new_curve_data("Arc", curve.mesh)
     addon("curves.exchange").write_points(data, curve.vertices.astype("f4"))
     with here():

@@ -1,10 +1,8 @@
 """The panel Shape by mouse clicks: a relaxed knot is balanced, kept in size, laid flat, checked; undo step by step."""
 
-import importlib
-
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, button, here, key, open_panels, open_sidebar, window
+from hands import addon, button, core, here, key, open_panels, open_sidebar, window
 from scene import clear, is_, knot, look, obj, points
 
 
@@ -58,9 +56,8 @@ def count() -> int:
 
 def bending() -> float:
     """That of the last key."""
-    keys = addon("curves.baked_keys").BakedKeys([obj()])
-    measure = importlib.import_module(f"{keys.mesh.__module__.rpartition('.')[0]}.bending").bending
-    return float(measure(keys.curves[-1]))
+    last = addon("curves.baked_keys").BakedKeys([obj()]).curves[-1]
+    return float(core("curve.measures").bending(last))
 
 
 def _extents() -> np.ndarray:

@@ -3,7 +3,7 @@
 import time
 
 from case import Steps, picture
-from hands import addon, button, window
+from hands import addon, button, core, window
 from scene import is_, obj, reaches, ready
 
 
@@ -26,7 +26,7 @@ def case() -> Steps:
     settings = addon("properties")
     values = {name: getattr(window().scene.mobius_flow, name) for name in settings.SETTINGS}
     options = settings.relax_options(values)
-    worker = addon("engine.worker").Worker(latest.group.curve, options, latest.group.link)
+    worker = addon("engine.worker").Worker(core().Task(curve=latest.group.curve), options, latest.group.link)
     started = 0.0
     while not hasattr(arrived := worker.poll(), "status"):
         if arrived is None:
