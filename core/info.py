@@ -88,8 +88,14 @@ class Info:
 
     Attributes
     ----------
+    components
+        Number of vertices of each.
+    type
+        Knot type with its evidence.
     energies
         By the names of :data:`ENERGIES`.
+    rest
+        Whether the curve is at rest.
     thickness
         See :func:`~mobius_flow.core.collision.gap.thickness`.
     writhe, average_crossing_number

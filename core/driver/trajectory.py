@@ -46,7 +46,7 @@ class Iterate:
     method
         Name of the method that took the step: the fallback method where the requested one was stuck.
     grown
-        How many times the lengths of the start, as they were to be there, those of this curve are to be.
+        Factor by which target lengths have grown since the start.
     pins
         Pinned vertices of this curve, counted from 0, and those that cannot move between them.
     """

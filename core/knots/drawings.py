@@ -35,9 +35,16 @@ _RAMP = 10  # edges from one crossing to the next, at least
 class Drawing:
     """Closed curves in the plane that cross themselves and each other clearly, two strands at a time.
 
-    ``curve`` is the drawing; of its c crossings there are the places, shape (c, 2), in the order in which they are come
-    to, the edges of their first and second ``passes``, shape (c, 2), each with the fraction of it as one number, and
-    whether the first pass is the upper one, shape (c,), where over and under alternate, over to begin with.
+    Attributes
+    ----------
+    curve
+        The drawing, of dimension 2.
+    crossings
+        Places of the crossings, in the order in which the curve first reaches them; shape (c, 2).
+    passes
+        Edge and fraction of it, as one number, of the first and the second pass of each crossing; shape (c, 2).
+    first_over
+        Whether the first pass is the upper one if over and under alternate, over to begin with; shape (c,).
     """
 
     curve: Curve
