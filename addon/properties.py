@@ -110,7 +110,7 @@ def settings(options: set[str]) -> dict[str, Any]:
             default=False,
         ),
         "keyframes": choice("Keyframes", "What the animation is written as", keys.output, _OUTPUTS),
-        "timing": choice("Timing", "What passes evenly from frame to frame", timing.pace, _PACES),
+        "timing": choice("Timing", "What advances evenly from frame to frame", timing.pace, _PACES),
         "start_frame": declare(
             IntProperty,
             "Start Frame",
@@ -143,7 +143,7 @@ def settings(options: set[str]) -> dict[str, Any]:
             BoolProperty,
             "Keep Tubes Fitted",
             "Fit tubes again that were fitted before, at every key. A bevel of your own is not changed; "
-            "in a script, to give this asks for it to be fitted",
+            "in a script, giving this fits it too",
             default=True,
         ),
         "keep_size": choice(
@@ -155,8 +155,8 @@ def settings(options: set[str]) -> dict[str, Any]:
         "view_every": declare(
             IntProperty,
             "Update View Every",
-            "Show every so many iterates while relaxing; "
-            "0: as often as leaves two thirds of the time to anything but drawing",
+            "Number of iterates between updates of the view; "
+            "0: chosen so that drawing takes at most a third of the time",
             default=0,
             min=0,
         ),

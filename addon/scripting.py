@@ -166,7 +166,7 @@ def _objects(avoid: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
     found = list(avoid)
     wrong = [each for each in found if not isinstance(each, bpy.types.Object)]
     if wrong:
-        raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is no object")
+        raise MobiusFlowError(f"avoid has {wrong[0]!r:.40}, which is not an object")
     return found
 
 

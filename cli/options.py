@@ -60,7 +60,7 @@ def task(arguments: argparse.Namespace, file: CurveFile) -> Task:
 
 def pinned(text: str) -> tuple[int, ...]:
     """Indices of vertices that are counted from 1, with commas between."""
-    return tuple(number - 1 for number in listed(text, 1, "{} is no vertex to pin; give numbers from 1, such as 12,40"))
+    return tuple(number - 1 for number in listed(text, 1, "{} is not a vertex number; count from 1, such as 12,40"))
 
 
 def listed(text: str, least: int, refusal: str) -> list[int]:

@@ -19,7 +19,7 @@ TOLERANCE = 1e-4  # of the runs at most: what they leave open must be small agai
 @checked_fields
 @dataclass(frozen=True)
 class Extrapolation:
-    """The Möbius energy's limit for shorter and shorter edges, from E(h), E(h/2) and E(h/4) for edge lengths h."""
+    """The Möbius energy's limit for shorter and shorter edges, from ``energies`` E(h), E(h/2), E(h/4) at lengths h."""
 
     energies: tuple[float, float, float]
 

@@ -27,7 +27,7 @@ def read_obstacle(path: str | os.PathLike[str]) -> Obstacle:
     """
     path = Path(path)
     if path.exists() and not (path.is_file() or path.is_dir()):
-        raise CurveFileError(path, "is no regular file; obstacles are not read from pipes and devices")
+        raise CurveFileError(path, "is not a regular file; obstacles are not read from pipes or devices")
     if path.suffix.lower() == ".obj":
         return _from_obj(Source.load(path))
     curve = load_curve(path).curve

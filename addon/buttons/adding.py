@@ -41,7 +41,7 @@ class AddsKnot(Button, AddObjectHelper):
     )
     thickness: FloatProperty(
         name="Thickness",
-        description="Radius of the tube; 0 for none. In a script, to give it turns Fit Tube off",
+        description="Radius of the tube; 0 for none. In a script, giving it turns Fit Tube off",
         default=0.0,
         min=0.0,
         unit="LENGTH",

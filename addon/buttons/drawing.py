@@ -35,7 +35,7 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):
     mirror: BoolProperty(name="Mirror", description="Swap over and under at all crossings", default=False)
     height: FloatProperty(
         name="Height",
-        description="How far strands go over and under, 1 for as far as looks right in the room there",
+        description="How far strands go over and under; 1 for what looks right in the space there",
         default=1.0,
         min=0.01,
         soft_max=3.0,

@@ -82,7 +82,7 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
     needs = (_FREE, idle, _CAMERA)
     __annotations__ = {
         "overwrite": BoolProperty(
-            name="Overwrite", description="Replace a file that is there", options={"SKIP_SAVE", "HIDDEN"}
+            name="Overwrite", description="Replace an existing file", options={"SKIP_SAVE", "HIDDEN"}
         ),
         **_OfFilm.__annotations__,
     }
@@ -114,7 +114,7 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
         if event.type != "TIMER" or is_rendering():
             return {"PASS_THROUGH"}
         if not self._end(context):
-            self.report({"WARNING"}, rpt_("The film was not rendered to its end; no file was written"))
+            self.report({"WARNING"}, rpt_("The film was not finished; no file was written"))
             return {"CANCELLED"}
         self._report_film()
         return {"FINISHED"}

@@ -28,7 +28,7 @@ _OPEN = Condition(
     "No selected curve has an open spline without keys; select one in Object Mode",
     lambda context: not any(closable(selected_curves(context))),
 )
-_NEARBY = Condition("Nothing is near the selected curves but what they avoid", lambda context: not _near(context))
+_NEARBY = Condition("Everything near the selected curves is already avoided", lambda context: not _near(context))
 
 
 class _Pinning(Button):
@@ -82,9 +82,9 @@ def _all(spline: bpy.types.Spline) -> BoolArray:
 
 def _report_count(operator: Button, context: bpy.types.Context) -> None:
     objects = curves_at_hand(context)
-    said = Message("Points that are pinned: {count}", count=sum(pins.count(obj.data) for obj in objects))
+    said = Message("Pinned points: {count}", count=sum(pins.count(obj.data) for obj in objects))
     if baked := [obj.name for obj in objects if bake.is_baked(obj.data)]:
-        sentence = "{pinned}; Continue minds that, Bake Again begins with {names} as pinned before"
+        sentence = "{pinned}; Continue keeps them, Bake Again starts from {names} as pinned before"
         said = Message(sentence, pinned=said, names=named(baked))
     operator.report({"INFO"}, rpt_(said))
 

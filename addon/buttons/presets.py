@@ -30,7 +30,7 @@ class CURVE_OT_mobius_flow_preset(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Run the preset; how a motion is kept is changed only by presets that say so."""
         if not Path(self.filepath).is_file():
-            sentence = "There is no preset {name} any more; choose another one"
+            sentence = "The preset {name} no longer exists; choose another one"
             self.report({"ERROR"}, rpt_(sentence, name=Path(self.filepath).name))
             return {"CANCELLED"}
         for option in shown():

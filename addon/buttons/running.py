@@ -38,7 +38,7 @@ def _is_lost(_context: bpy.types.Context) -> bool:
 
 _GOING_ON = Condition("Nothing is being relaxed", lambda _: registry.current() is None)
 _COMPUTING = Condition("The relaxation is over; its keys are being written", _is_writing)
-_TROUBLE = Condition("Nothing is the matter at any place of this curve", _has_no_trouble)
+_TROUBLE = Condition("This curve has no problem to show", _has_no_trouble)
 _RECOVERABLE = Condition("No relaxation was cancelled", _is_lost)
 
 

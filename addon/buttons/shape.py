@@ -35,7 +35,7 @@ class CURVE_OT_mobius_flow_keep_size(Button, bpy.types.Operator):
     measure: EnumProperty(name="Keep", description="What stays", items=MEASURE_ITEMS, default=Measure.BOX.name)
     reference: EnumProperty(
         name="Size Of",
-        description="Which key has the size that all are given",
+        description="Key whose size all others are given",
         items=[("FIRST", "First Key", "As large as at the beginning"), ("LAST", "Last Key", "As large as at the end")],
         default="FIRST",
     )

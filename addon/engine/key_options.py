@@ -21,7 +21,7 @@ _EVENNESS = 0.85  # share of distance in an even motion; the rest leaves the las
 
 
 class Pace(Enum):
-    """What passes evenly from frame to frame; the values name it for people."""
+    """What advances evenly from frame to frame; the values name it for people."""
 
     EVEN = "Even Motion"
     DISTANCE = "By Distance"

@@ -24,7 +24,7 @@ GROUPS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "9": ("9 Crossings", "Knots that need nine crossings"),
         "10A": ("10 Crossings, I", "The first knots that need ten crossings"),
         "10B": ("10 Crossings, II", "The other knots that need ten crossings"),
-        "LINKS": ("Links", "Several closed curves that hang together"),
+        "LINKS": ("Links", "Several closed curves, linked with each other"),
     }
 )
 """Titles and descriptions of the groups."""

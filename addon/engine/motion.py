@@ -91,7 +91,7 @@ class Motion:
         mesh, pieces = self.last.curve.mesh, subdivision(self.last.curve, finer)
         if pieces is None:
             raise MobiusFlowError(
-                "vertices do not stay during this run, as keyframes need it; relax with mesh='fixed' or mesh='finer'"
+                "keyframes need the same vertices throughout; relax with mesh='fixed' or mesh='finer'"
             )
         self._start = replace(self.start, curve=subdivide(self.start.curve, pieces))
         for k, key in enumerate(self._keys):

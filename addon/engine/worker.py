@@ -91,7 +91,7 @@ class Worker:
         except queue.Empty:
             return None
         if message is None:
-            raise WorkerError(Message("The computation ended unexpectedly; perhaps memory ran out"))
+            raise WorkerError(Message("The computation ended unexpectedly; memory may have run out"))
         if "error" in message[0]:
             raise wire.unpack_error(message)
         if "outcome" in message[0]:

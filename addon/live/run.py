@@ -42,7 +42,7 @@ class State(Enum):
 
 
 class Refresh:
-    """Decides which iterates are shown: every so many; 0: as often as leaves two thirds of the time to the rest."""
+    """Decides which iterates are shown: every so many; 0: so that drawing takes at most a third of the time."""
 
     def __init__(self, every: int = 0, clock: Callable[[], float] = time.perf_counter) -> None:
         self._every, self._clock = every, clock

@@ -53,7 +53,7 @@ class Filming(Reel):
 
     def __init__(self, scene: bpy.types.Scene, path: str, look: str = "SCENE", overwrite: bool = False) -> None:
         if look not in LOOKS:
-            raise MobiusFlowError(f"{look!r} is no look of films; {choice(look, LOOKS)}")
+            raise MobiusFlowError(f"{look!r} is not a look for films; {choice(look, LOOKS)}")
         place = target(path)
         _check(scene, place, overwrite)
         sweep()
@@ -68,7 +68,7 @@ class Filming(Reel):
         except RuntimeError as error:
             raise OutputError(self.path, error) from error
         except OSError as error:
-            sentence = "{path}: Blender did not render the film to its end; is the disk full?"
+            sentence = "{path}: Blender did not finish rendering the film; is the disk full?"
             raise MobiusFlowError(Message(sentence, path=self.path)) from error
 
     def start(self) -> None:
@@ -84,7 +84,7 @@ def target(path: str) -> Path:
     if not path.strip():
         raise MobiusFlowError(Message("The film has no name; give it a file"))
     if path.startswith("//") and not bpy.data.filepath:
-        sentence = "Save your file first, since the film is to lie beside it, or choose another place"
+        sentence = "Save your file first, since the film goes next to it, or choose another place"
         raise MobiusFlowError(Message(sentence))
     found = Path(bpy.path.abspath(path)).absolute()
     if found.is_dir():
@@ -104,12 +104,12 @@ def _check(scene: bpy.types.Scene, path: Path, overwrite: bool) -> None:
     if scene.camera is None:
         raise MobiusFlowError(Message("The scene has no camera; press Set Up Stage first, or add one"))
     if any(side % 2 for side in sides):
-        sentence = "Frames are {width} × {height} pixels, but films want even numbers of them"
+        sentence = "Frames are {width} × {height} pixels, but films need even numbers"
         raise MobiusFlowError(Message(sentence, width=sides[0], height=sides[1]))
     if path.exists() and not overwrite:
         sentence = "{path} is there already; give the film another name, or let it be overwritten"
         raise MobiusFlowError(Message(sentence, path=path))
     if not path.parent.is_dir():
-        raise MobiusFlowError(Message("{path} is no directory; choose another place for the film", path=path.parent))
+        raise MobiusFlowError(Message("{path} is not a directory; choose another place for the film", path=path.parent))
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise MobiusFlowError(Message("{path} cannot be written; choose another place for the film", path=path))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import bpy
 
 FRAME_RATE = 24
-NOT_WHOLE = "Blender did not write it to the end; is the disk full?"
+NOT_WHOLE = "Blender did not finish writing it; is the disk full?"
 _PATIENCE = 60  # seconds
 _TRIAL = """
 import bpy

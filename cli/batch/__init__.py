@@ -11,11 +11,11 @@ examples:
   mobius-flow batch 3_1..10_165 -o /shared/results --scheduler tcp://head:8786 --extrapolate
 
 Start 1 is the input. Start k above 1 is the same knot, scrambled with seed S + k by random moves that are each checked
-to be an isotopy. A run that is refused, killed or too slow is a row that says why, and the others go on.
+to be an isotopy. A run that is refused, killed or too slow gets a row that says why; the others go on.
 
 DIR/NAME, or DIR/NAME-k for start k above 1, holds curve.txt, report.json and trajectory.npz, and appears whole or not
 at all. The table, DIR/results.csv and DIR/results.parquet, has a row for each run of the command. The same command
-again skips what is finished (the same input, options and version) and tries again what failed. Only what batch wrote
+again skips what is finished (the same input, options and version) and retries what failed. Only what batch wrote
 is replaced. On a cluster DIR and the input files are on a file system that all machines share.
 
 exit status:

@@ -50,7 +50,7 @@ def _meant(word: str) -> Iterator[Input]:
         for path in map(Path, paths):
             yield from _in_directory(path) if path.is_dir() else [_of_file(path)]
     elif is_code(word):
-        raise MobiusFlowError(f"{word[:60]}: codes name no folder; put it in a file that ends in .pd, .dt or .gauss")
+        raise MobiusFlowError(f"{word[:60]}: a code cannot name a folder; put it in a .pd, .dt or .gauss file")
     elif glob.has_magic(word):
         raise MobiusFlowError(f"{word}: matches no file")
     elif os.path.dirname(word) or Path(word).suffix.lower() in FORMATS:
@@ -162,7 +162,7 @@ def jobs(
     for job in made:
         own = Path(job.folder).name
         if count[job.folder.casefold()] > 1 or own.casefold() in (CSV, PARQUET):  # where the tables are
-            raise MobiusFlowError(f"{job.file or job.name}: its results would not be the only ones in {own}; rename it")
+            raise MobiusFlowError(f"{job.file or job.name}: another input has its results in {own}; rename it")
     return made
 
 

@@ -18,9 +18,17 @@ from .mesh import Mesh
 class Curve:
     """One or more polygons, closed or open: an immutable array of vertices and its connectivity.
 
-    Vertices P, shape (n, m) with m ≥ 2, are in the user's units, copied and made read-only; by default all form one
-    closed component.  Raises CurveError if these are no numbers, the shape is wrong or a coordinate is not finite; the
-    message names the vertex.
+    Parameters
+    ----------
+    vertices
+        Positions P, shape (n, m) with m ≥ 2, in the user's units; copied and made read-only.
+    mesh
+        Connectivity; by default all vertices form one closed component.
+
+    Raises
+    ------
+    CurveError
+        If these are not numbers, the shape is wrong or a coordinate is not finite; the message names the vertex.
     """
 
     vertices: FloatArray

@@ -22,8 +22,19 @@ class Mesh:
     """Connectivity of one or more polygons, closed or open, sharing one array of vertices.
 
     Edge I runs from vertex ``tails[I]`` to vertex ``heads[I]``; vertices of one component are consecutive, and so are
-    its edges.  A closed component has at least 3 vertices and as many edges, an open one (an arc) at least 2 and one
-    edge less; by default all are closed.  Raises CurveError for other sizes, or flags of another number.
+    its edges.  A closed component has as many edges as vertices, an open one (an arc) one less.
+
+    Parameters
+    ----------
+    component_sizes
+        Number of vertices of every component: at least 3, or 2 where it is open.
+    closed
+        Whether each component is closed; by default all are.
+
+    Raises
+    ------
+    CurveError
+        If there is no component, one has too few vertices, or ``closed`` has another length.
     """
 
     component_sizes: tuple[int, ...]

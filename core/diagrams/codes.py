@@ -151,7 +151,7 @@ def _without_flips(rows: Nested) -> tuple[Nested, list[int]]:
 
 def _in_the_plane(diagram: Diagram, what: str) -> Diagram:
     if not diagram.is_planar:
-        raise CurveError(f"{what} is of no diagram in the plane")
+        raise CurveError(f"{what} has no planar diagram")
     return diagram
 
 
@@ -184,7 +184,7 @@ def _gauss(text: str) -> Diagram:
             if isinstance(each, str):
                 crossing, over, sign = int(each[1:-1]), each[0] == "O", 1 if each[-1] == "+" else -1
             elif signed:
-                raise CurveError(f"{each} is no part of a Gauss code with signs, such as O1+U2+O3+U1+O2+U3+")
+                raise CurveError(f"{each} is not a term of a signed Gauss code such as O1+U2+O3+U1+O2+U3+")
             else:
                 crossing, over, sign = abs(each), each > 0, 1
             if signs.setdefault(crossing, sign) != sign:

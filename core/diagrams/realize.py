@@ -12,7 +12,7 @@ from ..errors import CurveError
 from .diagram import Diagram, Pass
 
 _End = tuple[int, bool]  # where the curve meets a crossing: the pass, and whether there it goes out
-_NOT_PLANAR = "the code is of no diagram in the plane"
+_NOT_PLANAR = "the code has no planar diagram"
 
 
 class _Visit(NamedTuple):

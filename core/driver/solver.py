@@ -131,7 +131,7 @@ def _weighted(term: str | Term, weight: float) -> Weighted:
     term = TERMS[term] if isinstance(term, str) else term
     if weight < 0.0 and isinstance(term, Stiff):
         raise OptionError(
-            f"term {term.name!r} has weight {weight:g}, with which its stiffness is no part of a metric; "
+            f"term {term.name!r} has weight {weight:g}, which would make its stiffness negative; "
             "give a weight of 0 or more"
         )
     return Weighted(term, weight)

@@ -34,7 +34,7 @@ class Iterate:
     - ``certified``: whether every leg from the start of the run to here was proved free of contact.
     - ``edge_length_error``: max |log ℓ/ℓ⁰| over the edges.
     - ``method``: name of the one that took the step, which is the fallback method where the requested one was stuck.
-    - ``grown``: how many times the lengths of the start, as they were to be there, those of this curve are to be.
+    - ``grown``: factor by which target lengths have grown since the start.
     - ``pins``: pinned vertices of this curve, counted from 0, and those that cannot move between them.
     """
 

@@ -23,10 +23,19 @@ from .energy import is_moebius_invariant
 @checked_fields
 @dataclass(frozen=True)
 class KPointEnergy:
-    """The energy of a density F by a quadrature rule on every edge, with the name and description shown to users.
+    """The energy of a density F by a quadrature rule.
 
-    Without ``arc_derivative``, that of ϱ, the derivative is right only in directions that keep every edge length, so
-    for gradients projected onto that constraint (footnote 5 of [RS21]).
+    Parameters
+    ----------
+    name, description
+        As shown to users.
+    density
+        F, a function of pairs of points of the curve.
+    rule
+        The quadrature points on every edge.
+    arc_derivative
+        Whether the derivative includes that of ϱ.  Without it, it is right only in directions that keep every edge
+        length, so for gradients projected onto that constraint (footnote 5 of [RS21]).
     """
 
     name: str

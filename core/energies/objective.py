@@ -45,11 +45,20 @@ class Objective:
     A term has a name, a value and a derivative (`Term`). What else can be done with the objective follows from what its
     terms can do: a second derivative (`LocalTerm`), stiffness for the metric (`Stiff`), a clearance (`Confining`), an
     attribute ``scale_exponent`` or ``moebius_invariant``.
+
+    Parameters
+    ----------
+    energy
+        The energy of the curve alone, by default `MoebiusEnergy`.
+    barrier
+        What makes it infinite where edges touch.
+    further
+        All other terms with their weights, such as the repulsion of obstacles.
     """
 
-    energy: Energy = field(default_factory=MoebiusEnergy)  # of the curve alone
-    barrier: Barrier = field(default_factory=Barrier)  # what makes it infinite where edges touch
-    further: tuple[Weighted, ...] = ()  # what else acts on the curve, such as the repulsion of obstacles
+    energy: Energy = field(default_factory=MoebiusEnergy)
+    barrier: Barrier = field(default_factory=Barrier)
+    further: tuple[Weighted, ...] = ()
 
     name = "objective"
     description = "moebius + barrier + repulsion of obstacles + weighted terms, what relax descends on"

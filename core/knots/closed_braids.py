@@ -65,9 +65,7 @@ def torus_knot(p: int, q: int, vertices: int | None = None, *, major: float = 1.
     0.47407312473.  Raises CurveError if a number is not allowed, or the vertices are too few.
     """
     if not (0 < abs(p) <= _MAX_TURNS and 0 < abs(q) <= _MAX_TURNS):
-        raise CurveError(
-            f"T({p},{q}) is no torus knot of use; p and q must be whole numbers from 1 to {_MAX_TURNS}, or negative"
-        )
+        raise CurveError(f"T({p},{q}) cannot be made; |p| and |q| must be from 1 to {_MAX_TURNS}")
     hand = 1 if p * q > 0 else -1
     p, q = abs(p), abs(q)
     minor = major * min(p / math.hypot(p, 1.25 * q), 0.6) if minor is None else minor

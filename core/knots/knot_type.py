@@ -32,12 +32,24 @@ SIGNATURE, DOUBLED, LINKING = "the signature", "the Jones polynomial of the doub
 @checked_fields
 @dataclass(frozen=True)
 class Effort:
-    """How much is done to identify a type, in counts, so that results do not depend on a clock."""
+    """How much is done to identify a type, in counts, so that results do not depend on a clock.
 
-    vertices: int = number(20_000)  # of the largest curve whose crossings are looked for, which takes seconds
-    views: int = number(12)  # directions to look from: a curve of many crossings simplifies better in some
-    doubled: int = number(14)  # crossings of the largest knots compared by the polynomials of their doubles
-    names: int = number(16)  # in a list of possible ones
+    Parameters
+    ----------
+    vertices
+        Of the largest curve whose crossings are looked for, which takes seconds.
+    views
+        Directions to look from: a curve of many crossings simplifies better in some.
+    doubled
+        Crossings of the largest knots compared by the polynomials of their doubles.
+    names
+        Longest list of possible names.
+    """
+
+    vertices: int = number(20_000)
+    views: int = number(12)
+    doubled: int = number(14)
+    names: int = number(16)
 
 
 DEFAULT_EFFORT = Effort()

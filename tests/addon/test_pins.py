@@ -53,7 +53,7 @@ def test_selected_points_are_pinned_and_let_go(capfd):
     obj = add_arc()
     pin(obj, 0, 7)
     assert held(obj) == [0, 7]
-    assert "Points that are pinned: 2" in capfd.readouterr().out
+    assert "Pinned points: 2" in capfd.readouterr().out
     select(obj, 7, 8)
     assert UNPIN() == {"FINISHED"}
     bpy.ops.object.mode_set(mode="OBJECT")

@@ -137,4 +137,4 @@ def test_an_obstacle_in_a_pipe_is_not_waited_for(tmp_path, capsys):
     os.mkfifo(tmp_path / "wall.obj")
     words = ["relax", tmp_path / "in.txt", tmp_path / "out.txt", "--avoid", tmp_path / "wall.obj"]
     assert main(list(map(str, words))) == 2
-    assert "wall.obj: is no regular file; obstacles are not read from pipes" in capsys.readouterr().err
+    assert "wall.obj: is not a regular file; obstacles are not read from pipes" in capsys.readouterr().err

@@ -72,9 +72,9 @@ def test_compare_takes_pins() -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--pin", "0"], "'0' is no vertex to pin; give numbers from 1, such as 12,40"),
-        (["--pin", "3,"], "'' is no vertex to pin; give numbers from 1, such as 12,40"),
-        (["--pin", "a"], "'a' is no vertex to pin; give numbers from 1, such as 12,40"),
+        (["--pin", "0"], "'0' is not a vertex number; count from 1, such as 12,40"),
+        (["--pin", "3,"], "'' is not a vertex number; count from 1, such as 12,40"),
+        (["--pin", "a"], "'a' is not a vertex number; count from 1, such as 12,40"),
         (["--pin", "9" * 30], "there is no vertex 9"),
         (["--pin", "61"], "bent.obj: there is no vertex 61 on the curve"),
         (["--pin", "5,7,5"], "pins names vertex 5 more than once"),

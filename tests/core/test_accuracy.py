@@ -89,7 +89,7 @@ def test_a_defect_is_noticed(defect, monkeypatch: pytest.MonkeyPatch) -> None:  
     defect(monkeypatch)
     message = short(max_iterations=1).message
     assert f"{INACCURATE}: against dense sums over a sample its relative errors are up to " in message
-    assert message.endswith("in the gradient norm; the dense solver has none of them")
+    assert message.endswith("in the gradient norm; the dense solver has no such error")
 
 
 @pytest.mark.slow

@@ -130,7 +130,7 @@ def _take(source: Source, content: Content, words: list[str], line: int) -> None
     elif keyword == "curv":
         raise source.error("free-form curves (curv) are not read; convert the curve to a polyline before export", line)
     elif keyword not in _IGNORED:
-        raise source.error(f"{shown(keyword)} is no statement of the OBJ format", line)
+        raise source.error(f"{shown(keyword)} is not an OBJ statement", line)
 
 
 def _chains(source: Source, links: Sequence[Link]) -> list[tuple[list[int], bool]]:

@@ -13,7 +13,7 @@ from ..run import Change, Event, Intervention, Run
 
 INACCURATE = (
     "the hierarchical solver misses the requested accuracy: against dense sums over a sample its relative errors are "
-    "up to {energy:.1g} in the energy and {norm:.1g} in the gradient norm; the dense solver has none of them"
+    "up to {energy:.1g} in the energy and {norm:.1g} in the gradient norm; the dense solver has no such error"
 )
 
 

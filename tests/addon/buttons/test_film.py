@@ -131,7 +131,7 @@ def test_a_render_that_was_stopped_leaves_no_file(scene, tmp_path, how):
     waiting.render()
     if how == "event":
         assert waiting.event() == {"CANCELLED"}
-        assert waiting.reports == [({"WARNING"}, "The film was not rendered to its end; no file was written")]
+        assert waiting.reports == [({"WARNING"}, "The film was not finished; no file was written")]
     else:
         waiting.cancel(waiting.context)
     assert waiting.removed == [waiting.timer]

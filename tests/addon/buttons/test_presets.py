@@ -76,7 +76,7 @@ def test_options_that_a_preset_does_not_name_get_their_defaults():
 
 
 def test_a_preset_that_is_gone_is_refused_in_one_sentence(tmp_path):
-    with pytest.raises(RuntimeError, match=r"There is no preset Old\.py any more; choose another one"):
+    with pytest.raises(RuntimeError, match=r"The preset Old\.py no longer exists; choose another one"):
         bpy.ops.curve.mobius_flow_preset(filepath=str(tmp_path / "Old.py"))
 
 

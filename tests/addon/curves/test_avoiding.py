@@ -205,7 +205,7 @@ def test_what_is_selected_is_relaxed_and_not_avoided(capfd):
 @pytest.mark.parametrize("wrong", [None, "Torus"])
 def test_scripts_name_objects(wrong):
     add_curve([ring()], "Ring")
-    with pytest.raises(MobiusFlowError, match="which is no object"):
+    with pytest.raises(MobiusFlowError, match="which is not an object"):
         Relaxation(bpy.data.objects["Ring"]).relax(avoid=[wrong])
     with pytest.raises(MobiusFlowError, match="avoid is of type NoneType; give a list of objects"):
         Relaxation(bpy.data.objects["Ring"]).relax(avoid=None)

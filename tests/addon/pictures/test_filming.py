@@ -66,7 +66,7 @@ def test_looks_are_of_the_copy(scene, tmp_path, look):
 def test_half_a_film_is_none(scene, tmp_path, monkeypatch):
     monkeypatch.setattr(movie, "length_of", lambda _path: 2)
     (tmp_path / "film.mp4").write_bytes(b"old")
-    with pytest.raises(MobiusFlowError, match="to its end"):
+    with pytest.raises(MobiusFlowError, match="did not finish rendering"):
         Filming(scene, str(tmp_path / "film.mp4"), overwrite=True).render()
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"]
     assert list(bpy.data.scenes) == [scene]
@@ -94,7 +94,7 @@ def odd(scene):
         (no_camera, "film.mp4", "no camera; press Set Up Stage"),
         (odd, "film.mp4", "63 × 36 pixels"),
         (None, "there.mp4", "is there already"),
-        (None, "nowhere/film.mp4", "is no directory"),
+        (None, "nowhere/film.mp4", "is not a directory"),
         (None, "film.avi", r"does not end in \.mp4"),
         (None, "", "is a directory"),
     ],

@@ -74,12 +74,12 @@ def test_a_file_comes_before_a_knot() -> None:
         ("3_1..m4_1", "no mirror images"),
         ("3_1..T(2,9)", "none of the table"),
         ("..", "holds no curve files"),
-        ("DT:", "codes name no folder"),
-        ("DT: [4 6 2]", "codes name no folder; put it in a file that ends in .pd"),
-        ("[[1,5,2,4],[3,1,4,6],[5,3,6,2]]", "codes name no folder; put it in a file that ends in .pd"),
-        ("[4, 6, 2]", "codes name no folder"),
-        ("Gauss: O1+U2+ / U1+O2+", "codes name no folder"),
-        ("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", "codes name no folder"),
+        ("DT:", "a code cannot name a folder"),
+        ("DT: [4 6 2]", "a code cannot name a folder; put it in a .pd"),
+        ("[[1,5,2,4],[3,1,4,6],[5,3,6,2]]", "a code cannot name a folder; put it in a .pd"),
+        ("[4, 6, 2]", "a code cannot name a folder"),
+        ("Gauss: O1+U2+ / U1+O2+", "a code cannot name a folder"),
+        ("PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", "a code cannot name a folder"),
     ],
 )
 def test_words_that_name_nothing(word: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

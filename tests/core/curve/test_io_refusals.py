@@ -69,7 +69,7 @@ REFUSED: dict[str, tuple[str, int | None, str]] = {
     "short_line.obj": (V + "l 1\n", 4, "at least two"),
     "faces.obj": (V + "f 1 2 3\n", None, "no polylines"),
     "nurbs.obj": (V + "cstype bspline\ncurv 0 1 1 2 3\n", 5, "convert"),
-    "columns.obj": ("0 0 0\n1 0 0\n", 1, "'0' is no statement"),
+    "columns.obj": ("0 0 0\n1 0 0\n", 1, "'0' is not an OBJ statement"),
     "no_vertex.obj": ("o thing\n", None, "no vertex"),
     "magic.vect": ("1 3 0\n", 1, "starts with the word VECT"),
     "four.vect": ("4VECT 1 3 0\n", 1, "4VECT"),

@@ -100,7 +100,7 @@ def test_what_does_not_go_together_is_refused(options: dict[str, object], said: 
 @pytest.mark.parametrize(
     ("weight", "said"),
     [
-        (-0.01, "term 'bending' has weight -0.01, with which its stiffness is no part of a metric"),
+        (-0.01, "term 'bending' has weight -0.01, which would make its stiffness negative"),
         (1e300, "give terms smaller weights"),
         (10**400, "it must be a pair of a term and its weight"),
     ],
