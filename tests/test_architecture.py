@@ -20,7 +20,7 @@ FLOORS = (
     {"core.verify", "core.files", "core.threads", "core.quadrature"},
     {"core.curve"},
     {"core.energies", "core.collision", "core.constraints", "core.diagrams"},
-    {"core.saddle", "core.knots"},
+    {"core.saddle", "core.knots", "core.passes"},
     {"core.metrics", "core.curve.io"},
     {"core.hierarchy"},
     {"core.descent"},

@@ -4,6 +4,9 @@ A signed Gauss code determines the diagram, and everything else is derived from 
 component by component; *edge* i runs from it to the next pass of its component; *dart* 2i runs along edge i and dart
 2i + 1 back, so that ``dart ^ 1`` is the reverse of a dart.  A *strand* is a run of passes that are all over, or all
 under.
+
+Among the passes there may be places where the curve is held: `PIN`, and `ENDS` where an open component begins and ends.
+They divide edges, and no strand goes on there; at ends a face meets itself.
 """
 
 from collections.abc import Hashable, Iterator, Sequence
@@ -13,6 +16,8 @@ from functools import cached_property
 from ..errors import CurveError
 
 Pass = tuple[int, bool]  # a crossing, and whether the curve passes over
+PIN: Pass = (-1, True)
+ENDS: Pass = (-1, False)
 PlanarCrossing = tuple[int, int, int, int]  # edges counterclockwise from the one that comes in below
 
 
@@ -63,7 +68,8 @@ class Diagram:
         """For each crossing its lower and its upper pass."""
         found = [[0, 0] for _ in self.signs]
         for i, (crossing, over) in enumerate(self.sequence):
-            found[crossing][over] = i
+            if crossing >= 0:
+                found[crossing][over] = i
         return [(lower, upper) for lower, upper in found]
 
     @cached_property
@@ -85,15 +91,24 @@ class Diagram:
     @cached_property
     def faces(self) -> list[list[int]]:
         """The darts round each region of the sphere, which lies on their left, one after the other."""
-        after = {around[k] ^ 1: around[k - 1] for around in self.darts for k in range(4)}
+        nodes = [*self.darts, *self._held]
+        after = {around[k] ^ 1: around[k - 1] for around in nodes for k in range(len(around))}
         found: list[list[int]] = []
-        for start in (each for around in self.darts for dart in around for each in (dart, dart ^ 1)):
+        for start in (each for around in nodes for dart in around for each in (dart, dart ^ 1)):
             face, dart = [], start
             while dart in after:
                 face.append(dart)
                 dart = after.pop(dart)
             found += [face] if face else []
         return found
+
+    @property
+    def _held(self) -> Iterator[tuple[int, ...]]:
+        """The darts that leave places where the curve is held: both from pins, each by itself from ends."""
+        for i, each in enumerate(self.sequence):
+            if each[0] < 0:
+                back, on = 2 * self.previous[i] + 1, 2 * i
+                yield from [(back, on)] if each == PIN else [(back,), (on,)]
 
     @cached_property
     def face_of(self) -> list[int]:
@@ -107,8 +122,8 @@ class Diagram:
     @property
     def is_planar(self) -> bool:
         """Whether the code is of a diagram on the sphere: Euler's formula holds for each piece."""
-        pieces = sum(bool(piece.crossings) for piece in self.pieces())
-        return len(self.faces) == self.crossings + 2 * pieces
+        pieces = sum(any(piece.passes) for piece in self.pieces())
+        return len(self.faces) == self.crossings + 2 * pieces - self.sequence.count(ENDS)
 
     def joins(self) -> Iterator[tuple[int, int]]:
         """The components that meet at each crossing, the lower one first."""
@@ -133,8 +148,11 @@ class Diagram:
     def without(self, removed: set[int]) -> "Diagram":
         """The code without some crossings; whether that is a diagram of the same link is for the caller to know."""
         number = {c: k for k, c in enumerate(c for c in range(self.crossings) if c not in removed)}
-        passes = tuple(tuple((number[c], over) for c, over in part if c in number) for part in self.passes)
-        return Diagram(passes, tuple(self.signs[c] for c in number))
+        signs = tuple(self.signs[c] for c in number)
+        number[PIN[0]] = PIN[0]
+        return Diagram(
+            tuple(tuple((number[c], over) for c, over in part if c in number) for part in self.passes), signs
+        )
 
     def restricted(self, components: set[int]) -> "Diagram":
         """The sublink of some components."""

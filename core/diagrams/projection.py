@@ -12,7 +12,7 @@ from ..types import FloatArray, IntArray
 from .diagram import Diagram, Pass
 
 _TILT = 0.02  # radians, about, by which the flattest view is turned, so that nothing special is seen
-_ROWS = 64  # of edge pairs looked at together
+_ROWS = 64  # boxes looked at together
 
 
 def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> Iterator[Diagram]:
@@ -27,7 +27,7 @@ def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> I
     points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
     middle = points - points.mean(axis=0)
     flattest = np.linalg.svd(middle, full_matrices=False)[2] + _TILT * rng.normal(size=(3, 3))
-    every = (_seen(curve, middle @ _rotation(each), clear) for each in (flattest, *rng.normal(size=(count - 1, 3, 3))))
+    every = (_seen(curve, middle @ rotation(each), clear) for each in (flattest, *rng.normal(size=(count - 1, 3, 3))))
     none = True
     for diagram in filter(None, every):
         none = False
@@ -36,7 +36,7 @@ def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> I
         raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
 
 
-def _rotation(frame: FloatArray) -> FloatArray:
+def rotation(frame: FloatArray) -> FloatArray:
     """The rotation to axes near the rows of a matrix."""
     q, r = np.linalg.qr(frame.T)
     q = q * np.sign(np.diag(r))
@@ -76,32 +76,47 @@ class PlaneCrossings(NamedTuple):
     turn: FloatArray  # cross product of their vectors, positive if the second crosses from right to left; shape (k,)
 
 
-def plane_crossings(mesh: Mesh, points: FloatArray) -> PlaneCrossings:
-    """Find all crossings of polygons; of ``points``, shape (n, 2 or more), only x and y are looked at."""
-    found = np.concatenate([_crossings_of(mesh, points, first) for first in range(0, mesh.size, _ROWS)], axis=1)
-    return PlaneCrossings(found[:2].astype(np.intp), found[2:4], found[4])
+def plane_crossings(mesh: Mesh, points: FloatArray, beyond: float = 0.0) -> PlaneCrossings:
+    """Find all crossings of polygons; of ``points``, shape (n, 2 or more), only x and y are looked at.
 
-
-def _crossings_of(mesh: Mesh, points: FloatArray, first: int) -> FloatArray:
-    """Crossings of a block of edges with later ones, as rows: both edges, where on them, and the turn."""
-    i = np.arange(first, min(first + _ROWS, mesh.size))[:, None]
-    j = _near(mesh, points, i.ravel())[None, :]
-    start, edge = points[mesh.tails], points[mesh.heads] - points[mesh.tails]
-    apart = start[j] - start[i]
-    turn = edge[i, 0] * edge[j, 1] - edge[i, 1] * edge[j, 0]
+    Edges are taken to be longer by a part ``beyond`` of their lengths at both ends.
+    """
+    start, end = points[mesh.tails, :2], points[mesh.heads, :2]
+    edge = end - start
+    longer = np.abs(beyond * edge)
+    low, high = np.minimum(start, end) - longer, np.maximum(start, end) + longer
+    i, j = meeting_boxes(low, high, low, high)
+    later = (j > i) & (mesh.heads[i] != mesh.tails[j]) & (mesh.heads[j] != mesh.tails[i])
+    i, j = i[later], j[later]
+    apart, turn = start[j] - start[i], _cross(edge[i], edge[j])
     with np.errstate(divide="ignore", invalid="ignore"):
-        s = (apart[..., 0] * edge[j, 1] - apart[..., 1] * edge[j, 0]) / turn
-        t = (apart[..., 0] * edge[i, 1] - apart[..., 1] * edge[i, 0]) / turn
-    neighbours = (mesh.heads[i] == j) | (mesh.heads[j] == i)
-    a, b = np.nonzero((j > i) & ~neighbours & (s > 0) & (s < 1) & (t > 0) & (t < 1))
-    return np.array([a + first, j[0, b], s[a, b], t[a, b], turn[a, b]], dtype=np.float64)
+        s, t = _cross(apart, edge[j]) / turn, _cross(apart, edge[i]) / turn
+    found = np.flatnonzero((np.minimum(s, t) > -beyond) & (np.maximum(s, t) < 1.0 + beyond))
+    return PlaneCrossings(np.stack([i[found], j[found]]), np.stack([s[found], t[found]]), turn[found])
 
 
-def _near(mesh: Mesh, points: FloatArray, block: IntArray) -> IntArray:
-    """Edges from the block's first on whose box meets the box around the block."""
-    later = np.arange(block[0], mesh.size)
-    low = np.minimum(points[mesh.tails[later], :2], points[mesh.heads[later], :2])
-    high = np.maximum(points[mesh.tails[later], :2], points[mesh.heads[later], :2])
-    own = slice(len(block))
-    meets = (low <= high[own].max(axis=0)) & (high >= low[own].min(axis=0))
-    return np.asarray(later[meets.all(axis=1)])
+def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
+    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+
+
+def meeting_boxes(
+    low: FloatArray, high: FloatArray, others_low: FloatArray, others_high: FloatArray
+) -> tuple[IntArray, IntArray]:
+    """All pairs of boxes of two lists, given by their lowest and highest corners, that meet, in order.
+
+    Boxes that follow each other should be near each other: only what meets the box around some of them is looked at.
+    """
+    found = [(np.empty(0, dtype=np.intp),) * 2]
+    bottoms, tops = np.ascontiguousarray(others_low.T), np.ascontiguousarray(others_high.T)
+    for first in range(0, len(low), _ROWS):
+        a, b = low[first : first + _ROWS].T, high[first : first + _ROWS].T
+        near = np.arange(len(others_low))
+        for bottom, top, p, q in zip(bottoms, tops, a, b, strict=True):
+            near = near[(bottom[near] <= q.max()) & (top[near] >= p.min())]
+        meets = np.ones((a.shape[1], len(near)), dtype=bool)
+        for bottom, top, p, q in zip(bottoms, tops, a, b, strict=True):
+            meets &= (bottom[near] <= q[:, None]) & (top[near] >= p[:, None])
+        i, j = np.nonzero(meets)
+        found.append((first + i, near[j]))
+    i, j = map(np.concatenate, zip(*found, strict=True))
+    return i, j

@@ -6,6 +6,8 @@ other, all the famous hard diagrams of the unknot, which Reidemeister's moves do
 
 from collections import deque
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -21,32 +23,59 @@ class Strand(NamedTuple):
     over: bool
 
 
-def shortened(diagram: Diagram) -> Diagram | None:
-    """The diagram with one strand rerouted across fewer edges; None if there is no such strand."""
-    for strand in sorted(strands(diagram), key=lambda strand: -len(strand.inner)):
-        route = shortest_route(diagram, strand, len(strand.inner))
+@dataclass(frozen=True)
+class Move:
+    """A strand of a diagram rerouted: ``route`` are the darts that it crosses from the left from now on."""
+
+    before: Diagram
+    strand: Strand
+    route: Sequence[int]
+
+    @cached_property
+    def after(self) -> Diagram:
+        """The diagram that results."""
+        return rerouted(self.before, self.strand, self.route)
+
+    @property
+    def saved(self) -> int:
+        """How many crossings go."""
+        return len(self.strand.inner) - len(self.route)
+
+
+def shortened(diagram: Diagram) -> Move | None:
+    """Reroute the longest strand that can cross fewer edges; None if there is none."""
+    return next(shortenings(diagram), None)
+
+
+def shortenings(diagram: Diagram, rng: np.random.Generator | None = None) -> Iterator[Move]:
+    """All strands that can cross fewer edges rerouted across fewest, the longest ones first, or in random order."""
+    every = sorted(strands(diagram), key=lambda strand: -len(strand.inner))
+    for k in range(len(every)) if rng is None else rng.permutation(len(every)):
+        route = shortest_route(diagram, every[k], len(every[k].inner))
         if route is not None:
-            return rerouted(diagram, strand, route)
-    return None
+            yield Move(diagram, every[k], route)
 
 
-def shuffled(diagram: Diagram, rng: np.random.Generator) -> Diagram:
-    """The diagram with a piece of a strand, chosen at random, rerouted across as many edges."""
+def shuffled(diagram: Diagram, rng: np.random.Generator) -> Move | None:
+    """Reroute a piece of a strand, chosen at random, across as many edges; None if there is no route."""
     every = list(strands(diagram))
     strand = every[rng.integers(len(every))]
     begin, end = np.sort(rng.choice(len(strand.inner) + 1, size=2, replace=False))
     inner = strand.inner[begin:end]
     piece = Strand(inner, diagram.previous[inner[0]], strand.over)
     route = shortest_route(diagram, piece, len(inner) + 1, rng)
-    return diagram if route is None else rerouted(diagram, piece, route)
+    return None if route is None else Move(diagram, piece, route)
 
 
 def strands(diagram: Diagram) -> Iterator[Strand]:
-    """The longest runs of passes over, or under."""
+    """The longest runs of passes over, or under, between places where the curve is held."""
     start = 0
     for part in diagram.passes:
-        turns = [k for k in range(len(part)) if part[k][1] != part[k - 1][1]] or [0] * bool(part)
+        levels = [over if crossing >= 0 else None for crossing, over in part]
+        turns = [k for k in range(len(part)) if levels[k] is None or levels[k] != levels[k - 1]] or [0] * bool(part)
         for k, begin in enumerate(turns):
+            if levels[begin] is None:
+                continue
             length = (turns[(k + 1) % len(turns)] - begin - 1) % len(part) + 1
             inner = [start + (begin + step) % len(part) for step in range(length)]
             yield Strand(inner, diagram.previous[inner[0]], part[begin][1])

@@ -20,7 +20,7 @@ def simplified(diagram: Diagram, work: int = 400_000) -> Diagram:
         fewer = shortened(diagram)
         if fewer is None:
             break
-        diagram = reduced(fewer)
+        diagram = reduced(fewer.after)
     return diagram
 
 
@@ -34,7 +34,8 @@ def shuffled_down(
     """
     rng, vain, trial = np.random.default_rng(seed), 0, diagram
     while vain < patience and diagram.crossings <= most and not enough(diagram):
-        trial, vain = simplified(shuffled(trial, rng)), vain + 1
+        move, vain = shuffled(trial, rng), vain + 1
+        trial = trial if move is None else simplified(move.after)
         if trial.crossings < diagram.crossings:
             diagram, vain = trial, 0
     return diagram
@@ -54,7 +55,7 @@ def reduced(diagram: Diagram) -> Diagram:
         i = waiting.pop()
         j = following[i]
         (a, over), (b, also) = sequence[i], sequence[j]
-        if a in removed:
+        if a in removed or min(a, b) < 0:
             continue
         x, y = diagram.levels[a][not over], diagram.levels[b][not over]
         # Where the signs are equal both crossings are nugatory: what is between them and the rest meet in each alone.

@@ -19,6 +19,7 @@ from .loop import Relaxation, descent, iterates, summarised
 from .motions import MOTIONS, Motion
 from .outcome import Outcome
 from .run import Run
+from .untangling import Untangling
 
 IS_UNKNOT = Message("the curve is an unknot, and a circle has less energy")
 MAY_BE_UNKNOT = Message(
@@ -29,18 +30,23 @@ MOST_VERTICES = 10_000  # for which the knot type is computed: a few seconds
 
 
 def hopping(run: Run) -> Relaxation:
-    """Yield the iterates of a relaxation and of its hops; return how it ended.
+    """Yield the iterates of a relaxation, of strand moves and of hops; return how it ended.
 
     A hop is one iterate: its path is the motion, and the relaxation to where there is less energy than at the minimum
     before.  So a run stopped between two iterates has the lowest curve so far.
     """
-    hops = Hops(run)
+    hops, strands = Hops(run), Untangling(run)
     yield run.iterate
+    yield from strands.before_flow()
     outcome = yield from descent(run)
+    stuck = run.iterate
+    yield from strands.where_stuck(outcome)
+    if run.iterate is not stuck:
+        outcome = yield from descent(run)
     while hops.led_lower(outcome):
         yield run.iterate
         outcome = yield from descent(run)
-    return hops.summarised(summarised(outcome, run))
+    return hops.summarised(strands.summarised(summarised(outcome, run)))
 
 
 @checked_fields

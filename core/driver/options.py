@@ -17,6 +17,7 @@ from ..option import declared, documented, option
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
+UNTANGLE = ("auto", "always", "never")
 SOLVERS = ("auto", "dense", "hierarchical")
 MAX_GROWTH = 1000.0  # what is packed takes more vertices than there is time for long before
 MIN_GROWTH = 1 / MAX_GROWTH  # and what shrinks far more than that is so small that powers of its size are 0
@@ -202,6 +203,15 @@ class RelaxOptions:
         high=MAX_GROWTH,
         metavar="F",
     )
+    untangle: str = _advanced(
+        "auto",
+        "Untangle",
+        "whether strands are moved over and under others before the flow, so that fewer cross, every motion proved: "
+        "auto, where a diagram of closed curves shows that many crossings go, and where the flow is stuck; such moves "
+        "change the mesh, and are no iterations",
+        choices=UNTANGLE,
+        metavar="U",
+    )
     hops: int = _advanced(
         0,
         "Hops",
@@ -226,6 +236,9 @@ class RelaxOptions:
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
+        if self.untangle == "always" and (self.mesh == "fixed" or not isinstance(self.edge_lengths, str)):
+            other = "mesh='fixed'" if self.mesh == "fixed" else "edge_lengths"
+            raise OptionError(f"untangle='always' changes the mesh; leave it or {other} out")
 
     def __repr__(self) -> str:
         values = [(each, getattr(self, each.name)) for each in declared(type(self))]
@@ -249,6 +262,7 @@ class RelaxOptions:
             stability=False,
             escape_saddles=False,
             balance=False,
+            untangle="never",
             hops=0,
         )
 
@@ -256,4 +270,5 @@ class RelaxOptions:
     def keyed(self) -> "RelaxOptions":
         """The same for keyframes, which belong to vertices: ``auto`` neither leaves any out nor brings them back."""
         splits = self.ends_finer or (self.grow != 1.0 and self.edge_lengths == "auto")
-        return replace(self, mesh="finer" if splits else "fixed") if self.mesh == "auto" else self
+        mesh = ("finer" if splits else "fixed") if self.mesh == "auto" else self.mesh
+        return replace(self, mesh=mesh, untangle="never")

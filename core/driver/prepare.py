@@ -1,5 +1,7 @@
 """From a task and options to the problem that is solved."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..collision import minimal_gap
@@ -10,6 +12,7 @@ from ..curve.remesh import graded_spacing, normalised
 from ..descent import METHODS, Method, Problem
 from ..energies import is_moebius_invariant
 from ..errors import OptionError
+from ..obstacle import Obstacle
 from ..task import Task
 from ..types import FloatArray, IntArray
 from .options import RelaxOptions
@@ -27,7 +30,7 @@ def start_problem(given: Task | Curve, options: RelaxOptions) -> Problem:
     task, method = Task.of(given), METHODS[options.method]
     pins = task.held
     geometry = method.geometry if options.penalty is None else method.geometry.weighted(options.penalty)
-    lengths = _target_lengths(task, pins.vertices, options)
+    lengths = target_lengths(task.curve, pins.vertices, task.obstacles, options)
     problem = Problem.of(task.curve, lengths, pins, task.obstacles, Solver(options), geometry)
     _check_second_order(problem, options, method)
     if options.grow != 1.0:
@@ -55,9 +58,9 @@ def _check_balance(task: Task, problem: Problem) -> None:
     check_closed(task.curve, "Möbius images of equal energy, which balance takes,")
 
 
-def _target_lengths(task: Task, pins: IntArray, options: RelaxOptions) -> FloatArray:
+def target_lengths(start: Curve, pins: IntArray, obstacles: Sequence[Obstacle], options: RelaxOptions) -> FloatArray:
     """In the user's units; shape (edges,)."""
-    start, wanted = task.curve, options.edge_lengths
+    wanted = options.edge_lengths
     if not isinstance(wanted, str):
         edges = start.mesh.edges
         if len(wanted) != edges:
@@ -71,7 +74,7 @@ def _target_lengths(task: Task, pins: IntArray, options: RelaxOptions) -> FloatA
     if options.mesh == "adaptive":
         return normalised(start, graded_spacing(start, Resolution(options.vertices)), pins)
     uneven = start.edge_lengths.max() > EVEN_RATIO * min(start.edge_lengths.min(), minimal_gap(start)[0])
-    if wanted == "keep" or (wanted == "auto" and (uneven or task.obstacles)):
+    if wanted == "keep" or (wanted == "auto" and (uneven or obstacles)):
         return start.edge_lengths
     return equal_lengths(start.mesh, start.edge_lengths, pins)
 

@@ -1,7 +1,7 @@
 """One relaxation under way: where it stands, what happens to it, and what may be done about that between steps."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -104,6 +104,25 @@ class Run:
         self.point, self.method, self._memory = end, METHODS[self.options.method], State()
         self._certified &= certified
         self.iterate = self._described(self.iterate.index + 1, path=path)
+        return self.iterate
+
+    def carried(self, curve: Curve, path: tuple[FloatArray, ...] = ()) -> Iterate:
+        """Go in one iterate, which is not charged, to a curve that was reached by proved motions of another kind.
+
+        Energy and gradient are not computed: those of the curve before stand for them until the run is `restarted`.
+        """
+        pins = tuple(self.problem.constraints.pins.on(curve).vertices.tolist())
+        self.iterate = replace(
+            self.iterate, index=self.iterate.index + 1, curve=curve, path=path, step_size=0.0, pins=pins
+        )
+        self.charge(-1)
+        return self.iterate
+
+    def restarted(self, point: Point) -> Iterate:
+        """Go on from a point of the problem on another mesh, as at the start; the curve is the same."""
+        self.point, self.method, self._memory = point.anchored, METHODS[self.options.method], State()
+        self.iterate = self._described(self.iterate.index + 1)
+        self.charge(-1)
         return self.iterate
 
     def allows(self, change: Change) -> bool:

@@ -1,0 +1,78 @@
+"""Strand moves in space on hard diagrams: what they cost, how far they come, and whether others accept them.
+
+    python benchmarks/passes.py [NAME or FILE …]
+
+Without names: the famous unknots of the table, the codes in ../shared/hard_unknots, closures of random braids that are
+unknots, and scrambled knots.
+"""
+
+import sys
+import tempfile
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from hard_curves import hard_unknot
+from mobius_flow.core import Curve, Iterate, Obstacle, Trajectory, read_curve
+from mobius_flow.core.diagrams import views
+from mobius_flow.core.knots import HARD_UNKNOTS, knot, knot_type, scramble
+from mobius_flow.core.passes import Stage, untangled
+from mobius_flow.core.verify import Verdict, verify
+
+SHARED = Path(__file__).parents[2] / "shared/hard_unknots"
+SCRAMBLED = ("5_2", "7_4", "8_19", "L6a4")
+
+
+def verdict(start: Curve, stages: Iterable[Stage], pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()) -> Verdict:
+    """What the independent check says of stages."""
+    trajectory = Trajectory(obstacles=walls)
+    held = start.vertices[list(pins)]
+    frames = [(start, ()), *((each, path) for s in stages for each, path in ((s.start, ()), (s.end, s.path)))]
+    for index, (curve, path) in enumerate((c, p) for k, (c, p) in enumerate(frames) if p or k % 2 or not k):
+        places = [int(np.flatnonzero((curve.vertices == point).all(axis=1))[0]) for point in held]
+        trajectory.add(Iterate(index, curve, 0.0, 0.0, 0.0, path, True, 0.0, "passes", pins=tuple(places)))
+    with tempfile.TemporaryDirectory() as folder:
+        trajectory.save(f"{folder}/passes.npz")
+        return verify(f"{folder}/passes.npz")
+
+
+def curves(names: Sequence[str]) -> Iterator[tuple[str, Curve]]:
+    """Those with the names, or all."""
+    for name in names:
+        yield name, read_curve(name) if Path(name).exists() else knot(name)
+    if names:
+        return
+    for name in HARD_UNKNOTS:
+        yield name, knot(name)
+    for path in sorted(SHARED.glob("*.pd")):
+        yield path.stem, read_curve(path)
+    for crossings in (100, 200, 300):
+        yield f"random {crossings}", hard_unknot(crossings, seed=1)
+    for name in SCRAMBLED:
+        yield f"scrambled {name}", scramble(knot(name, 100), 1, moves=6000)
+
+
+def main(names: Sequence[str]) -> None:
+    """Print the table."""
+    print("| curve | vertices | crossings | left | meshes | legs | s | verified | type |\n" + "|---" * 9 + "|")
+    for name, curve in curves(names):
+        seen = min((view.crossings for view in views(curve, 12)), default=0)
+        began = time.process_time()
+        stages = []
+        work = untangled(curve)
+        try:
+            while True:
+                stages.append(next(work))
+        except StopIteration as end:
+            found = end.value
+        seconds = time.process_time() - began
+        legs = sum(len(stage.path) for stage in stages)
+        accepted = "yes" if verdict(curve, stages).accepted else "NO"
+        kind = knot_type(stages[-1].end if stages else curve)
+        row = (name, len(curve), seen, found.crossings, len(stages), legs, f"{seconds:.1f}", accepted, kind)
+        print("|", " | ".join(map(str, row)), "|", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

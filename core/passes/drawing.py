@@ -1,0 +1,109 @@
+"""What is seen of a curve in some frame: its diagram, and where on the curve the diagram's passes are."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..curve import Mesh
+from ..diagrams.diagram import ENDS, PIN, Diagram, Pass
+from ..diagrams.projection import PlaneCrossings, plane_crossings
+from ..types import BoolArray, FloatArray
+from .triangles import UnclearError
+
+_CLEAR = 1e-9  # of an edge, or of the curve's size: what is nearer to the limit than that might be a rounding error
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """The diagram of a curve as seen along the third axis.
+
+    Attributes
+    ----------
+    mesh, points
+        The curve in the frame, shape (n, 3).
+    crossings
+        Of its edges, which are numbered by their tails here.
+    heights
+        Of both edges at each crossing; shape (2, k).
+    diagram
+        With places where the curve is held among its passes.
+    at
+        Where each pass is: the tail of its edge plus a fraction.
+    """
+
+    mesh: Mesh
+    points: FloatArray
+    crossings: PlaneCrossings
+    heights: FloatArray
+    diagram: Diagram
+    at: list[float]
+
+    @classmethod
+    def of(cls, mesh: Mesh, points: FloatArray, held: BoolArray) -> "Drawing":
+        """The drawing of a curve some vertices of which are held; an UnclearError where rounding hides what it is."""
+        found = plane_crossings(mesh, points, _CLEAR)
+        edges, fractions = found.edges, found.at
+        low, high = points[mesh.tails[edges], 2], points[mesh.heads[edges], 2]
+        heights = low * (1.0 - fractions) + high * fractions
+        size = float(np.ptp(points, axis=0).max())
+        apart = np.abs(heights[0] - heights[1]) / size
+        if min(fractions.min(initial=1.0), 1.0 - fractions.max(initial=0.0), apart.min(initial=1.0)) < _CLEAR:
+            raise UnclearError
+        above = heights[0] > heights[1]
+        signs = np.sign(np.where(above, found.turn, -found.turn)).astype(int).tolist()
+        passes: list[list[tuple[float, Pass]]] = [[] for _ in mesh.component_sizes]
+        for over, tails, t in (
+            (above, mesh.tails[edges[0]], fractions[0]),
+            (~above, mesh.tails[edges[1]], fractions[1]),
+        ):
+            for crossing, (upper, tail, place) in enumerate(
+                zip(over.tolist(), tails.tolist(), t.tolist(), strict=True)
+            ):
+                passes[mesh.component[tail]].append((tail + place, (crossing, upper)))
+        for vertex in np.flatnonzero(held).tolist():
+            component = mesh.component[vertex]
+            if mesh.closed[component] or vertex not in mesh.ends:
+                passes[component].append((float(vertex), PIN))
+        for first, _ in mesh.ends.tolist():
+            passes[mesh.component[first]].append((float(first), ENDS))
+        ordered = [sorted(part) for part in passes]
+        diagram = Diagram(tuple(tuple(each for _, each in part) for part in ordered), tuple(signs))
+        if not diagram.is_planar:
+            raise UnclearError
+        return cls(mesh, points, found, heights, diagram, [at for part in ordered for at, _ in part])
+
+    @cached_property
+    def nodes(self) -> FloatArray:
+        """The vertices in the plane, and after them the crossings; shape (n + k, 2)."""
+        crossings = self.mesh.tails[self.crossings.edges[0]] + self.crossings.at[0]
+        return np.concatenate([self.points[:, :2], self.placed(crossings)])
+
+    def placed(self, at: FloatArray) -> FloatArray:
+        """Points of the plane at tails plus fractions."""
+        tails = np.floor(at).astype(np.intp)
+        t = (at - tails)[:, None]
+        return np.asarray(self.points[tails, :2] * (1.0 - t) + self.points[self.mesh.cycle[tails], :2] * t)
+
+    def stops(self, edge: int) -> tuple[list[int], list[float]]:
+        """The nodes on an edge of the diagram, its ends included, and where on the component they are, ascending."""
+        diagram, n = self.diagram, self.mesh.size
+        part = self.mesh.slices[diagram.component[edge]]
+        size, after = part.stop - part.start, diagram.next[edge]
+        begin, end = self.at[edge], self.at[after]
+        if diagram.sequence[after] == ENDS:
+            end = part.stop - 1.0
+        elif end <= begin:
+            end += size
+        inner = range(int(np.floor(begin)) + 1, int(np.ceil(end)))
+        first, last = (
+            n + crossing if crossing >= 0 else int(place)
+            for (crossing, _), place in ((diagram.sequence[edge], begin), (diagram.sequence[after], end))
+        )
+        wrap = [part.start + (k - part.start) % size for k in inner]
+        return [first, *wrap, last], [begin, *map(float, inner), end]
+
+    def wrapped(self, edge: int, place: float) -> float:
+        """A place on an edge as the tail plus a fraction."""
+        part = self.mesh.slices[self.diagram.component[edge]]
+        return place - (part.stop - part.start) * (place >= part.stop)

@@ -1,0 +1,114 @@
+"""Whole curves are untangled by proved motions: knots, links, arcs, among pins and obstacles, and interrupted."""
+
+from collections.abc import Sequence
+from itertools import islice
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, Mesh, Obstacle, OptionError, RelaxOptions, Trajectory, minimize
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.knots import knot, knot_type, scramble
+from mobius_flow.core.passes import Stage, Untangled, untangled, worth
+from mobius_flow.core.verify import verify
+from passes import verdict
+from solids import plate
+
+
+def run(curve: Curve, pins: Sequence[int] = (), walls: Sequence[Obstacle] = ()) -> tuple[Curve, Untangled]:
+    """Where it ends and how, if the independent check accepts the way."""
+    stages: list[Stage] = []
+    work = untangled(curve, np.array(pins, dtype=np.intp), walls)
+    try:
+        while True:
+            stages.append(next(work))
+    except StopIteration as end:
+        found: Untangled = end.value
+    assert verdict(curve, stages, pins, walls).accepted
+    return stages[-1].end, found
+
+
+@pytest.mark.parametrize("name", ["culprit", "goeritz", "thistlethwaite", "ochiai-1", "d28", "ochiai-4"])
+def test_famous_unknots_lose_all_crossings(name: str) -> None:
+    end, found = run(knot(name))
+    assert (found.crossings, found.least) == (0, True)
+    assert end.length == pytest.approx(knot(name).length)
+
+
+@pytest.mark.parametrize(("name", "crossings"), [("5_2", 5), ("m7_4", 7), ("L6a4", 6), ("3_1#m4_1", 7)])
+def test_scrambled_knots_and_links_come_to_their_crossings(name: str, crossings: int) -> None:
+    curve = scramble(knot(name, 100), 1, moves=3000)
+    end, found = run(curve)
+    assert (found.crossings, found.least) == (crossings, True)
+    assert str(knot_type(end)) == str(knot_type(curve))
+    assert len(end.mesh.component_sizes) == len(curve.mesh.component_sizes)
+
+
+def test_a_knot_of_which_no_least_diagram_is_known_says_so() -> None:
+    _, found = run(scramble(knot("8_19", 100), 1, moves=3000))
+    assert (found.crossings, found.least) == (8, False)
+    assert "no move is known" in found.reason
+
+
+def test_pins_stay_and_strands_end_at_them() -> None:
+    curve, pins = scramble(knot("5_2", 60), 1, moves=2000), [0, 20, 40]
+    end, found = run(curve, pins)
+    assert found.crossings == 5
+    places = set(map(tuple, end.vertices.tolist()))
+    assert all(tuple(point) in places for point in curve.vertices[pins].tolist())
+
+
+def test_arcs_come_apart_and_keep_their_ends() -> None:
+    closed = scramble(knot("3_1", 60), 1, moves=2000).vertices
+    curve = Curve(closed[:-1], Mesh((59,), (False,)))
+    end, found = run(curve)
+    assert found.crossings == 0
+    np.testing.assert_array_equal(end.vertices[[0, -1]], curve.vertices[[0, -1]])
+
+
+@pytest.mark.parametrize(("part", "free"), [(0.5, True), (0.01, False)])
+def test_plates_leave_room_or_none(part: float, free: bool) -> None:
+    curve = knot("ochiai-1")
+    low, high = curve.vertices[:, 2].min(), curve.vertices[:, 2].max()
+    gap = part * np.ptp(curve.vertices, axis=0).max()
+    _, found = run(curve, walls=[plate(low - gap, name="below"), plate(high + gap, name="above")])
+    assert (found.crossings == 0) is free
+    assert free or "no way for a strand is free" in found.reason
+
+
+def test_wherever_it_is_left_the_curve_is_embedded_and_of_its_type() -> None:
+    curve = knot("ochiai-1")
+    stages = list(islice(untangled(curve), 12))
+    assert verdict(curve, stages).accepted
+    check_embedded(stages[-1].end)
+    assert str(knot_type(stages[-1].end)) == "unknot"
+
+
+def test_the_same_seed_gives_the_same_motions() -> None:
+    once, again = ([stage.end.vertices for stage in untangled(knot("goeritz"), seed=3)] for _ in range(2))
+    assert all(map(np.array_equal, once, again))
+
+
+def test_what_cannot_be_untangled_is_left_alone() -> None:
+    assert list(untangled(Curve(np.random.default_rng(1).normal(size=(9, 4))))) == []
+    gone, left = worth(knot("5_2", 100))
+    assert gone < left == 5
+    gone, left = worth(knot("ochiai-2"), 20)
+    assert gone > 20 > left
+
+
+def test_relax_untangles_what_is_worth_it_and_ends_with_the_circle(tmp_path) -> None:
+    trajectory = Trajectory()
+    result = minimize(knot("ochiai-2"), RelaxOptions(), trajectory.add)
+    assert result.last.energy == pytest.approx(4.0, abs=1e-4)
+    assert "strand moves: no crossing is left" in result.message
+    trajectory.save(tmp_path / "T.npz")
+    assert verify(tmp_path / "T.npz").accepted
+
+
+def test_relax_moves_no_strands_if_it_is_not_to() -> None:
+    options = RelaxOptions(untangle="never", max_iterations=2)
+    assert "strand" not in minimize(knot("ochiai-2"), options).message
+    assert "strand" not in minimize(knot("5_2"), RelaxOptions(max_iterations=2)).message
+    assert "strand" in minimize(knot("5_2"), RelaxOptions(max_iterations=2, untangle="always")).message
+    with pytest.raises(OptionError, match="untangle='always' changes the mesh"):
+        RelaxOptions(untangle="always", mesh="fixed")
