@@ -17,6 +17,7 @@ ARGUMENTS = {
     "knots": ["knots", "--only", "3_1,L2a1,unknot-rope", "--tolerance", "1e-2"],
     "metric": ["100"],
     "obstacles": ["--vertices", "60"],
+    "passes": ["goeritz"],
     "repulsion": ["60", "--latitudes", "12"],
     "resolution": ["3_1"],
     "soak": ["--flows", "2"],

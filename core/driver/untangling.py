@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..curve import refine
-from ..passes import untangled, worth
+from ..passes import Untangled, untangled, worth
 from ..task import check_refined
 from .outcome import Outcome
 from .prepare import target_lengths
@@ -17,17 +17,11 @@ MANY = 20  # crossings that go, from which on it is worth while before the flow,
 
 
 class Untangling:
-    """The strand moves of one run.
-
-    Attributes
-    ----------
-    clauses
-        What there is to say of them in the end: templates and facts.
-    """
+    """The strand moves of one run."""
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self.clauses: list[tuple[str, dict[str, object]]] = []
+        self._found: list[Untangled] = []
 
     def before_flow(self) -> Iterator[Iterate]:
         """Yield the motions that come first, if they are asked for, or a diagram shows that many crossings go."""
@@ -42,8 +36,8 @@ class Untangling:
 
     def summarised(self, outcome: Outcome) -> Outcome:
         """The outcome with what strand moves have achieved."""
-        for template, facts in self.clauses:
-            outcome = outcome.adding(template, **facts)
+        for found in self._found:
+            outcome = outcome.adding("strand moves: {reason}", reason=found.reason)
         return outcome
 
     @property
@@ -67,7 +61,7 @@ class Untangling:
             try:
                 stage = next(stages)
             except StopIteration as end:
-                found = end.value
+                self._found.append(end.value)
                 break
             if stage.start.mesh is not run.iterate.curve.mesh:
                 yield run.carried(stage.start)
@@ -75,7 +69,6 @@ class Untangling:
                 yield run.carried(stage.end, stage.path)
         if run.iterate is not first:
             yield self._refined(min(len(first.curve), ENOUGH))
-        self.clauses.append(("strand moves: {reason}", {"reason": found.reason}))
 
     def _refined(self, least: int) -> Iterate:
         """The curve reached on a mesh for the flow, in its problem there."""

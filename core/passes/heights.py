@@ -41,7 +41,10 @@ def combed(drawing: Drawing, held: BoolArray) -> FloatArray | None:
         matrix = above[:, free] @ response
         matrix[np.diag_indices(len(matrix))] += 1e-9 * np.trace(matrix) / len(matrix)
         lower = np.linalg.cholesky(matrix)
-        multipliers, _ = nnls(lower.T, np.linalg.solve(lower, wanted), maxiter=30 * len(wanted))
+        try:
+            multipliers, _ = nnls(lower.T, np.linalg.solve(lower, wanted), maxiter=30 * len(wanted))
+        except RuntimeError:  # too many iterations
+            return None
         level[free] += response @ multipliers
     gaps, before = above @ level, above @ heights
     if (gaps < _ENOUGH * np.minimum(_GAP * size, before)).any():

@@ -1,7 +1,7 @@
 """From a tangled curve to one with few crossings, by strand moves that are planned on its diagram and made in space."""
 
 from collections.abc import Generator, Iterator, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..curve import Curve
 from ..curve.pins import NOWHERE
 from ..diagrams.projection import rotation
 from ..diagrams.rerouting import Move
-from ..errors import counted
+from ..messages import Message
 from ..obstacle import Obstacle
 from ..types import FloatArray, IntArray
 from .drawing import Drawing
@@ -34,26 +34,17 @@ _TILT = 1e-3  # radians, about, by which the frame is turned where rounding hide
 _TURNS = 8
 _PART = 0.9  # of a motion's free part, if it is not free as a whole
 
-_UNCLEAR = "strands are so near to each other that no view of the curve tells which one is in front"
+UNTOUCHED = Message("only curves in space with at most {most:,} vertices are untangled", most=MOST_VERTICES)
+UNCLEAR = Message("strands touch, or nearly do: no view of the curve shows which one is in front")
+NONE_LEFT = Message("no crossing is left")
 
 
-@dataclass(frozen=True)
-class Untangled:
-    """How it ended.
-
-    Attributes
-    ----------
-    crossings
-        In the best view that was found.
-    least
-        Whether no diagram of the curve has fewer.
-    reason
-        A sentence.
-    """
+class Untangled(NamedTuple):
+    """How it ended: with so many crossings, whether no diagram of the curve has fewer, and both in words."""
 
     crossings: int | None
     least: bool
-    reason: str
+    reason: Message
 
 
 def untangled(
@@ -73,8 +64,7 @@ def untangled(
         The same seed gives the same motions.
     """
     if curve.dimension != 3 or len(curve) > MOST_VERTICES:
-        what = f"{len(curve):,} vertices" if curve.dimension == 3 else f"dimension {curve.dimension}"
-        return Untangled(None, False, f"the curve has {what}; strands are moved of up to {MOST_VERTICES:,}, in space")
+        return Untangled(None, False, UNTOUCHED)
     rng = np.random.default_rng(seed)
     body = MovingCurve(curve, pins, obstacles)
     reached: int | None = None
@@ -85,9 +75,11 @@ def untangled(
             if frame is None:
                 break
             body.frame = frame
-            if (drawing := _drawing(body, rng)).diagram.crossings > MOST_CROSSINGS:
-                count = drawing.diagram.crossings
-                return Untangled(count, False, f"the curve has {count:,} crossings, more than {MOST_CROSSINGS:,}")
+            count = _drawing(body, rng).diagram.crossings
+            if count > MOST_CROSSINGS:
+                return Untangled(
+                    count, False, Message("there are {count:,} crossings, which are too many", count=count)
+                )
             blocked = yield from _moved(body, rng)
             diagram = _drawing(body, rng).diagram
             reached = diagram.crossings
@@ -95,14 +87,15 @@ def untangled(
                 body.resize(curve.length)
                 yield from _taken(body)
                 return Untangled(
-                    reached,
-                    True,
-                    f"no diagram has fewer than {reached} crossings" if reached else "no crossing is left",
+                    reached, True, Message("{count} crossings, the least", count=reached) if reached else NONE_LEFT
                 )
     except UnclearError:
-        return Untangled(reached, False, _UNCLEAR)
-    why = "no way for a strand is free" if blocked else "no move is known that saves any"
-    return Untangled(reached, False, f"{counted(reached or 0, 'crossing')} are left: {why}")
+        return Untangled(reached, False, UNCLEAR)
+    if blocked:
+        left = Message("{count} crossings are left, as no way for a strand is free", count=reached)
+    else:
+        left = Message("{count} crossings are left, as no move of a strand is known that saves any", count=reached)
+    return Untangled(reached, False, left)
 
 
 def worth(curve: Curve, least: int = 0, seed: int = 20231) -> tuple[int, int]:
