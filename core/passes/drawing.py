@@ -106,4 +106,4 @@ class Drawing:
     def wrapped(self, edge: int, place: float) -> float:
         """A place on an edge as the tail plus a fraction."""
         part = self.mesh.slices[self.diagram.component[edge]]
-        return place - (part.stop - part.start) * (place >= part.stop)
+        return place - (part.stop - part.start if place >= part.stop else 0)

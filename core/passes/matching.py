@@ -32,7 +32,8 @@ def _numbers(old: Diagram, new: Diagram) -> dict[int, int] | None:
 
 def _from(old: Diagram, new: Diagram, begin: int, image: int) -> dict[int, int] | None:
     """The passes that can be reached from one along strands and at crossings, if its image is given."""
-    found, waiting = {}, [(begin, image)]
+    found: dict[int, int] = {}
+    waiting = [(begin, image)]
     while waiting:
         i, j = waiting.pop()
         if i in found:

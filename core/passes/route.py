@@ -74,7 +74,8 @@ def routed(drawing: Drawing, move: Move, ends: Ends) -> FloatArray | None:
 
 def _walls(drawing: Drawing, move: Move, ends: Ends, names: tuple[int, int]) -> dict[Wall, int]:
     """The pieces of all that stays, from node to node, and the edges of the diagram that they are of."""
-    strand, last, walls = move.strand, move.strand.inner[-1], {}
+    strand, last = move.strand, move.strand.inner[-1]
+    walls: dict[Wall, int] = {}
     start, end = names
     for edge in range(len(drawing.diagram.sequence)):
         chain, _ = drawing.stops(edge)

@@ -29,6 +29,8 @@ class Triangles:
     """
 
     def __init__(self, points: FloatArray, walls: Iterable[tuple[int, int]]) -> None:
+        self._x: list[float]
+        self._y: list[float]
         self._x, self._y = points.T.tolist()
         n = len(points)
         self._opposite: dict[tuple[int, int], int] = {}  # of directed edges, whose triangle is on their left
