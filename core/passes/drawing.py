@@ -1,5 +1,6 @@
 """What is seen of a curve in some frame: its diagram, and where on the curve the diagram's passes are."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -52,26 +53,20 @@ class Drawing:
             raise UnclearError
         above = heights[0] > heights[1]
         signs = np.sign(np.where(above, found.turn, -found.turn)).astype(int).tolist()
-        passes: list[list[tuple[float, Pass]]] = [[] for _ in mesh.component_sizes]
-        for over, tails, t in (
-            (above, mesh.tails[edges[0]], fractions[0]),
-            (~above, mesh.tails[edges[1]], fractions[1]),
-        ):
-            for crossing, (upper, tail, place) in enumerate(
-                zip(over.tolist(), tails.tolist(), t.tolist(), strict=True)
-            ):
-                passes[mesh.component[tail]].append((tail + place, (crossing, upper)))
-        for vertex in np.flatnonzero(held).tolist():
-            component = mesh.component[vertex]
-            if mesh.closed[component] or vertex not in mesh.ends:
-                passes[component].append((float(vertex), PIN))
-        for first, _ in mesh.ends.tolist():
-            passes[mesh.component[first]].append((float(first), ENDS))
-        ordered = [sorted(part) for part in passes]
+        at = (mesh.tails[edges] + fractions).tolist()
+        found_at: list[tuple[float, Pass]] = []
+        for places, over in zip(at, (above.tolist(), (~above).tolist()), strict=True):
+            found_at += zip(places, enumerate(over), strict=True)
+        firsts, lasts = mesh.ends.T.tolist()
+        for vertex in set(np.flatnonzero(held).tolist()) - set(lasts):
+            found_at.append((float(vertex), ENDS if vertex in firsts else PIN))
+        ordered: list[list[tuple[float, Pass]]] = [[] for _ in mesh.component_sizes]
+        for place, each in sorted(found_at):
+            ordered[mesh.component[int(place)]].append((place, each))
         diagram = Diagram(tuple(tuple(each for _, each in part) for part in ordered), tuple(signs))
         if not diagram.is_planar:
             raise UnclearError
-        return cls(mesh, points, found, heights, diagram, [at for part in ordered for at, _ in part])
+        return cls(mesh, points, found, heights, diagram, [place for part in ordered for place, _ in part])
 
     @cached_property
     def nodes(self) -> FloatArray:
@@ -97,11 +92,19 @@ class Drawing:
             end += size
         inner = range(int(np.floor(begin)) + 1, int(np.ceil(end)))
         first, last = (
-            n + crossing if crossing >= 0 else int(place)
+            n + crossing if crossing >= 0 else part.start + (int(place) - part.start) % size
             for (crossing, _), place in ((diagram.sequence[edge], begin), (diagram.sequence[after], end))
         )
         wrap = [part.start + (k - part.start) % size for k in inner]
         return [first, *wrap, last], [begin, *map(float, inner), end]
+
+    def chains(self) -> Iterator[tuple[int, list[int]]]:
+        """The edges of the diagram, and the nodes on each; circles without passes are edges of one number more."""
+        for edge in range(len(self.at)):
+            yield edge, self.stops(edge)[0]
+        for part, passes in zip(self.mesh.slices, self.diagram.passes, strict=True):
+            if not passes:
+                yield len(self.at), [*range(part.start, part.stop), part.start]
 
     def wrapped(self, edge: int, place: float) -> float:
         """A place on an edge as the tail plus a fraction."""

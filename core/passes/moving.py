@@ -1,6 +1,6 @@
 """A curve that is moved on proved legs only, seen in a frame of its own."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,7 +61,6 @@ class MovingCurve:
         self.held[held] = self.held[curve.mesh.ends] = True
         self.frame: FloatArray = np.eye(3)
         self.stages: list[Stage] = []
-        self.failures = 0
 
     @property
     def mesh(self) -> Mesh:
@@ -87,6 +86,19 @@ class MovingCurve:
         """Move some vertices straight to places in the frame, shape (k, 3), if that is proved free."""
         return self._go(vertices, targets @ self.frame.T)
 
+    def follow(self, vertices: IntArray, targets: Callable[[int], FloatArray], count: int) -> bool:
+        """Move some vertices through targets 1, 2, … to the last one, with as few motions as are free, if that is."""
+        here, stride = 0, count
+        while here < count:
+            there = min(here + stride, count)
+            if self.move(vertices, targets(there)):
+                here, stride = there, 2 * stride
+            elif stride == 1:
+                return False
+            else:
+                stride //= 2
+        return True
+
     def straighten(self, vertices: IntArray, parts: FloatArray) -> bool:
         """Move some vertices to parts of the way between their neighbours, which stay, if that is proved free."""
         start, end = self.curve.vertices[self.mesh.anticycle[vertices]], self.curve.vertices[self.mesh.cycle[vertices]]
@@ -104,7 +116,6 @@ class MovingCurve:
         free = ~self.held[vertices]
         end[vertices[free]] = places[free]
         if not is_free(self.mesh, self.curve.vertices, end, self.obstacles):
-            self.failures += 1
             return False
         last = self.stages.pop() if self.stages else Stage(self.curve)
         self.curve = self.curve.with_vertices(end)
@@ -137,7 +148,6 @@ class MovingCurve:
 
     def _on(self, curve: Curve, held: BoolArray, survives: Curve) -> bool:
         if not survives_rounding(survives, self.obstacles):
-            self.failures += 1
             return False
         self.curve, self.held = curve, held
         self.stages.append(Stage(curve))

@@ -86,17 +86,7 @@ def _led(body: MovingCurve, strand: IntArray, way: FloatArray) -> bool:
     extra = _between(np.arange(len(way), dtype=float), lengths, len(old) - len(way))
     at = np.sort(np.concatenate([np.arange(len(way)), extra]))
     new = np.column_stack([np.interp(at, np.arange(len(way)), x) for x in way.T])
-    here, goal = 0, 2 * (len(old) - 2)
-    stride = goal
-    while here < goal:
-        there = min(here + stride, goal)
-        if body.move(strand, _reeled(old, new, there)):
-            here, stride = there, 2 * stride
-        elif stride == 1:
-            return False
-        else:
-            stride //= 2
-    return True
+    return body.follow(strand, lambda turn: _reeled(old, new, turn), 2 * (len(old) - 2))
 
 
 def _reeled(old: FloatArray, new: FloatArray, turn: int) -> FloatArray:

@@ -13,9 +13,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from ..diagrams.rerouting import Move
-from ..types import FloatArray, IntArray
+from ..types import FloatArray
 from .drawing import Drawing
-from .triangles import Triangles, boxed
+from .triangles import Triangles
 
 _RAMPS = 0.2, 0.4, 0.6, 0.8  # of a piece: where a strand ends, is back below, leaves from below, and begins
 _ASIDE = 0.2  # of a gate's width, and
@@ -65,8 +65,7 @@ def routed(drawing: Drawing, move: Move, ends: Ends) -> FloatArray | None:
     nodes = np.concatenate([drawing.nodes, drawing.placed(np.array([ends.start, ends.end]))])
     used, names = np.unique(np.array(list(walls)), return_inverse=True)
     edge_of = dict(zip(map(tuple, names.reshape(-1, 2).tolist()), walls.values(), strict=True))
-    points = boxed(nodes[used])
-    plane = _Plane(points, Triangles(points, edge_of).corners, edge_of)
+    plane = _Plane(Triangles(nodes[used], edge_of), edge_of)
     terminals = tuple(np.searchsorted(used, [count, count + 1]).tolist())
     gates = plane.gates_to(move, terminals)
     return None if gates is None else plane.straightened(gates, terminals)
@@ -77,8 +76,7 @@ def _walls(drawing: Drawing, move: Move, ends: Ends, names: tuple[int, int]) -> 
     strand, last = move.strand, move.strand.inner[-1]
     walls: dict[Wall, int] = {}
     start, end = names
-    for edge in range(len(drawing.diagram.sequence)):
-        chain, _ = drawing.stops(edge)
+    for edge, chain in drawing.chains():
         if edge == strand.first == last:
             chain = [end, start]
         elif edge == strand.first:
@@ -88,17 +86,14 @@ def _walls(drawing: Drawing, move: Move, ends: Ends, names: tuple[int, int]) -> 
         elif edge in strand.inner:
             continue
         walls |= dict.fromkeys(pairwise(chain), edge)
-    for part, passes in zip(drawing.mesh.slices, drawing.diagram.passes, strict=True):
-        if not passes:
-            walls |= dict.fromkeys(pairwise([*range(part.start, part.stop), part.start]), len(drawing.diagram.sequence))
     return walls
 
 
 class _Plane:
     """Triangles, the gates between them, and which of these are walls."""
 
-    def __init__(self, points: FloatArray, corners: IntArray, edge_of: Mapping[Wall, int]) -> None:
-        self.points, self.corners = points, corners
+    def __init__(self, triangles: Triangles, edge_of: Mapping[Wall, int]) -> None:
+        self.points, self.corners = points, corners = triangles.points, triangles.corners
         sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
         triangle = np.tile(np.arange(len(corners)), 3)
         left = dict(zip(map(tuple, sides.tolist()), triangle.tolist(), strict=True))

@@ -15,10 +15,10 @@ from scipy.sparse.linalg import splu
 from ..types import FloatArray, IntArray
 from .drawing import Drawing
 from .moving import MovingCurve
-from .triangles import Triangles, boxed
+from .triangles import Triangles
 
 _STIFFENINGS = 20
-_FINEST = 64  # parts of the way that are tried at least
+_PARTS = 64  # of the way, the shortest that are tried
 _ASIDE = 0.05  # of the shortest edge at a crossing
 _FLAT = 1e-9  # 1 + cos α is taken to be that at least
 _RING = 32  # points around the drawing, which stay where they are,
@@ -31,17 +31,11 @@ def spread(body: MovingCurve, drawing: Drawing) -> bool:
     node = _nodes(body, drawing)
     if node is None:
         return False
-    here, stride = 0.0, 1.0
-    everything = np.arange(body.mesh.size)
-    while here < 1.0:
-        there = min(here + stride, 1.0)
-        if body.move(everything, np.column_stack([_parted(body, node, layout.between(there)), body.seen[:, 2]])):
-            here, stride = there, 2.0 * stride
-        elif stride * _FINEST <= 1.0:
-            return False
-        else:
-            stride *= 0.5
-    return True
+
+    def on_the_way(part: int) -> FloatArray:
+        return np.column_stack([_parted(body, node, layout.between(part / _PARTS)), body.seen[:, 2]])
+
+    return body.follow(np.arange(body.mesh.size), on_the_way, _PARTS)
 
 
 def _parted(body: MovingCurve, node: IntArray, layout: FloatArray) -> FloatArray:
@@ -89,12 +83,9 @@ class _Layout:
         self.ring = middle + radius * np.column_stack([np.cos(turn), np.sin(turn)])
         points = np.concatenate([nodes, self.ring])
         walls = [(self.count + k, self.count + (k + 1) % _RING) for k in range(_RING)]
-        for edge in range(len(drawing.diagram.sequence)):
-            walls += pairwise(drawing.stops(edge)[0])
-        for part, passes in zip(drawing.mesh.slices, drawing.diagram.passes, strict=True):
-            if not passes:
-                walls += pairwise([*range(part.start, part.stop), part.start])
-        corners = Triangles(boxed(points), walls).corners
+        for _, chain in drawing.chains():
+            walls += pairwise(chain)
+        corners = Triangles(points, walls).corners
         corners = corners[(corners < len(points)).all(axis=1)]
         self.now = _mean_values(points, corners)
         self.spread = self._springs(corners)

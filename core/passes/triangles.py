@@ -12,6 +12,7 @@ import numpy as np
 
 from ..types import FloatArray, IntArray
 
+_MARGIN = 0.15  # of the largest extent, around all points
 _ROUNDING = 4e-16  # relative to the sum of both products: what is above it has the right sign
 
 
@@ -20,15 +21,16 @@ class UnclearError(ArithmeticError):
 
 
 class Triangles:
-    """A triangulation of points, shape (n, 2), the last four of which are corners of a rectangle around all others.
+    """A triangulation of points, shape (n, 2), and, after them, of the corners of a rectangle around all.
 
-    Raises
-    ------
-    UnclearError
-        If points are equal, or a point is on a wall.
+    Raises UnclearError if points are equal, or one is on a wall.
     """
 
     def __init__(self, points: FloatArray, walls: Iterable[tuple[int, int]]) -> None:
+        low, high = points.min(axis=0), points.max(axis=0)
+        pad = _MARGIN * float((high - low).max())
+        (x, y), (z, w) = low - pad, high + pad
+        self.points = points = np.concatenate([points, [[x, y], [z, y], [z, w], [x, w]]])
         self._x: list[float]
         self._y: list[float]
         self._x, self._y = points.T.tolist()
@@ -145,11 +147,3 @@ class Triangles:
             u, v = (u, w) if side > 0 else (w, v)
             crossed.append((u, v))
         return crossed
-
-
-def boxed(points: FloatArray, margin: float = 0.15) -> FloatArray:
-    """Points, shape (n, 2), and after them the corners of a rectangle that is larger than theirs."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    pad = margin * float((high - low).max())
-    (x, y), (z, w) = low - pad, high + pad
-    return np.concatenate([points, [[x, y], [z, y], [z, w], [x, w]]])
