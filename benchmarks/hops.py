@@ -26,7 +26,7 @@ from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import knot, scramble, smooth_knot, torus_knot
 from mobius_flow.core.verify import verify
 
-PATIENT = RelaxOptions(max_iterations=1_000_000, untangle="never")  # a try takes as many as a run: the time is what is limited
+PATIENT = RelaxOptions(max_iterations=1_000_000)  # a try takes as many as a run: the time is what is limited
 ESCAPING = replace(PATIENT, escape_saddles=True)
 CASES: Mapping[str, tuple[Callable[[], Curve], RelaxOptions]] = {
     "T34": (partial(torus_knot, 3, 4), PATIENT),

@@ -204,7 +204,7 @@ class RelaxOptions:
         metavar="F",
     )
     untangle: str = _advanced(
-        "auto",
+        "never",
         "Untangle",
         "whether strands are moved over and under others before the flow, so that fewer cross, every motion proved: "
         "auto, where a diagram of closed curves shows that many crossings go, and where the flow is stuck; such moves "

@@ -115,14 +115,14 @@ class Run:
         self.iterate = replace(
             self.iterate, index=self.iterate.index + 1, curve=curve, path=path, step_size=0.0, pins=pins
         )
-        self.charge(-1)
+        self.charged -= 1
         return self.iterate
 
     def restarted(self, point: Point) -> Iterate:
         """Go on from a point of the problem on another mesh, as at the start; the curve is the same."""
         self.point, self.method, self._memory = point.anchored, METHODS[self.options.method], State()
         self.iterate = self._described(self.iterate.index + 1)
-        self.charge(-1)
+        self.charged -= 1
         return self.iterate
 
     def allows(self, change: Change) -> bool:
