@@ -2,7 +2,7 @@
 
 import bpy
 from case import Steps, picture
-from hands import button, open_panels
+from hands import button, open_panels, region
 from scene import is_, obj, ready, run
 
 
@@ -12,6 +12,7 @@ def case() -> Steps:
     yield from picture("expert-1-open")
     settings = bpy.context.scene.mobius_flow
     settings.energy, settings.metric, settings.max_iterations = "edge", "h3-2", 3
+    region("UI").tag_redraw()
     yield from picture("expert-2-set")
     yield from button("curve.mobius_flow_relax")
     yield from is_("done")
