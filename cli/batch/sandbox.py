@@ -78,7 +78,7 @@ class Sandbox:
     def close(self) -> None:
         """End the child, and the run under way."""
         self._process.kill()
-        with suppress(ValueError):  # a thread may be reading, or have closed the pipes
+        with suppress(OSError, ValueError):  # a thread may be reading, or have closed the pipes: before, or meanwhile
             self._process.communicate()
 
     @property
