@@ -167,8 +167,9 @@ for line in sys.stdin:
 
 
 def environment(copy):
-    """Of processes whose package is the copy."""
-    return {**os.environ, "PYTHONPATH": os.pathsep.join([str(copy.parent), str(copy / "tests"), str(copy / "tools")])}
+    """Of processes whose package is the copy; how pytest was called here is nothing to them."""
+    path = os.pathsep.join([str(copy.parent), str(copy / "tests"), str(copy / "tools")])
+    return {**os.environ, "PYTHONPATH": path, "PYTEST_ADDOPTS": ""}
 
 
 @pytest.fixture(scope="module")
