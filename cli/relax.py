@@ -67,6 +67,9 @@ def _run(options: argparse.Namespace) -> int:
         if wanted.mesh not in KEYED:
             reason = f"keyframes cannot follow mesh={wanted.mesh!r}; leave --mesh out, or write a curve file"
             raise OptionError(f"{options.output}: {reason}")
+        if wanted.untangle != "never":
+            reason = "keyframes cannot follow strand moves; leave --untangle out, or write a curve file"
+            raise OptionError(f"{options.output}: {reason}")
         wanted = wanted.keyed
     outputs = {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
     check_places(relax_options.inputs(options), outputs)

@@ -211,6 +211,7 @@ class RelaxOptions:
         "change the mesh, and are no iterations",
         choices=UNTANGLE,
         metavar="U",
+        keyframes=False,
     )
     hops: int = _advanced(
         0,
