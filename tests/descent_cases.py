@@ -7,8 +7,9 @@ from descent_contracts import point_on, with_geometry
 from mobius_flow.core.collision import Contact, FreeMotion, Limit
 from mobius_flow.core.descent import Point, Problem
 from mobius_flow.core.descent.directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
-from mobius_flow.core.descent.geometries import Constrained, Geometry, Penalised
+from mobius_flow.core.descent.geometries import Constrained, Penalised
 from mobius_flow.core.descent.methods import StepRule
+from mobius_flow.core.descent.problem import Geometry
 from mobius_flow.core.descent.searches import Accelerated, Armijo, BackwardEuler, TrustRegion, WeakWolfe
 from shapes import torus_trefoil
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from mobius_flow.core import Curve
 from mobius_flow.core.descent import Point, State, Step
-from mobius_flow.core.descent.geometries import Geometry
+from mobius_flow.core.descent.problem import Geometry
 from mobius_flow.core.driver.prepare import start_problem
 from mobius_flow.core.types import FloatArray
 from mobius_flow.core.verify.filter import doubtful_pairs

@@ -1,7 +1,6 @@
 """The sets that iterates lie on: polygons with prescribed lengths, or all polygons, lengths costing a penalty."""
 
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -14,32 +13,6 @@ from ..metrics import InnerProduct
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from .problem import Point, Problem
-
-
-class Geometry(Protocol):
-    """The set that iterates lie on, its tangent spaces, and the ways from these back to the set."""
-
-    @property
-    def prescribes(self) -> bool:
-        """Whether the constraints are prescribed, so that there are multipliers and a residual."""
-
-    def value_and_derivative(self, problem: Problem, curve: Curve) -> tuple[float, FloatArray]:
-        """What is minimised on the set, and its derivative, shape (n, m)."""
-
-    def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
-        """Where directions at a curve lie, with the metric there."""
-
-    def residual(self, problem: Problem, curve: Curve) -> FloatArray:
-        """How far a curve is from the set; shape (rows of the constraints,)."""
-
-    def retract(self, base: Point, vertices: FloatArray, level: FloatArray, space: TangentSpace) -> Point | None:
-        """The point of a level of the residual that vertices lead to, in the metric of ``space``; None if too far."""
-
-    def transport(self, point: Point, u: FloatArray) -> FloatArray:
-        """A vector of another tangent space moved to that of a point; shape (n, m)."""
-
-    def weighted(self, penalty: float) -> "Geometry":
-        """The same with another weight α of length errors; an OptionError if there is none."""
 
 
 @checked_fields

@@ -7,8 +7,8 @@ from typing import Protocol
 
 from ..metrics import METRICS, Metric
 from .directions import ConjugateGradient, LimitedMemoryBFGS, SteepestDescent
-from .geometries import Constrained, Geometry, Penalised
-from .problem import Point
+from .geometries import Constrained, Penalised
+from .problem import Geometry, Point
 from .searches import Accelerated, Armijo, BackwardEuler, LineSearch, TrustRegion, WeakWolfe
 from .step import NoStep, State, Step
 

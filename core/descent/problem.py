@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -20,10 +20,6 @@ from ..obstacle import Obstacle
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from ..units import Units
-
-if TYPE_CHECKING:
-    from .geometries import Geometry
-
 
 NEGLIGIBLE = 1e-8  # displacement, in the program's units, that changes no energy visibly
 
@@ -43,6 +39,32 @@ class Solver(Protocol):
 
     def of_metric(self, metric: Metric) -> Metric:
         """Another metric in the form that this solver works with."""
+
+
+class Geometry(Protocol):
+    """The set that iterates lie on, its tangent spaces, and the ways from these back to the set."""
+
+    @property
+    def prescribes(self) -> bool:
+        """Whether the constraints are prescribed, so that there are multipliers and a residual."""
+
+    def value_and_derivative(self, problem: "Problem", curve: Curve) -> tuple[float, FloatArray]:
+        """What is minimised on the set, and its derivative, shape (n, m)."""
+
+    def tangent_space(self, problem: "Problem", curve: Curve, inner: InnerProduct) -> TangentSpace:
+        """Where directions at a curve lie, with the metric there."""
+
+    def residual(self, problem: "Problem", curve: Curve) -> FloatArray:
+        """How far a curve is from the set; shape (rows of the constraints,)."""
+
+    def retract(self, base: "Point", vertices: FloatArray, level: FloatArray, space: TangentSpace) -> "Point | None":
+        """The point of a level of the residual that vertices lead to, in the metric of ``space``; None if too far."""
+
+    def transport(self, point: "Point", u: FloatArray) -> FloatArray:
+        """A vector of another tangent space moved to that of a point; shape (n, m)."""
+
+    def weighted(self, penalty: float) -> "Geometry":
+        """The same with another weight α of length errors; an OptionError if there is none."""
 
 
 @dataclass(frozen=True, eq=False)
