@@ -3,8 +3,10 @@
 import re
 
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
+from mathutils import Vector
 
 from ...core import Curve, OptionError, knots
 from ...core.messages import Message
@@ -18,6 +20,9 @@ from .button import Button
 
 OBJECT_MODE = Condition("Go back to Object Mode first", lambda context: context.mode != "OBJECT")
 _MAX_TURNS = 100  # of a torus knot, or strands of a braid: 50,000 points and a second
+_SOLID = {"MESH", "CURVE", "CURVES", "SURFACE", "META", "FONT", "VOLUME", "POINTCLOUD", "GREASEPENCIL"}
+_MARGIN = 0.25  # of its width, between a new knot and what is beside it
+_RAISED = 1.0, 1.0, 2.0  # what is woven lies so flat that a tube would be thin
 _MAX_NUMBER = 1e30  # Blender computes with squares and products of such numbers
 
 
@@ -59,7 +64,21 @@ class AddsKnot(Button, AddObjectHelper):
         name, curve = self.make()
         low, high = curve.vertices.min(axis=0), curve.vertices.max(axis=0)
         scale = 2 * self.size / (high - low).max()
-        object_data_add(context, self.curve_data(name, scale * (curve.vertices - 0.5 * (low + high)), curve), self)
+        given = self.properties.is_property_set("location")
+        obj = object_data_add(
+            context, self.curve_data(name, scale * (curve.vertices - 0.5 * (low + high)), curve), self
+        )
+        if not given:
+            self.location = obj.location = _beside(context, obj)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Add it, and turn the view to it."""
+        done = self.execute(context)
+        if "FINISHED" in done and context.area is not None and context.area.type == "VIEW_3D":
+            region = next(each for each in context.area.regions if each.type == "WINDOW")
+            with context.temp_override(region=region):
+                bpy.ops.view3d.view_selected()
+        return done
 
     def curve_data(self, name: str, vertices: FloatArray, curve: Curve) -> bpy.types.Curve:
         """Make curve data of a curve with these vertices, shape (n, 3), its tube and its colours."""
@@ -101,8 +120,24 @@ class AddsKnot(Button, AddObjectHelper):
         row.prop(self, "thickness")
 
 
+def _beside(context: bpy.types.Context, obj: bpy.types.Object) -> Vector:
+    """Where an object is clear of all others that are visible: where it is, or else to their right."""
+    context.view_layer.update()
+    low, high = _box(obj)
+    boxes = [_box(each) for each in context.visible_objects if each is not obj and each.type in _SOLID]
+    if any((low < other[1]).all() and (other[0] < high).all() for other in boxes):
+        return obj.location + Vector((max(other[1][0] for other in boxes) + _MARGIN * (high - low)[0] - low[0], 0, 0))
+    return obj.location
+
+
+def _box(obj: bpy.types.Object) -> tuple[FloatArray, FloatArray]:
+    """The least and the greatest coordinates of its corners in the world."""
+    corners = np.array([obj.matrix_world @ Vector(corner) for corner in obj.bound_box])
+    return corners.min(axis=0), corners.max(axis=0)
+
+
 class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
-    """Add a knot or link as it is woven, to be relaxed: a name of the table, a torus knot, a braid or a hard unknot"""
+    """Add a tangle to be relaxed: a hard unknot, a knot or link of the table as it is woven, a torus knot or braid"""
 
     bl_label = "Knot"
 
@@ -114,12 +149,15 @@ class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):
         ],
         default="TABLE",
     )
-    knot: StringProperty(name="Knot", description="Name in the table, such as 3_1 or T(2,5)", default="3_1")
+    knot: StringProperty(
+        name="Knot", description="Name in the table, such as 3_1, T(2,5) or thistlethwaite", default="thistlethwaite"
+    )
     p: IntProperty(name="p", description="How often the curve goes round the torus", default=2, soft_min=2)
     q: IntProperty(name="q", description="How often the curve goes through the torus", default=3, soft_min=2)
 
     def make(self) -> tuple[str, Curve]:
-        return named_knot(self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})")
+        name, curve = named_knot(self.knot if self.kind == "TABLE" else f"T({self.p},{self.q})")
+        return name, knots.rounded(curve.with_vertices(curve.vertices * _RAISED))
 
     def draw_kind(self, layout: bpy.types.UILayout) -> None:
         layout.prop(self, "kind")
@@ -171,10 +209,10 @@ class CURVE_OT_mobius_flow_pick_knot(AddsKnot, bpy.types.Operator):
         soft_max=2000,
     )
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask which one, unless it was given."""
         if self.properties.is_property_set("knot"):
-            return self.execute(context)
+            return super().invoke(context, event)
         context.window_manager.invoke_search_popup(self)
         return {"FINISHED"}
 

@@ -2,6 +2,7 @@
 
 from .closed_braids import braid_closure, torus_knot
 from .drawings import Drawing
+from .inscribed import rounded
 from .knot_type import Effort, KnotType, knot_type
 from .names import UnknownKnotError, braid_word, knot, knot_names
 from .parametric import ARCS, lissajous_knot, overhand
@@ -31,6 +32,7 @@ __all__ = [
     "knot_type",
     "lissajous_knot",
     "overhand",
+    "rounded",
     "scramble",
     "smooth_knot",
     "torus_knot",

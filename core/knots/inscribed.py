@@ -1,4 +1,4 @@
-"""Polygons inscribed in smooth closed curves, proved to be isotopic to them."""
+"""Polygons inscribed in smooth curves, and corners rounded, with a proof that the type stays."""
 
 import math
 from collections.abc import Sequence
@@ -8,6 +8,7 @@ import numpy as np
 from ..collision import is_free
 from ..curve import Curve, Mesh
 from ..curve.distances import nearest_strands
+from ..curve.refine import subdivide
 from ..curve.smooth import arc_lengths
 from ..errors import CurveError, counted
 from ..types import FloatArray
@@ -92,3 +93,25 @@ def _along(points: FloatArray, at: FloatArray, t: FloatArray) -> FloatArray:
     """Points of a closed polygon at parameters t; its vertices are at parameters ``at``, the first at 0."""
     closed = np.concatenate([points, points[:1]])
     return np.stack([np.interp(t, np.append(at, 1.0), x) for x in closed.T], axis=1)
+
+
+def rounded(curve: Curve, least: int = 320) -> Curve:
+    """Round the corners of a polygon by averages of neighbours, as far as its motion there is proved free of contact.
+
+    Every edge is split into equally many, for ``least`` vertices or more in all; ends of arcs stay.
+    """
+    pieces = math.ceil(least / len(curve))
+    split = subdivide(curve, np.full(curve.mesh.edges, pieces))
+    passes = max(1, pieces**2 // 2)  # reach about half an edge
+    while passes and not is_free(split.mesh, split.vertices, vertices := _averaged(split, passes)):
+        passes //= 2
+    return split.with_vertices(vertices) if passes else split
+
+
+def _averaged(curve: Curve, passes: int) -> FloatArray:
+    vertices, mesh = curve.vertices, curve.mesh
+    for _ in range(passes):
+        means = 0.5 * vertices + 0.25 * (vertices[mesh.anticycle] + vertices[mesh.cycle])
+        means[mesh.ends] = vertices[mesh.ends]
+        vertices = means
+    return vertices

@@ -9,18 +9,23 @@ from blender_scenes import contents, sentence, stored  # noqa: E402
 from mobius_flow.core import Curve  # noqa: E402
 from mobius_flow.core.collision import check_embedded  # noqa: E402
 from mobius_flow.core.curve import distances  # noqa: E402
-from mobius_flow.core.knots import knot  # noqa: E402
+from mobius_flow.core.knots import knot, rounded  # noqa: E402
 
 
 @pytest.mark.parametrize(
     ("options", "name"),
-    [({}, "3_1"), ({"knot": "4_1"}, "4_1"), ({"kind": "TORUS", "p": 2, "q": 5}, "T(2,5)"), ({"knot": "L2a1"}, "L2a1")],
+    [
+        ({}, "thistlethwaite"),
+        ({"knot": "4_1"}, "4_1"),
+        ({"kind": "TORUS", "p": 2, "q": 5}, "T(2,5)"),
+        ({"knot": "L2a1"}, "L2a1"),
+    ],
 )
 def test_a_knot_is_added(options, name):
     bpy.context.scene.cursor.location = (3, 2, 1)
     assert bpy.ops.curve.mobius_flow_add_knot(**options, size=2.5) == {"FINISHED"}
     obj = bpy.context.object
-    library = knot(name)
+    library = rounded(knot(name))  # its height does not change how it is cut into edges
     assert (obj.name, obj.type, obj.select_get()) == (name, "CURVE", True)
     assert tuple(obj.location) == (3, 2, 1)
     assert tuple(len(spline.points) for spline in obj.data.splines) == library.mesh.component_sizes
@@ -50,8 +55,17 @@ def test_a_given_thickness_is_taken(given):
 
 def test_a_fitted_tube_has_the_thickness_it_needs():
     fitted = thickness()
-    assert fitted > 0.125
+    assert fitted > 0.05
     assert thickness(fit_bevel=True, thickness=0.125) == fitted
+
+
+def test_knots_are_added_beside_each_other_unless_a_place_is_given():
+    for _ in range(3):
+        bpy.ops.curve.mobius_flow_add_knot()
+    first, *others = [obj.location.copy() for obj in sorted(bpy.data.objects, key=lambda obj: obj.location.x)]
+    assert all(b.x - a.x > 2 for a, b in zip([first, *others], others, strict=False))
+    bpy.ops.curve.mobius_flow_add_knot(location=first)
+    assert bpy.context.object.location == first
 
 
 def test_an_added_knot_can_be_relaxed():
