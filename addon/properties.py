@@ -44,9 +44,9 @@ MEASURE_ITEMS = _enum_items(_MEASURES)
 """What can be kept while curves move."""
 
 
-def shown(group: str | None = None) -> list[Option]:
-    """The options of a relaxation, of one group or all, that Blender has settings for."""
-    return [each for each in declared(RelaxOptions) if each.is_setting and group in (None, each.group)]
+def shown() -> list[Option]:
+    """The options of a relaxation that Blender has settings for."""
+    return [each for each in declared(RelaxOptions) if each.is_setting]
 
 
 def _property(option: Option, options: set[str]) -> Any:
@@ -73,7 +73,8 @@ def _items(choices: Collection[str]) -> list[_Item]:
 
 def _item(name: str, entry: Any) -> _Item:
     """A name to choose; it keeps its number in files when others are added."""
-    label, description = getattr(entry, "label", name), getattr(entry, "description", "")
+    title = name.replace("moebius", "möbius").replace("-", " ").title()
+    label, description = getattr(entry, "label", title), getattr(entry, "description", "")
     number = zlib.crc32(name.encode()) & 0x7FFFFFFF
     return name, label, description[:1].upper() + description[1:], "NONE", number
 

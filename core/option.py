@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from inspect import cleandoc
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 from .arguments import WORDS, check_known, check_number, is_list, is_plain
 from .errors import OptionError, shown
@@ -35,8 +35,7 @@ class Option:
     # the items of a tuple that a word of the command line gives, where it may be repeated
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
     metavar: str = "NAME"  # placeholder of its value in the command line's help
-    # whom it is for: everybody, those who know the mathematics, or scripts, in which case no panel shows it
-    group: Literal["basic", "advanced", "scripts"] = "basic"
+    row: bool = False  # whether Blender's panel shows it, as what artists might set; scripts can set them all
     # whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
     # leave out vertices on the way is among Blender's settings
     keyframes: bool = True

@@ -1,11 +1,13 @@
-"""Names of objects in sentences, and Blender's words for parts of curves."""
+"""Names of objects in sentences, and Blender's words for parts of curves and for how runs end."""
 
 from collections.abc import Sequence
 
+from ...core.driver.outcome import AT_REST
 from ...core.messages import COMPONENT, EDGE, OBSTACLE, VERTEX, VERTEX_COUNT, Message
 
 _MAX_NAMES = 3
 _WORDS = {
+    AT_REST: Message("converged"),
     EDGE: Message("segment {number}"),
     OBSTACLE: Message("'{name}'"),
     VERTEX: Message("point {number}"),

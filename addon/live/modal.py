@@ -95,7 +95,7 @@ def status_line(run: Run) -> str:
     if run.last is not None:
         where = Message("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
     if run.state is State.PAUSED:
-        where = Message("paused at {where}", where=where)
+        where = Message("paused") if run.last is None else Message("paused at {where}", where=where)
     return iface_("{names}: {where}   |   Enter: keep this shape   |   Esc: put all back", names=run.name, where=where)
 
 

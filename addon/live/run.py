@@ -34,7 +34,7 @@ class State(Enum):
     FINISHING = Message("Finishing")
     DONE = Message("Done")
     CANCELLED = Message("Cancelled")
-    LOST = Message("Lost")
+    LOST = Message("Interrupted")
 
     @property
     def over(self) -> bool:

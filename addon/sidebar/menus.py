@@ -27,7 +27,7 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):
     def draw(self, _context: bpy.types.Context) -> None:
         """Offer it all; what does not apply is grey, and its tooltip says why."""
         # Operator Search lists this first for who types no ö
-        operator(self.layout, "relax", text="Relax by Mobius Energy", icon="PLAY")
+        operator(self.layout, "relax", text="Relax and Untangle (Mobius Flow)", icon="PLAY")
         for group in _OPERATORS:
             self.layout.separator()
             for name in group:

@@ -6,7 +6,6 @@ from ...core.messages import Message
 from ..curves import bake, bevel, pins
 from ..curves.exchange import length, stretch
 from ..curves.moving import unsteady
-from ..engine.key_options import Output, Pace
 from ..engine.knot_list import labels
 from ..engine.size import Measure
 from ..engine.words import named
@@ -15,7 +14,7 @@ from ..live.requirements import avoided, curves_at_hand, selected_curves
 from ..pictures import staging
 from ..properties import shown
 from ..translations import iface_
-from .layout import Draw, InSidebar, SubPanel, button, column, operator, row, sentence, settings, value
+from .layout import InSidebar, SubPanel, button, column, operator, row, sentence, settings, value
 from .menus import search
 
 
@@ -41,16 +40,6 @@ def _pin_count(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         layout.label(text=iface_("{count} points pinned", count=count), icon="INFO", translate=False)
 
 
-class VIEW3D_PT_mobius_flow_pins(SubPanel, bpy.types.Panel):
-    bl_label = "Pins"
-    rows = (
-        column(button("pin", "PINNED"), row(button("pin_ends", "PINNED"), button("unpin", "UNPINNED"))),
-        _pin_count,
-        settings("pin_tangents"),
-        button("close", "CURVE_BEZCIRCLE"),
-    )
-
-
 def _avoided(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if context.scene.mobius_flow_surroundings.avoid is None:
         return
@@ -63,36 +52,13 @@ def _avoided(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 class VIEW3D_PT_mobius_flow_surroundings(SubPanel, bpy.types.Panel):
-    bl_label = "Surroundings"
-    rows = (settings("avoid", of="mobius_flow_surroundings"), _avoided)
-
-
-def _unseen_frames(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
-        sentence(layout, context, hidden)
-
-
-def _key_settings(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    chosen = context.scene.mobius_flow
-    if chosen.keyframes == Output.RESULT.name:
-        settings("keyframes")(layout, context)
-        return
-    lasting = "frames_per_iterate" if chosen.timing == Pace.ITERATE.name else "length"
-    settings("timing", lasting, "start_frame", "hold_start", "hold_end")(layout, context)
-    settings("keyframes", "max_keys")(layout, context)
-
-
-class VIEW3D_PT_mobius_flow_animation(SubPanel, bpy.types.Panel):
-    bl_label = "Animation"
-    bl_options = set()
+    bl_label = "Pins and Surroundings"
     rows = (
-        column(
-            row(button("bake_again", "FILE_REFRESH"), button("continue", "FF")),
-            button("clear", "TRASH"),
-            button("scene_range", "PREVIEW_RANGE"),
-        ),
-        _unseen_frames,
-        _key_settings,
+        column(button("pin", "PINNED"), row(button("pin_ends", "PINNED"), button("unpin", "UNPINNED"))),
+        settings("pin_tangents"),
+        settings("avoid", of="mobius_flow_surroundings"),
+        _pin_count,
+        _avoided,
     )
 
 
@@ -100,15 +66,6 @@ def _keep_size(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     measure = context.scene.mobius_flow.keep_size
     text = iface_("Keep {measure}", measure=Message(Measure[measure].value))
     operator(layout, "keep_size", text=text, icon="FULLSCREEN_EXIT").measure = measure
-
-
-class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
-    bl_label = "Shape"
-    rows = (
-        settings("keep_size"),
-        column(_keep_size, row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA"))),
-        column(button("balance", "MOD_CURVE"), row(button("check", "VIEWZOOM"), button("leave_saddle", "SORT_ASC"))),
-    )
 
 
 def _radius(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -122,13 +79,17 @@ def _radius(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         value(layout, "Radius", text)
 
 
-class VIEW3D_PT_mobius_flow_tube(SubPanel, bpy.types.Panel):
-    bl_label = "Tube"
+class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
+    bl_label = "Shape"
     rows = (
-        _radius,
         column(button("fit_tube", "MESH_CYLINDER"), button("color_components", "COLOR")),
         settings("fit_bevel"),
         column(button("tube_mesh", "OUTLINER_OB_MESH"), button("smooth_curve", "CURVE_BEZCURVE")),
+        column(_keep_size, row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA"))),
+        settings("keep_size"),
+        column(button("balance", "MOD_CURVE"), row(button("check", "VIEWZOOM"), button("leave_saddle", "SORT_ASC"))),
+        button("close", "CURVE_BEZCIRCLE"),
+        _radius,
     )
 
 
@@ -141,32 +102,33 @@ def _stage(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         sentence(layout, context, "The picture has another shape than the stage's camera; press Set Up Stage again")
 
 
-def _frames(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Show Blender's own settings of size and frames, by names that fit here."""
-    scene = context.scene
-    within = layout.column(align=True)
-    within.prop(scene.render, "resolution_x", text=iface_("Resolution X"))
-    within.prop(scene.render, "resolution_y", text="Y")
-    within.prop(scene.render, "resolution_percentage", text="%")
-    within = layout.column(align=True)
-    within.prop(scene, "frame_start", text=iface_("Frame Start"))
-    within.prop(scene, "frame_end", text=iface_("End"))
-    operator(within, "scene_range", icon="PREVIEW_RANGE")
+def _size(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    layout.prop(context.scene.render, "resolution_percentage", text=iface_("Size of Pictures"))
+
+
+def _unseen_frames(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
+        sentence(layout, context, hidden)
 
 
 class VIEW3D_PT_mobius_flow_film(SubPanel, bpy.types.Panel):
     bl_label = "Film"
+    bl_options = set()
     rows = (
-        *(_stage, _frames),
+        settings("keyframes", "length", "hold_end"),
+        column(row(button("continue", "FF"), button("clear", "TRASH")), button("scene_range", "PREVIEW_RANGE")),
+        _stage,
+        _size,
         settings("look", "filepath", of="mobius_flow_film"),
         button("render_film", "RENDER_ANIMATION"),
+        _unseen_frames,
     )
 
 
-def _options(group: str) -> Draw:
-    return lambda layout, context: settings(*(option.name for option in shown(group)))(layout, context)
+def _options(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    settings(*(option.name for option in shown() if option.row))(layout, context)
 
 
 class VIEW3D_PT_mobius_flow_expert(SubPanel, bpy.types.Panel):
     bl_label = "Expert"
-    rows = (_options("basic"), _options("advanced"), settings("view_every"))
+    rows = (_options,)

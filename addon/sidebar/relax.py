@@ -20,13 +20,11 @@ from .layout import InSidebar, operator, refused, sentence, value
 
 
 def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """The large buttons; when Relax is disabled, the reason stands below it."""
-    run, shown = registry.current(), registry.shown(context.active_object)
-    column = layout.column(align=True)
-    objects = run.group.objects if run is not None else selected_curves(context)
+    """The large buttons; they and the rows below them keep their places whatever is said."""
+    run, objects = registry.current(), _concerned(context)
     several = iface_("Relax {count} Curves Together", count=len(objects))
     text = several if len(objects) > 1 else iface_("Relax")
-    large = column.row(align=True)
+    large = layout.row(align=True)
     large.scale_y = 1.8
     if run is None:
         operator(large, "relax", text=text, icon="PLAY")
@@ -35,11 +33,21 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         operator(large, "pause", text=text, icon=icon)
         operator(large, "stop", icon="CHECKMARK")
         operator(large, "cancel", icon="X")
+
+
+def _concerned(context: bpy.types.Context) -> Sequence[bpy.types.Object]:
+    run = registry.current()
+    return run.group.objects if run is not None else selected_curves(context)
+
+
+def _hints(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Why Relax is disabled, and what helps; what might be crossed; what can be brought back."""
+    run, shown, objects = registry.current(), registry.shown(context.active_object), _concerned(context)
     if shown is not None and shown.recoverable:
-        operator(column, "recover", icon="RECOVER_LAST")
+        operator(layout, "recover", icon="RECOVER_LAST")
     hindered = RELAXABLE(context)
     if hindered and (run is None or any(obj not in objects for obj in selected_curves(context))):
-        refused(column, context, hindered)
+        refused(layout.column(align=True), context, hindered)
     if run or not hindered:
         _warning(layout, context, objects)
 
@@ -72,7 +80,6 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         if run.target is not None:
             value(box, "At least", run.target.label)
         value(box, "Iteration", f"{run.last.index}")
-        value(box, "Step", f"{run.last.step_size:.3g}")
         proved = run.last.certified if run.report is None else run.report.certified
         whom = Message("with itself") if len(run.group.names) == 1 else Message("among themselves")
         value(box, "Free of contact", whom if proved else Message("not proved"))
@@ -92,11 +99,8 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 def _quality(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     panel = context.scene.mobius_flow_panel
-    column = layout.column(align=True)
-    column.use_property_split = False
-    title = iface_("Quality" if panel.quality in QUALITIES else "Quality: Custom, see Expert")
-    column.label(text=title, translate=False)
-    row = column.row(align=True)
+    row = layout.row(align=True)
+    row.use_property_split = False
     for name in QUALITIES:
         row.prop_enum(panel, "quality", name)
 
@@ -107,7 +111,7 @@ def _add_knot(layout: bpy.types.UILayout, _context: bpy.types.Context) -> None:
 
 class VIEW3D_PT_mobius_flow(InSidebar, bpy.types.Panel):
     bl_label = "Möbius Flow"
-    rows = (_buttons, _progress, _quality, _add_knot)
+    rows = (_buttons, _quality, _add_knot, _hints, _progress)
 
     def draw_header_preset(self, _context: bpy.types.Context) -> None:
         VIEW3D_PT_mobius_flow_presets.draw_panel_header(self.layout)

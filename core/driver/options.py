@@ -21,7 +21,6 @@ UNTANGLE = ("auto", "always", "never")
 SOLVERS = ("auto", "dense", "hierarchical")
 MAX_GROWTH = 1000.0  # what is packed takes more vertices than there is time for long before
 MIN_GROWTH = 1 / MAX_GROWTH  # and what shrinks far more than that is so small that powers of its size are 0
-_advanced = partial(option, group="advanced")
 
 
 def _are_lengths(value: object) -> bool:
@@ -72,12 +71,17 @@ class RelaxOptions:
         If a value is of a wrong type, outside its range or unknown, or two options do not go together.
     """
 
-    method: str = option("lbfgs", "Method", "how the energy is minimised", choices=METHODS, metavar="M")
+    method: str = option("lbfgs", "Method", "how the energy is minimised", choices=METHODS, metavar="M", row=True)
     max_iterations: int = option(
-        2000, "Max Iterations", "stop after this many accepted steps and changes of mesh", low=0, metavar="K"
+        2000, "Max Iterations", "stop after this many accepted steps and changes of mesh", low=0, metavar="K", row=True
     )
     tolerance: float = option(
-        1e-4, "Tolerance", "stop when the projected gradient's metric norm is at most this times √E", low=0, metavar="T"
+        1e-4,
+        "Tolerance",
+        "stop when the projected gradient's metric norm is at most this times √E",
+        low=0,
+        metavar="T",
+        row=True,
     )
     time_limit: float | None = option(
         None,
@@ -86,7 +90,6 @@ class RelaxOptions:
         automatic="no limit",
         low=0,
         metavar="SECONDS",
-        group="scripts",
     )
     vertices: int | None = option(
         None,
@@ -95,15 +98,17 @@ class RelaxOptions:
         automatic="enough for edges to be shorter than the gaps between strands",  # Section 6.1.3 of [RS21]
         low=3,
         metavar="N",
+        row=True,
     )
-    energy: str | Energy = _advanced(  # noqa: RUF009 (a field, made for this class)
+    energy: str | Energy = option(  # noqa: RUF009 (a field, made for this class)
         "moebius",
         "Energy",
         "energy to minimise; a barrier between strands is added to it",
         choices=ENERGIES,
         objects=("an energy", partial(_is_a, Energy)),
+        row=True,
     )
-    metric: str | Metric | None = _advanced(  # noqa: RUF009 (a field, made for this class)
+    metric: str | Metric | None = option(  # noqa: RUF009 (a field, made for this class)
         None,
         "Metric",
         "inner product that defines the gradient",
@@ -111,7 +116,7 @@ class RelaxOptions:
         choices=METRICS,
         objects=("a metric", partial(_is_a, Metric)),
     )
-    quadrature_points: int | None = _advanced(
+    quadrature_points: int | None = option(
         None,
         "Gauss Points",
         "Gauss points per edge for the metric J_C; the cost grows with their square",
@@ -120,7 +125,7 @@ class RelaxOptions:
         high=16,
         metavar="k",
     )
-    terms: tuple[tuple[str | Term, float], ...] = _advanced(
+    terms: tuple[tuple[str | Term, float], ...] = option(
         (),
         "Terms",
         f"terms added to the energy, each with its weight; by name: {', '.join(TERMS)}",
@@ -129,9 +134,8 @@ class RelaxOptions:
         flag="term",
         metavar="NAME=WEIGHT",
         read=_weighted,
-        group="scripts",
     )
-    penalty: float | None = _advanced(
+    penalty: float | None = option(
         None,
         "Length Penalty",
         "weight of length errors in the penalty methods",
@@ -139,7 +143,7 @@ class RelaxOptions:
         low=0,
         metavar="α",
     )
-    solver: str = _advanced(
+    solver: str = option(
         "auto",
         "Solver",
         "how sums over all pairs of edges are computed: dense, pair by pair; hierarchical, with distant edges in "
@@ -147,7 +151,7 @@ class RelaxOptions:
         choices=SOLVERS,
         metavar="S",
     )
-    accuracy: float = _advanced(
+    accuracy: float = option(
         1e-4,
         "Accuracy",
         "largest error of the hierarchical solver in the projected gradient's norm, relative to the larger of that "
@@ -157,7 +161,7 @@ class RelaxOptions:
         high=1e-2,
         metavar="A",
     )
-    edge_lengths: str | tuple[float, ...] = _advanced(
+    edge_lengths: str | tuple[float, ...] = option(
         "auto",
         "Edge Lengths",
         "target edge lengths: equal within each component, or kept as in the refined start; auto keeps them among "
@@ -167,7 +171,7 @@ class RelaxOptions:
         objects=("as many numbers above 0 as there are edges", _are_lengths),
         metavar="L",
     )
-    mesh: str = _advanced(
+    mesh: str = option(
         "auto",
         "Mesh",
         "how vertices may change: fixed, not at all; finer, edges are split at the end where strands are closer than "
@@ -179,22 +183,22 @@ class RelaxOptions:
         keyframes=False,
         shorthands={"resolve": "finer", "adaptive": "adaptive"},
     )
-    stability: bool = _advanced(
+    stability: bool = option(
         False,
         "Stability",
         "check whether a converged curve is a minimum: count the negative eigenvalues of the Lagrangian's Hessian",
     )
-    escape_saddles: bool = _advanced(
+    escape_saddles: bool = option(
         False, "Escape Saddles", "check whether a converged curve is a minimum, and continue downhill from a saddle"
     )
-    balance: bool = _advanced(
+    balance: bool = option(
         False,
         "Balance",
         "continue from a converged curve to its Möbius image (all have the same energy) that bends least for its "
         "length, and relax that",
     )
 
-    grow: float = _advanced(
+    grow: float = option(
         1.0,
         "Grow",
         "multiply all lengths by this factor: at once if nothing is in the way, otherwise step by step as obstacles "
@@ -203,7 +207,7 @@ class RelaxOptions:
         high=MAX_GROWTH,
         metavar="F",
     )
-    untangle: str = _advanced(
+    untangle: str = option(
         "never",
         "Untangle",
         "whether strands are moved over and under others before the flow, so that fewer cross, every motion proved: "
@@ -212,8 +216,9 @@ class RelaxOptions:
         choices=UNTANGLE,
         metavar="U",
         keyframes=False,
+        row=True,
     )
-    hops: int = _advanced(
+    hops: int = option(
         0,
         "Hops",
         "number of attempts to leave a minimum, or a place where the curve is stuck: each is a random motion, proved "
@@ -221,7 +226,7 @@ class RelaxOptions:
         low=0,
         metavar="K",
     )
-    seed: int = _advanced(
+    seed: int = option(
         0,
         "Seed",
         "seed of the random motions of hops and scrambled starts; the same seed gives the same motions",

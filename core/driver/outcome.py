@@ -68,9 +68,11 @@ class Outcome:
         )
 
 
+AT_REST = "converged: projected gradient {norm:.3g} ≤ {bound:.3g}"
+
+
 def converged(norm: float, bound: float) -> Outcome:
-    message = Message("converged: projected gradient {norm:.3g} ≤ {bound:.3g}", norm=norm, bound=bound)
-    return Outcome(Status.CONVERGED, (message,))
+    return Outcome(Status.CONVERGED, (Message(AT_REST, norm=norm, bound=bound),))
 
 
 def stalled(reason: str, place: Place | None = None) -> Outcome:

@@ -68,12 +68,12 @@ def test_lengths_are_in_the_scenes_units(system, scale, said):
 
 def test_the_radius_is_in_the_world_and_somebodys():
     obj = add_trefoil()
-    assert shown(panels.VIEW3D_PT_mobius_flow_tube).labels == ["Radius", "None"]
+    assert shown(panels.VIEW3D_PT_mobius_flow_shape).labels[-2:] == ["Radius", "None"]
     obj.data.bevel_depth, obj.scale = 0.125, (2, 2, 2)
     bpy.context.view_layer.update()
-    assert shown(panels.VIEW3D_PT_mobius_flow_tube).labels == ["Radius", "25 cm (your own)"]
+    assert shown(panels.VIEW3D_PT_mobius_flow_shape).labels[-2:] == ["Radius", "25 cm (your own)"]
     bpy.ops.curve.mobius_flow_fit_tube()
-    assert shown(panels.VIEW3D_PT_mobius_flow_tube).labels[1].endswith(" m (fitted)")
+    assert shown(panels.VIEW3D_PT_mobius_flow_shape).labels[-1].endswith(" m (fitted)")
 
 
 @pytest.mark.parametrize("room", [1, 9, 20, 1000])

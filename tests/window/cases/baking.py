@@ -37,7 +37,7 @@ def case() -> Steps:
     assert (window().scene.frame_start, window().scene.frame_end) == (1, 500)
     yield from picture("baking-6-scene-range")
 
-    yield from baked("curve.mobius_flow_bake_again", "baking-7-baked-again")
+    yield from baked("curve.mobius_flow_relax", "baking-7-baked-again")
     assert np.array_equal(keys(), first)
     yield from button("curve.mobius_flow_clear")
     yield from until(lambda: obj().data.shape_keys is None, "Clear")
@@ -48,7 +48,7 @@ def case() -> Steps:
     yield from picture("baking-8-cleared", differs_from="baking-7-baked-again")
 
     yield from undone_to(first, "Clear")
-    yield from undone_to(recovered, "Bake Again", part=len(recovered))
+    yield from undone_to(recovered, "Relax", part=len(recovered))
     yield from key("Z", ctrl=True)  # Set Scene Range
     yield from until(lambda: window().scene.frame_end == 250, "undo of Set Scene Range")
     yield from undone_to(recovered, "Continue")

@@ -8,7 +8,7 @@ from scene import clear, is_, look, obj
 
 
 def case() -> Steps:
-    open_panels("pins")
+    open_panels("surroundings")
     clear()
     arc = add_arc()
     window().scene.mobius_flow.length = 100
