@@ -28,6 +28,7 @@ _MEASURES = {
     Measure.BOX: "The longest side of the box around the curves",
     Measure.RADIUS: "The mean distance of the curves from their center (root mean square)",
 }
+_KEPT = "The radius, or the length where something is pinned or avoided, or grows"
 _PACES = {
     Pace.EVEN: "The curves move about evenly over the whole length, and their last, small motions get some frames too",
     Pace.DISTANCE: "The curves move by the same distance in every frame of the whole length",
@@ -147,11 +148,12 @@ def settings(options: set[str]) -> dict[str, Any]:
             "in a script, giving this fits it too",
             default=True,
         ),
-        "keep_size": choice(
+        "keep_size": declare(
+            EnumProperty,
             "Keep",
             "What stays as it is at the beginning while the curves move; they are scaled for that",
-            keys.keep_size,
-            _MEASURES,
+            _AUTOMATIC,
+            items=[(_AUTOMATIC, "Automatic", _KEPT), *MEASURE_ITEMS],
         ),
         "view_every": declare(
             IntProperty,
@@ -190,5 +192,5 @@ def key_options(values: Mapping[str, Any]) -> KeyOptions:
         max_keys=values["max_keys"] or None,
         fit_bevel=values["fit_bevel"],
         any_bevel=values["fit_bevel"] and values.get("any_bevel", False),
-        keep_size=Measure[values["keep_size"]],
+        keep_size=None if values["keep_size"] == _AUTOMATIC else Measure[values["keep_size"]],
     )

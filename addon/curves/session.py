@@ -181,9 +181,15 @@ class Session:
     def end(self, outcome: Outcome) -> None:
         self.outcome = replace(outcome, clauses=tuple(map(self.group.reworded, outcome.clauses)))
 
+    @property
+    def _measure(self) -> Measure:
+        """What stays as it is."""
+        stays = self.task.pins or self.task.obstacles or self.options.grow != 1.0
+        return self._key_options.keep_size or (Measure.LENGTH if stays else Measure.RADIUS)
+
     def take(self, iterate: Iterate) -> None:
         """Record an iterate as it is shown, in the size that is to be kept."""
-        if (measure := self._key_options.keep_size) is not Measure.LENGTH:
+        if (measure := self._measure) is not Measure.LENGTH:
             self._size = self._size or Size.of(measure, iterate.curve)
             iterate = self._size.given_to_iterate(iterate)
         self._motion.add(iterate)

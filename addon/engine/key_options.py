@@ -145,8 +145,9 @@ class KeyOptions:
     fit_bevel: bool = False
     # do so with every curve that is drawn as a line or a plain round tube, also where its depth is the artist's own
     any_bevel: bool = False
-    # what stays as it is at the first key; where it is not the length, which the flow keeps, keys are scaled
-    keep_size: Measure = Measure.LENGTH
+    # what stays as it is at the first key; where it is not the length, which the flow keeps, keys are scaled; None: the
+    # radius, or the length where something is pinned or avoided, or grows
+    keep_size: Measure | None = None
 
     @property
     def animated(self) -> bool:
@@ -160,6 +161,6 @@ class KeyOptions:
 
     def check_place(self) -> None:
         """Raise an OptionError if keys are scaled: that moves pins, and proofs beside others hold at one size only."""
-        if self.keep_size is not Measure.LENGTH:
+        if self.keep_size not in (None, Measure.LENGTH):
             sentence = "Only the length can be kept where something is pinned or avoided; set Keep to Length"
             raise OptionError(Message(sentence))

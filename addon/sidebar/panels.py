@@ -7,7 +7,6 @@ from ..curves import bake, bevel, pins
 from ..curves.exchange import length, stretch
 from ..curves.moving import unsteady
 from ..engine.knot_list import labels
-from ..engine.size import Measure
 from ..engine.words import named
 from ..live.modal import unseen
 from ..live.requirements import avoided, curves_at_hand, selected_curves
@@ -62,12 +61,6 @@ class VIEW3D_PT_mobius_flow_surroundings(SubPanel, bpy.types.Panel):
     )
 
 
-def _keep_size(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    measure = context.scene.mobius_flow.keep_size
-    text = iface_("Keep {measure}", measure=Message(Measure[measure].value))
-    operator(layout, "keep_size", text=text, icon="FULLSCREEN_EXIT").measure = measure
-
-
 def _radius(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Show how thick the first curve is drawn, and whose choice that is."""
     for obj in selected_curves(context)[:1]:
@@ -85,7 +78,10 @@ class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
         column(button("fit_tube", "MESH_CYLINDER"), button("color_components", "COLOR")),
         settings("fit_bevel"),
         column(button("tube_mesh", "OUTLINER_OB_MESH"), button("smooth_curve", "CURVE_BEZCURVE")),
-        column(_keep_size, row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA"))),
+        column(
+            button("keep_size", "FULLSCREEN_EXIT"),
+            row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA")),
+        ),
         settings("keep_size"),
         column(button("balance", "MOD_CURVE"), row(button("check", "VIEWZOOM"), button("leave_saddle", "SORT_ASC"))),
         button("close", "CURVE_BEZCIRCLE"),

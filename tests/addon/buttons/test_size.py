@@ -158,6 +158,16 @@ def test_the_length_is_what_the_flow_keeps_bit_for_bit():
     np.testing.assert_array_equal(*points)
 
 
+def test_a_curve_stays_in_view_by_itself():
+    radii = [Measure.RADIUS.of(curve) for curve in BakedKeys([baked(keep_size="AUTO")]).curves]
+    np.testing.assert_allclose(radii, radii[0], rtol=1e-5)
+
+
+def test_a_curve_that_grows_is_not_scaled_by_itself():
+    lengths = [curve.length for curve in BakedKeys([baked(keep_size="AUTO", grow=1.1)]).curves]
+    assert lengths[-1] > 1.05 * lengths[0]
+
+
 def test_a_size_that_was_kept_is_kept_on():
     obj = baked(keep_size="BOX")
     size = Measure.BOX.of(BakedKeys([obj]).curves[0])

@@ -104,7 +104,7 @@ def test_any_transforms(keyframes):
 @pytest.mark.parametrize("active", [0, 1])
 def test_which_object_is_active_does_not_matter(active):
     before = rings()
-    relax(keyframes="RESULT", **SHORT)
+    relax(keyframes="RESULT", keep_size="AUTO", **SHORT)
     expected = [stored(obj.data) for obj in before]
     bpy.ops.wm.read_factory_settings(use_empty=True)
     objects = rings()
