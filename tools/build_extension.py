@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Build the Blender extension: one zip for each platform, with wheels for every Python that Blender has there.
 
-    tools/build_extension.py [--platform linux-x64] [--output dist] [--wheels DIR]
+    tools/build_extension.py [--platform linux-x64] [--output dist] [--wheels DIR] [--debian]
 
 Wheels are fetched by pip and never committed; only those with the hashes in tools/wheels.sha256 are used. The zip is
 made by Blender's own command-line tool, that of the `bpy` module or of `blender`, and validated by each that is there.
@@ -22,9 +22,11 @@ ROOT = Path(__file__).resolve().parents[1]
 PLATFORMS = {
     "linux-x64": "manylinux2014_x86_64",
     "windows-x64": "win_amd64",
+    "windows-arm64": "win_arm64",
     "macos-arm64": "macosx_12_0_arm64",
     "macos-x64": "macosx_10_14_x86_64",
 }
+DEBIAN = "-cp314-"  # the Python of Debian's Blender; Blender's own has none of it
 ANY = "-none-any"  # wheels without compiled code
 PINS = ROOT / "tools" / "wheels.sha256"
 WHEELS = {
@@ -39,30 +41,32 @@ def main() -> int:
     parser.add_argument("--platform", action="append", choices=PLATFORMS, help="default: all")
     parser.add_argument("--output", type=Path, default=ROOT / "dist")
     parser.add_argument("--wheels", type=Path, default=ROOT / "build" / "wheels", help="where wheels are kept")
+    parser.add_argument("--debian", action="store_true", help="for Debian's Blender too, with a wheel more")
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     for platform in options.platform or PLATFORMS:
-        print(build(platform, options.output.resolve(), options.wheels.resolve()))
+        print(build(platform, options.output.resolve(), options.wheels.resolve(), options.debian))
     return 0
 
 
-def build(platform: str, output: Path, wheels: Path) -> Path:
+def build(platform: str, output: Path, wheels: Path, debian: bool = False) -> Path:
     """Build and validate the zip of one platform and return its path."""
     version = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))["version"]
     tools = _tools()
     target = output / f"mobius_flow-{version}-{platform.replace('-', '_')}.zip"
     with tempfile.TemporaryDirectory() as room:
         stage = Path(room) / "mobius_flow"
-        _stage(stage, platform, fetch_wheels(platform, wheels))
+        _stage(stage, platform, fetch_wheels(platform, wheels, debian))
         _run([*tools[0], "build", "--source-dir", str(stage), "--output-filepath", str(target)])
     for tool in tools:
         _run([*tool, "validate", str(target)])
     return target
 
 
-def fetch_wheels(platform: str, wheels: Path) -> list[Path]:
+def fetch_wheels(platform: str, wheels: Path, debian: bool = False) -> list[Path]:
     """Fetch the wheels for all Pythons of a platform, unless they are there already, bit by bit as pinned."""
-    paths = [wheels / name for name in WHEELS if PLATFORMS[platform] in name or ANY in name]
+    names = [name for name in WHEELS if PLATFORMS[platform] in name or ANY in name]
+    paths = [wheels / name for name in names if debian or DEBIAN not in name]
     for path in paths:
         if not _as_pinned(path):
             _download(path)
@@ -99,6 +103,7 @@ def _stage(stage: Path, platform: str, wheels: list[Path]) -> None:
         if (ROOT / name).is_file():
             (stage / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, stage / name)
+    shutil.copy2(ROOT / "tools" / "extension.md", stage / "README.md")  # the project's own is about more than is there
     (stage / "wheels").mkdir()
     for wheel in wheels:
         shutil.copy2(wheel, stage / "wheels")
