@@ -2,22 +2,31 @@
 
     OPENBLAS_NUM_THREADS=1 python benchmarks/knots.py knots --only unknot-lattice-40,8_19
     OPENBLAS_NUM_THREADS=1 python benchmarks/knots.py primes
+    OPENBLAS_NUM_THREADS=1 python benchmarks/knots.py woven --only 4_1,7_7
 
 ``knots`` are hard curves of all kinds, unknots of up to 141 crossings among them; ``primes`` are the knots to ten
-crossings and the links of the table, as coarse lattice polygons. The column "energy" is the Möbius energy of the
-result, as mobius-flow energy prints it. Exit status 1: a type changed, an unknot is no circle, or a proof is missing.
+crossings and the links of the table, as coarse lattice polygons; ``woven`` are the 249 prime knots as mobius-flow knot
+draws them. The column "energy" is the Möbius energy of the result, as mobius-flow energy prints it, "above" how far in
+per cent that is above the smooth curve's in docs/least-energies.md, and "dgemms" is processor time in products of two
+1000 × 1000 matrices. Exit status 1: a type changed, an unknot is no circle, or a proof is missing.
 """
 
 import argparse
+import re
 import sys
+import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
 from hard_curves import hard_unknot, lattice_knot, lattice_unknot, rope, spiral, uneven
 from mobius_flow.cli import options as relax_options
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Status, minimize
 from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, knot, scramble, torus_knot
+from step_costs import Machine
 
 CIRCLE = 4.02  # energy below which an unknot counts as a circle
 
@@ -38,7 +47,10 @@ HARD: Curves = {
     **{name: partial(lattice_knot, name) for name in ("L2a1", "L5a1", "L6a4")},
 }
 PRIMES: Curves = {name: partial(lattice_knot, name) for name in KNOTS if name != "0_1"}
-SETS = {"knots": HARD, "primes": PRIMES}
+WOVEN: Curves = {name: partial(knot, name) for name in KNOTS if "_" in name and name != "0_1"}
+SETS = {"knots": HARD, "primes": PRIMES, "woven": WOVEN}
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "least-energies.md"
+LEAST = {name: float(energy) for name, energy in re.findall(r"(\w+) \| ([\d.]+) ±", PAGE.read_text(encoding="utf-8"))}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -55,33 +67,55 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"curve {unknown[0]!r} is unknown; choose from {', '.join(curves)}")
     try:
         wanted = relax_options.from_arguments(given)
-        width = max(map(len, ["curve", *names]))
+        product, width = Machine.measured().product, max(map(len, ["curve", *names]))
         print(
-            f"{'curve':{width}} {'vertices':>11} {'type':>8} {'energy':>12} {'steps':>6} {'seconds':>8}  "
-            "certified  status"
+            f"{'curve':{width}} {'vertices':>17} {'type':>8} {'energy':>12} {'above':>7} {'steps':>6} {'seconds':>8} "
+            f"{'dgemms':>7}  certified  status"
         )
-        good = [row(name, curves[name](), wanted, width) for name in names]
+        rows = [row(name, curves[name](), wanted, width, product) for name in names]
     except MobiusFlowError as error:
         parser.error(str(error))
-    return 0 if all(good) else 1
+    _print_summary(rows)
+    return 0 if all(each.good for each in rows) else 1
 
 
-def row(name: str, curve: Curve, options: RelaxOptions, width: int) -> bool:
-    """Relax a curve and print what became of it; whether it is what it should be."""
+class Row(NamedTuple):
+    """What became of a curve: whether it is what it should be, what it took, and how far it is above the least."""
+
+    good: bool
+    products: float
+    above: float
+
+
+def row(name: str, curve: Curve, options: RelaxOptions, width: int, product: float) -> Row:
+    """Relax a curve and print what became of it; ``product`` is what a product of matrices takes, in seconds."""
+    began = time.process_time()
     result = minimize(curve, options)
+    seconds = time.process_time() - began
     if result.status is Status.INTERRUPTED:  # an interrupt ends the bench, not only the curve at hand
         raise KeyboardInterrupt
     before, after = quick_invariants(curve), quick_invariants(result.curve)
     is_knot = len(curve.mesh.component_sizes) == 1
     kind = "CHANGED" if before != after else "unknot" if after.is_trivial and is_knot else "kept"
+    sizes = " → ".join(str(size) for size in (len(curve), *(phase.vertices for phase in result.phases[-2:])))
+    above = 100.0 * (result.final_energy / LEAST.get(name.removesuffix("-scrambled"), np.nan) - 1.0)
     print(
-        f"{name:{width}} {f'{len(curve)} → {len(result.curve)}':>11} {kind:>8} {result.final_energy:12.6f} "
-        f"{len(result.energies) - 1:6d} {result.seconds:8.1f}  {'yes' if result.certified else 'NO':9}  "
-        f"{result.status.value}",
+        f"{name:{width}} {sizes:>17} {kind:>8} {result.final_energy:12.6f} {f'{above:.2f} %':>7} "
+        f"{len(result.energies) - 1:6d} {seconds:8.1f} {seconds / product:7.0f}  "
+        f"{'yes' if result.certified else 'NO':9}  {result.status.value}",
         flush=True,
     )
     round_circle = not name.startswith("unknot") or result.final_energy < CIRCLE
-    return before == after and result.certified and round_circle
+    return Row(before == after and result.certified and round_circle, seconds / product, above)
+
+
+def _print_summary(rows: Sequence[Row]) -> None:
+    """Median, 95th percentile and maximum of what rows tell in numbers."""
+    for title, values in (("dgemms", [each.products for each in rows]), ("above, in %", [each.above for each in rows])):
+        known = [value for value in values if np.isfinite(value)]
+        if known:
+            median, most, worst = np.percentile(known, [50, 95, 100])
+            print(f"{title}: median {median:.3g}, 95 % up to {most:.3g}, worst {worst:.3g}, of {len(known)}")
 
 
 if __name__ == "__main__":

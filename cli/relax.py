@@ -18,6 +18,7 @@ from .progress import Progress, bar
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 KEYED = ("auto", "fixed", "finer")  # meshes that keyframes can follow
+NAMED = 4  # meshes of a run that are listed individually
 _EPILOG = """\
 examples:
   mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
@@ -34,9 +35,9 @@ exit status:
   130  interrupted by Ctrl-C, SIGTERM or SIGHUP; the best curve, the report and the trajectory are written
 
 In the report "energy" is the objective at every iterate, "final_energy" the Möbius energy of the result, exact up to
-30,000 vertices; beyond, "final_energy_error" bounds its relative error. "sampled_errors" are the errors of the
-hierarchical solver, estimated from the last sample of edges. "pins" are the vertices of the result that were held,
-counted from 0 as in "options".
+30,000 vertices; beyond, "final_energy_error" bounds its relative error. "phases" are the meshes of the run: vertices,
+iterations, seconds. "sampled_errors" are the errors of the hierarchical solver, estimated from the last sample of
+edges. "pins" are the vertices of the result that were held, counted from 0 as in "options".
 An output that cannot be written in the end is saved in a temporary directory, which the message names.
 """
 
@@ -182,7 +183,16 @@ def _summary(result: Result) -> str:
     certified = "certified free of contact" if result.certified else "NOT certified"
     error = f" ± {result.final_energy_error * result.final_energy:.1g}" if result.final_energy_error else ""
     energy = f"Möbius energy {result.final_energy:.9g}{error}"
+    iterations = counted(len(result.energies) - 1, "iteration")
     return (
         f"{result.message}; objective {result.energies[0]:.6g} → {result.energies[-1]:.9g} in "
-        f"{counted(len(result.energies) - 1, 'iteration')}, {result.seconds:.1f} s, {energy}, {certified}"
+        f"{iterations}, {result.seconds:.1f} s{_phases(result)}, {energy}, {certified}"
     )
+
+
+def _phases(result: Result) -> str:
+    """How the time went to meshes, if there were several, and not very many."""
+    if len(result.phases) > NAMED:
+        return f" on {len(result.phases)} meshes"
+    each = (f"{phase.iterations} with {phase.vertices} vertices, {phase.seconds:.1f} s" for phase in result.phases)
+    return f" ({'; '.join(each)})" if len(result.phases) > 1 else ""

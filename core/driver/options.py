@@ -174,10 +174,10 @@ class RelaxOptions:
     mesh: str = option(
         "auto",
         "Mesh",
-        "how vertices may change: fixed, not at all; finer, edges are split at the end where strands are closer than "
-        "the mesh resolves; adaptive, edges are also split and collapsed along the way, to stay shorter than the gaps "
-        "between strands; auto, a curve of many vertices starts with fewer, which is faster, gets them all back, and "
-        "ends as with finer unless vertices or edge_lengths are given",
+        "how vertices may change: fixed, not at all; finer, edges are split where strands are closer than the mesh "
+        "resolves, once little is left to gain on it; adaptive, edges are also split and collapsed along the way, to "
+        "stay shorter than the gaps between strands; auto, a curve of many vertices starts with fewer, which is "
+        "faster, gets them all back, and ends as with finer unless vertices or edge_lengths are given",
         choices=MESHES,
         metavar="M",
         keyframes=False,

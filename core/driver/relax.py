@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -29,6 +30,16 @@ WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that 
 
 
 @checked_fields
+@dataclass(frozen=True)
+class Phase:
+    """What a relaxation took on one mesh, the change to the next one included; wall-clock seconds."""
+
+    vertices: int
+    iterations: int
+    seconds: float
+
+
+@checked_fields
 @dataclass(frozen=True, eq=False)
 class Result:
     """How a relaxation ended, and where.
@@ -40,6 +51,7 @@ class Result:
     - ``seconds``: wall-clock time.
     - ``method``: name of the requested method.
     - ``task``: what was to be relaxed.
+    - ``phases``: the meshes that it was relaxed on, the first one first.
     """
 
     outcome: Outcome
@@ -49,6 +61,7 @@ class Result:
     seconds: float
     method: str
     task: Task
+    phases: tuple[Phase, ...] = ()
 
     def __repr__(self) -> str:
         after = counted(len(self.energies) - 1, "iteration")
@@ -97,6 +110,7 @@ class Result:
             "message": self.message,
             "iterations": len(self.energies) - 1,
             "seconds": self.seconds,
+            "phases": [asdict(phase) for phase in self.phases],
             "energy": list(self.energies),
             "final_energy": self.final_energy,
             "final_energy_error": self.final_energy_error,
@@ -179,11 +193,14 @@ def finish(
     fallback: list[int] = []
     last: Iterate | None = None
     given = 0  # vertices at the start
+    meshes: list[tuple[int, int, float]] = []  # vertices, and when they were new: iterate, seconds
     run = WithOutcome(relaxation)
     try:
         for last in run:
             given = given or len(last.curve)
             energies.append(last.energy)
+            if not last.path:
+                meshes.append((len(last.curve), last.index, time.perf_counter() - started if meshes else 0.0))
             if last.method != options.method:
                 fallback.append(last.index)
             if callback is not None:
@@ -199,4 +216,6 @@ def finish(
         fewer = Message(VERTEX_COUNT, count=len(last.curve))
         run.outcome = run.outcome.adding("it has {vertices}, {given} at the start", vertices=fewer, given=given)
     seconds = time.perf_counter() - started
-    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task)
+    ends = pairwise([*meshes, (0, last.index, seconds)])
+    phases = tuple(Phase(size, end - begun, until - since) for (size, begun, since), (_, end, until) in ends)
+    return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task, phases)

@@ -11,6 +11,7 @@ from ..descent import METHODS, Method, NoStep, Point, Problem, State, Step
 from ..energies.components import energy_scale
 from ..hierarchy import SampledErrors
 from ..messages import Message
+from ..metrics import MoebiusMetric
 from ..types import FloatArray
 from .options import RelaxOptions
 from .outcome import Outcome, Status, converged, degenerate
@@ -152,7 +153,7 @@ class Run:
     def termination(self) -> Outcome | None:
         """How the run ends here; None if it continues."""
         bound = gradient_bound(self.options, self.problem.mesh, self.point.energy)
-        if self.point.gradient_norm <= bound and self._feasible:
+        if self.point.gradient_norm <= bound and self.feasible:
             norm = self.point.with_own_metric().gradient_norm
             if norm <= bound:
                 outcome = converged(norm, bound)
@@ -164,13 +165,22 @@ class Run:
         """How the run ends at the iteration limit."""
         reached = Message("stopped at the iteration limit ({count})", count=self.iterations)
         outcome = Outcome(Status.ITERATION_LIMIT, (reached,))
-        if self._feasible:
+        if self.feasible:
             return outcome
         uneven = "lengths are still up to {percent:.2g} % off target"
         return outcome.adding(uneven, percent=100 * self.iterate.edge_length_error)
 
     @property
-    def _feasible(self) -> bool:
+    def in_moebius_metric(self) -> Point:
+        """The point in J_C, against which eigenvalues are counted whatever metric steps are taken in."""
+        point = self.point
+        if point.problem.metric.name == MoebiusMetric.name:
+            return point
+        return point.changing(metric=point.problem.solver.of_metric(MoebiusMetric()))
+
+    @property
+    def feasible(self) -> bool:
+        """Whether lengths are those prescribed, if any are."""
         return not self.problem.geometry.prescribes or self.iterate.edge_length_error <= LENGTHS_REACHED
 
     def _go(self, step: Step) -> None:

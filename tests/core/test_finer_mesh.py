@@ -1,12 +1,27 @@
 """By default a run ends on a mesh that resolves what it ends at: its energy is that of the smooth curve."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from changed_interventions import change
 from families import family
-from mobius_flow.core import Curve, Objective, RelaxOptions, Result, Status, Trajectory, minimize
+from mobius_flow.core import (
+    METHODS,
+    Curve,
+    Iterate,
+    Objective,
+    RelaxOptions,
+    Result,
+    Status,
+    Trajectory,
+    minimize,
+    relax,
+)
 from mobius_flow.core.curve.refine import Resolution, subdivide, subdivision, target_spacing
 from mobius_flow.core.driver.interventions import FinerMesh
+from mobius_flow.core.energies import ENERGIES
+from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
 from shapes import hopf_link, lattice_knot, regular_polygon, torus_trefoil
 from torus_energies import torus_knot_minimum
@@ -53,6 +68,49 @@ def test_changes_of_mesh_are_in_the_certificate(tmp_path):
     assert verify(tmp_path / "T.npz").accepted
 
 
+def left(curve: Curve, **options: object) -> tuple[Iterate, Iterate]:
+    """The last iterate on a run's first mesh, and the first one on its second."""
+    for before, after in pairwise(relax(curve, RelaxOptions(**options))):
+        if not after.path:
+            return before, after
+    raise AssertionError("the mesh has not changed")
+
+
+WAYS = [
+    *({"energy": name} for name in ENERGIES),
+    *({"method": name} for name in METHODS if not name.startswith("implicit") and name not in ("flow-l2", "flow-h2")),
+    *(pytest.param({"method": name}, marks=pytest.mark.slow) for name in METHODS if name.startswith("implicit")),
+]
+"""All but two flows, which take thousands of steps."""
+
+
+@pytest.mark.parametrize("options", WAYS, ids=str)
+def test_a_mesh_is_left_when_what_is_still_to_gain_is_small_against_its_error(options):
+    """Where it would end is found by a run that keeps the mesh."""
+    before, after = left(lattice_knot("3_1"), vertices=40, mesh="finer", tolerance=1e-6, **options)
+    assert len(after.curve) > len(before.curve) == 40
+    assert before.gradient_norm > 1e-3 * np.sqrt(before.energy)
+    resting = RelaxOptions(energy=options.get("energy", "moebius"), tolerance=1e-6).at_rest(before.curve)
+    least = minimize(before.curve, resting).energies[-1]
+    assert before.energy - least < 2 * FinerMesh.share * abs(after.energy - before.energy)
+
+
+@pytest.mark.slow
+def test_a_saddle_on_the_way_is_no_end():
+    """For a hundred steps on 497 vertices it gains less than its mesh, of which 1,300 would be made, is off."""
+    _, curves = recorded(knot("ochiai-4"))
+    assert len(curves) == 1
+
+
+def test_phases_are_told():
+    result, curves = recorded(lattice_knot("3_1"), vertices=40, mesh="finer", tolerance=1e-2)
+    assert [phase.vertices for phase in result.phases] == [len(curve) for curve in curves]
+    assert len(curves) > 1
+    assert sum(phase.iterations for phase in result.phases) == len(result.energies) - 1
+    assert sum(phase.seconds for phase in result.phases) == pytest.approx(result.seconds)
+    assert result.report()["phases"] == [vars(phase) for phase in result.phases]
+
+
 @pytest.mark.parametrize("curve", [regular_polygon(60), torus_trefoil(200), hopf_link(100)])
 def test_curves_without_near_strands_keep_their_vertices(curve):
     _, curves = recorded(curve)
@@ -72,8 +130,9 @@ def test_what_is_asked_for_is_kept_and_said_to_be_coarse(options):
     assert "closer than this mesh resolves" in result.message
 
 
-def test_a_run_that_is_about_to_end_keeps_its_mesh():
+def test_a_run_that_is_about_to_end_keeps_its_mesh(monkeypatch):
     """The curve would end with corners where edges were split."""
+    change(monkeypatch, FinerMesh, share=1e-9)  # not before it converges
     coarse = {"vertices": 40, "tolerance": 1e-3}
     steps = len(recorded(lattice_knot("3_1"), **coarse)[0].energies) - 1
     for left, meshes in ((FinerMesh.min_iterations - 1, 1), (FinerMesh.min_iterations, 2)):

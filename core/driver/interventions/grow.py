@@ -9,19 +9,17 @@ from ...arguments import checked_fields, number
 from ...constraints import weighted_barycenter
 from ...curve import Curve
 from ...curve.pins import spans
-from ...curve.refine import affordable_pieces, subdivide
+from ...curve.refine import affordable_pieces
 from ...curve.remesh import SPLIT, graded_spacing
 from ...descent import Leg, NoStep, Point, Step
 from ...descent.searches.trials import on_target
 from ...descent.step import attempt
 from ...energies.components import energy_scale
-from ...errors import MobiusFlowError
-from ...task import check_refined
 from ...types import IntArray
 from ...units import Units
 from ..outcome import Outcome
 from ..run import Change, Event, Intervention, Run
-from .remesh import FinerMesh
+from .remesh import FinerMesh, split_edges
 
 REACHED = 1e-9  # logarithm of what may be missing: rounding
 
@@ -126,13 +124,7 @@ class Grow(Intervention):
         pieces = self._pieces(curve)
         if pieces.max() == 1 and Units.of(curve).scale == problem.units.scale:
             return None
-        lengths = np.repeat(problem.constraints.lengths / pieces, pieces) * problem.units.scale
-        finer = subdivide(curve, pieces) if pieces.max() > 1 else curve
-        try:
-            check_refined(curve, finer, problem.obstacles)
-            return problem.on(finer, lengths)
-        except MobiusFlowError:
-            return None
+        return split_edges(problem, curve, pieces)
 
     def _pieces(self, curve: Curve) -> IntArray:
         """Into how many each edge is to be split."""

@@ -13,7 +13,7 @@ from ...curve import Curve
 from ...curve.distances import near_by_octave
 from ...descent import Step
 from ...hierarchy import moebius_energy
-from ...knots.composite import is_searchable, knotted_ball
+from ...knots.composite import Ball, is_searchable, knotted_ball
 from ...obstacle import Obstacle
 from ...types import FloatArray, IntArray
 from ..outcome import Outcome
@@ -120,17 +120,25 @@ class Composite(Intervention):
     """Report composite curves: unless the energy sees size, only the mesh keeps a part from shrinking to a point."""
 
     def converged(self, outcome: Outcome) -> Outcome | None:
-        problem = self.run.problem
-        if problem.objective.sees_size or len(problem.constraints.pins):  # between pins no part shrinks without limit
-            return None
-        parts = [part for part in split(self.run.iterate.curve, parts_of(self.run)) if _may_be_composite(part)]
-        ball = next(filter(None, map(knotted_ball, parts)), None)
+        ball = shrinking_ball(self.run)
         if ball is not None:
-            if not all(map(ball.is_clear_of, problem.obstacles)):
-                return None  # around what stands still nothing shrinks to a point
             center = ", ".join(f"{x:.3g}" for x in ball.center)
             return replace(outcome.stalling(COMPOSITE, radius=ball.radius, center=center), unbounded=True)
-        return None if all(map(is_searchable, parts)) else outcome.adding(UNTESTED)
+        return None if all(map(is_searchable, _may_shrink(self.run))) else outcome.adding(UNTESTED)
+
+
+def shrinking_ball(run: Run) -> Ball | None:
+    """A ball around a part of a composite curve that shrinks to a point; None if there is none, or was none found."""
+    ball = next(filter(None, map(knotted_ball, _may_shrink(run))), None)
+    # around what stands still nothing shrinks to a point
+    return ball if ball is not None and all(map(ball.is_clear_of, run.problem.obstacles)) else None
+
+
+def _may_shrink(run: Run) -> list[Curve]:
+    """The curve's parts that may be composite, unless the energy sees size; between pins no part shrinks either."""
+    if run.problem.objective.sees_size or len(run.problem.constraints.pins):
+        return []
+    return [part for part in split(run.iterate.curve, parts_of(run)) if _may_be_composite(part)]
 
 
 def _may_be_composite(curve: Curve) -> bool:

@@ -1,5 +1,6 @@
 """Changes of mesh that follow the strands: along the way, with the proof that nothing touches meanwhile, or at rest."""
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -10,7 +11,8 @@ from ...curve import Curve
 from ...curve.distances import STRAND_RATIO, arc_distance_of_pairs
 from ...curve.refine import Resolution, affordable_pieces, subdivide
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
-from ...descent import Leg, NoStep, Problem, Step
+from ...descent import Leg, NoStep, Point, Problem, Step
+from ...descent.soft_modes import BULK
 from ...energies.barrier import near_pairs
 from ...errors import MobiusFlowError
 from ...messages import Message, joined
@@ -18,6 +20,7 @@ from ...task import check_refined
 from ...types import FloatArray, IntArray
 from ..outcome import Outcome
 from ..run import Change, Intervention
+from .links import shrinking_ball
 
 ADVICE = Message("a finer or an adaptive mesh may help")
 UNRESOLVED = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
@@ -92,35 +95,78 @@ def proved_remesh(
 @checked_fields
 @dataclass(eq=False)
 class FinerMesh(Intervention):
-    """Split edges where a converged curve's strands are nearer than its mesh resolves, or say that it would help."""
+    """Split edges where strands are nearer than the mesh resolves, or say that it would help.
+
+    That is done as soon as what is still to gain on a mesh is small against its own error, and at rest in any case.
+    The error is taken to be what the same curve's energy changes by on the finer mesh, corners included.  What is still
+    to gain is what the last fifth of the steps on this mesh has gained, so that saddles are not mistaken for minima
+    unless they are crossed more slowly than all before, and at least what is promised by the gradient and the bulk of
+    the Hessian's eigenvalues against J_C.
+    """
 
     # the barrier acts below 3: strands may draw nearer by half; energies are within some 0.1 % then
     edges_per_gap: float = number(6.0)
     most: int = number(10_000)  # vertices, unless there are more: what the hierarchical solver has time for
     # that are left: it takes two or three to get back what corners cost when their edges are split
     min_iterations: int = number(5)
+    share: float = number(0.1, most=1)  # of the error, up to which a gain is small
+    pause: float = number(1.25, above=1)  # factor of the number of steps on this mesh from one look to the next
 
     def __post_init__(self) -> None:
         self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
+        self._given = len(self.run.point.vertices)
+        self.started()
+
+    def started(self) -> None:
+        self._steps, self._looked, self._energy = 0, 0, self.run.point.energy
+
+    def stepped(self, step: Step) -> Change | None:
+        self._steps += 1
+        if self._steps < self.pause * self._looked:
+            return None
+        before, self._energy, self._looked = self._energy, self.run.point.energy, self._steps
+        if not self._may_leave:
+            return None
+        gain = max(before - self._energy, 0.5 * self.run.in_moebius_metric.gradient_norm**2 / BULK)
+        finer = self._finer() if gain <= self.share**2 * self._energy else None  # errors are hardly a tenth of it
+        if finer is None or gain > self.share * abs(finer.energy - self._energy):
+            return None
+        if shrinking_ball(self.run) is not None:
+            return None  # it would shrink on, until that mesh does not resolve it either
+        return Change(point=finer, resolution=self._resolution)
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
-        curve = self.run.iterate.curve
-        if not _unresolved(curve) or self.run.frozen:
+        if not _unresolved(self.run.iterate.curve) or self.run.frozen:
             return None
-        wanted = self.run.options.ends_finer and self.run.iterations_left >= self.min_iterations
-        return (self._finer(curve) if wanted else None) or outcome.adding(UNRESOLVED)
+        finer = self._finer() if self.run.iterations_left >= self.min_iterations else None
+        return outcome.adding(UNRESOLVED) if finer is None else Change(point=finer, resolution=self._resolution)
 
-    def _finer(self, curve: Curve) -> Change | None:
-        """The same curve on a finer mesh; None if that cannot be computed with, or has too few digits."""
-        finer = subdivide(curve, affordable_pieces(curve, graded_spacing(curve, self._resolution), self.most))
-        if len(finer) == len(curve):
+    @property
+    def _may_leave(self) -> bool:
+        """Whether lengths and vertices are as they shall be, and there is time to relax as long on another mesh."""
+        run = self.run
+        if len(run.point.vertices) < self._given:
+            return False
+        grown = math.isclose(run.iterate.grown, run.options.grow)
+        return run.feasible and grown and run.iterations_left >= max(self._steps, self.min_iterations)
+
+    def _finer(self) -> Point | None:
+        """The same curve on a finer mesh; None if that is not wanted, or there is none."""
+        curve = self.run.iterate.curve
+        if not (self.run.options.ends_finer and _unresolved(curve)):
             return None
-        try:
-            check_refined(curve, finer, self.run.problem.obstacles)
-            point = self.run.problem.on(finer)  # its lengths, shorter near strands as they are, need no evening out
-        except MobiusFlowError:
-            return None
-        return Change(point=point, resolution=self._resolution)
+        pieces = affordable_pieces(curve, graded_spacing(curve, self._resolution), self.most)
+        return split_edges(self.run.problem, curve, pieces) if pieces.max() > 1 else None
+
+
+def split_edges(problem: Problem, curve: Curve, pieces: IntArray) -> Point | None:
+    """The same curve in the same problem with every edge in pieces; None if it has too few digits or is too large."""
+    finer = subdivide(curve, pieces) if pieces.max() > 1 else curve
+    try:
+        check_refined(curve, finer, problem.obstacles)
+        return problem.on(finer, np.repeat(problem.constraints.lengths / pieces, pieces) * problem.units.scale)
+    except MobiusFlowError:
+        return None
 
 
 def _unresolved(curve: Curve) -> bool:
