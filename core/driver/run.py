@@ -11,7 +11,6 @@ from ..descent import METHODS, Method, NoStep, Point, Problem, State, Step
 from ..energies.components import energy_scale
 from ..hierarchy import SampledErrors
 from ..messages import Message
-from ..metrics import MoebiusMetric
 from ..types import FloatArray
 from .options import RelaxOptions
 from .outcome import Outcome, Status, converged, degenerate
@@ -169,14 +168,6 @@ class Run:
             return outcome
         uneven = "lengths are still up to {percent:.2g} % off target"
         return outcome.adding(uneven, percent=100 * self.iterate.edge_length_error)
-
-    @property
-    def in_moebius_metric(self) -> Point:
-        """The point in J_C, against which eigenvalues are counted whatever metric steps are taken in."""
-        point = self.point
-        if point.problem.metric.name == MoebiusMetric.name:
-            return point
-        return point.changing(metric=point.problem.solver.of_metric(MoebiusMetric()))
 
     @property
     def feasible(self) -> bool:

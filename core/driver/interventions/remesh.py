@@ -127,7 +127,7 @@ class FinerMesh(Intervention):
         before, self._energy, self._looked = self._energy, self.run.point.energy, self._steps
         if not self._may_leave:
             return None
-        gain = max(before - self._energy, 0.5 * self.run.in_moebius_metric.gradient_norm**2 / BULK)
+        gain = max(before - self._energy, 0.5 * self.run.point.gradient_norm**2 / BULK)
         finer = self._finer() if gain <= self.share**2 * self._energy else None  # errors are hardly a tenth of it
         if finer is None or gain > self.share * abs(finer.energy - self._energy):
             return None
@@ -136,7 +136,7 @@ class FinerMesh(Intervention):
         return Change(point=finer, resolution=self._resolution)
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
-        if not _unresolved(self.run.iterate.curve) or self.run.frozen:
+        if not is_unresolved(self.run.iterate.curve) or self.run.frozen:
             return None
         finer = self._finer() if self.run.iterations_left >= self.min_iterations else None
         return outcome.adding(UNRESOLVED) if finer is None else Change(point=finer, resolution=self._resolution)
@@ -153,7 +153,7 @@ class FinerMesh(Intervention):
     def _finer(self) -> Point | None:
         """The same curve on a finer mesh; None if that is not wanted, or there is none."""
         curve = self.run.iterate.curve
-        if not (self.run.options.ends_finer and _unresolved(curve)):
+        if not (self.run.options.ends_finer and is_unresolved(curve)):
             return None
         pieces = affordable_pieces(curve, graded_spacing(curve, self._resolution), self.most)
         return split_edges(self.run.problem, curve, pieces) if pieces.max() > 1 else None
@@ -169,7 +169,7 @@ def split_edges(problem: Problem, curve: Curve, pieces: IntArray) -> Point | Non
         return None
 
 
-def _unresolved(curve: Curve) -> bool:
+def is_unresolved(curve: Curve) -> bool:
     """Whether strands, not merely edges of very different lengths, are so near that the barrier still acts."""
     i, j = near_pairs(curve)
     distance = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)

@@ -8,6 +8,7 @@ from ...curve import Curve
 from ...descent import Point, Step
 from ...descent.searches import Escape
 from ...descent.soft_modes import SoftModes, smooth_starts, soft_modes
+from ...metrics import MoebiusMetric
 from ..outcome import Outcome
 from ..run import Change, Intervention
 
@@ -54,7 +55,7 @@ class EscapeSaddle(Intervention):
         options = self.run.options
         if not (options.stability or options.escape_saddles):
             return None
-        found = stability(self.run.in_moebius_metric)
+        found = stability(self._point())
         outcome = replace(outcome, negative_eigenvalues=found.index)
         if not found.index:
             return outcome.adding(ILL_CONDITIONED if found.index is None else MINIMUM)
@@ -63,3 +64,10 @@ class EscapeSaddle(Intervention):
             return outcome
         step = self.search.step(self.run.point, found.modes.vectors[0], float(found.modes.values[0]))
         return Change((step,)) if isinstance(step, Step) else outcome.adding("no step down from it was found")
+
+    def _point(self) -> Point:
+        """The present one in J_C, against which eigenvalues are counted whatever metric steps are taken in."""
+        point = self.run.point
+        if point.problem.metric.name == MoebiusMetric.name:
+            return point
+        return point.changing(metric=point.problem.solver.of_metric(MoebiusMetric()))
