@@ -3,6 +3,7 @@
 No composite knot has a shape of least Möbius energy: as such a ball shrinks, the energy falls towards the sum of the
 two parts' energies less the circle's 4 and never gets there.  A relaxation makes such balls round, so round ones are
 looked for: lifted to the paraboloid (x, |x|²), balls are half spaces, and a ball round an arc is a separating plane.
+All arcs have the same points and differ in signs alone, so that the planes of all are sought at once.
 """
 
 from collections.abc import Iterator
@@ -10,7 +11,6 @@ from dataclasses import dataclass
 from itertools import chain, compress, product
 
 import numpy as np
-from scipy.optimize import linprog
 from scipy.sparse.csgraph import connected_components
 
 from ..arguments import checked_fields, number
@@ -21,6 +21,8 @@ from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 
 _MARGIN = 1e-6  # of the separating plane, for a curve of size 1: far above rounding
+_CLOSE = 1e-3  # to the largest margin, relatively
+_STEPS = 60  # of Newton's method: few arcs take more than 20
 
 
 @checked_fields
@@ -31,7 +33,7 @@ class BallSearch:
     arcs: int = number(24, above=1)  # places where arcs of a knot begin and end; components of a link share them
     shortest: float = number(1 / 8, most=0.5)  # arc, as a fraction of its component
     samples: int = number(120, above=5)  # vertices of the curve that balls are fitted to
-    trials: int = number(3000)  # balls that are fitted at most, which takes a few seconds; other links are not searched
+    trials: int = number(3000)  # balls that are fitted at most; other links are not searched
 
     def places(self, components: int) -> int:
         return max(int(1 / self.shortest), self.arcs // components)
@@ -73,10 +75,11 @@ def knotted_ball(curve: Curve, search: BallSearch = DEFAULT_SEARCH) -> Ball | No
     middle = curve.vertices.mean(axis=0)
     size = float(np.abs(curve.vertices - middle).max())
     normal = curve.with_vertices((curve.vertices - middle) / size)
-    for inside in _arcs(curve, search):
-        ball = _ball(normal, inside, search.samples)
-        if ball is not None and _is_knotted(normal, ball):
-            return Ball(middle + size * ball.center, size * ball.radius)
+    sample = np.arange(0, len(curve), max(1, len(curve) // search.samples))
+    for inside in _arcs(curve, search, sample):
+        for ball in _separating(normal.vertices[sample], np.where(inside, -1.0, 1.0)):
+            if _is_knotted(normal, ball):
+                return Ball(middle + size * ball.center, size * ball.radius)
     return None
 
 
@@ -105,36 +108,60 @@ def _linked_groups(curve: Curve) -> list[list[IntArray]]:
     return found
 
 
-def _arcs(curve: Curve, search: BallSearch) -> Iterator[BoolArray]:
-    """Masks of vertices: an arc of one component, and any of the others as a whole that can lie there together."""
-    slices, component = curve.mesh.slices, curve.mesh.component
+def _arcs(curve: Curve, search: BallSearch, sample: IntArray) -> Iterator[BoolArray]:
+    """For each component which sampled vertices are inside, shape (m, n): one of its arcs, the longest ones first, and
+    any of the other components as a whole that can lie there together."""
+    slices, component = curve.mesh.slices, curve.mesh.component[sample]
     places, wanted = search.places(len(slices)), np.array(search.lengths(len(slices)))
     for part, groups in zip(slices, _linked_groups(curve), strict=True):
         size = part.stop - part.start
         starts, lengths = np.unique(np.arange(places) * size // places), np.unique(wanted * size // places)
-        for length, first, chosen in product(lengths[::-1], starts, product((False, True), repeat=len(groups))):
-            inside = np.isin(component, list(chain.from_iterable(compress(groups, chosen))))
-            inside[part] = (np.arange(size) - first) % size < length
-            yield inside
+        along = (sample - part.start - starts[:, None]) % size
+        arcs = (along < lengths[::-1, None, None]) & (part.start <= sample) & (sample < part.stop)
+        choices = product((False, True), repeat=len(groups))
+        others = [np.isin(component, list(chain.from_iterable(compress(groups, chosen)))) for chosen in choices]
+        yield (arcs[:, :, None] | np.array(others)).reshape(-1, len(sample))
 
 
-def _ball(curve: Curve, inside: BoolArray, samples: int) -> Ball | None:
-    """The ball with one part of the vertices inside and the other outside that leaves most room between, if any."""
-    sample = np.arange(0, len(curve), max(1, len(curve) // samples))
-    x = curve.vertices[sample]
-    side = np.where(inside[sample], 1.0, -1.0)
-    lifted = side[:, None] * np.column_stack([x, (x**2).sum(axis=1), np.ones(len(x))])
-    found = linprog(
-        [0.0] * 5 + [-1.0],
-        A_ub=np.column_stack([lifted, np.ones(len(x))]),
-        b_ub=np.zeros(len(x)),
-        bounds=[(-1.0, 1.0)] * 5 + [(0.0, 1.0)],
-    )
-    if found.x is None or found.x[5] < _MARGIN or abs(found.x[3]) < _MARGIN:
-        return None
-    normal, bend, offset = found.x[:3], found.x[3], found.x[4]
-    center = -normal / (2.0 * bend)
-    return Ball(center, float(np.sqrt(max(center @ center - offset / bend, 0.0))))
+def _separating(points: FloatArray, sides: FloatArray) -> Iterator[Ball]:
+    """Balls with much room between them and points, shape (n, 3), that are inside (−1) and outside (1), shape (m, n).
+
+    Newton's method minimises the squared hinge loss ½ Σ (1 − s f)₊² over the functions f(x) = b·x + c |x|² + d of all
+    rows. It ends after finitely many steps, as the loss is piecewise quadratic (Keerthi and DeCoste, J. Mach. Learn.
+    Res. 6, 2005): without loss f separates, and otherwise the terms of a vanishing derivative are multipliers that
+    prove that nothing does.
+    """
+    lifted = np.column_stack([points, (points**2).sum(axis=1), np.ones(len(points))])
+    products = (lifted[:, :, None] * lifted[:, None]).reshape(len(points), -1)
+    found, open_ = np.zeros((len(sides), 5)), np.arange(len(sides))
+    for _ in range(_STEPS):
+        short = 1.0 - sides[open_] * (found[open_] @ lifted.T)
+        lack = np.maximum(short, 0.0)
+        slope = -(sides[open_] * lack) @ lifted
+        going = (lack.max(axis=1) > _CLOSE) & (np.abs(slope).sum(axis=1) > _MARGIN * lack.sum(axis=1))
+        open_, short, slope = open_[going], short[going], slope[going]
+        if not len(open_):
+            break
+        hessian = ((short > 0.0) @ products).reshape(-1, 5, 5) + _MARGIN**2 * np.eye(5)
+        step = -np.linalg.solve(hessian, slope[:, :, None])[:, :, 0]
+        size = _step_sizes(short, -sides[open_] * (step @ lifted.T), (slope * step).sum(axis=1))
+        found[open_] += size[:, None] * step
+    largest = np.abs(found).max(axis=1)
+    separates = (sides * (found @ lifted.T)).min(axis=1) > _MARGIN * largest
+    for *normal, bend, offset in found[separates & (np.abs(found[:, 3]) > _MARGIN * largest)]:
+        center = -np.array(normal) / (2.0 * bend)
+        yield Ball(center, float(np.sqrt(max(center @ center - offset / bend, 0.0))))
+
+
+def _step_sizes(short: FloatArray, change: FloatArray, slope: FloatArray) -> FloatArray:
+    """For each row a step t that decreases the loss ½ |(short + t change)₊|² as its slope says (Armijo)."""
+    size, left = np.ones(len(short)), np.arange(len(short))
+    loss = (np.maximum(short, 0.0) ** 2).sum(axis=1) * (1.0 + 1e-12)  # up to rounding
+    while len(left):
+        ahead = np.maximum(short[left] + size[left, None] * change[left], 0.0)
+        left = left[(ahead**2).sum(axis=1) > loss[left] + 0.01 * size[left] * slope[left]]
+        size[left] *= 0.5
+    return size
 
 
 def _is_knotted(curve: Curve, ball: Ball) -> bool:

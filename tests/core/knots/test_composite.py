@@ -8,7 +8,8 @@ from families import family
 from mobius_flow.core import Curve, RelaxOptions, Status, minimize
 from mobius_flow.core.driver.interventions.links import UNTESTED
 from mobius_flow.core.knots import knot, scramble
-from mobius_flow.core.knots.composite import BallSearch, is_searchable, knotted_ball
+from mobius_flow.core.knots.composite import BallSearch, _separating, is_searchable, knotted_ball
+from scipy.optimize import linprog
 from shapes import chain_of_rings, regular_polygon
 
 COMPOSITES = ["3_1#3_1", "3_1#m3_1", "3_1#4_1", "4_1#5_2", "3_1#3_1#3_1", "L2a1#L2a1", "3_1#L2a1"]
@@ -34,6 +35,29 @@ def test_composites_have_one(name):
 @pytest.mark.parametrize("name", family(PRIMES, every=3))
 def test_primes_have_none(name):
     assert knotted_ball(knot(name)) is None
+
+
+@pytest.mark.parametrize("name", ["3_1", "8_19", "3_1#4_1"])
+def test_balls_are_found_where_a_linear_program_finds_them(name):
+    """And there alone: for arcs of all lengths, most of which lie in none, and every ball has the arc inside."""
+    x = knot(name).vertices
+    x = (x - x.mean(axis=0)) / np.ptp(x)
+    along = np.arange(len(x))
+    inside = [(along - first) % len(x) < size for size in range(5, len(x) // 2, 7) for first in along[::9]]
+    sides = np.where(inside, -1.0, 1.0)
+    found = {side.tobytes() for side in sides if separable(x, side)}
+    balls = list(_separating(x, sides))
+    assert 0 < len(found) < len(sides)
+    parts = [np.where(ball.contains(x), -1.0, 1.0) for ball in balls]
+    assert len(parts) == len(found)
+    assert all(part.tobytes() in found or (-part).tobytes() in found for part in parts)  # what is outside is a part too
+
+
+def separable(x, side):
+    rows = side[:, None] * np.column_stack([x, (x**2).sum(axis=1), np.ones(len(x))])
+    bounds = [(-1.0, 1.0)] * 5 + [(0.0, 1.0)]
+    solved = linprog([0.0] * 5 + [-1.0], np.column_stack([-rows, np.ones(len(x))]), np.zeros(len(x)), bounds=bounds)
+    return solved.x[5] > 1e-6
 
 
 @pytest.mark.slow
