@@ -31,20 +31,18 @@ EdgePairIndices = tuple[IntArray, IntArray]
 """Unordered pairs of edges (i, j), each of shape (pairs,)."""
 
 
-def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None) -> Iterator[Tile]:
+def pair_tiles(mesh: Mesh, without: EdgePairIndices | None = None, size: int = ROWS_TIMES_COLUMNS) -> Iterator[Tile]:
     """Cover every unordered pair of edges with disjoint closures exactly once, but for some that are left out."""
     n = mesh.edges
-    left_out = np.sort(np.empty((2, 0), dtype=np.intp) if without is None else np.stack(without), axis=0)
+    touching = np.stack([np.arange(n), mesh.next])
+    left_out = np.sort(touching if without is None else np.hstack([touching, np.stack(without)]), axis=0)
     left_out = left_out[:, np.argsort(left_out[0])]
     begins = np.searchsorted(left_out[0], np.arange(n + 1))
     first = 0
     while first < n:
-        last = min(n, first + max(1, ROWS_TIMES_COLUMNS // (n - first)))
-        rows = np.arange(first, last)
-        excluded = np.arange(first, n) <= rows[:, None]
-        for neighbour in (mesh.next[rows], mesh.previous[rows]):
-            inside = neighbour >= first
-            excluded[rows[inside] - first, neighbour[inside] - first] = True
+        last = min(n, first + max(1, size // (n - first)))
+        excluded = np.zeros((last - first, n - first), dtype=np.bool_)
+        excluded[:, : last - first] = np.tri(last - first, dtype=np.bool_)
         row, column = left_out[:, begins[first] : begins[last]] - first
         excluded[row, column] = True
         yield Tile(slice(first, last), slice(first, n), excluded)

@@ -13,13 +13,13 @@ import numpy as np
 
 from ..arguments import checked_fields
 from ..curve import Curve
-from ..curve.tiles import EdgePairIndices, pair_tiles, row_tiles
+from ..curve.tiles import ROWS_TIMES_COLUMNS, EdgePairIndices, pair_tiles, row_tiles
 from ..quadrature import MIDPOINT
 from ..types import FloatArray, IntArray
 from .complex_steps import change
 from .components import ComponentShares
 from .moebius_hessian import hessian
-from .moebius_pairs import DerivativeSums, Edges, Pairs
+from .moebius_pairs import Edges, Pairs, PartnerSums
 
 CONSTANT = 4.0  # of a closed component
 
@@ -50,12 +50,13 @@ class MoebiusEnergy:
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
         """Energy and its derivative with respect to the vertices, shape (n, m)."""
         edges = Edges.of(curve)
-        total, sums = 0.0, DerivativeSums.zeros(curve.edge_vectors.shape)
+        total, sums = 0.0, PartnerSums.zeros(edges.vectors)
         for tile in pair_tiles(curve.mesh, self.without):
             pairs = Pairs.of(edges, tile)
             total += pairs.energy()
             sums.add(tile.rows, tile.columns, pairs.coefficients(), edges.vectors)
-        derivative = 2.0 * sums.at_vertices(curve.mesh, edges.tau) + CONSTANT * ComponentShares(curve).derivative()
+        at_vertices = sums.derivatives(edges.vectors).at_vertices(curve.mesh, edges.tau)
+        derivative = 2.0 * at_vertices + CONSTANT * ComponentShares(curve).derivative()
         return energy_of_pairs(curve, total), derivative
 
     def row_energies(self, curve: Curve, rows: IntArray) -> FloatArray:
@@ -74,11 +75,12 @@ class MoebiusEnergy:
 
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), without forming the matrix; shape (n, m)."""
-        edges, sums = Edges.of(curve, v), DerivativeSums.zeros(curve.edge_vectors.shape, np.complex128)
-        for tile in pair_tiles(curve.mesh, self.without):
+        edges = Edges.of(curve, v)
+        sums = PartnerSums.zeros(edges.vectors)
+        for tile in pair_tiles(curve.mesh, self.without, ROWS_TIMES_COLUMNS // 2):
             sums.add(tile.rows, tile.columns, Pairs.of(edges, tile).coefficients(), edges.vectors)
-        shares = ComponentShares(curve).second_derivative(v)
-        return 2.0 * change(sums.at_vertices(curve.mesh, edges.tau)) + CONSTANT * shares
+        at_vertices = sums.derivatives(edges.vectors).at_vertices(curve.mesh, edges.tau)
+        return 2.0 * change(at_vertices) + CONSTANT * ComponentShares(curve).second_derivative(v)
 
 
 def energy_of_pairs(curve: Curve, pairs: float) -> float:

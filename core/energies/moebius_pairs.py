@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import DTypeLike
 from scipy.spatial.distance import cdist
 
 from ..curve import Curve, Mesh
@@ -92,15 +91,15 @@ class Pairs(NamedTuple):
         return np.asarray(np.einsum("ij,ij->i", self.g, self.s) - 2.0 * np.einsum("ij,ij->i", self.p, self.q))
 
     def coefficients(self) -> "Coefficients":
-        """The derivative's coefficients; overwrites g."""
+        """The derivative's coefficients, in place of all but s: fresh arrays would drive others out of the cache."""
         g, p, q, s = self
-        b, c = q * s, p * s
-        a = 4.0 * p
-        a *= b
-        g *= s
+        a = p * q
+        a *= 4.0
         g *= s
         a -= g
-        return Coefficients(s, a, b, c)
+        for each in (a, p, q):
+            each *= s
+        return Coefficients(s, a, q, p)
 
 
 class Coefficients(NamedTuple):
@@ -115,6 +114,37 @@ class Coefficients(NamedTuple):
     c: FloatArray  # p s
 
 
+class PartnerSums(NamedTuple):
+    """Sums over the partners J of each edge I, of which the derivative is made in the end."""
+
+    a: FloatArray  # Σ a (m_J, 1), shape (edges, m + 1)
+    b: FloatArray  # Σ b (m_J, 1); if the edges change places Δ changes its sign, and b and c change places and signs
+    c: FloatArray  # Σ c e_J, shape (edges, m)
+    s: FloatArray  # Σ s (e_J, ℓ_J), shape (edges, m + 1)
+
+    @classmethod
+    def zeros(cls, vectors: Vectors) -> "PartnerSums":
+        return cls(*map(np.zeros_like, (vectors.m_one, vectors.m_one, vectors.e, vectors.e_ell)))
+
+    def add(self, rows: slice, columns: slice, coefficients: Coefficients, vectors: Vectors) -> None:
+        """Add the pairs of some rows and columns, seen from I and seen from J."""
+        (s, a, b, c), (e_ell, m_one), e = coefficients, vectors, vectors.e
+        self.a[rows] += a @ m_one[columns]
+        self.b[rows] += b @ m_one[columns]
+        self.c[rows] += c @ e[columns]
+        self.s[rows] += s @ e_ell[columns]
+        self.a[columns] += a.T @ m_one[rows]
+        self.b[columns] -= c.T @ m_one[rows]
+        self.c[columns] -= b.T @ e[rows]
+        self.s[columns] += s.T @ e_ell[rows]
+
+    def derivatives(self, vectors: Vectors) -> "DerivativeSums":
+        """Σ_J a_IJ Δ = (Σ_J a_IJ) m_I − Σ_J a_IJ m_J, and so on."""
+        e, m = vectors.e, vectors.m
+        a, b = (each[:, -1:] * m - each[:, :-1] for each in (self.a, self.b))
+        return DerivativeSums(self.s[:, :-1] - 2.0 * b, 2.0 * (a - self.b[:, -1:] * e - self.c), self.s[:, -1])
+
+
 class DerivativeSums(NamedTuple):
     """Sums over the partners of each edge: ∂E/∂e without the terms along τ, ∂E/∂m, and ∂E/∂ℓ, which is along τ."""
 
@@ -123,26 +153,8 @@ class DerivativeSums(NamedTuple):
     by_length: FloatArray
 
     @classmethod
-    def zeros(cls, shape: tuple[int, ...], dtype: DTypeLike = np.float64) -> "DerivativeSums":
-        return cls(np.zeros(shape, dtype), np.zeros(shape, dtype), np.zeros(shape[0], dtype))
-
-    def add(self, rows: slice, columns: slice, coefficients: Coefficients, vectors: Vectors) -> None:
-        """Add the pairs of some rows and columns, seen from I and seen from J."""
-        s, a, b, c = coefficients
-        self._add_side(rows, columns, Coefficients(s, a, b, c), 1.0, vectors)
-        # if the edges change places Δ changes its sign, and b and c change places and signs
-        self._add_side(columns, rows, Coefficients(s.T, a.T, c.T, b.T), -1.0, vectors)
-
-    def _add_side(self, own: slice, other: slice, coefficients: Coefficients, sign: float, vectors: Vectors) -> None:
-        s, a, b, c = coefficients
-        e, m = vectors.e[own], vectors.m[own]
-        d = m.shape[1]
-        am, bm = a @ vectors.m_one[other], b @ vectors.m_one[other]
-        ce, sl = c @ vectors.e[other], s @ vectors.e_ell[other]
-        # Σ_J a_IJ (m_I − m_J) = (Σ_J a_IJ) m_I − Σ_J a_IJ m_J
-        self.by_midpoint[own] += 2.0 * (am[:, d:] * m - am[:, :d] - sign * (bm[:, d:] * e + ce))
-        self.by_edge[own] += sl[:, :d] - (2.0 * sign) * (bm[:, d:] * m - bm[:, :d])
-        self.by_length[own] += sl[:, d]
+    def zeros(cls, shape: tuple[int, ...]) -> "DerivativeSums":
+        return cls(np.zeros(shape), np.zeros(shape), np.zeros(shape[0]))
 
     def row_energies(self, vectors: Vectors) -> FloatArray:
         """Σ_J W_IJ for each edge I, shape (edges,): the derivative itself tells, W_IJ being linear in (e_I, ℓ_I)."""

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..curve.tiles import EdgePairIndices
-from ..energies.moebius_pairs import Coefficients, DerivativeSums, Edges, Pairs, Vectors
+from ..energies.moebius_pairs import Coefficients, DerivativeSums, Edges, Pairs, PartnerSums, Vectors
 from ..types import FloatArray, IntArray
 from .blocks import BlockList
 from .moments import Expansion, MomentTree, polynomial_rows
@@ -40,9 +40,9 @@ class NearField:
             value += scalars.energy()
             for whole, values in zip(coefficients, scalars.coefficients(), strict=True):
                 whole[part] = values
-        sums = DerivativeSums.zeros(self.edges.tau.shape)
+        sums = PartnerSums.zeros(self.edges.vectors)
         sums.add(slice(None), slice(None), Coefficients(*map(self._matrix, coefficients)), self.edges.vectors)
-        return value, sums
+        return value, sums.derivatives(self.edges.vectors)
 
     def _parts(self) -> Iterator[slice]:
         return (slice(first, first + PAIRS) for first in range(0, len(self.pairs[0]), PAIRS))
