@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .diagram import Diagram
+from .diagram import ENDS, Diagram
 from .rerouting import shortened, shuffled
 
 
@@ -42,8 +42,13 @@ def shuffled_down(
 
 
 def is_least(diagram: Diagram) -> bool:
-    """Whether no diagram has fewer crossings: it alternates (Kauffman, Murasugi, Thistlethwaite 1987)."""
-    return all(part[k - 1][1] != part[k][1] for part in diagram.passes for k in range(len(part)))
+    """Whether no diagram has fewer crossings than a simplified one: there are none, or over and under alternate.
+
+    That is so for closed components (Kauffman, Murasugi, Thistlethwaite 1987), whatever places are held.
+    """
+    levels = [[over for crossing, over in part if crossing >= 0] for part in diagram.passes]
+    alternates = all(part[k - 1] != part[k] for part in levels for k in range(len(part)))
+    return not diagram.crossings or (alternates and ENDS not in diagram.sequence)
 
 
 def reduced(diagram: Diagram) -> Diagram:

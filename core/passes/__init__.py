@@ -1,6 +1,7 @@
 """Strand moves of diagrams made in space: curves are untangled by straight motions that are all proved."""
 
 from .moving import Stage
-from .untangle import Untangled, untangled, worth
+from .untangle import Untangled, untangled
+from .views import worth
 
 __all__ = ["Stage", "Untangled", "untangled", "worth"]

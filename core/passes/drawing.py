@@ -9,10 +9,18 @@ import numpy as np
 from ..curve import Mesh
 from ..diagrams.diagram import ENDS, PIN, Diagram, Pass
 from ..diagrams.projection import PlaneCrossings, plane_crossings
+from ..messages import Message
 from ..types import BoolArray, FloatArray
 from .triangles import UnclearError
 
+MOST_CROSSINGS = 5_000
 _CLEAR = 1e-9  # of an edge, or of the curve's size: what is nearer to the limit than that might be a rounding error
+
+
+class CrowdedError(UnclearError):
+    """There are too many crossings."""
+
+    reason = Message("in no view are there fewer than {most:,} crossings, which are too many", most=MOST_CROSSINGS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +52,8 @@ class Drawing:
     def of(cls, mesh: Mesh, points: FloatArray, held: BoolArray) -> "Drawing":
         """The drawing of a curve some vertices of which are held; an UnclearError where rounding hides what it is."""
         found = plane_crossings(mesh, points, _CLEAR)
+        if len(found.turn) >= MOST_CROSSINGS:
+            raise CrowdedError
         edges, fractions = found.edges, found.at
         low, high = points[mesh.tails[edges], 2], points[mesh.heads[edges], 2]
         heights = low * (1.0 - fractions) + high * fractions

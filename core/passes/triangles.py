@@ -10,6 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ..messages import Message
 from ..types import FloatArray, IntArray
 
 _MARGIN = 0.15  # of the largest extent, around all points
@@ -17,7 +18,9 @@ _ROUNDING = 4e-16  # relative to the sum of both products: what is above it has 
 
 
 class UnclearError(ArithmeticError):
-    """Points, or a point and a wall, that cannot be told apart."""
+    """What lies where cannot be told, or is too much to look at; ``reason`` says so in words."""
+
+    reason = Message("strands touch, or nearly do: no view of the curve shows which one is in front")
 
 
 class Triangles:

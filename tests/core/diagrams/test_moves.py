@@ -1,5 +1,7 @@
 """Moves keep the link, take crossings away, and find the factors of sums."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from families import crossed
@@ -7,6 +9,7 @@ from hard_curves import hard_unknot
 from mobius_flow.core import CurveError
 from mobius_flow.core.diagrams import Diagram, factors, is_least, jones, shuffled_down, simplified, views
 from mobius_flow.core.diagrams.codes import diagram_from_code
+from mobius_flow.core.diagrams.diagram import ENDS, PIN
 from mobius_flow.core.diagrams.rerouting import shortened, shuffled
 from mobius_flow.core.diagrams.simplify import reduced, without_nugatory
 from mobius_flow.core.knots import braid_word, knot, scramble
@@ -82,6 +85,10 @@ def test_alternating_diagrams_have_the_least_number_of_crossings() -> None:
     assert is_least(braid_diagram((1, -2, 1, -2)))
     assert is_least(Diagram(((),), ()))
     assert not is_least(braid_diagram((1, 2, 1, 2, 1, 2, 1, 2)))
+    trefoil = braid_diagram((1, 1, 1))
+    held, cut = (replace(trefoil, passes=((place, *trefoil.passes[0]),)) for place in (PIN, ENDS))
+    assert is_least(held)
+    assert not is_least(cut)
 
 
 @pytest.mark.parametrize("letter", [3, -3])

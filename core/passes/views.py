@@ -1,0 +1,106 @@
+"""From where a curve is looked at: from where moves of its diagram lead to the fewest crossings.
+
+A knot that no move of a strand simplifies in one view comes apart in another one: level heights make ramps of strands,
+and seen from the side their crossings are others.  So far one of a dozen such views has been enough for every unknot.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..curve import Curve
+from ..curve.pins import NOWHERE
+from ..deadline import check_time
+from ..diagrams.projection import rotation
+from ..diagrams.simplify import is_least, simplified
+from ..types import FloatArray
+from .drawing import Drawing, UnclearError
+from .heights import combed
+from .moving import MovingCurve
+
+MOST_VERTICES = 20_000
+_VIEWS = 24
+_FEW = 4  # of them are looked at before it is known whether any move is worth while
+_SIDES = 3.0  # times as high as it is a curve is taken to be, whose views are then random
+_TILT = 1e-3  # radians, about, by which the frame is turned where rounding hides what is seen
+_TURNS = 8
+_WORK = 60_000  # crossings of diagrams that are visited to see where the moves in one view lead
+
+
+def drawn(body: MovingCurve, rng: np.random.Generator) -> Drawing:
+    """What is seen, if need be from a direction very near the frame's."""
+    for turn in range(_TURNS + 1):
+        try:
+            return Drawing.of(body.mesh, body.seen, body.held)
+        except UnclearError:
+            if turn == _TURNS:
+                raise
+            body.frame = body.frame @ rotation(np.eye(3) + _TILT * rng.normal(size=(3, 3)))
+    raise AssertionError
+
+
+def face(body: MovingCurve, rng: np.random.Generator, count: int = _VIEWS) -> Drawing:
+    """Turn the frame to where the fewest strands cross, as seen from where the curve is flattest or at random."""
+    middle = body.curve.vertices - body.curve.vertices.mean(axis=0)
+    flattest = np.linalg.svd(middle / np.abs(middle).max(), full_matrices=False)[2] + 0.02 * rng.normal(size=(3, 3))
+    seen = _seen(body, [rotation(each) for each in (flattest, *rng.normal(size=(count - 1, 3, 3)))])
+    body.frame, drawing = min(seen, key=lambda each: each[1].diagram.crossings)
+    return drawing
+
+
+def turn(body: MovingCurve, rng: np.random.Generator, *, away: bool = False, count: int = _VIEWS) -> int:
+    """Turn the frame to where moves lead to fewer crossings than are seen now, if there is such a view.
+
+    Returns how many they lead to.  If it is to turn ``away``, the moves that begin in the frame as it is do not count.
+    """
+    best = drawn(body, rng).diagram.crossings
+    sides = [body.frame @ rotation(each) for each in rng.normal(size=(count, 3, 3)) * [1.0, 1.0, _SIDES]]
+    seen = sorted(_seen(body, sides), key=lambda each: each[1].diagram.crossings)
+    for frame, drawing in seen if away else [(body.frame, drawn(body, rng)), *seen]:
+        check_time()
+        left = simplified(drawing.diagram, _WORK)
+        if left.crossings < best:
+            best, body.frame = left.crossings, frame
+        if is_least(left):
+            break
+    return best
+
+
+def worth(curve: Curve, least: int = 0, seed: int = 20231) -> tuple[int, int]:
+    """How many crossings go by moves of diagrams from what is seen, and how many of them stay.
+
+    Of diagrams with fewer than ``least`` none goes.
+    """
+    if curve.dimension != 3 or len(curve) > MOST_VERTICES:
+        return 0, 0
+    body, rng = MovingCurve(curve, NOWHERE), np.random.default_rng(seed)
+    try:
+        drawing = face(body, rng, _FEW)
+        crossings = drawing.diagram.crossings
+        if crossings < least:
+            return 0, crossings
+        heights = combed(drawing, body.held)
+        if heights is not None:
+            level = np.column_stack([drawing.points[:, :2], heights])
+            body = MovingCurve(curve.with_vertices(level), NOWHERE)
+        left = turn(body, rng, count=_FEW)
+    except UnclearError:
+        return 0, 0
+    return crossings - left, left
+
+
+def _seen(body: MovingCurve, frames: list[FloatArray]) -> Iterator[tuple[FloatArray, Drawing]]:
+    """What is seen in some frames, but for those where rounding hides it; an UnclearError if it does in all."""
+    reason: UnclearError | None = None
+    none = True
+    for frame in frames:
+        check_time()
+        try:
+            drawing = Drawing.of(body.mesh, body.curve.vertices @ frame, body.held)
+        except UnclearError as error:
+            reason = error
+            continue
+        none = False
+        yield frame, drawing
+    if none and reason is not None:
+        raise reason
