@@ -6,7 +6,7 @@
 from .curve import Curve, Mesh
 from .curve.io import read_curve, write_curve
 from .descent import METHODS
-from .driver import Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, WithOutcome, minimize, relax
+from .driver import Hand, Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, WithOutcome, minimize, relax
 from .energies import MoebiusEnergy, Objective
 from .errors import CurveError, CurveFileError, MobiusFlowError, OptionError
 from .obstacle import Obstacle
@@ -18,6 +18,7 @@ __all__ = [
     "Curve",
     "CurveError",
     "CurveFileError",
+    "Hand",
     "Iterate",
     "Mesh",
     "MobiusFlowError",

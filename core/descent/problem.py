@@ -13,7 +13,7 @@ from ..constraints import Block, Constraints
 from ..curve import Curve, Mesh
 from ..curve.pins import Pins
 from ..deadline import check_time
-from ..energies import Objective
+from ..energies import Objective, Pull
 from ..errors import OptionError
 from ..metrics import InnerProduct, Metric, SparseInnerProduct
 from ..obstacle import Obstacle
@@ -167,12 +167,27 @@ class Point:
         """The same polygon in another problem on the same mesh."""
         if problem is self.problem:
             return self
-        point = Point(problem, self.vertices, self.placed)
-        return point.with_metric_of(self, 0) if problem.metric is self.problem.metric else point
+        point, own = Point(problem, self.vertices, self.placed), self.problem
+        if problem.metric is not own.metric:
+            return point
+        if (problem.constraints, problem.geometry) == (own.constraints, own.geometry) and "tangent_space" in vars(self):
+            point.tangent_space = self.tangent_space
+        return point.with_metric_of(self, 0)
 
     def changing(self, **changes: Any) -> "Point":
         """The same polygon in its problem with some fields replaced, but for the mesh."""
         return self.within(replace(self.problem, **changes))
+
+    def pulled(self, pull: Pull | None) -> "Point":
+        """The same polygon with another pull of a hand, or none; the other terms are not computed again."""
+        before = self.problem.objective.pull
+        point = self.changing(objective=self.problem.objective.pulled(pull))
+        if before is None or pull is None or pull.weights is not before.weights:
+            return Point(point.problem, point.vertices, point.placed)  # in another metric
+        energy, derivative = self._energy_and_derivative
+        (old, by_old), (new, by_new) = (each.value_and_derivative(self.curve) for each in (before, pull))
+        point._energy_and_derivative = energy + (new - old), derivative + (by_new - by_old)
+        return point
 
     @property
     def anchored(self) -> "Point":

@@ -1,5 +1,6 @@
 """The driver: options and a curve in, proved iterates and an outcome out; its decisions are `interventions`."""
 
+from .hand import Hand
 from .loop import Relaxation, WithOutcome
 from .options import RelaxOptions
 from .outcome import Outcome, Status
@@ -7,6 +8,7 @@ from .relax import Result, finish, minimize, relax
 from .trajectory import Iterate, Trajectory
 
 __all__ = [
+    "Hand",
     "Iterate",
     "Outcome",
     "RelaxOptions",

@@ -14,6 +14,7 @@ from ..errors import CurveError
 from ..knots import knot_type
 from ..messages import Message
 from ..types import FloatArray
+from .hand import Hold
 from .interventions import ON_A_FIXED_MESH
 from .loop import Relaxation, descent, iterates, summarised
 from .motions import MOTIONS, Motion
@@ -29,7 +30,7 @@ ROUND = 0.9  # of the area of the circle of the same length: coarse and uneven o
 MOST_VERTICES = 10_000  # for which the knot type is computed: a few seconds
 
 
-def hopping(run: Run) -> Relaxation:
+def hopping(run: Run, hold: Hold | None = None) -> Relaxation:
     """Yield the iterates of a relaxation, of strand moves and of hops; return how it ended.
 
     A hop is one iterate: its path is the motion, and the relaxation to where there is less energy than at the minimum
@@ -38,14 +39,14 @@ def hopping(run: Run) -> Relaxation:
     hops, strands = Hops(run), Untangling(run)
     yield run.iterate
     yield from strands.before_flow()
-    outcome = yield from descent(run)
+    outcome = yield from descent(run, hold=hold)
     stuck = run.iterate
     yield from strands.where_stuck(outcome)
     if run.iterate is not stuck:
-        outcome = yield from descent(run)
+        outcome = yield from descent(run, hold=hold)
     while hops.led_lower(outcome):
         yield run.iterate
-        outcome = yield from descent(run)
+        outcome = yield from descent(run, hold=hold)
     return hops.summarised(strands.summarised(summarised(outcome, run)))
 
 

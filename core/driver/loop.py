@@ -9,6 +9,7 @@ from ..curve import at_edges
 from ..deadline import TimeIsUp, TimeLimit
 from ..descent import NoStep, Step
 from ..messages import Message
+from .hand import Hold
 from .interventions import INTERVENTIONS
 from .interventions.fallback import with_errors
 from .interventions.grow import with_growth
@@ -55,11 +56,14 @@ def iterates(run: Run, interventions: Sequence[Callable[[Run], Intervention]] | 
     return summarised(outcome, run)
 
 
-def descent(run: Run, interventions: Sequence[Callable[[Run], Intervention]] | None = None) -> Relaxation:
+def descent(
+    run: Run, interventions: Sequence[Callable[[Run], Intervention]] | None = None, hold: Hold | None = None
+) -> Relaxation:
     """Yield what comes after the point that a run has reached; return how it ended, without the run's summary."""
     kinds = INTERVENTIONS if interventions is None else interventions
+    made = [make(run) for make in kinds]
     try:
-        return (yield from _descent(run, [make(run) for make in kinds]))
+        return (yield from _descent(run, made if hold is None else [hold, *made, hold.ending]))
     except np.linalg.LinAlgError as error:
         return stalled(degenerate(error))
 
@@ -69,7 +73,7 @@ def summarised(outcome: Outcome, run: Run) -> Outcome:
     return with_errors(with_growth(run.rises.summarised(outcome, run.iterate.index), run), run)
 
 
-def _descent(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
+def _descent(run: Run, interventions: Sequence[Callable[[Event], Event | Change]]) -> Relaxation:
     event: Event = Start()
     while True:
         answer = _answer(event, interventions)
@@ -89,7 +93,7 @@ def _descent(run: Run, interventions: Sequence[Intervention]) -> Relaxation:
             yield run.accept(event)
 
 
-def _answer(event: Event, interventions: Sequence[Intervention]) -> Event | Change:
+def _answer(event: Event, interventions: Sequence[Callable[[Event], Event | Change]]) -> Event | Change:
     """What the interventions make of an event, one after the other, until one of them changes something."""
     for intervention in interventions:
         answer = intervention(event)

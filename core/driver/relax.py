@@ -17,6 +17,7 @@ from ..messages import COMPONENT, VERTEX_COUNT, Message
 from ..task import Task
 from ..threads import BLAS
 from ..units import centred
+from .hand import Hand, Hold
 from .hopping import hopping
 from .loop import Relaxation, WithOutcome, within
 from .options import RelaxOptions
@@ -130,13 +131,14 @@ class Result:
 
 @checked
 @BLAS.bounded()
-def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxation:
+def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand | None = None) -> Relaxation:
     """Relax a curve: yield it refined, then the end of every accepted step; return how it ended.
 
     In a ``for`` loop the `Outcome` is lost: take it from ``outcome = yield from relax(…)``, from `WithOutcome`, or from
     `minimize`.  BLAS runs with one thread while this computes, and as the caller set it between iterates.
 
-    The curve is an embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.  Raises
+    The curve is an embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.  A hand drags it
+    meanwhile.  Raises
     CurveError if it touches itself or an obstacle, or is degenerate; the message says where.  Raises OptionError if
     options contradict the task or each other.
     """
@@ -150,7 +152,7 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None) -> Relaxatio
     except np.linalg.LinAlgError as error:
         degenerate = "the curve is too degenerate to be relaxed: {error}; {remedy}"
         raise CurveError(Message(degenerate, error=str(error), remedy=_remedy(start.curve, options))) from error
-    work = BLAS.bounding(hopping(run))
+    work = BLAS.bounding(hopping(run, None if hand is None else Hold(run, hand)))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)

@@ -9,6 +9,7 @@ from ..curve import Curve, Mesh
 from ..curve.refine import Resolution
 from ..descent import METHODS, Method, NoStep, Point, Problem, State, Step
 from ..energies.components import energy_scale
+from ..energies.pull import Pull, share_of
 from ..hierarchy import SampledErrors
 from ..messages import Message
 from ..types import FloatArray
@@ -95,9 +96,39 @@ class Run:
     def accept(self, step: Step) -> Iterate:
         before = self.iterate
         self._go(step)
-        if self.problem.geometry.prescribes:
+        if self.problem.geometry.prescribes and self.problem.objective.pull is None:
             self.rises.step(before, self.iterate)
         return self.iterate
+
+    def pull(self, pull: Pull | None) -> None:
+        """Go on from the same curve with another pull of a hand, or none."""
+        held = self.problem.objective.pull is not None
+        self.start_from(self.point.pulled(pull))
+        if held != (pull is not None):
+            self._memory = State()
+
+    def go_back(self, point: Point, iterate: Iterate) -> None:
+        """Go on from an earlier point, and the iterate there, as if what came after had not happened."""
+        self.iterate, self._certified = iterate, iterate.certified
+        self.start_from(point)
+
+    def renew(self) -> None:
+        """Count iterations anew."""
+        self.charged = -self.iterate.index
+
+    def start_from(self, point: Point) -> None:
+        """Another view of the same curve, of which the method remembers nothing."""
+        self.point, self._memory = point.anchored, State(None, self._memory.last_step)
+
+    def _pulled(self, point: Point) -> Point:
+        """A point on another mesh, pulled at the same place to the same target as this one is, if it is pulled."""
+        pull, old, new = self.problem.objective.pull, self.problem.units, point.problem.units
+        if pull is None:
+            return point
+        place, target = (new.from_user(old.to_user(x)) for x in (self.point.vertices[pull.vertex], pull.target))
+        component = int(self.problem.mesh.component[pull.vertex])
+        pull = Pull.at(point.curve, component, share_of(point.curve, component, place), pull.strength)
+        return point.changing(objective=point.problem.objective.pulled(replace(pull, target=target)))
 
     def hop(self, end: Point, path: tuple[FloatArray, ...], certified: bool) -> Iterate:
         """Go in one iterate to a point on the same mesh, by a path that was found elsewhere."""
@@ -142,8 +173,7 @@ class Run:
         if change.point is None:
             return
         before, remeshed = self.iterate, self._remeshes(change)
-        self.point = change.point.anchored
-        self._memory = State(None, self._memory.last_step)
+        self.start_from(self._pulled(change.point) if remeshed else change.point)
         self.iterate = self._described(self.iterate.index + remeshed)
         if remeshed:
             self.rises.change(before, self.iterate)
@@ -185,11 +215,11 @@ class Run:
         return change.point is not None and change.point.problem.mesh is not self.problem.mesh
 
     def _described(self, index: int, step_size: float = 0.0, path: tuple[FloatArray, ...] = ()) -> Iterate:
-        point, constraints = self.point, self.problem.constraints
+        point, constraints, pull = self.point, self.problem.constraints, self.problem.objective.pull
         return Iterate(
             index=index,
             curve=Curve(point.placed, point.problem.mesh),
-            energy=point.energy_as_placed,
+            energy=point.energy_as_placed - (0.0 if pull is None else pull.value(point.curve)),
             gradient_norm=point.gradient_norm,
             step_size=step_size,
             path=path,

@@ -25,6 +25,7 @@ from .energy import (
     scale_exponent,
 )
 from .moebius import MoebiusEnergy
+from .pull import Pull
 from .repulsion import Repulsion
 
 _Term = TypeVar("_Term", bound=Term)
@@ -75,6 +76,16 @@ class Objective:
     def terms(self) -> tuple[Term, ...]:
         """The energy, to which the barrier belongs, and all further terms."""
         return (self.energy, *(term for term, _ in self.further))
+
+    @property
+    def pull(self) -> Pull | None:
+        """That of a hand, if one holds the curve."""
+        return next((term for term, _ in self.further if isinstance(term, Pull)), None)
+
+    def pulled(self, pull: Pull | None) -> "Objective":
+        """The same with another pull, or none."""
+        others = tuple(each for each in self.further if not isinstance(each.term, Pull))
+        return replace(self, further=others if pull is None else (*others, Weighted(pull)))
 
     @property
     def sees_size(self) -> bool:

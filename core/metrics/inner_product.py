@@ -63,7 +63,11 @@ class DenseInnerProduct:
         return _symmetric_product(self.inverse, f)
 
     def plus(self, other: InnerProduct, weight: float = 1.0) -> InnerProduct:
-        return DenseInnerProduct(self._matrix + weight * other.dense())
+        if not isinstance(other, SparseInnerProduct):
+            return DenseInnerProduct(self._matrix + weight * other.dense())
+        matrix, more = self._matrix.copy(order="F"), other.matrix.tocoo()
+        np.add.at(matrix, more.coords, weight * more.data)
+        return DenseInnerProduct(matrix)
 
     def dense(self) -> FloatArray:
         return _filled(self._matrix.copy(order="F"))

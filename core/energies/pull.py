@@ -1,0 +1,86 @@
+"""The pull of a hand: a spring from a short stretch of a curve to a point, whose force is bounded."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..curve import Curve
+from ..curve.distances import periods, vertex_positions
+from ..types import FloatArray
+
+WIDTH = 0.02  # standard deviation of the stretch, in lengths of its component, unless edges are longer
+SUPPORT = 3.0  # of the stretch to either side, in standard deviations
+REACH = 0.5  # r, in the program's units, in which a component is 4 to 8 long
+
+
+@dataclass(frozen=True, eq=False)
+class Pull:
+    """k r² (√(1 + |d|²/r²) − 1), d = Σ w_i P_i − target: a spring of stiffness k whose force is less than k r.
+
+    However far away the target is, steps are as for one at the distance r, and strands in the way bear the force.
+    """
+
+    weights: FloatArray  # w, a Gaussian along the curve, of sum 1; shape (n,)
+    target: FloatArray  # shape (m,)
+    strength: float  # k
+
+    name = "hand"
+    description = "spring from a stretch of the curve to a point"
+
+    @classmethod
+    def at(cls, curve: Curve, component: int, share: float, strength: float) -> "Pull":
+        """One that is at rest, around the point at a share of a component's length."""
+        length, vertices = curve.component_lengths[component], curve.mesh.slices[component]
+        gap = np.abs(vertex_positions(curve)[vertices] - share * length)
+        gap = np.minimum(gap, np.abs(periods(curve)[component] - gap))
+        width = max(WIDTH * length, float(curve.edge_lengths[curve.mesh.edge_slices[component]].max()))
+        weights = np.zeros(len(curve))
+        weights[vertices] = np.exp(-0.5 * (gap / width) ** 2) * (gap <= SUPPORT * width)
+        weights *= curve.mesh.scatter(curve.edge_lengths, curve.edge_lengths)
+        weights /= weights.sum()
+        return cls(weights, weights @ curve.vertices, strength)
+
+    @property
+    def vertex(self) -> int:
+        """The vertex in the middle of the stretch."""
+        return int(self.weights.argmax())
+
+    def value(self, curve: Curve) -> float:
+        return self.value_and_derivative(curve)[0]
+
+    def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
+        d, root = self._stretched(curve)
+        return float(self.strength * (d @ d) / (root + 1.0)), np.outer(self.weights, self.strength / root * d)
+
+    def sparse_hessian(self, curve: Curve) -> sp.csr_array:
+        column = sp.csr_array(self.weights[:, None])
+        return sp.csr_array(sp.kron(column @ column.T, self._curvature(curve)))
+
+    def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
+        return np.outer(self.weights, self._curvature(curve) @ (self.weights @ v))
+
+    def stiffness(self, curve: Curve) -> sp.dia_array:
+        """k Σ w_i |u_i|² ≥ k |Σ w_i u_i|²: the same for all targets, so that a metric outlives their motion."""
+        return sp.diags_array(self.strength * self.weights)
+
+    def _stretched(self, curve: Curve) -> tuple[FloatArray, float]:
+        """d and √(1 + |d|²/r²)."""
+        d = self.weights @ curve.vertices - self.target
+        return d, float(np.sqrt(1.0 + (d @ d) / REACH**2))
+
+    def _curvature(self, curve: Curve) -> FloatArray:
+        """The second derivative by Σ w_i P_i; shape (m, m)."""
+        d, root = self._stretched(curve)
+        return np.asarray(self.strength / root * (np.eye(len(d)) - np.outer(d, d) / (REACH * root) ** 2))
+
+
+def share_of(curve: Curve, component: int, point: FloatArray) -> float:
+    """The share of a component's length at which it is nearest to a point, shape (m,)."""
+    edges = curve.mesh.edge_slices[component]
+    along, ell = curve.edge_vectors[edges], curve.edge_lengths[edges]
+    way = point - curve.vertices[curve.mesh.tails[edges]]
+    t = np.clip(np.einsum("ij,ij->i", way, along) / ell**2, 0.0, 1.0)
+    nearest = int(np.linalg.norm(way - t[:, None] * along, axis=1).argmin())
+    at = curve.arc_starts[edges][nearest] + t[nearest] * ell[nearest]
+    return float(at / curve.component_lengths[component])
