@@ -5,7 +5,7 @@ import numpy as np
 from bpy.props import BoolProperty, BoolVectorProperty, FloatProperty, IntProperty
 from bpy_extras.object_utils import object_data_add
 
-from ...core import Curve, CurveError
+from ...core import Curve
 from ...core.knots import Drawing, knot_type
 from ...core.messages import Message
 from ...core.types import FloatArray
@@ -15,11 +15,24 @@ from ..live.requirements import Condition, selected_curves
 from ..translations import iface_, rpt_
 from .adding import OBJECT_MODE, AddsKnot
 
-_DRAWN = Condition("Draw a flat closed curve and select it first", lambda context: not selected_curves(context))
+_DRAWN = Condition("Draw a flat curve and select it first", lambda context: not selected_curves(context))
 _SWITCHES = 32  # Blender's longest array of switches
 
 
-class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):
+class DrawsKnot(AddsKnot):
+    """An operator that lifts a drawing into a knot, and adds it where it was drawn."""
+
+    def add(self, context: bpy.types.Context, plane: DrawingPlane, lifted: Curve, crossings: int) -> FloatArray:
+        """Add a knot that was lifted from a plane, report its type, and return where its object is."""
+        vertices, (name, said) = plane.raised(lifted.vertices), described(lifted, crossings)
+        middle = vertices.mean(axis=0)
+        obj = object_data_add(context, self.curve_data(name, vertices - middle, lifted))
+        obj.location, obj.rotation_euler = middle, (0.0, 0.0, 0.0)
+        self.report({"INFO"}, rpt_(said))
+        return np.asarray(middle)
+
+
+class CURVE_OT_mobius_flow_draw_knot(DrawsKnot, bpy.types.Operator):
     """Make a knot of the selected flat drawing: where strands cross, one goes over the other; the drawing stays"""
 
     bl_label = "Knot from Drawing"
@@ -58,26 +71,19 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):
         drawing = Drawing.of(plane.flattened(curve))
         lifted = self._lifted(drawing)
         self.count = len(drawing.crossings)
-        name, said = _description(lifted, self.count)
-        self._add(context, name, plane, drawing, lifted)
+        middle = self.add(context, plane, lifted, self.count)
+        if self.number:
+            places = np.column_stack([drawing.crossings, np.zeros(self.count)])
+            size = 0.03 * float(np.ptp(lifted.vertices))
+            _mark(context.collection, context.object, plane.raised(places) - middle, size)
         for obj in drawn if self.hide_drawing else ():
             obj.hide_set(True)
             obj.hide_render = True
-        self.report({"INFO"}, rpt_(said))
 
     def _lifted(self, drawing: Drawing) -> Curve:
         count = min(len(drawing.crossings), _SWITCHES)
         lifted = drawing.lifted([k + 1 for k in range(count) if self.change[k]])
         return lifted.with_vertices(lifted.vertices * [1.0, 1.0, -self.height if self.mirror else self.height])
-
-    def _add(self, context: bpy.types.Context, name: str, plane: DrawingPlane, drawing: Drawing, lifted: Curve) -> None:
-        vertices = plane.raised(lifted.vertices)
-        middle = vertices.mean(axis=0)
-        obj = object_data_add(context, self.curve_data(name, vertices - middle, lifted))
-        obj.location, obj.rotation_euler = middle, (0.0, 0.0, 0.0)
-        if self.number:
-            places = np.column_stack([drawing.crossings, np.zeros(len(drawing.crossings))])
-            _mark(context.collection, obj, plane.raised(places) - middle, 0.03 * float(np.ptp(vertices)))
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
@@ -92,16 +98,11 @@ class CURVE_OT_mobius_flow_draw_knot(AddsKnot, bpy.types.Operator):
 
 
 def _read(objects: list[bpy.types.Object]) -> Curve:
-    """The drawing in world space; raises a CurveError if a spline is open or too short."""
-    for obj in objects:
-        for spline in obj.data.splines:
-            if not spline.use_cyclic_u:
-                sentence = "'{name}' is open; close it first (Edit Mode, Curve > Toggle Cyclic)"
-                raise CurveError(Message(sentence, name=obj.name))
-    return read_link(objects)[0]
+    """The drawing in world space; open splines, such as strokes, are closed by their chords."""
+    return Curve.from_components(read_link(objects)[0].components)
 
 
-def _description(curve: Curve, crossings: int) -> tuple[str, Message]:
+def described(curve: Curve, crossings: int) -> tuple[str, Message]:
     """A name for a drawn knot, and what can be said of it."""
     found = knot_type(curve)
     said = Message("{count} crossings", count=crossings) if crossings != 1 else Message("1 crossing")

@@ -32,7 +32,7 @@ _FONT = 0  # Blender's own
 _FONT_SHARE = 0.9  # of the interface's size of text
 _OPACITY = 0.85
 _RED = (0.95, 0.25, 0.2)
-_GOLD = (1.0, 0.75, 0.1)
+GOLD = (1.0, 0.75, 0.1)
 _DIAMOND = 7.0 * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])  # around pinned points
 _log = logging.getLogger(__name__)
 _handles: list[object] = []
@@ -138,7 +138,7 @@ def _pins(context: bpy.types.Context) -> None:
     pinned = [(obj, place) for obj in curves_at_hand(context) for place in pins.places(obj.data)]
     corners = scale * np.stack([_DIAMOND, np.roll(_DIAMOND, -1, axis=0)], axis=1).reshape(-1, 2)
     diamonds = [there + corners for there in _seen(context, pinned)]
-    line(np.reshape(diamonds, (-1, 2)), _GOLD, scale * _LINE, kind="LINES")
+    line(np.reshape(diamonds, (-1, 2)), GOLD, scale * _LINE, kind="LINES")
 
 
 def _seen(context: bpy.types.Context, places: Iterable[tuple[bpy.types.Object, FloatArray]]) -> Iterator[FloatArray]:

@@ -5,7 +5,7 @@ the two strands have different heights: it is embedded, and has the drawn crossi
 """
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -38,7 +38,7 @@ class Drawing:
     curve: Curve
     crossings: FloatArray  #: their places, in the order in which they are come to; shape (c, 2)
     passes: FloatArray  #: first and second edge there, each with the fraction of it as one number; shape (c, 2)
-    first_over: BoolArray  #: whether the first is the upper one, over and under alternating from over on; shape (c,)
+    first_over: BoolArray  #: whether the first is the upper one: from `of`, over and under alternate; shape (c,)
 
     @classmethod
     @checked
@@ -60,6 +60,14 @@ class Drawing:
         points = generic.vertices[edge] + (passes[:, 0] - edge)[:, None] * generic.edge_vectors[edge]
         _check_clear(generic, points, edge)
         return cls(generic, points, passes, _upper(generic, passes))
+
+    @classmethod
+    def seen(cls, curve: Curve) -> "Drawing":
+        """Find the crossings of closed polygons in space as seen from +z, where strands are over that are higher."""
+        drawing = cls.of(Curve(curve.vertices[:, :2], curve.mesh))
+        edge = drawing.passes.astype(np.intp)
+        heights = curve.vertices[edge, 2] + (drawing.passes - edge) * curve.edge_vectors[edge, 2]
+        return replace(drawing, first_over=heights[:, 0] > heights[:, 1])
 
     def lifted(self, changed: Collection[int] = ()) -> Curve:
         """Lift strands over and under by turns, but for crossings ``changed``, from 1; CurveError for other numbers."""

@@ -39,6 +39,17 @@ def test_a_drawn_trefoil():
     assert obj.data.bevel_depth > 0.02
 
 
+def test_an_open_stroke_is_closed_by_its_chord():
+    add_curve([scribble()], cyclic=False)
+    obj, points = lifted()
+    assert obj.name == "Drawn m3_1"
+    assert knot_invariants(points).genus == 1
+
+
+def test_strokes_want_a_view():
+    assert not bpy.ops.curve.mobius_flow_stroke.poll()
+
+
 def test_a_crossing_is_changed_and_all_are_mirrored():
     add_curve([scribble()])
     change = [False] * 32
@@ -123,7 +134,6 @@ def spiral():
     ("components", "options", "said"),
     [
         ([spiral()], {}, "not flat"),
-        ([scribble()], {"cyclic": False}, "is open"),
         ([scribble() * [1, 0, 0]], {}, "touch without crossing"),
         ([scribble() * 0], {}, "same"),
         ([[(0, 0, 0), (2, 0, 0), (2, 1, 0), (1, 0, 0), (0, 1, 0)]], {}, "touch without crossing"),

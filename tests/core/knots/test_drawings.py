@@ -173,3 +173,14 @@ def test_what_is_unclear_is_refused_with_the_place(curve: Curve, place: tuple[fl
 def test_what_is_no_drawing(make, said: str) -> None:
     with pytest.raises(CurveError, match=said):
         make()
+
+
+@pytest.mark.parametrize("changed", [(), (1,), (1, 3)])
+def test_what_was_lifted_is_seen_as_it_is(changed: tuple[int, ...]) -> None:
+    """Lifting it again gives the same heights at the crossings, whichever were changed."""
+    drawing = Drawing.of(scribble(3))
+    again = Drawing.seen(drawing.lifted(changed))
+    np.testing.assert_allclose(again.crossings, drawing.crossings, atol=1e-6)
+    over = drawing.first_over.copy()
+    over[[k - 1 for k in changed]] ^= True
+    np.testing.assert_array_equal(again.first_over, over)
