@@ -85,7 +85,7 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
         places = [region_2d_to_location_3d(context.region, context.region_data, each, depth) for each in _even(stroke)]
         drawing = Drawing.of(plane.flattened(Curve(np.array(places))))
         middle = self.add(context, plane, drawing.lifted(), len(drawing.crossings))
-        context.object.data[_PLANE] = [*(plane.origin - middle), *plane.axes.ravel()]
+        context.object.data[_PLANE] = [*(plane.origin - middle).tolist(), *plane.axes.ravel().tolist()]
 
     def _swap(self, context: bpy.types.Context, drawn: "Drawn", crossing: int) -> None:
         lifted, count = drawn.drawing.lifted([crossing]), len(drawn.drawing.crossings)
