@@ -2,12 +2,12 @@
 
 Any vertical motion that keeps the order at crossings is free of contact.  Heights z minimise Σ (Δz)²/ℓ over all edges
 of lengths ℓ in the plane, while strands are at least a gap g apart where they cross, C z ≥ g.  With the matrix L of the
-form, restricted to vertices that are free, the multipliers solve the dual problem: non-negative least squares.
+form, restricted to vertices that are free, the multipliers μ ≥ 0 minimise ½ |Cᵀμ|² in L⁻¹ less g·μ, the dual problem.
 """
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.optimize import nnls
+from scipy.optimize import Bounds, minimize
 from scipy.sparse.linalg import splu
 
 from ..types import BoolArray, FloatArray
@@ -16,6 +16,7 @@ from .drawing import Drawing
 _GAP = 0.03  # of the curve's size
 _SHORT = 1e-3  # of the size, added to lengths
 _LEVEL = 0.05  # of the stiffness of an edge as long as the curve is large: draws all heights to their mean
+_DUAL = {"maxiter": 150, "maxcor": 20, "ftol": 1e-7, "gtol": 0.0}
 _ENOUGH = 0.2  # of the gap, or of what it was: what rounding must leave
 
 
@@ -37,15 +38,15 @@ def combed(drawing: Drawing, held: BoolArray) -> FloatArray | None:
     level[free] = solve(-(form[free] @ level))
     wanted = _GAP * size - above @ level
     if len(wanted) and wanted.max() > 0:
-        response = solve(above[:, free].T.toarray())
-        matrix = above[:, free] @ response
-        matrix[np.diag_indices(len(matrix))] += 1e-9 * np.trace(matrix) / len(matrix)
-        lower = np.linalg.cholesky(matrix)
-        try:
-            multipliers, _ = nnls(lower.T, np.linalg.solve(lower, wanted), maxiter=30 * len(wanted))
-        except RuntimeError:  # too many iterations
-            return None
-        level[free] += response @ multipliers
+        lower = above[:, free].tocsr()
+        upper = lower.T.tocsr()
+
+        def dual(multipliers: FloatArray) -> tuple[float, FloatArray]:
+            slack = lower @ solve(upper @ multipliers) - wanted
+            return float(0.5 * multipliers @ (slack - wanted)), slack
+
+        least = minimize(dual, np.zeros(len(wanted)), jac=True, method="L-BFGS-B", bounds=Bounds(0.0), options=_DUAL)
+        level[free] += solve(upper @ least.x)
     gaps, before = above @ level, above @ heights
     if (gaps < _ENOUGH * np.minimum(_GAP * size, before)).any():
         return None
