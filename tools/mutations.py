@@ -257,6 +257,20 @@ MUTANTS = (
         f"{GROW}::test_edges_are_split_as_walls_come_near",
     ),
     Mutant(
+        "meshes that are left whatever their errors",
+        "core/driver/interventions/remesh.py",
+        "gain > self.share * abs(finer.energy - self._energy)",
+        "gain > self._energy",
+        "tests/core/test_finer_mesh.py::test_the_share_is_one_of_the_error",
+    ),
+    Mutant(
+        "finer meshes for composite curves",
+        "core/driver/interventions/remesh.py",
+        "shrinking_ball(self.run) is not None",
+        "False",
+        "tests/core/test_adaptive.py::test_granny_has_no_minimiser_and_is_told_so",
+    ),
+    Mutant(
         "growth measured by energies of 0",
         "core/driver/interventions/grow.py",
         "return energy_scale(self.run.problem.mesh, self.run.point.energy)",

@@ -145,13 +145,14 @@ def test_famous_unknot_adaptively(tmp_path):
 
 @pytest.mark.parametrize("mesh", [pytest.param("finer", marks=pytest.mark.slow), "adaptive"])
 def test_granny_has_no_minimiser_and_is_told_so(mesh, tmp_path):
-    """A composite knot's strands pull tight without limit: that is no convergence."""
+    """A composite knot's strands pull tight without limit: that is no convergence, and no finer mesh would help."""
     trajectory = Trajectory()
     options = RelaxOptions(vertices=100, mesh=mesh, tolerance=3e-3)
     result = minimize(lattice_knot("3_1#3_1"), options, trajectory.add)
     assert result.status is Status.STALLED
     assert "pull tight" in result.message
     assert result.certified
+    assert mesh == "adaptive" or len(result.phases) == 1
     trajectory.save(tmp_path / "t.npz")
     assert verify(tmp_path / "t.npz").accepted
 

@@ -1,6 +1,8 @@
 """By default a run ends on a mesh that resolves what it ends at: its energy is that of the smooth curve."""
 
+from collections.abc import Mapping
 from itertools import pairwise
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -86,13 +88,22 @@ WAYS = [
 
 @pytest.mark.parametrize("options", WAYS, ids=str)
 def test_a_mesh_is_left_when_what_is_still_to_gain_is_small_against_its_error(options):
-    """Where it would end is found by a run that keeps the mesh."""
     before, after = left(lattice_knot("3_1"), vertices=40, mesh="finer", tolerance=1e-6, **options)
     assert len(after.curve) > len(before.curve) == 40
     assert before.gradient_norm > 1e-3 * np.sqrt(before.energy)
-    resting = RelaxOptions(energy=options.get("energy", "moebius"), tolerance=1e-6).at_rest(before.curve)
-    least = minimize(before.curve, resting).energies[-1]
-    assert before.energy - least < 2 * FinerMesh.share * abs(after.energy - before.energy)
+    assert still_to_gain(before, options) < 2 * FinerMesh.share * abs(after.energy - before.energy)
+
+
+def test_the_share_is_one_of_the_error(monkeypatch):
+    change(monkeypatch, FinerMesh, share=0.5)
+    before, after = left(lattice_knot("3_1"), vertices=40, mesh="finer")
+    assert still_to_gain(before) < 0.5 * (after.energy - before.energy)
+
+
+def still_to_gain(iterate: Iterate, options: Mapping[str, str] = MappingProxyType({})) -> float:
+    """How far above the end of a run on its mesh it is."""
+    resting = RelaxOptions(energy=options.get("energy", "moebius"), tolerance=1e-6).at_rest(iterate.curve)
+    return iterate.energy - minimize(iterate.curve, resting).energies[-1]
 
 
 @pytest.mark.slow
