@@ -179,7 +179,7 @@ class ConstraintDerivative:
 
     def apply(self, u: FloatArray) -> FloatArray:
         """DΦ u; shape (r + k,) from (n, m)."""
-        stretch = np.einsum("ij,ij->i", self.tangents, u[self.mesh.heads] - u[self.mesh.tails])
+        stretch = np.einsum("ij,ij->i", self.tangents, self.mesh.changes(u))
         return np.concatenate([stretch[self.edges], *(block.apply(u, stretch) for block in self.blocks)])
 
     def apply_transpose(self, multipliers: FloatArray) -> FloatArray:

@@ -2,10 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
-import scipy.sparse as sp
 
 from ..curve import Curve, Mesh
 from ..curve.pins import NO_PINS, Pins
@@ -63,11 +61,9 @@ class Barycenters:
         return u
 
     def derivative(self, curve: Curve) -> "BarycenterDerivative":
-        ell, mesh, part = curve.edge_lengths, curve.mesh, np.asarray(self.parts)
-        places = (part[mesh.component], np.arange(mesh.size))
-        membership = sp.csr_array((np.ones(mesh.size), places), shape=(part.max() + 1, mesh.size))
-        loose = membership[np.array(self.loose, dtype=np.intp)]
-        return BarycenterDerivative(mesh, 0.5 * mesh.scatter(ell, ell), ell[:, None] * curve.midpoints, loose)
+        ell, mesh = curve.edge_lengths, curve.mesh
+        member = np.equal.outer(self.loose, self.parts).astype(np.float64)
+        return BarycenterDerivative(mesh, 0.5 * mesh.scatter(ell, ell), ell[:, None] * curve.midpoints, member)
 
     def memberships(self, mesh: Mesh) -> Iterator[FloatArray]:
         """For each loose part, 1 at its edges and 0 elsewhere; shape (edges,)."""
@@ -85,28 +81,28 @@ class BarycenterDerivative:
     mesh: Mesh
     masses: FloatArray  # (ℓ_I + ℓ_{I−1})/2 at each vertex; shape (n,)
     moments: FloatArray  # ℓ_I m_I; shape (edges, m)
-    membership: sp.csr_array  # which vertices are in which of p parts, as 0 and 1; sparse, shape (p, n)
+    member: FloatArray  # which components are in which of p parts, as 0 and 1; shape (p, components)
 
     @property
     def rows(self) -> int:
-        return int(self.membership.shape[0]) * self.moments.shape[1]
+        return len(self.member) * self.moments.shape[1]
 
     def apply(self, u: FloatArray, stretch: FloatArray) -> FloatArray:
         """Σ over each part of what displaces its vertices and stretches its edges."""
         stretched = self.mesh.at_tails(stretch[:, None] * self.moments)
-        return np.asarray((self.membership @ (self.masses[:, None] * u + stretched)).ravel())
+        stretched += self.masses[:, None] * u
+        return np.asarray((self.member @ np.add.reduceat(stretched, self.mesh.offsets[:-1], axis=0)).ravel())
 
     def loads(self, multipliers: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The multiplier of its part's barycenter pulls at each vertex and edge."""
-        pull = self._parts_to_vertices @ multipliers.reshape(-1, self.moments.shape[1])
-        return np.einsum("ij,ij->i", self.moments, pull[self.mesh.tails]), self.masses[:, None] * pull
+        pull = self.member.T @ multipliers.reshape(-1, self.moments.shape[1])
+        at_edges = pull.take(self.mesh.edge_component, axis=0)
+        at_vertices = pull.take(self.mesh.component, axis=0)
+        at_vertices *= self.masses[:, None]
+        return np.einsum("ij,ij->i", self.moments, at_edges), at_vertices
 
     def curvature(self, multipliers: FloatArray, v: FloatArray) -> FloatArray:
         return np.zeros_like(v)
-
-    @cached_property
-    def _parts_to_vertices(self) -> sp.csr_array:
-        return sp.csr_array(self.membership.T)
 
 
 def weighted_barycenter(curve: Curve) -> FloatArray:

@@ -92,7 +92,7 @@ class Curve:
     @cached_property
     def edge_vectors(self) -> FloatArray:
         """Edge vectors e_I = P(I↑) − P(I↓); shape (edges, m)."""
-        return frozen(self.vertices[self.mesh.heads] - self.vertices[self.mesh.tails])
+        return frozen(self.mesh.changes(self.vertices))
 
     @cached_property
     def edge_lengths(self) -> FloatArray:

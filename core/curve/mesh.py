@@ -212,14 +212,23 @@ class Mesh:
         """Whether the closures of edges ``i`` and ``j`` are disjoint: no vertex in common."""
         return np.asarray(self.index_distance(i, j) > 1)
 
+    def changes(self, u: FloatArray) -> FloatArray:
+        """U(I↑) − U(I↓) of values at the vertices; (n, …) to (edges, …)."""
+        return u.take(self.heads, axis=0) - (u if self.all_closed else u.take(self.tails, axis=0))
+
     def scatter(self, at_tails: FloatArray, at_heads: FloatArray) -> FloatArray:
         """Add values given at the tail and the head of each edge up at the vertices; (edges, …) to (n, …)."""
         total = self.at_tails(at_tails)
-        total[self.heads] += at_heads  # no vertex is the head of two edges
+        if self.all_closed:
+            total += at_heads.take(self.previous, axis=0)
+        else:
+            total[self.heads] += at_heads  # no vertex is the head of two edges
         return total
 
     def at_tails(self, values: FloatArray, elsewhere: FloatArray | float = 0.0) -> FloatArray:
         """Values of the edges at the vertices where they begin, others where an arc ends; (edges, …) to (n, …)."""
+        if self.all_closed:
+            return values.astype(np.result_type(values, np.float64))
         placed = np.empty((self.size, *values.shape[1:]), np.result_type(values, np.float64))
         placed[...] = elsewhere
         placed[self.tails] = values

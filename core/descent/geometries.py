@@ -75,7 +75,7 @@ class Constrained:
 
 def _relative_change(curve: Curve, u: FloatArray) -> float:
     """max |ΔU_I|/ℓ_I, by how much displacements u turn or stretch an edge."""
-    change = u[curve.mesh.heads] - u[curve.mesh.tails]
+    change = curve.mesh.changes(u)
     return float(np.max(np.linalg.norm(change, axis=1) / curve.edge_lengths))
 
 

@@ -34,7 +34,7 @@ def lagrangian_hessian(point: Point) -> LinearMap:
 
     def apply(v: FloatArray) -> FloatArray:
         # D² log ℓ (v, ·) = (Δv − 2 ⟨τ, Δv⟩ τ)/ℓ²
-        dv = v[mesh.heads] - v[mesh.tails]
+        dv = mesh.changes(v)
         bend = weight * (dv - 2.0 * np.einsum("ij,ij->i", tau, dv)[:, None] * tau)
         image = of_energy(v) - mesh.scatter(-bend, bend)
         for block, multipliers in constraints.of_blocks(point.multipliers):

@@ -106,7 +106,7 @@ class HierarchicalMoebiusEnergy:
     def hessian_product(self, curve: Curve, v: FloatArray) -> FloatArray:
         """D²E v for ``v`` of shape (n, m), to some five digits: a central difference with one block list."""
         smooth, ell = self.frozen_at(curve), curve.edge_lengths
-        stretch = np.abs((v[curve.mesh.heads] - v[curve.mesh.tails]) / ell[:, None]).max() / STRETCH
+        stretch = np.abs(curve.mesh.changes(v) / ell[:, None]).max() / STRETCH
         rate = max(float(stretch), float(np.abs(v).max() / (SHIFT * ell.min())))
         if rate == 0.0:
             return np.zeros_like(v)

@@ -35,7 +35,7 @@ class TwoLevel:
         force = np.add.reduceat(f, self._starts, axis=0)
         padded = np.concatenate([force, np.zeros((self._rank, f.shape[1]))])
         shift = self._factor.solve(padded)[: len(force)]
-        return np.asarray(self._fine.solve(f) + shift[self._component])
+        return np.asarray(self._fine.solve(f) + shift.take(self._component, axis=0))
 
 
 class PinnedModel:

@@ -149,7 +149,16 @@ class ComponentTransform:
 
     def filtered(self, u: FloatArray, factors: list[FloatArray]) -> FloatArray:
         """The circulant matrix of sampled factors, or those of modulated ones, times u; shape (n, k)."""
+        if len(self._sizes) == 1:  # all components, one after the other
+            return _filtered(u.reshape(-1, self._sizes[0], u.shape[1]), factors[0]).reshape(u.shape)
         result = np.empty_like(u)
-        for size, rows, factor in zip(self._sizes, self._rows, factors, strict=True):
-            result[rows] = irfft(rfft(u[rows], axis=1) * factor[..., None], size, axis=1)
+        for rows, factor in zip(self._rows, factors, strict=True):
+            result[rows] = _filtered(u[rows], factor)
         return result
+
+
+def _filtered(u: FloatArray, factor: FloatArray) -> FloatArray:
+    """Of components of one size; shape (components, size, k)."""
+    waves = rfft(u, axis=1)
+    waves *= factor[..., None]
+    return np.asarray(irfft(waves, u.shape[1], axis=1))
