@@ -210,7 +210,7 @@ class Mesh:
 
     def disjoint(self, i: IntArray, j: IntArray) -> BoolArray:
         """Whether the closures of edges ``i`` and ``j`` are disjoint: no vertex in common."""
-        return np.asarray(self.index_distance(i, j) > 1)
+        return np.asarray((i != j) & (self.next[i] != j) & (self.next[j] != i))
 
     def changes(self, u: FloatArray) -> FloatArray:
         """U(I↑) − U(I↓) of values at the vertices; (n, …) to (edges, …)."""

@@ -98,17 +98,19 @@ class Circulants:
 
     def __init__(self, mesh: Mesh, lengths: FloatArray, apply: LinearMap) -> None:
         self._transform = ComponentTransform(mesh)
-        means = np.add.reduceat(lengths, mesh.offsets[:-1]) / np.asarray(mesh.component_sizes)
+        sizes = np.asarray(mesh.component_sizes)
+        means = np.add.reduceat(lengths, mesh.offsets[:-1]) / sizes
         self._scale = means[mesh.component, None]
         one = np.ones(mesh.size)
         symbol = Parameter.of_steps(mesh, one).symbol(lambda v: self._scale * apply(self._scale * v), one, np.pi)
         values = self._transform.sampled(symbol)
-        self._inverse = [1.0 / value for value in values]
+        scales = (means[sizes == size, None] for size in np.unique(sizes))
+        self._inverse = [scale**2 / value for scale, value in zip(scales, values, strict=True)]
         stretches = self._transform.sampled(lambda theta: 4.0 * np.sin(0.5 * theta) ** 2)
         self._compliance = [stretch / value for value, stretch in zip(values, stretches, strict=True)]
 
     def solve(self, f: FloatArray) -> FloatArray:
-        return np.asarray(self._scale * self._transform.filtered(self._scale * f, self._inverse))
+        return self._transform.filtered(f, self._inverse)
 
     def tension(self, tangents: FloatArray) -> LinearMap:
         """With D F⁻¹ Dᵀ, which is circulant, modulated by the directions of edges."""
