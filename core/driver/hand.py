@@ -88,7 +88,10 @@ class Hand:
         self._say(lambda hold: hold.release(pin))
 
     def undo(self) -> None:
-        """Go back to before the last grab, as if it had never been; the next iterate has the number after that one."""
+        """Go back to the iterate before the last grab, as if what came after it had never been.
+
+        The next iterate has the number after that one; no `Trajectory` that has the others takes it.
+        """
         self._say(lambda hold: hold.undo())
 
     def _say(self, what: "Callable[[Hold], None]") -> None:

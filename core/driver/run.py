@@ -8,6 +8,7 @@ import numpy as np
 from ..curve import Curve, Mesh
 from ..curve.refine import Resolution
 from ..descent import METHODS, Method, NoStep, Point, Problem, State, Step
+from ..descent.searches import LineSearch
 from ..energies.components import energy_scale
 from ..energies.pull import Pull, share_of
 from ..hierarchy import SampledErrors
@@ -18,6 +19,7 @@ from .outcome import Outcome, Status, converged, degenerate
 from .rises import Rises
 from .trajectory import Iterate
 
+HELD_METRIC_STEPS = 10  # while a hand pulls, where answers at once matter more than few steps
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
 
 
@@ -81,11 +83,13 @@ class Run:
 
     def step(self) -> Step | NoStep:
         """The present method's next step, ending at a point of the present problem."""
-        point = self.point
+        point, rule = self.point, self.method.rule
+        if self.problem.objective.pull is not None and isinstance(rule, LineSearch) and rule.metric_steps > 1:
+            rule = replace(rule, metric_steps=HELD_METRIC_STEPS)
         if self.method.name != self.options.method:
             point = point.changing(metric=self.problem.solver.of_metric(self.method.metric))
         try:
-            step, self._memory = self.method.rule.step(point, self._memory)
+            step, self._memory = rule.step(point, self._memory)
             if isinstance(step, Step):
                 step = step.within(self.problem)
                 step.point.gradient_norm  # noqa: B018 (computed here, where its failure can be reported)
