@@ -1,11 +1,42 @@
-"""The dense reference of soft modes: matrices of the Lagrangian's Hessian and of the metric on ker DΦ."""
+"""The dense reference of soft modes: matrices of the Lagrangian's Hessian and of the metric on ker DΦ; and examples."""
+
+from functools import cache
 
 import numpy as np
+from descent_contracts import point_on
+from mobius_flow.core import Curve
 from mobius_flow.core.constraints import ConstraintDerivative
 from mobius_flow.core.curve.pins import holds
 from mobius_flow.core.descent import Point
+from mobius_flow.core.knots import torus_knot
 from mobius_flow.core.types import FloatArray
 from scipy.linalg import eigh, qr
+from shapes import half_circle, hopf_link, regular_polygon, torus_trefoil
+
+
+def at(curve: Curve, **options: object) -> Point:
+    return point_on(curve, edge_lengths="auto", mesh="fixed", **options)
+
+
+@cache
+def saddle(**options: object) -> Point:
+    """The torus knot T(3, 4) in its most symmetric position."""
+    return at(torus_knot(3, 4, 90), **options)
+
+
+POINTS = {
+    "trefoil": lambda: at(torus_trefoil(60)),
+    "saddle": saddle,
+    "double eigenvalues": lambda: at(torus_knot(3, 5, 100)),
+    "link": lambda: at(hopf_link(40)),
+    "arc": lambda: at(half_circle(30)),
+    "pins": lambda: at(torus_trefoil(60), pins=(0, 1, 17)),
+    "plane": lambda: at(Curve(regular_polygon(30).vertices[:, :2] * [1.0, 0.6])),
+    "pentagon": lambda: at(regular_polygon(5)),
+    "barrier": lambda: at(torus_knot(3, 5, 60)),
+    "hierarchical": lambda: at(torus_knot(3, 4, 120), solver="hierarchical"),
+    "two Gauss points": lambda: at(torus_trefoil(60), quadrature_points=2),
+}
 
 
 def dense_modes(point: Point) -> tuple[FloatArray, FloatArray]:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..deadline import check_time
+from ..energies.moebius_hessian import OwnBlocks
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from .problem import Point
@@ -42,6 +43,17 @@ def lagrangian_hessian(point: Point) -> LinearMap:
         return image
 
     return apply
+
+
+def lagrangian_matrix(point: Point) -> FloatArray:
+    """The same, the second derivatives of blocks left out, as a matrix on tangent vectors; shape (n·m, n·m)."""
+    ell, mesh, (n, m) = point.curve.edge_lengths, point.problem.mesh, point.vertices.shape
+    tau, tensions = point.curve.edge_vectors / ell[:, None], point.tangent_space.constraints.loads(point.multipliers)[0]
+    normal = np.eye(m) - 2.0 * tau[:, :, None] * tau[:, None, :]
+    matrix = point.problem.objective.hessian(point.curve)
+    bend = OwnBlocks.zeros(mesh.edges, m)._replace(ee=(tensions / ell**2)[:, None, None] * normal)
+    bend.add_to(matrix.reshape(n, m, n, m), mesh, -1.0)
+    return matrix
 
 
 def projected_conjugate_gradient(

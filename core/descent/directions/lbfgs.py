@@ -5,6 +5,7 @@ Lagrangian in, directions out, and in the middle the saddle-point solve (41) of 
 multiple of the identity.  The result is projected onto the tangent space.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,12 +31,16 @@ class LimitedMemoryBFGS:
     """
 
     history: int = 8
+    # what stands for the inverse Hessian at first, from covectors, shape (n, m); by default the inverse of the metric
+    inverse: Callable[[FloatArray], FloatArray] | None = None
     natural_step: float = 1.0
 
     def propose(self, point: Point, memory: Pairs | None) -> tuple[FloatArray, Pairs]:
         """The quasi-Newton direction, or steepest descent where that is no direction of descent."""
         pairs = () if memory is None else self._updated(memory, point)
-        direction = -_two_loops(point, pairs)
+        direction = -point.gradient
+        if pairs or self.inverse is not None:
+            direction = -self._two_loops(point, point.lagrangian_derivative(point.multipliers), pairs)
         slope = float(np.sum(point.derivative * direction))
         if not slope < -1e-3 * point.gradient_norm * point.tangent_space.norm(direction):
             direction, pairs = -point.gradient, ()
@@ -50,17 +55,15 @@ class LimitedMemoryBFGS:
             return memory.pairs
         return (*memory.pairs, (s, y))[-self.history :]
 
-
-def _two_loops(point: Point, pairs: tuple[tuple[FloatArray, FloatArray], ...]) -> FloatArray:
-    """H DE for the inverse Hessian H that the pairs make of the inverse metric."""
-    q = point.derivative.copy()
-    weights = []
-    for s, y in reversed(pairs):
-        rho = 1.0 / np.sum(s * y)
-        alpha = rho * np.sum(s * q)
-        q -= alpha * y
-        weights.append((alpha, rho))
-    r = point.tangent_space.gradient(q)[0] if pairs else point.gradient.copy()
-    for (s, y), (alpha, rho) in zip(pairs, reversed(weights), strict=True):
-        r += (alpha - rho * np.sum(y * r)) * s
-    return point.transport(r) if pairs else r
+    def _two_loops(self, point: Point, q: FloatArray, pairs: tuple[tuple[FloatArray, FloatArray], ...]) -> FloatArray:
+        """H q for the inverse Hessian H that the pairs make of the first one."""
+        weights = []
+        for s, y in reversed(pairs):
+            rho = 1.0 / np.sum(s * y)
+            alpha = rho * np.sum(s * q)
+            q = q - alpha * y
+            weights.append((alpha, rho))
+        r = point.tangent_space.gradient(q)[0] if self.inverse is None else self.inverse(q)
+        for (s, y), (alpha, rho) in zip(pairs, reversed(weights), strict=True):
+            r += (alpha - rho * np.sum(y * r)) * s
+        return point.transport(r)

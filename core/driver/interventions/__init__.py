@@ -9,6 +9,7 @@ from .fallback import CheckAccuracy, Fallback
 from .grow import Grow
 from .links import Composite, SplitLinks
 from .remesh import FinerMesh, Remesh
+from .rest import Rest
 from .saddle import EscapeSaddle
 
 INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
@@ -19,6 +20,7 @@ INTERVENTIONS: Sequence[Callable[[Run], Intervention]] = (
     Composite,
     Balance,
     FinerMesh,
+    Rest,
     Fallback,
     Remesh,
     CheckAccuracy,

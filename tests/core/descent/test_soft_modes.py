@@ -1,48 +1,23 @@
 """Soft modes by products against the dense eigenvalue problem."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
-from dense_stability import dense_modes
-from descent_contracts import point_on
-from mobius_flow.core import Curve, RelaxOptions, minimize
+from dense_stability import POINTS, at, dense_modes, saddle
+from mobius_flow.core import RelaxOptions, minimize
 from mobius_flow.core.descent import Point
+from mobius_flow.core.descent.newton import Curvature
 from mobius_flow.core.descent.soft_modes import BULK, smooth_starts, soft_modes
+from mobius_flow.core.driver.interventions import saddle as stability_module
 from mobius_flow.core.driver.interventions.saddle import stability
 from mobius_flow.core.knots import torus_knot
 from mobius_flow.core.types import FloatArray
-from shapes import half_circle, hopf_link, regular_polygon, torus_trefoil
-
-
-def at(curve: Curve, **options: object) -> Point:
-    return point_on(curve, edge_lengths="auto", mesh="fixed", **options)
-
-
-@cache
-def saddle(**options: object) -> Point:
-    """The torus knot T(3, 4) in its most symmetric position."""
-    return at(torus_knot(3, 4, 90), **options)
+from shapes import torus_trefoil
 
 
 def starts(point: Point) -> FloatArray:
     return smooth_starts(point, np.random.default_rng(5))
-
-
-POINTS = {
-    "trefoil": lambda: at(torus_trefoil(60)),
-    "saddle": saddle,
-    "double eigenvalues": lambda: at(torus_knot(3, 5, 100)),
-    "link": lambda: at(hopf_link(40)),
-    "arc": lambda: at(half_circle(30)),
-    "pins": lambda: at(torus_trefoil(60), pins=(0, 1, 17)),
-    "plane": lambda: at(Curve(regular_polygon(30).vertices[:, :2] * [1.0, 0.6])),
-    "pentagon": lambda: at(regular_polygon(5)),
-    "barrier": lambda: at(torus_knot(3, 5, 60)),
-    "hierarchical": lambda: at(torus_knot(3, 4, 120), solver="hierarchical"),
-    "two Gauss points": lambda: at(torus_trefoil(60), quadrature_points=2),
-}
 
 
 @pytest.mark.parametrize("name", POINTS)
@@ -57,8 +32,12 @@ def test_all_soft_modes_are_those_of_the_matrix(name: str) -> None:
     assert (found.residuals[:soft] <= 1e-6).all()
 
 
+@pytest.mark.parametrize("factorised", [True, False])
 @pytest.mark.parametrize("name", POINTS)
-def test_the_index_is_that_of_the_matrix(name: str) -> None:
+def test_the_index_is_that_of_the_matrix(name: str, factorised: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether factors tell it or Ritz values."""
+    if not factorised:
+        monkeypatch.setattr(Curvature, "is_known", lambda point: False)
     point = POINTS[name]()
     found = stability(point)
     assert found.index == np.count_nonzero(dense_modes(point)[0] < -found.zero)
@@ -112,11 +91,12 @@ def test_nothing_is_soft_where_nothing_can_move() -> None:
     assert stability(held).index == 0
 
 
-def test_what_is_not_near_enough_is_no_index() -> None:
-    found = stability(saddle())
-    assert found.index is not None
-    rough = type(found)(soft_modes(saddle(), starts(saddle()), most=16), found.zero)
-    assert rough.index is None
+def test_what_is_not_near_enough_is_no_index(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where Ritz values tell the index, because the matrix is too large."""
+    monkeypatch.setattr(Curvature, "is_known", lambda point: False)
+    assert stability(saddle()).index is not None
+    monkeypatch.setattr(stability_module, "soft_modes", lambda point, starts, _: soft_modes(point, starts, most=16))
+    assert stability(saddle()).index is None
 
 
 @pytest.mark.parametrize(("n", "options"), [(120, {"metric": "l2"}), (60, {"solver": "hierarchical"})])

@@ -1,0 +1,85 @@
+"""The quadratic end of a descent: L-BFGS with the inverse of the Lagrangian's Hessian in place of that of the metric.
+
+Near a minimum J_C⁻¹ D²L has a few eigenvalues far below its bulk, those of Möbius maps being some 11/N²: in the metric
+hundreds of steps crawl along their valleys.  With a multiple of the metric that makes it positive definite on the
+tangent space, D²L + σ J_C is factorised as a whole, which is as dear as a few steps; the next steps share it, and the
+pairs of L-BFGS tell what changes on the way.  Newton's method it is where one step suffices.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..arguments import checked_fields, number
+from ..deadline import check_time
+from ..energies.energy import Approximate
+from ..saddle.indefinite import FactorisedHessian
+from .directions import LimitedMemoryBFGS
+from .hessian import ASSEMBLED_SIZE, lagrangian_matrix
+from .problem import Point
+from .searches import Armijo, LineSearch
+from .step import State, Step
+
+
+class Curvature:
+    """The Lagrangian's second derivative at a point, on the tangent space, against the metric there."""
+
+    def __init__(self, point: Point) -> None:
+        check_time()
+        self.point, self._matrix, self._metric = point, lagrangian_matrix(point), point.inner_product.dense()
+
+    @staticmethod
+    def is_known(point: Point) -> bool:
+        """Whether there is one, exact and small enough to be factorised."""
+        objective = point.problem.objective
+        exact = objective.has_hessian and not isinstance(objective.energy, Approximate)
+        return exact and point.problem.geometry.prescribes and point.vertices.size <= ASSEMBLED_SIZE
+
+    def shifted(self, shift: float) -> FactorisedHessian:
+        """D²L + σ J for a shift σ; as many of its eigenvalues are negative as D²L has below −σ against J."""
+        check_time()
+        (n, m), matrix = self.point.vertices.shape, self._matrix.copy()
+        for k in range(m):
+            matrix.reshape(n, m, n, m)[:, k, :, k] += shift * self._metric
+        return FactorisedHessian(matrix, self.point.tangent_space.constraints)
+
+    def gain(self, inverse: FactorisedHessian) -> float:
+        """The decrease of the energy that a quadratic model promises, half the square of Newton's decrement."""
+        return 0.5 * float(np.sum(self.point.derivative * inverse.solve(self.point.derivative)))
+
+
+@checked_fields
+@dataclass(frozen=True)
+class Newton:
+    """Steps that share one second derivative."""
+
+    first_shift: float = number(2e-3)  # σ of the first: below the bulk of the eigenvalues, above those of Möbius maps
+    factor: float = number(4.0, above=1)  # by which σ falls after full steps, and grows where it does not suffice
+    steps: int = number(8)
+    short: float = number(0.3, most=1)  # part of a step that shows that the model is outdated, or σ too small
+    # full steps gain half of what their slope promises, and so must not be asked for that
+    search: Armijo = field(default_factory=lambda: Armijo(decrease=0.1))
+
+    def definite(self, curvature: Curvature, shift: float) -> tuple[FactorisedHessian, float]:
+        """The factors for the least shift, from a given one on, that makes the Hessian positive definite."""
+        while (inverse := curvature.shifted(shift)).negative:
+            shift *= self.factor
+        return inverse, shift
+
+    def along(self, point: Point, inverse: FactorisedHessian, most: int) -> Iterator[Step]:
+        """At most so many steps from a point on, until one is short, or none is found."""
+        rule, state = LineSearch(LimitedMemoryBFGS(inverse=inverse.solve), self.search, self.steps), State()
+        for _ in range(min(most, self.steps)):
+            step, state = rule.step(point, state)
+            if not isinstance(step, Step):
+                return
+            yield step
+            if step.size < self.short:
+                return
+            point = step.point
+
+    def next_shift(self, shift: float, steps: tuple[Step, ...]) -> float:
+        """σ for the next second derivative, as the first step with this one was full, or short."""
+        first = steps[0].size if steps else 0.0
+        return shift / self.factor if first == 1.0 else shift * self.factor if first < self.short else shift

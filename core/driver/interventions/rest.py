@@ -1,0 +1,91 @@
+"""The end of a relaxation: by second derivatives to the last digits, with the index of the critical point."""
+
+from dataclasses import dataclass, field, replace
+
+from ...arguments import checked_fields, number
+from ...descent import METHODS, Step
+from ...descent.newton import Curvature, Newton
+from ...descent.searches.trials import on_target
+from ...energies.components import energy_scale
+from ...metrics import MoebiusMetric
+from ...saddle.indefinite import FactorisedHessian
+from ..outcome import Outcome
+from ..run import Change, Intervention
+from .remesh import is_unresolved
+from .saddle import stability, unresolved
+
+MINIMUM = "a minimum"
+ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
+
+
+@checked_fields
+@dataclass(eq=False)
+class Rest(Intervention):
+    """On the last mesh second derivatives take over from L-BFGS until nothing is left to gain; they tell the index."""
+
+    newton: Newton = field(default_factory=Newton)
+    loosest: float = number(1e-4)  # tolerance from which on gradients are all that is asked for
+    gradient: float = number(1e-3)  # of √E, its norm at which second derivatives take over
+    exact: float = number(1e-8)  # of E, what may be left to gain
+    trusted: float = number(0.1)  # largest σ: where more is needed, as on a ridge, L-BFGS goes on
+    _shift: float = field(default=0.0, init=False)
+
+    def started(self) -> None:
+        self._shift, self._below = self.newton.first_shift, self.gradient
+
+    def stepped(self, step: Step) -> Change | None:
+        point, mesh = self.run.point, self.run.options.mesh
+        relative = point.gradient_norm / energy_scale(point.problem.mesh, point.energy) ** 0.5
+        if relative > self._below or not self._applies or mesh == "adaptive":
+            return None
+        if self.run.options.ends_finer and is_unresolved(self.run.iterate.curve):
+            return None
+        self._below = 0.5 * relative  # unless it helps
+        inverse, self._shift = self.newton.definite(Curvature(point), self._shift)
+        if self._shift > self.trusted:
+            self._shift = self.newton.first_shift
+            return None
+        steps = self._steps(inverse)
+        if steps and steps[0].size >= self.newton.short:
+            self._below = self.gradient
+        return Change(steps) if steps else None
+
+    def converged(self, outcome: Outcome) -> Outcome | Change | None:
+        if self._applies:
+            point, zero = self.run.point, unresolved(self.run.point.curve)
+            least = self.exact * energy_scale(point.problem.mesh, point.energy)
+            curvature = Curvature(point)
+            inverse, shift = self.newton.definite(curvature, min(zero, self._shift))
+            if curvature.gain(inverse) > least:
+                if shift < self._shift:
+                    inverse, shift = self.newton.definite(curvature, self._shift)
+                self._shift = shift
+                steps = self._steps(inverse)
+                if steps and steps[-1].point.energy < point.energy - least:
+                    return Change(steps)
+            index = 0 if shift <= zero else curvature.shifted(zero).negative
+        elif self.run.options.stability or self.run.options.escape_saddles:
+            index = stability(self.run.point).index
+        else:
+            return None
+        return self._told(replace(outcome, negative_eigenvalues=index))
+
+    def _steps(self, inverse: FactorisedHessian) -> tuple[Step, ...]:
+        steps = tuple(self.newton.along(self.run.point, inverse, self.run.iterations_left))
+        self._shift = self.newton.next_shift(self._shift, steps)
+        return steps
+
+    def _told(self, outcome: Outcome) -> Outcome:
+        index, options = outcome.negative_eigenvalues, self.run.options
+        if index:
+            return outcome.adding("a saddle of index {index}", index=index)
+        if not (options.stability or options.escape_saddles):
+            return outcome
+        return outcome.adding(ILL_CONDITIONED if index is None else MINIMUM)
+
+    @property
+    def _applies(self) -> bool:
+        run, point = self.run, self.run.point
+        usual = run.method is METHODS["lbfgs"] and point.problem.metric.name == MoebiusMetric.name
+        at_once = run.options.tolerance <= self.loosest and not run.frozen and on_target(point)
+        return usual and at_once and Curvature.is_known(point)

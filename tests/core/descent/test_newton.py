@@ -1,0 +1,72 @@
+"""The quadratic end: systems of second derivatives against dense algebra, and what it promises of energies at rest."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from dense_stability import POINTS, dense_modes, lagrangian_hessian_matrix, tangent_basis
+from mobius_flow.core import RelaxOptions, Status, Task, minimize
+from mobius_flow.core.descent.hessian import lagrangian_matrix
+from mobius_flow.core.descent.newton import Curvature, Newton
+from mobius_flow.core.knots import torus_knot
+from shapes import torus_trefoil
+
+EXACT = [name for name in POINTS if name != "hierarchical"]
+FIXED = RelaxOptions(vertices=80, mesh="fixed")
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_systems_are_those_of_dense_algebra(name: str) -> None:
+    """Solutions on a basis of the tangent space, and the number of eigenvalues below −σ, with arcs, links and pins."""
+    point, shift = POINTS[name](), 0.3
+    curvature = Curvature(point)
+    force = np.random.default_rng(3).normal(size=point.vertices.shape)
+    u = curvature.shifted(shift).solve(force)
+    basis, n = tangent_basis(point.tangent_space.constraints), len(point.vertices)
+    gram = point.tangent_space.apply(basis.reshape(n, -1)).reshape(basis.shape)
+    reduced = basis.T @ (lagrangian_hessian_matrix(point) @ basis + shift * gram)
+    expected = (basis @ np.linalg.solve(reduced, basis.T @ force.ravel())).reshape(u.shape)
+    np.testing.assert_allclose(u, expected, atol=1e-8 * np.abs(expected).max())
+    values = dense_modes(point)[0]
+    for k in np.argsort(np.diff(values))[-2:]:  # between eigenvalues that are not multiple ones
+        assert curvature.shifted(-0.5 * (values[k] + values[k + 1])).negative == k + 1
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_the_matrix_is_that_of_the_reference(name: str) -> None:
+    point = POINTS[name]()
+    expected = lagrangian_hessian_matrix(point)
+    np.testing.assert_allclose(lagrangian_matrix(point), expected, atol=1e-10 * np.abs(expected).max())
+
+
+def test_the_shift_is_what_makes_a_saddle_definite() -> None:
+    point, newton = POINTS["saddle"](), Newton()
+    inverse, shift = newton.definite(Curvature(point), newton.first_shift)
+    lowest = dense_modes(point)[0][0]
+    assert not inverse.negative
+    assert -lowest < shift < newton.factor * -lowest
+
+
+@pytest.mark.parametrize("options", [{}, {"pins": (0, 1, 17)}, {"terms": (), "quadrature_points": 2}])
+def test_energies_at_rest_are_exact_on_their_mesh(options: dict[str, object]) -> None:
+    """Where gradients are still those of the default tolerance a run to the last digits gains nothing more."""
+    pins = options.get("pins", ())
+    start = torus_trefoil(80)
+    wanted = replace(FIXED, **{name: value for name, value in options.items() if name != "pins"})
+    found = minimize(Task(curve=start, pins=pins), wanted)
+    sharp = replace(wanted, method="trust-region", tolerance=1e-9, edge_lengths="keep")
+    exact = minimize(Task(curve=found.curve, pins=pins), sharp)
+    assert found.status is exact.status is Status.CONVERGED
+    assert 0.0 <= found.energies[-1] - exact.energies[-1] < 1e-8 * exact.energies[-1]
+
+
+def test_the_index_comes_with_the_end() -> None:
+    """Symmetric torus knots rest at saddles."""
+    for p, q, index in ((2, 3, 0), (3, 4, 2)):
+        result = minimize(torus_knot(p, q, 160), replace(FIXED, vertices=160))
+        assert result.outcome.negative_eigenvalues == index
+        assert ("saddle" in result.message) == (index > 0)
+
+
+def test_loose_tolerances_ask_for_no_more_than_gradients() -> None:
+    assert minimize(torus_trefoil(80), replace(FIXED, tolerance=1e-3)).outcome.negative_eigenvalues is None
