@@ -82,7 +82,7 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
     frames = timing.frames(motion.course(keys))
     film.compose(scene, keys, frames, motion.start.curve.mesh)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
-    _make(path, lambda temporary: render_movie(scene, temporary, progress, oversampling=2 if drawn else 1))
+    _make(path, lambda temporary: render_movie(scene, temporary, progress, oversampling=1.5 if drawn else 1))
     return keys.certified
 
 

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 Progress = Callable[[int, int], None]
 
 _MARK = "mobius_flow_copy"  # custom property of scenes made here; before Blender 5 settings of scenes are such, too
-_COMPRESSION = 5  # percent: the pictures live for a minute
 
 
 class Reel:
@@ -70,20 +69,24 @@ class Reel:
         return whole
 
 
-def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None = None, oversampling: int = 1) -> None:
+def render_movie(
+    scene: "bpy.types.Scene", path: Path, progress: Progress | None = None, oversampling: float = 1
+) -> None:
     """Render all frames of a scene made for that, in which F-curves alone move things, to an MP4 that plays everywhere.
 
-    ``progress`` gets the number of frames done and of all frames; a pixel of the film is the mean of ``oversampling``²
-    rendered ones. Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand, or after the
+    ``progress`` gets the number of frames done and of all frames; there are ``oversampling``² rendered pixels for one
+    of the film. Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand, or after the
     seconds in which the frames are put together, and leaves nothing behind. A frame in which nothing has moved is the
     frame before again. Raises OSError or RuntimeError if the film cannot be written.
     """
     try:
         with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room:
-            scene.render.resolution_percentage *= oversampling
+            scene.render.resolution_percentage = round(100 * oversampling)
             pictures = list(_pictures(scene, Path(room), progress or (lambda *_: None)))
-            scene.render.resolution_percentage //= oversampling
-            Reel(_spliced(scene, pictures), path).render()
+            scene.render.resolution_percentage = 100
+            # of all filters the one nearest to many samples, as far as edges are concerned; it would blur equal sizes
+            smoother = "CUBIC_BSPLINE" if oversampling > 1 else "NEAREST"
+            Reel(_spliced(scene, pictures, smoother), path).render()
     finally:
         sweep()
 
@@ -127,14 +130,14 @@ def _pictures(scene: "bpy.types.Scene", room: Path, progress: Progress) -> Itera
     for k, frame in enumerate(frames, 1):
         pose = [curve.evaluate(frame) for curve in curves]
         if pose != shown:
-            shown, picture = pose, room / f"{frame:06}.png"
+            shown, picture = pose, room / f"{frame:06}.jpg"
             scene.frame_set(frame)
-            rendering.render_still(scene, picture, _COMPRESSION)
+            rendering.render_still(scene, picture)
         yield picture
         progress(k, len(frames))
 
 
-def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path]) -> "bpy.types.Scene":
+def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path], smoother: str) -> "bpy.types.Scene":
     """A new scene that shows pictures from one directory for a frame each, in the size and speed of another's film."""
     import bpy
 
@@ -149,7 +152,7 @@ def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path]) -> "bpy.types.S
     strip = strips.new_image("Film", str(pictures[0]), channel=1, frame_start=1, fit_method="FIT")
     for picture in pictures[1:]:
         strip.elements.append(picture.name)
-    strip.transform.filter = "BOX"
+    strip.transform.filter = smoother
     return reel
 
 

@@ -82,7 +82,7 @@ def test_what_does_not_move_is_rendered_once(tmp_path, scene, rendered):
 
 
 @pytest.mark.parametrize("step", [1, 3])
-@pytest.mark.parametrize("oversampling", [1, 2])
+@pytest.mark.parametrize("oversampling", [1, 1.5])
 def test_every_frame_shows_its_time_in_its_colours(tmp_path, scene, step, oversampling):
     scene.frame_step = step
     path, frames = tmp_path / "a.mp4", range(1, FRAMES + 1, step)
@@ -93,7 +93,7 @@ def test_every_frame_shows_its_time_in_its_colours(tmp_path, scene, step, oversa
         np.testing.assert_allclose(picture, shown(3.0 * min(frame, MOVING)), atol=0.03)
 
 
-@pytest.mark.parametrize("oversampling", [1, 2])
+@pytest.mark.parametrize("oversampling", [1, 1.5])
 def test_a_film_shows_the_whole_picture(tmp_path, scene, oversampling):
     scene.frame_end = 2
     scene.render.use_border, scene.render.border_max_x = True, 0.25  # the rest stays black
@@ -126,7 +126,7 @@ def test_stopped_while_it_is_encoded(tmp_path, scene, monkeypatch):
     assert list(bpy.data.scenes) == [scene]
 
 
-@pytest.mark.parametrize("suffix", [".png", ".mp4"])
+@pytest.mark.parametrize("suffix", [".jpg", ".mp4"])
 def test_a_full_disk_is_noticed(tmp_path, scene, monkeypatch, suffix):
     """Blender's operator says it has written what is only half there."""
     quiet = rendering.quiet
