@@ -177,7 +177,7 @@ def relax_options(values: Mapping[str, Any]) -> RelaxOptions:
     """The core's options from the values of the settings; raises OptionError."""
     wanted = {option.name: values[option.name] for option in shown()}
     automatic = [option.name for option in shown() if option.default is None and wanted[option.name] in (0, _AUTOMATIC)]
-    return RelaxOptions(**wanted | dict.fromkeys(automatic)).keyed
+    return RelaxOptions(**wanted | dict.fromkeys(automatic))
 
 
 def key_options(values: Mapping[str, Any]) -> KeyOptions:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
 from ..core.driver import finish
-from ..core.errors import OptionError, counted
+from ..core.errors import counted
 from . import curves, signals
 from . import options as relax_options
 from .outputs import OUTPUTS, Output, admit, output_for
@@ -17,7 +17,6 @@ from .places import Write, check_places, is_file, kept, writing
 from .progress import Progress, bar
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
-KEYED = ("auto", "fixed", "finer")  # meshes that keyframes can follow
 NAMED = 4  # meshes of a run that are listed individually
 _EPILOG = """\
 examples:
@@ -64,14 +63,6 @@ def _run(options: argparse.Namespace) -> int:
     """Relax, write every requested output, and return the exit status."""
     output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
-    if output.is_scene:
-        if wanted.mesh not in KEYED:
-            reason = f"keyframes cannot follow mesh={wanted.mesh!r}; leave --mesh out, or write a curve file"
-            raise OptionError(f"{options.output}: {reason}")
-        if wanted.untangle != "never":
-            reason = "keyframes cannot follow strand moves; leave --untangle out, or write a curve file"
-            raise OptionError(f"{options.output}: {reason}")
-        wanted = wanted.keyed
     outputs = {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
     check_places(relax_options.inputs(options), outputs)
     file = curves.read(options.input, options.format)

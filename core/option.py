@@ -36,9 +36,6 @@ class Option:
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
     metavar: str = "NAME"  # placeholder of its value in the command line's help
     row: bool = False  # whether Blender's panel shows it, as what artists might set; scripts can set them all
-    # whether keyframes can follow the run whatever is chosen: they belong to points, so that no option which may
-    # leave out vertices on the way is among Blender's settings
-    keyframes: bool = True
     # words of the command line, each with the choice it selects
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
     repeated: bool = False  # whether its value is a tuple, whose items are checked
@@ -48,7 +45,7 @@ class Option:
     @property
     def is_setting(self) -> bool:
         """Whether it is among Blender's settings."""
-        return self.keyframes and not self.repeated
+        return not self.repeated
 
     def sentence(self, none: str = "") -> str:
         """The help by itself, without a full stop; ``none`` is how None, if it is allowed, is written."""

@@ -467,9 +467,16 @@ MUTANTS = (
         f"{ENGINE}/test_motion.py::test_legs_too_short_for_32_bits_have_times_of_their_own",
     ),
     Mutant(
+        "markers between the new vertices",
+        "addon/engine/markers.py",
+        "low, high = part * p // q, (part + 1) * p // q",
+        "low, high = part * p / q, (part + 1) * p / q",
+        f"{ENGINE}/test_motion.py::test_strand_moves_are_keyed",
+    ),
+    Mutant(
         "the start is rounded for nothing",
         "addon/engine/motion.py",
-        "int(not self._rounds_freely(self.start, 0, free))",
+        "int(not self._rounds_freely(self.start, keys[0], free))",
         "0",
         f"{ENGINE}/test_motion.py::test_rounding_of_the_start_is_a_gap_of_its_own",
     ),

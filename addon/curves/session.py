@@ -121,7 +121,7 @@ class Session:
         try:
             self.task, self.options = self._task(held, options.balance), options
             if continues:  # the keys that are there have as many points as the curves have now
-                self.options = replace(options, vertices=len(self.group.curve), mesh="fixed")
+                self.options = replace(options, vertices=len(self.group.curve), mesh="fixed", untangle="never")
         except BaseException:
             self.group.discard()
             raise
@@ -226,7 +226,7 @@ class Session:
     @property
     def start(self) -> Curve:
         """The curve that the relaxation started from, with as many vertices as the last iterate."""
-        return self._motion.start.curve
+        return self._motion.start
 
     @property
     def frame(self) -> Frame:

@@ -34,7 +34,7 @@ class Course:
     """How far a relaxation has come at each of several frames; ascending arrays of shape (frames,)."""
 
     iterates: FloatArray  # number of iterates passed
-    distance: FloatArray  # length of the way travelled, in the root mean square over the vertices
+    distance: FloatArray  # way of the fastest vertex, in sizes of the curve, summed up
     flow_time: FloatArray  # sum of the step sizes
 
     def share(self, pace: Pace) -> FloatArray:

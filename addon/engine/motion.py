@@ -5,16 +5,17 @@ from one key to the next: another path, which needs its own proof, in the number
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ...core import Curve, Iterate, MobiusFlowError
 from ...core.curve import Mesh
-from ...core.curve.refine import subdivide, subdivision
 from ...core.types import FloatArray
+from ...core.verify.transition import DifferentCurveError, common_vertices
 from .key_options import Course, Pace
+from .markers import Markers
 from .placement import Frame, Link
 
 Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
@@ -54,55 +55,70 @@ def frames_of(link: Link, iterate: Iterate) -> list[Frame]:
     return [link.to_stored(iterate.curve.mesh, end).astype(np.float32) for end in ends]
 
 
+@dataclass(frozen=True, eq=False)
+class _Shape:
+    """What was recorded of one time: the vertices as stored, (n, 3), on the mesh that there was."""
+
+    time: float
+    points: Frame
+    stage: int  # number of the mesh
+
+
 class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
-    All have as many points as the last one: where edges are split on the way, those of earlier frames are split too, at
-    the same fractions. ``first``: the start as it is stored already, where keys are added to others.
+    All keys have as many points: where the mesh changes on the way, vertices and points on edges, see `Markers`.
+    ``first``: the start as it is stored already, where keys are added to others.
     """
 
     def __init__(self, link: Link, first: Frame | None = None) -> None:
         self._link, self._first = link, first
         self._start: Iterate | None = None
         self._last: Iterate | None = None
-        self._keys: list[Key] = []
-        self._ends: list[int] = []  # positions of the iterates among the keys; the others are inner ends of legs
+        self._shapes: list[_Shape] = []
+        self._meshes: list[Mesh] = []
+        self._markers: list[Markers] = []  # of each component
+        self._ends: list[int] = []  # positions of the iterates among the shapes; the others are inner ends of legs
         self._steps: list[float] = []  # sizes of the steps that led to the iterates
 
     def add(self, iterate: Iterate) -> None:
-        """Append an iterate with its legs; raises MobiusFlowError if its mesh differs by more than split edges."""
-        if self._last is not None and iterate.curve.mesh != self._last.curve.mesh:
-            self._split(iterate.curve)
+        """Append an iterate with its legs; raises MobiusFlowError if none lead to it, and it is not the last one."""
         frames = frames_of(self._link, iterate)
-        if self._start is None and self._first is not None:
-            frames = [self._first]
-        for frame in frames if self._keys else ():
+        if self._last is None:
+            self._start, self._mesh = iterate, iterate.curve.mesh
+            self._meshes.append(self._mesh)
+            self._markers = list(map(Markers, self._mesh.component_sizes, self._mesh.closed))
+            frames = frames if self._first is None else [self._first]
+        elif iterate.path:
             held = list(iterate.pins)
-            frame[held] = self._keys[-1].points[held]  # rounding them anew might move them
-        self._start = self._start or iterate
+            for frame in frames:
+                frame[held] = self._shapes[-1].points[held]  # rounding them anew might move them
+        else:
+            self._change(self._last.curve, iterate.curve, frames[0])
         self._last = iterate
         times = self._leg_times(iterate.index, frames)
-        self._keys += map(Key, times, frames)
-        self._ends.append(len(self._keys) - 1)
+        self._shapes += [_Shape(*each, len(self._meshes) - 1) for each in zip(times, frames, strict=True)]
+        self._ends.append(len(self._shapes) - 1)
         self._steps.append(iterate.step_size if iterate.index else 0.0)
 
-    def _split(self, finer: Curve) -> None:
-        """Split the edges of all frames as those of the last iterate are split in a finer curve."""
-        mesh, pieces = self.last.curve.mesh, subdivision(self.last.curve, finer)
-        if pieces is None:
-            raise MobiusFlowError(
-                "keyframes need the same vertices throughout; relax with mesh='fixed' or mesh='finer'"
-            )
-        self._start = replace(self.start, curve=subdivide(self.start.curve, pieces))
-        for k, key in enumerate(self._keys):
-            points = subdivide(Curve(key.points, mesh), pieces).vertices
-            self._keys[k] = replace(key, points=points.astype(np.float32))
+    def _change(self, old: Curve, new: Curve, frame: Frame) -> None:
+        """Go on to another mesh; vertices that stay keep the numbers that they are stored as."""
+        for markers, was, now in zip(self._markers, old.mesh.slices, new.mesh.slices, strict=True):
+            try:
+                here, there = common_vertices(old.vertices[was], new.vertices[now], markers.closed)
+            except DifferentCurveError as error:
+                raise MobiusFlowError(f"keyframes cannot follow a change to another curve: {error}") from error
+            markers.change(here, there, now.stop - now.start)
+            frame[now][there] = self._shapes[-1].points[was][here]
+        self._meshes.append(new.mesh)
+        sizes = tuple(map(len, self._markers))
+        self._mesh = self._mesh if sizes == self._mesh.component_sizes else Mesh(sizes, new.mesh.closed)
 
     def _leg_times(self, index: int, frames: Sequence[Frame]) -> list[float]:
         """End times of the legs, so that the fastest vertex keeps its speed from leg to leg."""
         if len(frames) == 1:
             return [float(index)]
-        corners = [self._common(frame) for frame in (self._keys[-1].points, *frames)]
+        corners = [self._link.to_common(self._meshes[-1], frame) for frame in (self._shapes[-1].points, *frames)]
         ways = [float(np.abs(b - a).max()) for a, b in pairwise(corners)]
         passed = np.cumsum(np.maximum(ways, 1e-3 * (max(ways) or 1.0)))
         return [*(index - 1 + passed[:-1] / passed[-1]).tolist(), float(index)]
@@ -115,7 +131,8 @@ class Motion:
         motion from one to the next cannot be proved; ``pace``: what passes evenly from frame to frame.
         """
         chosen = self._spread(limit, pace)
-        keys, unproved = [self._keys[chosen[0]]], int(not self._rounds_freely(self.start, 0, free))
+        keys = [self._key(chosen[0])]
+        unproved = int(not self._rounds_freely(self.start, keys[0], free))
         for a, b in pairwise(chosen):
             for key, proved in self._way(a, b, free):
                 keys.append(key)
@@ -124,8 +141,10 @@ class Motion:
 
     def result(self, free: Proof) -> Keys:
         """Return the last iterate alone; it counts as proved if the way there and its rounding were."""
-        proved = self.last.certified and self._rounds_freely(self.last, -1, free)
-        return Keys((self._keys[-1],), int(not proved))
+        last = Key(self._shapes[-1].time, self.frame)
+        exact = Curve(self._marked(self.last.curve.vertices, -1), self._mesh)
+        proved = self.last.certified and self._rounds_freely(exact, last, free)
+        return Keys((last,), int(not proved))
 
     def course(self, keys: Keys) -> Course:
         """How far the relaxation has come at each of some keys.
@@ -133,32 +152,45 @@ class Motion:
         The way is measured along all that was recorded: thinning changes no key's frame.
         """
         times = [key.time for key in keys.keys]
-        recorded, whole = [key.time for key in self._keys], self._course
+        recorded, whole = [shape.time for shape in self._shapes], self._course
         columns = (whole.iterates, whole.distance, whole.flow_time)
         return Course(*(np.interp(times, recorded, column) for column in columns))
 
     @property
     def _course(self) -> Course:
         """How far the relaxation has come at each of the recorded frames."""
-        times = np.array([key.time for key in self._keys])
-        ways = [_way(self._common(a.points), self._common(b.points)) for a, b in pairwise(self._keys)]
+        times = np.array([shape.time for shape in self._shapes])
+        common = [self._link.to_common(self._meshes[shape.stage], shape.points) for shape in self._shapes]
+        stays = [a.stage == b.stage for a, b in pairwise(self._shapes)]
+        ways = [_way(a, b) if same else 0.0 for (a, b), same in zip(pairwise(common), stays, strict=True)]
         flow_time = np.interp(times, times[self._ends], np.cumsum(self._steps))
         return Course(times, np.concatenate([[0.0], np.cumsum(ways)]), flow_time)
 
     @property
-    def start(self) -> Iterate:
+    def start(self) -> Curve:
+        """The curve that the relaxation started from, with all points that keys have."""
         assert self._start is not None, "a relaxation yields at least its start"
-        return self._start
+        return Curve(self._marked(self._start.curve.vertices, 0), self._mesh)
 
     @property
     def frame(self) -> Frame:
-        """The last iterate's vertices as Blender will store them."""
-        return self._keys[-1].points
+        """The last iterate as Blender will store it, with all points that keys have."""
+        return self._key(-1).points
 
     @property
     def last(self) -> Iterate:
         assert self._last is not None, "a relaxation yields at least its start"
         return self._last
+
+    def _key(self, position: int) -> Key:
+        shape = self._shapes[position]
+        return Key(shape.time, self._marked(shape.points, shape.stage).astype(np.float32))
+
+    def _marked(self, points: Frame | FloatArray, stage: int) -> FloatArray:
+        """All markers of a polygon on the mesh of a stage."""
+        mesh = self._meshes[stage]
+        pieces = zip(self._markers, mesh.slices, strict=True)
+        return np.concatenate([each.on(points[piece].astype(np.float64), stage) for each, piece in pieces])
 
     def _spread(self, limit: int | None, pace: Pace) -> list[int]:
         """Positions of the iterates nearest to so many evenly spread frames; several may have the same."""
@@ -171,11 +203,12 @@ class Motion:
 
     def _way(self, a: int, b: int, free: Proof) -> Iterator[tuple[Key, bool]]:
         """Yield the keys after position ``a`` up to ``b``, each with whether the motion to it was proved."""
-        if self._proved(self._keys[a], self._keys[b], free):
-            yield self._keys[b], True
+        start, end = self._key(a), self._key(b)
+        if self._proved(start, end, free):
+            yield end, True
         elif b - a == 1:
-            halves = self._halves(self._keys[a], self._keys[b], free, _HALVINGS)
-            yield from ((key, True) for key in halves) if halves else ((self._keys[b], False),)
+            halves = self._halves(start, end, free, _HALVINGS)
+            yield from ((key, True) for key in halves) if halves else ((end, False),)
         else:
             # An iterate makes a better key than the inner end of a leg.
             inside = [k for k in self._ends if a < k < b] or range(a + 1, b)
@@ -198,19 +231,18 @@ class Motion:
         return keys
 
     def _proved(self, start: Key, end: Key, free: Proof) -> bool:
-        return free(self.start.curve.mesh, self._common(start.points), self._common(end.points))
+        return free(self._mesh, self._common(start.points), self._common(end.points))
 
-    def _rounds_freely(self, iterate: Iterate, position: int, free: Proof) -> bool:
-        """Whether rounding an iterate to the numbers that Blender stores pushes nothing through anything."""
-        mesh = iterate.curve.mesh
-        exact = self._link.to_stored(mesh, iterate.curve.vertices)
-        return free(mesh, self._common(exact), self._common(self._keys[position].points))
+    def _rounds_freely(self, curve: Curve, key: Key, free: Proof) -> bool:
+        """Whether rounding a curve to the numbers that Blender stores pushes nothing through anything."""
+        exact = self._link.to_stored(self._mesh, curve.vertices)
+        return free(self._mesh, self._common(exact), self._common(key.points))
 
     def _common(self, points: Frame | FloatArray) -> FloatArray:
         """Stored points where motions are proved; shape (n, 3)."""
-        return self._link.to_common(self.start.curve.mesh, points)
+        return self._link.to_common(self._mesh, points)
 
 
 def _way(a: FloatArray, b: FloatArray) -> float:
-    """Root mean square over the vertices of the way from one frame to another."""
-    return float(np.sqrt(np.square(b - a).sum(axis=1).mean()))
+    """Way of the fastest vertex from one frame to another, in sizes of the curve: what the eye follows."""
+    return float(np.linalg.norm(b - a, axis=1).max() / np.ptp(a, axis=0).max())

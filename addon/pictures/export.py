@@ -59,7 +59,7 @@ def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
     scene = _empty_scene()
     rendering.use_cycles(scene, *_PICTURE)
     frames = film.steady(motion).frames(motion.course(keys))
-    film.compose(scene, keys, frames, motion.start.curve.mesh, origin)
+    film.compose(scene, keys, frames, motion.start.mesh, origin)
     _make(path, _save)
     return keys.certified
 
@@ -80,7 +80,7 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
         rendering.skip_frames(scene)
     timing = film.smooth(keys)
     frames = timing.frames(motion.course(keys))
-    film.compose(scene, keys, frames, motion.start.curve.mesh)
+    film.compose(scene, keys, frames, motion.start.mesh)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     _make(path, lambda temporary: render_movie(scene, temporary, progress, oversampling=1.5 if drawn else 1))
     return keys.certified
@@ -90,7 +90,7 @@ def write_still(path: Target, iterates: Sequence[Iterate]) -> bool:
     """Render the relaxed curve, the last iterate, to a .png; otherwise as `write_blend`."""
     motion, _ = film.recorded(iterates)
     keys = motion.result(is_free)
-    _render(path, keys, motion.start.curve.mesh, *_PICTURE)
+    _render(path, keys, motion.start.mesh, *_PICTURE)
     return keys.certified
 
 

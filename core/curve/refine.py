@@ -68,20 +68,6 @@ def subdivide(curve: Curve, pieces: IntArray) -> Curve:
     return Curve(vertices, mesh)
 
 
-def subdivision(coarse: Curve, fine: Curve) -> IntArray | None:
-    """The pieces of which `subdivide` makes one polygon from the other; None if there are none."""
-    place = {tuple(vertex): k for k, vertex in enumerate(fine.vertices.tolist())}
-    at = [place.get(tuple(vertex), -1) for vertex in coarse.vertices.tolist()]
-    if coarse.mesh.closed != fine.mesh.closed:
-        return None
-    ends = zip(coarse.mesh.slices, fine.mesh.slices, coarse.mesh.closed, strict=True)
-    pieces = np.concatenate([np.diff([*at[old], new.stop] if closed else at[old]) for old, new, closed in ends])
-    if pieces.min() < 1 or pieces.sum() != fine.mesh.edges:
-        return None
-    again = subdivide(coarse, pieces)
-    return pieces if again.mesh == fine.mesh and np.array_equal(again.vertices, fine.vertices) else None
-
-
 def target_spacing(curve: Curve, resolution: Resolution) -> FloatArray:
     """Largest edge length wanted on every edge: that of the count, or what gaps to other strands allow; shape (edges,).
 

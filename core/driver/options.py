@@ -180,7 +180,6 @@ class RelaxOptions:
         "faster, gets them all back, and ends as with finer unless vertices or edge_lengths are given",
         choices=MESHES,
         metavar="M",
-        keyframes=False,
         shorthands={"resolve": "finer", "adaptive": "adaptive"},
     )
     stability: bool = option(
@@ -215,7 +214,6 @@ class RelaxOptions:
         "change the mesh, and are no iterations",
         choices=UNTANGLE,
         metavar="U",
-        keyframes=False,
         row=True,
     )
     hops: int = option(
@@ -271,10 +269,3 @@ class RelaxOptions:
             untangle="never",
             hops=0,
         )
-
-    @property
-    def keyed(self) -> "RelaxOptions":
-        """The same for keyframes, which belong to vertices: ``auto`` neither leaves any out nor brings them back."""
-        splits = self.ends_finer or (self.grow != 1.0 and self.edge_lengths == "auto")
-        mesh = ("finer" if splits else "fixed") if self.mesh == "auto" else self.mesh
-        return replace(self, mesh=mesh, untangle="never")

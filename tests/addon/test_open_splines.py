@@ -35,7 +35,7 @@ def cyclic(obj):
 def test_the_result_is_the_librarys():
     obj = add_arc()
     start = Curve(stored(obj.data).astype(np.float64), Mesh((60,), (False,)))
-    result = minimize(start, RelaxOptions(max_iterations=5).keyed).curve
+    result = minimize(start, RelaxOptions(max_iterations=5)).curve
     relax(max_iterations=5)
     np.testing.assert_array_equal(stored(obj.data), result.vertices.astype(np.float32))
     assert cyclic(obj) == [False]

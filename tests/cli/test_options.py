@@ -87,25 +87,8 @@ def test_bounds_hold_before_a_file_is_read(words, said, tmp_path, capsys):
     assert said in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("word", "what", "option"),
-    [
-        ("--adaptive", "mesh='adaptive'", "--mesh"),
-        ("--mesh=adaptive", "mesh='adaptive'", "--mesh"),
-        ("--untangle=auto", "strand moves", "--untangle"),
-    ],
-)
-def test_keyframes_follow_nothing_that_leaves_vertices_out(word, what, option, tmp_path, capsys):
-    pytest.importorskip("bpy")
-    write_curve(tmp_path / "a.txt", torus_trefoil(60))
-    assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), word]) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert f"keyframes cannot follow {what}; leave {option} out, or write a curve file" in said
-
-
-@pytest.mark.parametrize("word", ["--resolve", "--mesh=fixed", "--mesh=auto"])
-def test_keyframes_follow_meshes_whose_vertices_stay(word, tmp_path):
+@pytest.mark.parametrize("word", ["--resolve", "--mesh=fixed", "--adaptive", "--untangle=always"])
+def test_keyframes_follow_all_changes_of_mesh(word, tmp_path):
     pytest.importorskip("bpy")
     write_curve(tmp_path / "a.txt", torus_trefoil(60))
     words = ["--quiet", word, "--max-iterations=1"]

@@ -52,11 +52,9 @@ def test_equal_runs_have_equal_results():
     assert first.energies == second.energies
 
 
-def test_edges_are_split_as_strands_come_near_and_keyframes_can_follow():
+def test_edges_are_split_as_strands_come_near():
     """Each mesh has the vertices of the one before it."""
     task, options = in_the_box(6.0)
-    options = options.keyed
-    assert options.mesh == "finer"
     vertices = [iterate.curve.vertices for iterate in relax(task, options)]
     assert len(vertices[-1]) > 32
     for before, after in pairwise(vertices):

@@ -35,10 +35,6 @@ def test_names_come_from_the_registries():
     assert DECLARED["mesh"].choices == ("auto", "fixed", "finer", "adaptive")
 
 
-def test_only_options_that_change_the_mesh_have_no_keyframes():
-    assert [name for name, each in DECLARED.items() if not each.keyframes] == ["mesh", "untangle"]
-
-
 @documented
 @dataclass(frozen=True, kw_only=True)
 class Oven:

@@ -8,7 +8,7 @@ import pytest
 from mobius_flow.core import Curve, CurveError, Mesh
 from mobius_flow.core.curve import check_closed
 from mobius_flow.core.curve.distances import arc_distance_of_pairs, arc_distance_of_vertices, points_along
-from mobius_flow.core.curve.refine import refine, subdivide, subdivision
+from mobius_flow.core.curve.refine import refine, subdivide
 from shapes import half_circle, opened, torus_trefoil
 
 SIZES, CLOSED = (5, 2, 3, 4, 6, 3), (True, False, False, True, False, True)
@@ -123,8 +123,6 @@ def test_new_vertices_leave_the_ends_alone() -> None:
     ends = [0, 8]
     assert np.array_equal(fine.vertices[ends], curve.vertices[[0, 4]])
     assert fine.length == pytest.approx(curve.length)
-    assert np.array_equal(subdivision(curve, fine), pieces)
-    assert subdivision(curve, opened(Curve(fine.vertices, Mesh((9, 8))), 1)) is None
 
 
 @pytest.mark.parametrize("vertices", [None, 40, 41])
