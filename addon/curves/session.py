@@ -32,7 +32,7 @@ from ..engine.key_options import KeyOptions, Output
 from ..engine.motion import Keys, Motion, Proof
 from ..engine.obstacles import in_common_space
 from ..engine.placement import Frame
-from ..engine.size import Measure, Size
+from ..engine.size import Measure
 from ..engine.words import named
 from . import bake, bevel
 from .exchange import stretch
@@ -125,8 +125,7 @@ class Session:
         except BaseException:
             self.group.discard()
             raise
-        self._motion = Motion(self.group.link, self.group.stored if continues else None)
-        self._size: Size | None = None
+        self._motion = Motion(self.group.link, self.group.stored if continues else None, self._measure)
         self.outcome: Outcome | None = None
 
     def _task(self, held: Held, balance: bool) -> Task:
@@ -189,9 +188,6 @@ class Session:
 
     def take(self, iterate: Iterate) -> None:
         """Record an iterate as it is shown, in the size that is to be kept."""
-        if (measure := self._measure) is not Measure.LENGTH:
-            self._size = self._size or Size.of(measure, iterate.curve)
-            iterate = self._size.given_to_iterate(iterate)
         self._motion.add(iterate)
 
     def prepare(self, proof: Proof) -> Prepared:

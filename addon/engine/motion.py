@@ -17,6 +17,7 @@ from ...core.verify.transition import DifferentCurveError, common_vertices
 from .key_options import Course, Pace
 from .markers import Markers
 from .placement import Frame, Link
+from .size import Measure, Size
 
 Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
 
@@ -68,13 +69,16 @@ class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
     All keys have as many points: where the mesh changes on the way, vertices and points on edges, see `Markers`.
-    ``first``: the start as it is stored already, where keys are added to others.
+    ``first``: the start as it is stored already, where keys are added to others; ``measure``: what stays as it is at the
+    start, see `engine.size`, of which the length is left to the flow.
     """
 
-    def __init__(self, link: Link, first: Frame | None = None) -> None:
-        self._link, self._first = link, first
-        self._start: Iterate | None = None
-        self._last: Iterate | None = None
+    def __init__(self, link: Link, first: Frame | None = None, measure: Measure = Measure.LENGTH) -> None:
+        self._link, self._first, self._measure = link, first, measure
+        self._size: Size | None = None
+        self._start: Curve | None = None
+        self._last: Iterate | None = None  # as it is shown,
+        self._reached: Curve | None = None  # and in its own size
         self._shapes: list[_Shape] = []
         self._meshes: list[Mesh] = []
         self._markers: list[Markers] = []  # of each component
@@ -83,9 +87,12 @@ class Motion:
 
     def add(self, iterate: Iterate) -> None:
         """Append an iterate with its legs; raises MobiusFlowError if none lead to it, and it is not the last one."""
-        frames = frames_of(self._link, iterate)
-        if self._last is None:
-            self._start, self._mesh = iterate, iterate.curve.mesh
+        if self._reached is None and self._measure is not Measure.LENGTH:
+            self._size = Size.of(self._measure, iterate.curve)
+        shown = iterate if self._size is None else self._size.given_to_iterate(iterate)
+        frames = frames_of(self._link, shown)
+        if self._reached is None:
+            self._start, self._mesh = shown.curve, iterate.curve.mesh
             self._meshes.append(self._mesh)
             self._markers = list(map(Markers, self._mesh.component_sizes, self._mesh.closed))
             frames = frames if self._first is None else [self._first]
@@ -94,8 +101,8 @@ class Motion:
             for frame in frames:
                 frame[held] = self._shapes[-1].points[held]  # rounding them anew might move them
         else:
-            self._change(self._last.curve, iterate.curve, frames[0])
-        self._last = iterate
+            self._change(self._reached, iterate.curve, frames[0])
+        self._last, self._reached = shown, iterate.curve
         times = self._leg_times(iterate.index, frames)
         self._shapes += [_Shape(*each, len(self._meshes) - 1) for each in zip(times, frames, strict=True)]
         self._ends.append(len(self._shapes) - 1)
@@ -170,7 +177,7 @@ class Motion:
     def start(self) -> Curve:
         """The curve that the relaxation started from, with all points that keys have."""
         assert self._start is not None, "a relaxation yields at least its start"
-        return Curve(self._marked(self._start.curve.vertices, 0), self._mesh)
+        return Curve(self._marked(self._start.vertices, 0), self._mesh)
 
     @property
     def frame(self) -> Frame:
