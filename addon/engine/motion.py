@@ -69,8 +69,8 @@ class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
     All keys have as many points: where the mesh changes on the way, vertices and points on edges, see `Markers`.
-    ``first``: the start as it is stored already, where keys are added to others; ``measure``: what stays as it is at the
-    start, see `engine.size`, of which the length is left to the flow.
+    ``first``: the start as it is stored already, where keys are added to others; ``measure``: what stays as it is then,
+    see `engine.size`; lengths are left to the flow.
     """
 
     def __init__(self, link: Link, first: Frame | None = None, measure: Measure = Measure.LENGTH) -> None:
