@@ -101,7 +101,7 @@ def row(name: str, curve: Curve, options: RelaxOptions, width: int, product: flo
     above = 100.0 * (result.final_energy / LEAST.get(name.removesuffix("-scrambled"), np.nan) - 1.0)
     print(
         f"{name:{width}} {sizes:>17} {kind:>8} {result.final_energy:12.6f} {f'{above:.2f} %':>7} "
-        f"{len(result.energies) - 1:6d} {seconds:8.1f} {seconds / product:7.0f}  "
+        f"{result.iterations:6d} {seconds:8.1f} {seconds / product:7.0f}  "
         f"{'yes' if result.certified else 'NO':9}  {result.status.value}",
         flush=True,
     )

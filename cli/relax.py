@@ -174,7 +174,7 @@ def _summary(result: Result) -> str:
     certified = "certified free of contact" if result.certified else "NOT certified"
     error = f" ± {result.final_energy_error * result.final_energy:.1g}" if result.final_energy_error else ""
     energy = f"Möbius energy {result.final_energy:.9g}{error}"
-    iterations = counted(len(result.energies) - 1, "iteration")
+    iterations = counted(result.iterations, "iteration")
     return (
         f"{result.message}; objective {result.energies[0]:.6g} → {result.energies[-1]:.9g} in "
         f"{iterations}, {result.seconds:.1f} s{_phases(result)}, {energy}, {certified}"

@@ -20,5 +20,5 @@ for name, above, below in zip(NAMES, *axes, strict=True):
     assert result.certified
     assert abs(result.final_energy - 4.0) < 1e-2
     draw(above, curve, name, width=2.5)
-    draw(below, result.curve, f"{len(result.energies) - 1} iterations", width=2.5)
+    draw(below, result.curve, f"{result.iterations} iterations", width=2.5)
 plt.show()

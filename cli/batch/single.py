@@ -115,7 +115,7 @@ def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> 
         "ropelength": curve.length / thickness(curve) if few else None,
         "writhe": writhe,
         "average_crossing_number": crossings,
-        "iterations": len(result.energies) - 1,
+        "iterations": result.iterations,
         "fallback_steps": len(result.fallback_steps),
         "status": result.status.value,
         "message": result.message,

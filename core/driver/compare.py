@@ -51,15 +51,16 @@ def compare(
 ) -> Generator[History, None, None]:
     """Run each method from the same refined curve for a limited number of seconds of processor time.
 
-    All methods are checked before the first one runs. The mesh ``auto`` is a fixed one here, so that steps are compared
-    on one mesh. Of the iterates of indices ``stages`` curves are kept, of the last one in place of
-    those that were not reached. Raises as `relax` does.
+    All methods are checked before the first one runs. No strands are moved, and the mesh ``auto`` is a fixed one, so
+    that steps are compared on one mesh. Of the iterates of indices ``stages`` curves are kept, of the last one in place
+    of those that were not reached. Raises as `relax` does.
     """
     check_number("time_limit", time_limit, 0.0, float("inf"))
     if not len(methods):
         raise OptionError(f"there are no methods to compare; {choice('', METHODS)}")
-    if options.mesh == "auto":
-        options = replace(options, mesh="fixed")
+    if options.untangle == "always":
+        raise OptionError("untangle='always' moves strands before any method does; leave it out to compare methods")
+    options = replace(options, mesh="fixed" if options.mesh == "auto" else options.mesh, untangle="never")
     if len(set(methods)) < len(methods):
         raise OptionError(f"methods are {','.join(methods):.60}; give each of them once")
     each = [replace(options, method=method) for method in methods]

@@ -207,7 +207,7 @@ class RelaxOptions:
         metavar="F",
     )
     untangle: str = option(
-        "never",
+        "auto",
         "Untangle",
         "whether strands are moved over and under others before the flow, so that fewer cross, every motion proved: "
         "auto, where a diagram of closed curves shows that many crossings go, and where the flow is stuck; such moves "
@@ -240,7 +240,7 @@ class RelaxOptions:
             object.__setattr__(self, "edge_lengths", tuple(map(float, self.edge_lengths)))
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
-        if self.untangle == "always" and (self.mesh == "fixed" or not isinstance(self.edge_lengths, str)):
+        if self.untangle == "always" and not self.may_untangle:
             other = "mesh='fixed'" if self.mesh == "fixed" else "edge_lengths"
             raise OptionError(f"untangle='always' changes the mesh; leave it or {other} out")
 
@@ -248,6 +248,11 @@ class RelaxOptions:
         values = [(each, getattr(self, each.name)) for each in declared(type(self))]
         changed = [f"{each.name}={short(value)}" for each, value in values if value != each.default]
         return f"RelaxOptions({', '.join(changed)})"
+
+    @property
+    def may_untangle(self) -> bool:
+        """Whether the mesh may change as it does where strands are moved."""
+        return self.mesh != "fixed" and self.edge_lengths in ("auto", "equal")
 
     @property
     def ends_finer(self) -> bool:

@@ -65,7 +65,7 @@ class Result:
     phases: tuple[Phase, ...] = ()
 
     def __repr__(self) -> str:
-        after = counted(len(self.energies) - 1, "iteration")
+        after = counted(self.iterations, "iteration")
         proved = "certified" if self.certified else "not certified"
         return f"<Result: {self.status.value} after {after}, objective {self.energies[-1]:.9g}, {proved}, {self.curve}>"
 
@@ -90,6 +90,12 @@ class Result:
         return self.last.certified
 
     @property
+    def iterations(self) -> int:
+        """The iterates after the start, but for those of strand moves."""
+        moves = self.last.strand_moves
+        return len(self.energies) - 1 - (moves.iterates if moves else 0)
+
+    @property
     def final_energy(self) -> float:
         """The Möbius energy of the last curve, without what the objective adds: what ``mobius-flow energy`` prints."""
         return self._final_energy[0]
@@ -109,7 +115,7 @@ class Result:
         return {
             "status": self.status.value,
             "message": self.message,
-            "iterations": len(self.energies) - 1,
+            "iterations": self.iterations,
             "seconds": self.seconds,
             "phases": [asdict(phase) for phase in self.phases],
             "energy": list(self.energies),
@@ -126,6 +132,7 @@ class Result:
             "fallback_steps": list(self.fallback_steps),
             "negative_eigenvalues": self.outcome.negative_eigenvalues,
             "sampled_errors": None if errors is None else asdict(errors),
+            "strand_moves": self.last.strand_moves and self.last.strand_moves.report(),
         }
 
 
@@ -214,7 +221,10 @@ def finish(
     assert last is not None, "relax yields at least its start"
     assert run.outcome is not None, "the loop is through"
     cut_short = run.outcome in (OUT_OF_MEMORY, INTERRUPTED) or run.outcome.status is Status.TIME_LIMIT
-    if cut_short and len(last.curve) < given:
+    if cut_short and last.strand_moves and not last.strand_moves.done:
+        under_way = "strands were being moved, and {left} of {before} crossings are left"
+        run.outcome = run.outcome.adding(under_way, left=last.strand_moves.left, before=last.strand_moves.before)
+    elif cut_short and len(last.curve) < given:
         fewer = Message(VERTEX_COUNT, count=len(last.curve))
         run.outcome = run.outcome.adding("it has {vertices}, {given} at the start", vertices=fewer, given=given)
     seconds = time.perf_counter() - started

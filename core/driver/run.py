@@ -1,6 +1,6 @@
 """One relaxation under way: where it stands, what happens to it, and what may be done about that between steps."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,11 +13,12 @@ from ..energies.components import energy_scale
 from ..energies.pull import Pull, share_of
 from ..hierarchy import SampledErrors
 from ..messages import Message
+from ..passes import Stage
 from ..types import FloatArray
 from .options import RelaxOptions
 from .outcome import Outcome, Status, converged, degenerate
 from .rises import Rises
-from .trajectory import Iterate
+from .trajectory import Iterate, StrandMoves
 
 HELD_METRIC_STEPS = 10  # while a hand pulls, where answers at once matter more than few steps
 LENGTHS_REACHED = 1e-6  # max |log ℓ/ℓ⁰| that a converged curve may have
@@ -59,7 +60,8 @@ class Run:
         self.rises = Rises()
         self.point = problem.at_curve(start).anchored
         self._memory = State()
-        self.charged = 0  # iterations of trials
+        self.charged = 0  # iterations of trials, less iterates of strand moves
+        self.strand_moves: StrandMoves | None = None
         self._certified = problem.certifiable  # an embedded start, and so far no motion
         self.iterate = self._described(0)
 
@@ -141,23 +143,29 @@ class Run:
         self.iterate = self._described(self.iterate.index + 1, path=path)
         return self.iterate
 
-    def carried(self, curve: Curve, path: tuple[FloatArray, ...] = ()) -> Iterate:
-        """Go in one iterate, which is not charged, to a curve that was reached by proved motions of another kind.
-
-        Energy and gradient are not computed: those of the curve before stand for them until the run is `restarted`.
-        """
-        pins = tuple(self.problem.constraints.pins.on(curve).vertices.tolist())
-        self.iterate = replace(
-            self.iterate, index=self.iterate.index + 1, curve=curve, path=path, step_size=0.0, pins=pins
-        )
-        self.charged -= 1
-        return self.iterate
+    def moved(self, stages: Sequence[Stage], end: Point, strand_moves: StrandMoves) -> Iterator[Iterate]:
+        """Go by proved motions of another kind to their end, a point of the problem there; nothing of it is charged."""
+        meshes = [self.iterate.curve.mesh, *(stage.start.mesh for stage in stages)]
+        frames: list[tuple[Curve, tuple[FloatArray, ...]]] = []
+        for before, stage in zip(meshes, stages, strict=False):
+            frames += [(stage.start, ())] * (stage.start.mesh is not before)
+            frames += [(stage.end, stage.path)] * bool(stage.path)
+        self.charged -= len(frames)
+        self.strand_moves = strand_moves._replace(iterates=strand_moves.iterates + len(frames))
+        self.point, pins = end, end.problem.constraints.pins
+        there = self._described(self.iterate.index)
+        for curve, path in frames:
+            held = tuple(pins.on(curve).vertices.tolist())
+            self.iterate = replace(there, index=self.iterate.index + 1, curve=curve, path=path, pins=held)
+            yield self.iterate
 
     def restarted(self, point: Point) -> Iterate:
-        """Go on from a point of the problem on another mesh, as at the start; the curve is the same."""
+        """Go on after these from a point of the problem on another mesh, as at the start; the curve is the same."""
         self.point, self.method, self._memory = point.anchored, METHODS[self.options.method], State()
-        self.iterate = self._described(self.iterate.index + 1)
         self.charged -= 1
+        if self.strand_moves:
+            self.strand_moves = self.strand_moves._replace(iterates=self.strand_moves.iterates + 1, done=True)
+        self.iterate = self._described(self.iterate.index + 1)
         return self.iterate
 
     def allows(self, change: Change) -> bool:
@@ -232,6 +240,7 @@ class Run:
             grown=constraints.grown,
             method=self.method.name,
             pins=tuple(constraints.pins.vertices.tolist()),
+            strand_moves=self.strand_moves,
         )
 
 

@@ -5,6 +5,7 @@ import os
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,21 @@ from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
 
 
+class StrandMoves(NamedTuple):
+    """Crossings seen before strand moves and after them, what they took so far, and whether they are through."""
+
+    before: int
+    left: int
+    moves: int = 0
+    seconds: float = 0.0
+    iterates: int = 0
+    done: bool = False
+
+    def report(self) -> dict[str, object]:
+        """The plain values that ``--report`` writes."""
+        return {"crossings": self.before, "left": self.left, "moves": self.moves, "seconds": self.seconds}
+
+
 @checked_fields
 @dataclass(frozen=True, eq=False)
 class Iterate:
@@ -24,7 +40,8 @@ class Iterate:
 
     - ``index``: 0 for the (refined) start, then 1, 2, ...
     - ``curve``: the polygon; the iterates of a run have the same vertices where the mesh is ``fixed``.
-    - ``energy``: the objective, which is the energy that is minimised, and the barrier.
+    - ``energy``: the objective, which is the energy that is minimised, and the barrier.  It, ``gradient_norm`` and
+      ``edge_length_error`` are those at the end of a strand move for all iterates of the move.
     - ``gradient_norm``: of the projected gradient (dimensionless), in the metric that the method takes it in: that of
       this curve, or of one up to two steps before.
     - ``step_size``: the step size τ that led here, 0 for the start and where the mesh changes.
@@ -36,6 +53,7 @@ class Iterate:
     - ``method``: name of the one that took the step, which is the fallback method where the requested one was stuck.
     - ``grown``: factor by which target lengths have grown since the start.
     - ``pins``: pinned vertices of this curve, counted from 0, and those that cannot move between them.
+    - ``strand_moves``: what these have come to so far; None before the first one.
     """
 
     index: int
@@ -49,6 +67,7 @@ class Iterate:
     method: str
     grown: float = 1.0
     pins: tuple[int, ...] = ()
+    strand_moves: StrandMoves | None = None
 
     def __repr__(self) -> str:
         proved = "certified" if self.certified else "not certified"

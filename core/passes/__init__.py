@@ -1,7 +1,7 @@
 """Strand moves of diagrams made in space: curves are untangled by straight motions that are all proved."""
 
-from .moving import Stage
+from .moving import Seen, Stage
 from .untangle import Untangled, untangled
 from .views import worth
 
-__all__ = ["Stage", "Untangled", "untangled", "worth"]
+__all__ = ["Seen", "Stage", "Untangled", "untangled", "worth"]

@@ -1,7 +1,8 @@
 """A curve that is moved on proved legs only, seen in a frame of its own."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,6 +11,13 @@ from ..curve import Curve, Mesh
 from ..deadline import check_time
 from ..obstacle import Obstacle
 from ..types import BoolArray, FloatArray, IntArray
+
+
+class Seen(NamedTuple):
+    """How many crossings there are in the view, after how many strand moves."""
+
+    crossings: int
+    moves: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,10 +30,13 @@ class Stage:
         Where they begin, in the user's units.
     path
         The vertices at the end of each leg, shapes (n, 3); empty where only the mesh is another one.
+    seen
+        What is seen at the end of the last stage of a move, or before the first one; None in between.
     """
 
     start: Curve
     path: tuple[FloatArray, ...] = ()
+    seen: Seen | None = None
 
     @property
     def end(self) -> Curve:
@@ -48,7 +59,9 @@ class MovingCurve:
     Attributes
     ----------
     stages
-        All motions so far.
+        All motions that have not been taken.
+    moves
+        How many strand moves have been made.
     held
         Whether each vertex is held; shape (n,).
     frame
@@ -61,6 +74,7 @@ class MovingCurve:
         self.held[held] = self.held[curve.mesh.ends] = True
         self.frame: FloatArray = np.eye(3)
         self.stages: list[Stage] = []
+        self.moves = 0
 
     @property
     def mesh(self) -> Mesh:
@@ -152,6 +166,12 @@ class MovingCurve:
         self.curve, self.held = curve, held
         self.stages.append(Stage(curve))
         return True
+
+    def taken(self, crossings: int) -> list[Stage]:
+        """The stages made so far, each once, or at least where the curve is; so many crossings are seen there."""
+        *stages, last = self.stages or [Stage(self.curve)]
+        self.stages = []
+        return [*stages, replace(last, seen=Seen(crossings, self.moves))]
 
     def mark(self) -> tuple[Curve, BoolArray, int, int]:
         """What `rewind` needs."""

@@ -62,10 +62,11 @@ def untangled(
     blocked = False
     try:
         face(body, rng)
+        yield from _taken(body, rng)
         for _ in range(_ATTEMPTS):
             thin(body)
             _settle(body, rng)
-            yield from _taken(body)
+            yield from _taken(body, rng)
             reached = drawn(body, rng).diagram.crossings
             if turn(body, rng, away=blocked) >= reached:
                 break
@@ -76,7 +77,7 @@ def untangled(
     reached = diagram.crossings
     if is_least(diagram):
         body.resize(curve.length)
-        yield from _taken(body)
+        yield from _taken(body, rng)
         left = Message("{count} crossings, the least", count=reached) if reached else NONE_LEFT
         return Untangled(reached, True, left)
     if blocked:
@@ -92,13 +93,14 @@ def _moved(body: MovingCurve, rng: np.random.Generator) -> Generator[Stage, None
     thin(body)
     _settle(body, rng)
     while failures <= _FAILURES:
-        yield from _taken(body)
+        yield from _taken(body, rng)
         drawing = drawn(body, rng)
         move = next(shortenings(drawing.diagram, rng if failures else None), None)
         if move is None:
             return False
         if _made(body, lambda drawing=drawing, move=move: passed(body, drawing, move)):
             failures = 0
+            body.moves += 1
             _settle(body, rng)
         else:
             failures += 1
@@ -141,7 +143,6 @@ def _lower(body: MovingCurve, rng: np.random.Generator) -> None:
         body.move(everything, drawing.points + part * (targets - drawing.points))
 
 
-def _taken(body: MovingCurve) -> Iterator[Stage]:
-    """The stages made so far, each once."""
-    stages, body.stages = body.stages, []
-    yield from stages
+def _taken(body: MovingCurve, rng: np.random.Generator) -> Iterator[Stage]:
+    """The stages made so far, each once, and what is seen then."""
+    yield from body.taken(drawn(body, rng).diagram.crossings)
