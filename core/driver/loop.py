@@ -70,7 +70,8 @@ def descent(
 
 def summarised(outcome: Outcome, run: Run) -> Outcome:
     """The outcome with what there is to say of the whole run."""
-    return with_errors(with_growth(run.rises.summarised(outcome, run.iterate.index), run), run)
+    steps = run.iterate.index - (run.strand_moves.iterates if run.strand_moves else 0)
+    return with_errors(with_growth(run.rises.summarised(outcome, steps), run), run)
 
 
 def _descent(run: Run, interventions: Sequence[Callable[[Event], Event | Change]]) -> Relaxation:

@@ -209,9 +209,9 @@ class RelaxOptions:
     untangle: str = option(
         "auto",
         "Untangle",
-        "whether strands are moved over and under others before the flow, so that fewer cross, every motion proved: "
-        "auto, where a diagram of closed curves shows that many crossings go, and where the flow is stuck; such moves "
-        "change the mesh, and are no iterations",
+        "whether strands are moved over and under others, so that fewer cross, every motion proved: auto, before the "
+        "flow where a diagram shows that many crossings go, and where the flow is stuck; such moves change the mesh, "
+        "and are no iterations",
         choices=UNTANGLE,
         metavar="U",
         row=True,

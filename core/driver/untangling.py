@@ -8,8 +8,11 @@ import numpy as np
 from ..collision import check_gap
 from ..curve import Curve, refine
 from ..curve.pins import arcs, holds
-from ..descent import Point
-from ..errors import MobiusFlowError
+from ..descent import Leg, Point, Step
+from ..descent.searches.trials import on_target
+from ..descent.step import attempt
+from ..errors import CurveError, MobiusFlowError
+from ..knots import knot_type
 from ..messages import Message
 from ..passes import Seen, Stage, Untangled, untangled, worth
 from ..task import check_refined
@@ -21,7 +24,11 @@ from .trajectory import Iterate, StrandMoves
 
 MANY = 20  # crossings that go, from which on it is worth while before the flow, unless others stay that are as many
 ROOM = 50  # iterations left where the flow is stuck, with fewer of which it might end higher
+LONGEST, SHORTEST = 0.2, 1e-3  # logarithmic change of lengths in one motion; less is left to the flow
+SETTLING = 6  # iterations to the next one
+FAR = 20.0  # of their distance from the middle, that ends are led away to be joined
 NO_ITERATIONS = Message("none, as there are to be no iterations")
+KNOTTED = Message("others would undo a knot between pinned ends")
 
 
 class Untangling:
@@ -32,16 +39,23 @@ class Untangling:
         self._reasons: list[Message] = []
 
     def before_flow(self) -> Iterator[Iterate]:
-        """Yield the motions that come first, if they are asked for, or a diagram shows that many crossings go."""
+        """Yield the motions that come first, if they are asked for, or a diagram shows that many crossings go.
+
+        Between pins the flow comes first: it keeps lengths.
+        """
         run, wanted = self.run, self.run.options.untangle
         if run.max_iterations == 0:
             self._reasons += [NO_ITERATIONS] if wanted == "always" else []
-        elif wanted == "always" or (self._eligible and self._saves(MANY)):
+        elif wanted == "always" or (not run.iterate.pins and self._eligible and self._saves(MANY)):
             yield from self._untangled()
 
     def where_stuck(self, outcome: Outcome) -> Iterator[Iterate]:
-        """Yield motions that lead out of where the flow came to rest, if any are worth while."""
-        if outcome.may_be_left and self.run.iterations_left >= ROOM and self._eligible and self._saves(0):
+        """Yield motions that lead out of where the flow came to rest, if any are worth while.
+
+        Between pins they have to save more: lengths, which they change, come back there only step by step.
+        """
+        least = MANY if self.run.iterate.pins else 0
+        if outcome.may_be_left and self.run.iterations_left >= ROOM and self._eligible and self._saves(least):
             yield from self._untangled()
 
     def summarised(self, outcome: Outcome) -> Outcome:
@@ -54,10 +68,13 @@ class Untangling:
     def _eligible(self) -> bool:
         """Whether moves are wanted, the mesh may change, and the curve has a type: its ends, if any, are pinned."""
         run, options = self.run, self.run.options
-        if options.untangle == "never" or not options.may_untangle or options.grow != 1.0 or run.frozen:
-            return False
-        typed = holds(run.problem.mesh, run.problem.constraints.pins.vertices)[run.problem.mesh.ends].all()
-        return bool(typed) and run.problem.geometry.prescribes
+        wanted = options.untangle != "never" and options.may_untangle and options.grow == 1.0
+        return wanted and self._ends_are_pinned and run.problem.geometry.prescribes and not run.frozen
+
+    @property
+    def _ends_are_pinned(self) -> bool:
+        mesh = self.run.iterate.curve.mesh
+        return bool(holds(mesh, np.array(self.run.iterate.pins, dtype=np.intp))[mesh.ends].all())
 
     def _saves(self, least: int) -> bool:
         """Whether at least so many crossings go, and no more of them stay."""
@@ -65,27 +82,50 @@ class Untangling:
         return gone >= max(least, left, 1)
 
     def _untangled(self) -> Iterator[Iterate]:
-        """Yield all motions, and at last the curve on a mesh for the flow."""
+        """Yield the motions, and at last the curve on a mesh for the flow, and with its lengths."""
         run, first, lengths = self.run, self.run.iterate, _Lengths(self.run)
-        pins = np.array(first.pins, dtype=np.intp)
-        work = _by_moves(untangled(first.curve, pins, run.problem.obstacles, run.options.seed))
-        earlier = run.strand_moves.moves if run.strand_moves else 0
         try:
-            while True:
-                began = time.perf_counter()
-                stages, seen = next(work)
-                point = lengths.point(stages[-1].end)
-                so_far = run.strand_moves or StrandMoves(seen.crossings, seen.crossings)
-                spent = so_far.seconds + time.perf_counter() - began
-                now = so_far._replace(left=seen.crossings, moves=earlier + seen.moves, seconds=spent, done=False)
-                yield from run.moved(stages, point, now)
-        except StopIteration as end:
-            self._reasons.append(end.value)
+            reason = yield from self._moved(lengths)
         except (MobiusFlowError, np.linalg.LinAlgError) as error:
-            self._reasons.append(Message("stopped where the curve is too degenerate: {error}", error=str(error)))
-        if run.iterate is not first:
-            yield run.restarted(self._refined(lengths, len(first.curve)))
-            run.rises.change(first, run.iterate)
+            reason = Message("stopped where the curve is too degenerate: {error}", error=str(error))
+        if run.iterate is first:
+            self._reasons.append(Message("none are made: {reason}", reason=reason))
+            return
+        self._reasons.append(reason)
+        yield run.restarted(self._refined(lengths, len(first.curve)))
+        run.rises.change(first, run.iterate)
+        yield from self._restored()
+
+    def _moved(self, lengths: "_Lengths") -> Generator[Iterate, None, Message]:
+        """Yield the motions of all moves up to where fewest crossings are left; return how they end.
+
+        Nothing is done before it is known to be worth while: with "auto" until no more crossings stay than have gone.
+        """
+        run, start = self.run, self.run.iterate
+        knotted = None if start.curve.mesh.all_closed or not self._ends_are_pinned else _names(start.curve)
+        pins = np.array(start.pins, dtype=np.intp)
+        moves = _by_moves(untangled(start.curve, pins, run.problem.obstacles, run.options.seed))
+        stages: list[Stage] = []
+        earlier, least, began = run.strand_moves, None, time.perf_counter()
+        while True:
+            try:
+                made, seen = next(moves)
+            except StopIteration as end:
+                reason: Message = end.value
+                return KNOTTED if stages and knotted is not None else reason
+            stages += made
+            if least is None:
+                earlier = earlier or StrandMoves(seen.crossings, seen.crossings)
+                least = seen.crossings - 1 if run.options.untangle == "always" else seen.crossings // 2
+            if seen.crossings > least or (knotted is not None and _names(stages[-1].end) != knotted):
+                continue
+            assert earlier is not None
+            point, least = lengths.point(stages[-1].end), seen.crossings
+            spent = (run.strand_moves or earlier).seconds + time.perf_counter() - began
+            so_far = run.strand_moves or earlier
+            now = so_far._replace(left=least, moves=earlier.moves + seen.moves, seconds=spent, done=False)
+            yield from run.moved(stages, point, now)
+            stages, began = [], time.perf_counter()
 
     def _refined(self, lengths: "_Lengths", least: int) -> Point:
         """The curve reached on a mesh for the flow, or on its own where that cannot be computed with."""
@@ -99,6 +139,28 @@ class Untangling:
             return lengths.point(fine, target_lengths(fine, pins, run.problem.obstacles, run.options))
         except (MobiusFlowError, np.linalg.LinAlgError):
             return run.point
+
+    def _restored(self) -> Iterator[Iterate]:
+        """Yield motions that bring lengths to their targets, and steps of the flow in between, as far as they are free.
+
+        The flow alone would lengthen what is all but straight only slowly, since that costs energy; motions alone would
+        crumple it.
+        """
+        run, longest = self.run, LONGEST
+        while not on_target(run.point) and longest > SHORTEST and run.iterations_left > 0:
+            point, share = run.point, min(1.0, longest / run.point.infeasibility)
+            try:
+                aim = point.vertices - share * point.tangent_space.pseudo_inverse(point.residual)
+                found = attempt(point, aim, (1.0 - share) * point.residual, lambda _: True)
+            except np.linalg.LinAlgError:
+                return
+            longest = min(LONGEST, 2.0 * longest) if isinstance(found, Leg) else 0.5 * longest
+            step = Step((found,), 0.0, None) if isinstance(found, Leg) else None
+            for _ in range(SETTLING):
+                if step is None or run.iterations_left <= 0:
+                    break
+                yield run.accept(step)
+                step = next_step if isinstance(next_step := run.step(), Step) else None
 
 
 def _by_moves(work: Generator[Stage, None, Untangled]) -> Generator[tuple[list[Stage], Seen], None, Message]:
@@ -115,13 +177,28 @@ def _by_moves(work: Generator[Stage, None, Untangled]) -> Generator[tuple[list[S
             stages = []
 
 
+def _names(curve: Curve) -> tuple[str, ...] | None:
+    """Those of the type of a curve whose ends are led far away and joined; None if it is not known."""
+    middle = curve.vertices.mean(axis=0)
+    parts = []
+    for part, closed in zip(curve.components, curve.mesh.closed, strict=True):
+        start, end = FAR * (part[[0, -1]] - middle)
+        across = np.cross(end - start, np.eye(3)[np.abs(end - start).argmin()])
+        across *= (np.linalg.norm(start) + np.linalg.norm(end)) / np.linalg.norm(across)
+        parts.append(part if closed else np.array([*part, middle + end, middle + across, middle + start]))
+    try:
+        return knot_type(Curve.from_components(parts)).names or None
+    except CurveError:
+        return None
+
+
 class _Lengths:
-    """Those of all arcs between pins and of components without, which strand moves change and the flow restores."""
+    """Those of all arcs between pins and of components without, which strand moves change, and which are restored."""
 
     def __init__(self, run: Run) -> None:
-        self._problem, curve = run.problem, run.iterate.curve
+        self._problem = run.problem
         targets = self._problem.units.scale * self._problem.constraints.lengths
-        self._of = {place: float(targets[arc].sum()) for place, arc in self._arcs(curve)}
+        self._of = {place: float(targets[arc].sum()) for place, arc in self._arcs(run.iterate.curve)}
 
     def point(self, curve: Curve, wanted: FloatArray | None = None) -> Point:
         """The point of a curve, with targets in proportion to ``wanted``, shape (edges,), by default its own lengths.
