@@ -102,7 +102,8 @@ class Untangling:
         Nothing is done before it is known to be worth while: with "auto" until no more crossings stay than have gone.
         """
         run, start = self.run, self.run.iterate
-        knotted = None if start.curve.mesh.all_closed or not self._ends_are_pinned else _names(start.curve)
+        middle = start.curve.vertices.mean(axis=0)
+        knotted = None if start.curve.mesh.all_closed or not self._ends_are_pinned else _names(start.curve, middle)
         pins = np.array(start.pins, dtype=np.intp)
         moves = _by_moves(untangled(start.curve, pins, run.problem.obstacles, run.options.seed))
         stages: list[Stage] = []
@@ -117,7 +118,9 @@ class Untangling:
             if least is None:
                 earlier = earlier or StrandMoves(seen.crossings, seen.crossings)
                 least = seen.crossings - 1 if run.options.untangle == "always" else seen.crossings // 2
-            if seen.crossings > least or (knotted is not None and _names(stages[-1].end) != knotted):
+            if seen.crossings > least:
+                continue
+            if knotted is not None and (not knotted or _names(stages[-1].end, middle) != knotted):
                 continue
             assert earlier is not None
             point, least = lengths.point(stages[-1].end), seen.crossings
@@ -177,9 +180,8 @@ def _by_moves(work: Generator[Stage, None, Untangled]) -> Generator[tuple[list[S
             stages = []
 
 
-def _names(curve: Curve) -> tuple[str, ...] | None:
-    """Those of the type of a curve whose ends are led far away and joined; None if it is not known."""
-    middle = curve.vertices.mean(axis=0)
+def _names(curve: Curve, middle: FloatArray) -> tuple[str, ...]:
+    """Those of the type of a curve whose ends are led far away from a point and joined; none if it is not known."""
     parts = []
     for part, closed in zip(curve.components, curve.mesh.closed, strict=True):
         start, end = FAR * (part[[0, -1]] - middle)
@@ -187,9 +189,9 @@ def _names(curve: Curve) -> tuple[str, ...] | None:
         across *= (np.linalg.norm(start) + np.linalg.norm(end)) / np.linalg.norm(across)
         parts.append(part if closed else np.array([*part, middle + end, middle + across, middle + start]))
     try:
-        return knot_type(Curve.from_components(parts)).names or None
+        return knot_type(Curve.from_components(parts)).names
     except CurveError:
-        return None
+        return ()
 
 
 class _Lengths:

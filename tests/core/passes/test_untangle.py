@@ -1,16 +1,14 @@
 """Whole curves are untangled by proved motions: knots, links, arcs, among pins and obstacles, and interrupted."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, Mesh, Obstacle, OptionError, RelaxOptions, Trajectory, minimize
+from mobius_flow.core import Curve, Mesh, Obstacle
 from mobius_flow.core.collision import check_embedded
 from mobius_flow.core.knots import knot, knot_type, scramble
 from mobius_flow.core.passes import Stage, Untangled, untangled, worth
-from mobius_flow.core.verify import verify
 from passes import verdict
 from solids import plate
 
@@ -95,21 +93,3 @@ def test_what_cannot_be_untangled_is_left_alone() -> None:
     assert gone < left == 5
     gone, left = worth(knot("ochiai-2"), 20)
     assert gone > 20 > left
-
-
-def test_relax_untangles_what_is_worth_it_and_ends_with_the_circle(tmp_path) -> None:
-    trajectory = Trajectory()
-    result = minimize(knot("ochiai-2"), RelaxOptions(untangle="auto"), trajectory.add)
-    assert result.last.energy == pytest.approx(4.0, abs=1e-4)
-    assert "strand moves: no crossing is left" in result.message
-    trajectory.save(tmp_path / "T.npz")
-    assert verify(tmp_path / "T.npz").accepted
-
-
-def test_relax_moves_no_strands_if_it_is_not_to() -> None:
-    few = RelaxOptions(max_iterations=2, untangle="never")
-    assert "strand" not in minimize(knot("ochiai-2"), few).message
-    assert "strand" not in minimize(knot("5_2"), replace(few, untangle="auto")).message
-    assert "strand" in minimize(knot("5_2"), RelaxOptions(max_iterations=2, untangle="always")).message
-    with pytest.raises(OptionError, match="untangle='always' changes the mesh"):
-        RelaxOptions(untangle="always", mesh="fixed")

@@ -1,0 +1,209 @@
+"""Strand moves within a run: when they are made, what iterates and reports say of them, and what they must not lose."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from mobius_flow.core import (
+    Curve,
+    CurveError,
+    Iterate,
+    Objective,
+    OptionError,
+    RelaxOptions,
+    Result,
+    Status,
+    Task,
+    Trajectory,
+    minimize,
+)
+from mobius_flow.core.driver import untangling
+from mobius_flow.core.driver.compare import compare
+from mobius_flow.core.driver.outcome import converged
+from mobius_flow.core.knots import knot, scramble
+from mobius_flow.core.units import Units
+from mobius_flow.core.verify import verify
+from solids import plate
+
+ALWAYS = RelaxOptions(untangle="always", max_iterations=40)
+
+
+def relaxed(task: Task | Curve, options: RelaxOptions, folder) -> tuple[Result, list[Iterate]]:
+    """The result and all iterates of a run that the independent check accepts."""
+    iterates: list[Iterate] = []
+    trajectory = Trajectory(obstacles=Task.of(task).obstacles)
+    result = minimize(task, options, iterates.append)
+    for iterate in iterates:
+        trajectory.add(iterate)
+    trajectory.save(folder / "T.npz")
+    assert verify(folder / "T.npz").accepted
+    return result, iterates
+
+
+def squeezed(curve: Curve, part: float) -> Task:
+    """A curve between two plates that leave it so much more room, as a part of its size."""
+    low, high = curve.vertices[:, 2].min(), curve.vertices[:, 2].max()
+    gap = part * np.ptp(curve.vertices, axis=0).max()
+    return Task(curve=curve, obstacles=(plate(low - gap, name="below"), plate(high + gap, name="above")))
+
+
+def test_by_default_strands_are_moved_and_the_flow_ends_it(tmp_path) -> None:
+    curve = knot("tuzun-sikora")
+    result, iterates = relaxed(curve, RelaxOptions(), tmp_path)
+    assert result.status is Status.CONVERGED
+    assert result.final_energy == pytest.approx(4.0, abs=1e-4)
+    assert "strand moves: no crossing is left" in result.message
+    moved = [each for each in iterates if each.strand_moves and not each.strand_moves.done]
+    assert result.iterations == len(iterates) - len(moved) - 2, "less the start and the mesh for the flow"
+    told = result.report()["strand_moves"]
+    assert told == result.last.strand_moves.report()
+    assert (told["crossings"], told["left"]) == (21, 0)
+    assert told["moves"] > 0
+    assert len(result.curve) >= len(iterates[0].curve)
+
+
+def test_energies_within_a_move_are_those_of_its_end(tmp_path) -> None:
+    _, iterates = relaxed(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=1), tmp_path)
+    moves: dict[object, list[Iterate]] = {}
+    for each in iterates[1:-1]:
+        moves.setdefault(each.strand_moves, []).append(each)
+    for each in moves.values():
+        end = each[-1].curve
+        value = Objective().value(end.with_vertices(Units.of(end).from_user(end.vertices)))
+        np.testing.assert_allclose([iterate.energy for iterate in each], value, rtol=1e-9)
+    left = [moves.left for moves in moves if moves]
+    assert left == sorted(left, reverse=True)
+
+
+@pytest.mark.parametrize("limit", [1, 4])
+def test_strand_moves_are_no_iterations(limit: int, tmp_path) -> None:
+    result, _ = relaxed(knot("tuzun-sikora"), RelaxOptions(max_iterations=limit, tolerance=1e-9), tmp_path)
+    assert (result.status, result.iterations) == (Status.ITERATION_LIMIT, limit)
+    assert result.message.startswith(f"stopped at the iteration limit ({limit})")
+    assert result.last.strand_moves.left == 0
+
+
+def test_without_iterations_nothing_moves() -> None:
+    result = minimize(knot("tuzun-sikora"), RelaxOptions(max_iterations=0))
+    assert len(result.energies) == 1
+    assert "strand" not in result.message
+    asked = minimize(knot("tuzun-sikora"), RelaxOptions(max_iterations=0, untangle="always"))
+    assert asked.message.endswith("strand moves: none, as there are to be no iterations")
+    assert asked.report()["strand_moves"] is None
+
+
+def test_interrupted_runs_say_where_they_stand() -> None:
+    def interrupt(iterate: Iterate) -> None:
+        if iterate.strand_moves and iterate.strand_moves.moves == 2:
+            raise KeyboardInterrupt
+
+    result = minimize(knot("tuzun-sikora"), RelaxOptions(untangle="always"), interrupt)
+    assert result.status is Status.INTERRUPTED
+    left = result.last.strand_moves.left
+    assert result.message.endswith(f"strands were being moved, and {left} of 21 crossings are left")
+    assert result.report()["strand_moves"]["left"] == left
+    assert np.isfinite(result.energies).all()
+
+
+def test_components_have_their_own_lengths_again(tmp_path) -> None:
+    curve = scramble(knot("L2a1", 40), 1, moves=800)
+    result, _ = relaxed(curve, ALWAYS, tmp_path)
+    assert result.last.strand_moves.left == 2
+    np.testing.assert_allclose(result.curve.component_lengths, curve.component_lengths, rtol=1e-6)
+
+
+def test_arcs_between_pins_have_their_lengths_again(tmp_path) -> None:
+    curve = scramble(knot("3_1", 30), 1, moves=600)
+    result, iterates = relaxed(Task(curve=curve, pins=(0, 12)), ALWAYS, tmp_path)
+    shortest = min(each.curve.length for each in iterates)
+    assert shortest < 0.8 * curve.length
+    assert result.last.strand_moves.left <= 4
+    assert result.curve.length == pytest.approx(curve.length)
+    at = [int(np.flatnonzero((result.curve.vertices == curve.vertices[pin]).all(axis=1))[0]) for pin in (0, 12)]
+    begin, end = at[0], at[1] + len(result.curve) * (at[1] < at[0])
+    edges = np.arange(begin, end) % len(result.curve)
+    assert result.curve.edge_lengths[edges].sum() == pytest.approx(curve.edge_lengths[:12].sum())
+
+
+def test_a_knot_between_pinned_ends_stays(tmp_path) -> None:
+    arc = knot("overhand", 60)
+    for wanted in ("auto", "always"):
+        task = Task(curve=arc, pins=(0, 59))
+        result, _ = relaxed(task, RelaxOptions(untangle=wanted), tmp_path)
+        assert result.final_energy > 50.0
+        refused = "none are made: others would undo a knot between pinned ends" in result.message
+        assert refused is (wanted == "always")
+
+
+@pytest.mark.parametrize("wanted", ["auto", "always"])
+def test_where_obstacles_leave_no_room_the_curve_is_left_to_the_flow(wanted: str, tmp_path) -> None:
+    task = squeezed(knot("tuzun-sikora"), 0.003)
+    result, iterates = relaxed(task, RelaxOptions(untangle=wanted, max_iterations=2), tmp_path)
+    assert iterates[1].curve.mesh == iterates[0].curve.mesh
+    assert "strand moves: none are made: " in result.message
+    assert "as no way for a strand is free" in result.message
+
+
+def test_pinned_everywhere_nothing_moves(tmp_path) -> None:
+    curve = knot("goeritz")
+    task = Task(curve=curve, pins=tuple(range(len(curve))))
+    result, _ = relaxed(task, RelaxOptions(untangle="always"), tmp_path)
+    assert result.report()["strand_moves"] is None
+    assert "strand moves: none are made" in result.message
+
+
+def test_curves_in_the_plane_are_left_alone() -> None:
+    turn = 2 * np.pi * np.arange(12) / 12
+    ellipse = Curve(np.column_stack([np.cos(turn), 2 * np.sin(turn)]))
+    result = minimize(ellipse, RelaxOptions(untangle="always", max_iterations=3))
+    assert "only curves in space" in result.message
+
+
+def _none(curve: Curve, *_: object) -> Iterator[object]:
+    raise np.linalg.LinAlgError("singular")
+    yield
+
+
+def test_what_fails_within_moves_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(untangling, "untangled", _none)
+    result = minimize(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=2))
+    assert "strand moves: none are made: stopped where the curve is too degenerate: singular" in result.message
+
+
+def test_a_mesh_that_cannot_be_computed_with_gives_way_to_the_coarse_one(monkeypatch, tmp_path) -> None:
+    def refuse(*_: object) -> None:
+        raise CurveError("too near")
+
+    monkeypatch.setattr(untangling, "check_refined", refuse)
+    result, iterates = relaxed(knot("goeritz"), RelaxOptions(untangle="always", max_iterations=20), tmp_path)
+    assert len(result.curve) < len(iterates[0].curve)
+    assert result.final_energy < 10.0
+
+
+@pytest.mark.parametrize(("gone", "left", "made"), [(25, 30, False), (19, 0, False), (25, 25, True)])
+def test_before_the_flow_many_crossings_have_to_go_and_no_more_to_stay(gone, left, made, monkeypatch) -> None:
+    monkeypatch.setattr(untangling, "worth", lambda *_: (gone, left))
+    result = minimize(knot("thistlethwaite"), RelaxOptions(max_iterations=1))
+    assert (result.last.strand_moves is not None) is made
+
+
+def test_what_cannot_be_asked_for_together_is_refused() -> None:
+    for options in ({"mesh": "fixed"}, {"edge_lengths": "keep"}, {"edge_lengths": (1.0,) * 9}):
+        with pytest.raises(OptionError, match="untangle='always' changes the mesh"):
+            RelaxOptions(untangle="always", **options)
+        assert not RelaxOptions(**options).may_untangle
+    with pytest.raises(OptionError, match="untangle='always' moves strands before any method does"):
+        compare(knot("3_1"), ["lbfgs"], RelaxOptions(untangle="always"), 1.0)
+    (history,) = compare(knot("tuzun-sikora"), ["lbfgs"], RelaxOptions(max_iterations=2), 60.0)
+    assert history.iterations == 2
+
+
+def test_keyframes_and_curves_at_rest_know_of_no_strand_moves() -> None:
+    assert RelaxOptions().untangle == "auto"
+    assert RelaxOptions().keyed.untangle == "never"
+    assert RelaxOptions().at_rest(knot("3_1")).untangle == "never"
+
+
+def test_what_stalls_instead_keeps_what_else_was_said() -> None:
+    outcome = converged(1e-5, 1e-4).adding("one thing").stalling("another")
+    assert (outcome.status, outcome.clauses) == (Status.STALLED, ("stalled: another", "one thing"))
