@@ -208,8 +208,10 @@ def finish(
         for last in run:
             given = given or len(last.curve)
             energies.append(last.energy)
-            if not last.path:
-                meshes.append((len(last.curve), last.index, time.perf_counter() - started if meshes else 0.0))
+            moves = last.strand_moves
+            iterations = last.index - (moves.iterates if moves else 0)
+            if not last.path and (moves is None or moves.done):
+                meshes.append((len(last.curve), iterations, time.perf_counter() - started if meshes else 0.0))
             if last.method != options.method:
                 fallback.append(last.index)
             if callback is not None:
@@ -221,13 +223,13 @@ def finish(
     assert last is not None, "relax yields at least its start"
     assert run.outcome is not None, "the loop is through"
     cut_short = run.outcome in (OUT_OF_MEMORY, INTERRUPTED) or run.outcome.status is Status.TIME_LIMIT
-    if cut_short and last.strand_moves and not last.strand_moves.done:
+    if cut_short and moves and not moves.done:
         under_way = "strands were being moved, and {left} of {before} crossings are left"
-        run.outcome = run.outcome.adding(under_way, left=last.strand_moves.left, before=last.strand_moves.before)
+        run.outcome = run.outcome.adding(under_way, left=moves.left, before=moves.before)
     elif cut_short and len(last.curve) < given:
         fewer = Message(VERTEX_COUNT, count=len(last.curve))
         run.outcome = run.outcome.adding("it has {vertices}, {given} at the start", vertices=fewer, given=given)
     seconds = time.perf_counter() - started
-    ends = pairwise([*meshes, (0, last.index, seconds)])
+    ends = pairwise([*meshes, (0, iterations, seconds)])
     phases = tuple(Phase(size, end - begun, until - since) for (size, begun, since), (_, end, until) in ends)
     return Result(run.outcome, last, tuple(energies), tuple(fallback), seconds, options.method, task, phases)

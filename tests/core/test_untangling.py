@@ -198,9 +198,8 @@ def test_what_cannot_be_asked_for_together_is_refused() -> None:
     assert history.iterations == 2
 
 
-def test_keyframes_and_curves_at_rest_know_of_no_strand_moves() -> None:
+def test_curves_at_rest_know_of_no_strand_moves() -> None:
     assert RelaxOptions().untangle == "auto"
-    assert RelaxOptions().keyed.untangle == "never"
     assert RelaxOptions().at_rest(knot("3_1")).untangle == "never"
 
 
