@@ -11,6 +11,7 @@ WINDOWS = "tests/core/collision/test_windows.py"
 MOTIONS, HOPS = "tests/core/test_hop_motions.py", "tests/core/test_hops.py"
 KNOT_TYPE = "tests/core/knots/test_knot_type.py"
 HIERARCHY, ENGINE = "tests/core/hierarchy", "tests/addon/engine"
+UNTANGLING = "tests/core/test_untangling.py"
 CERTIFICATE, VERIFY, GROW = "tests/core/test_certificate.py", "tests/core/verify", "tests/core/test_grow.py"
 
 
@@ -690,5 +691,68 @@ MUTANTS = (
         "if False:",
         "tests/core/collision/test_embedded.py"
         "::test_thousands_of_edges_within_rounding_of_each_other_are_refused_in_time",
+    ),
+    Mutant(
+        "strand moves are iterations",
+        "core/driver/run.py",
+        "        self.charged -= len(frames)\n",
+        "        pass\n",
+        f"{UNTANGLING}::test_strand_moves_are_no_iterations",
+    ),
+    Mutant(
+        "the mesh after strand moves is an iteration",
+        "core/driver/run.py",
+        "        self.charged -= 1\n        if self.strand_moves:",
+        "        if self.strand_moves:",
+        f"{UNTANGLING}::test_strand_moves_are_no_iterations",
+    ),
+    Mutant(
+        "more crossings may stay than go",
+        "core/driver/untangling.py",
+        "gone >= max(least, left, 1)",
+        "gone >= max(least, 1)",
+        f"{UNTANGLING}::test_before_the_flow_many_crossings_have_to_go_and_no_more_to_stay",
+    ),
+    Mutant(
+        "lengths are what strand moves leave",
+        "core/driver/untangling.py",
+        "if len(arc) > 1 and place in self._of:",
+        "if False:",
+        f"{UNTANGLING}::test_components_have_their_own_lengths_again",
+    ),
+    Mutant(
+        "arcs are undone",
+        "core/driver/untangling.py",
+        "!= knotted):",
+        "!= knotted and False):",
+        f"{UNTANGLING}::test_a_knot_between_pinned_ends_stays",
+    ),
+    Mutant(
+        "strands are moved in vain",
+        "core/driver/untangling.py",
+        "            if seen.crossings > least:\n",
+        "            if False:\n",
+        f"{UNTANGLING}::test_where_obstacles_leave_no_room_the_curve_is_left_to_the_flow",
+    ),
+    Mutant(
+        "energies of the start within strand moves",
+        "core/driver/run.py",
+        "        self.point, pins = end, end.problem.constraints.pins\n        there = self._described(self.iterate.index)\n",
+        "        there = self._described(self.iterate.index)\n        self.point, pins = end, end.problem.constraints.pins\n",
+        f"{UNTANGLING}::test_energies_within_a_move_are_those_of_its_end",
+    ),
+    Mutant(
+        "curves at rest are untangled",
+        "core/driver/options.py",
+        '            untangle="never",\n',
+        "",
+        f"{UNTANGLING}::test_curves_at_rest_know_of_no_strand_moves",
+    ),
+    Mutant(
+        "what stalls forgets the rest",
+        "core/driver/outcome.py",
+        "*stalled(Message(reason, **facts)).clauses, *self.clauses[1:])",
+        "*stalled(Message(reason, **facts)).clauses,)",
+        f"{UNTANGLING}::test_what_stalls_instead_keeps_what_else_was_said",
     ),
 )
