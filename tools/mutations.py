@@ -737,8 +737,8 @@ MUTANTS = (
     Mutant(
         "energies of the start within strand moves",
         "core/driver/run.py",
-        "        self.point, pins = end, end.problem.constraints.pins\n        there = self._described(self.iterate.index)\n",
-        "        there = self._described(self.iterate.index)\n        self.point, pins = end, end.problem.constraints.pins\n",
+        "there = self._described(self.iterate.index)",
+        "there = self.iterate",
         f"{UNTANGLING}::test_energies_within_a_move_are_those_of_its_end",
     ),
     Mutant(
