@@ -125,6 +125,13 @@ def test_arcs_between_pins_have_their_lengths_again(tmp_path) -> None:
     assert result.curve.edge_lengths[edges].sum() == pytest.approx(curve.edge_lengths[:12].sum())
 
 
+def test_curves_grow_after_strand_moves(tmp_path) -> None:
+    curve = knot("goeritz")
+    result, _ = relaxed(curve, RelaxOptions(untangle="always", grow=1.5, max_iterations=30), tmp_path)
+    assert result.last.strand_moves.left == 0
+    assert result.curve.length == pytest.approx(1.5 * curve.length)
+
+
 def test_a_knot_between_pinned_ends_stays(tmp_path) -> None:
     arc = knot("overhand", 60)
     for wanted in ("auto", "always"):

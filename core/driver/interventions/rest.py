@@ -30,6 +30,9 @@ class Rest(Intervention):
     trusted: float = number(0.1)  # largest σ: where more is needed, as on a ridge, L-BFGS goes on
     _shift: float = field(default=0.0, init=False)
 
+    def __post_init__(self) -> None:
+        self.started()
+
     def started(self) -> None:
         self._shift, self._below = self.newton.first_shift, self.gradient
 
