@@ -28,7 +28,9 @@ class Rest(Intervention):
     gradient: float = number(1e-3)  # of √E, its norm at which second derivatives take over
     exact: float = number(1e-8)  # of E, what may be left to gain
     trusted: float = number(0.1)  # largest σ: where more is needed, as on a ridge, L-BFGS goes on
-    _shift: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        self.started()
 
     def __post_init__(self) -> None:
         self.started()
@@ -89,6 +91,7 @@ class Rest(Intervention):
     @property
     def _applies(self) -> bool:
         run, point = self.run, self.run.point
+        free = point.problem.objective.pull is None
         usual = run.method is METHODS["lbfgs"] and point.problem.metric.name == MoebiusMetric.name
         at_once = run.options.tolerance <= self.loosest and not run.frozen and on_target(point)
-        return usual and at_once and Curvature.is_known(point)
+        return usual and free and at_once and Curvature.is_known(point)
