@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 SEARCHES, CONDITIONS = "tests/core/descent/test_searches.py", "tests/core/descent/test_conditions.py"
 DIRECTIONS, CLAIMS = "tests/core/descent/test_directions.py", "tests/core/descent/test_claims.py"
+NEWTON = "tests/core/descent/test_newton.py"
 FIRST_TRIAL, METRIC_AGE = "tests/core/descent/test_first_trial.py", "tests/core/descent/test_metric_age.py"
 RESTORATION, ADAPTIVE = "tests/core/test_restoration.py", "tests/core/test_adaptive.py"
 AVOID, OBSTACLES = "tests/core/test_avoid.py", "tests/core/collision/test_obstacles_exactly.py"
@@ -67,6 +68,27 @@ MUTANTS = (
         "_ratio(point, q, predicted) >= self.accept",
         "_ratio(point, q, predicted) > 0.0",
         f"{CONDITIONS}::test_trust_region_rejects_what_the_model_did_not_foresee",
+    ),
+    Mutant(
+        "double pivots count twice",
+        "core/saddle/indefinite.py",
+        "np.count_nonzero(~single) // 2",
+        "np.count_nonzero(~single)",
+        f"{NEWTON}::test_systems_are_those_of_dense_algebra",
+    ),
+    Mutant(
+        "the metric in place of second derivatives",
+        "core/descent/directions/lbfgs.py",
+        "if self.inverse is None else self.inverse(q)",
+        "",
+        f"{NEWTON}::test_second_derivatives_take_over_from_gradients",
+    ),
+    Mutant(
+        "rest is where the gradient is small",
+        "core/driver/interventions/rest.py",
+        "if curvature.gain(inverse) > least:",
+        "if False:",
+        f"{NEWTON}::test_energies_at_rest_are_exact_on_their_mesh",
     ),
     Mutant(
         "no curvature condition",

@@ -26,7 +26,7 @@ class Outcome:
 
     - ``status``: why it ended.
     - ``clauses``: the same in words, and what else there is to say.
-    - ``negative_eigenvalues``: of the Lagrangian's Hessian at a converged curve, if asked for: 0 at a minimum.
+    - ``negative_eigenvalues``: of the Lagrangian's Hessian at a converged curve, if known: 0 at a minimum.
     - ``sampled_errors``: those of the hierarchical solver when last looked at: in the end, unless that came suddenly.
     - ``place``: where on the last curve the reason is, if it is somewhere.
     - ``unbounded``: whether strands pull tight without limit, so that there is no least energy to look for.

@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_interventions import change
 from dense_stability import POINTS, dense_modes, lagrangian_hessian_matrix, tangent_basis
 from mobius_flow.core import RelaxOptions, Status, Task, minimize
 from mobius_flow.core.descent.hessian import lagrangian_matrix
 from mobius_flow.core.descent.newton import Curvature, Newton
+from mobius_flow.core.driver.interventions.rest import Rest
 from mobius_flow.core.knots import torus_knot
-from shapes import torus_trefoil
+from shapes import lattice_knot, torus_trefoil
 
 EXACT = [name for name in POINTS if name != "hierarchical"]
 FIXED = RelaxOptions(vertices=80, mesh="fixed")
@@ -66,6 +68,18 @@ def test_the_index_comes_with_the_end() -> None:
         result = minimize(torus_knot(p, q, 160), replace(FIXED, vertices=160))
         assert result.outcome.negative_eigenvalues == index
         assert ("saddle" in result.message) == (index > 0)
+
+
+def test_second_derivatives_take_over_from_gradients(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Along the valleys of Möbius maps L-BFGS takes several times as many steps in the metric."""
+    sharp = replace(FIXED, tolerance=1e-7)
+    few = minimize(lattice_knot("4_1"), sharp)
+    change(monkeypatch, Rest, gradient=1e-300)
+    many = minimize(lattice_knot("4_1"), sharp)
+    assert few.outcome.converged
+    assert few.certified
+    assert few.energies[-1] == pytest.approx(many.energies[-1], rel=1e-9)
+    assert len(few.energies) < 0.7 * len(many.energies)
 
 
 def test_loose_tolerances_ask_for_no_more_than_gradients() -> None:
