@@ -239,7 +239,7 @@ def test_without_iterations_left_nothing_is_said_to_be_balanced(runs) -> None:
 
 
 def test_what_is_cut_off_before_is_not_said_to_be_on_the_way(runs) -> None:
-    limit = runs[False][0][-1].index - 1
+    limit = runs[False][0][-1].index // 2
     result = minimize(knot("8_19"), RelaxOptions(balance=True, mesh="fixed", max_iterations=limit))
     assert result.status is Status.ITERATION_LIMIT
     assert CUT_OFF not in result.message

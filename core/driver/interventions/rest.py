@@ -56,6 +56,7 @@ class Rest(Intervention):
         return Change(steps) if steps else None
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
+        index: int | None
         if self._applies:
             point, zero = self.run.point, unresolved(self.run.point.curve)
             least = self.exact * energy_scale(point.problem.mesh, point.energy)
