@@ -72,8 +72,7 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
     motion, _ = film.recorded(iterates)
     keys = motion.keys(is_free, _MAX_FILM_KEYS)
     scene = _empty_scene()
-    drawn = rendering.workbench_works()
-    if drawn:
+    if rendering.workbench_works():
         rendering.use_workbench(scene, *_FILM)
     else:
         rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER, draft=True)
@@ -82,7 +81,7 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
     frames = timing.frames(motion.course(keys))
     film.compose(scene, keys, frames, motion.start.mesh)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
-    _make(path, lambda temporary: render_movie(scene, temporary, progress, oversampling=1.5 if drawn else 1))
+    _make(path, lambda temporary: render_movie(scene, temporary, progress))
     return keys.certified
 
 

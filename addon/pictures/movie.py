@@ -69,24 +69,18 @@ class Reel:
         return whole
 
 
-def render_movie(
-    scene: "bpy.types.Scene", path: Path, progress: Progress | None = None, oversampling: float = 1
-) -> None:
+def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None = None) -> None:
     """Render all frames of a scene made for that, in which F-curves alone move things, to an MP4 that plays everywhere.
 
-    ``progress`` gets the number of frames done and of all frames; there are ``oversampling``² rendered pixels for one
-    of the film. Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame at hand, or after the
-    seconds in which the frames are put together, and leaves nothing behind. A frame in which nothing has moved is the
-    frame before again. Raises OSError or RuntimeError if the film cannot be written.
+    ``progress`` gets the number of frames done and of all frames. The film has the scene's resolution at 100 %; at more
+    its pixels are rendered more finely. Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame
+    at hand, or after the seconds in which the frames are put together, and leaves nothing behind. A frame in which
+    nothing has moved is the frame before again. Raises OSError or RuntimeError if the film cannot be written.
     """
     try:
         with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room:
-            scene.render.resolution_percentage = round(100 * oversampling)
             pictures = list(_pictures(scene, Path(room), progress or (lambda *_: None)))
-            scene.render.resolution_percentage = 100
-            # of all filters the one nearest to many samples, as far as edges are concerned; it would blur equal sizes
-            smoother = "CUBIC_BSPLINE" if oversampling > 1 else "NEAREST"
-            Reel(_spliced(scene, pictures, smoother), path).render()
+            Reel(_spliced(scene, pictures), path).render()
     finally:
         sweep()
 
@@ -137,13 +131,13 @@ def _pictures(scene: "bpy.types.Scene", room: Path, progress: Progress) -> Itera
         progress(k, len(frames))
 
 
-def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path], smoother: str) -> "bpy.types.Scene":
+def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path]) -> "bpy.types.Scene":
     """A new scene that shows pictures from one directory for a frame each, in the size and speed of another's film."""
     import bpy
 
     reel = bpy.data.scenes.new("Film")
     reel[_MARK] = True
-    for name in ("resolution_x", "resolution_y", "resolution_percentage", "fps", "fps_base"):
+    for name in ("resolution_x", "resolution_y", "fps", "fps_base"):
         setattr(reel.render, name, getattr(scene.render, name))
     reel.view_settings.view_transform = "Standard"  # the pictures have their colours
     reel.frame_start, reel.frame_end = 1, len(pictures)
@@ -152,7 +146,8 @@ def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path], smoother: str) 
     strip = strips.new_image("Film", str(pictures[0]), channel=1, frame_start=1, fit_method="FIT")
     for picture in pictures[1:]:
         strip.elements.append(picture.name)
-    strip.transform.filter = smoother
+    if scene.render.resolution_percentage > 100:  # of all filters nearest to many samples; it would blur equal sizes
+        strip.transform.filter = "CUBIC_BSPLINE"
     return reel
 
 

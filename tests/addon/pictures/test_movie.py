@@ -82,22 +82,22 @@ def test_what_does_not_move_is_rendered_once(tmp_path, scene, rendered):
 
 
 @pytest.mark.parametrize("step", [1, 3])
-@pytest.mark.parametrize("oversampling", [1, 1.5])
-def test_every_frame_shows_its_time_in_its_colours(tmp_path, scene, step, oversampling):
-    scene.frame_step = step
+@pytest.mark.parametrize("percentage", [100, 150])
+def test_every_frame_shows_its_time_in_its_colours(tmp_path, scene, step, percentage):
+    scene.frame_step, scene.render.resolution_percentage = step, percentage
     path, frames = tmp_path / "a.mp4", range(1, FRAMES + 1, step)
-    movie.render_movie(scene, path, oversampling=oversampling)
+    movie.render_movie(scene, path)
     clip = bpy.data.movieclips.load(str(path))
     assert (tuple(clip.size), clip.frame_duration) == ((128, 64), len(frames))
     for frame, picture in zip(frames, frames_of(path, len(frames)), strict=True):
         np.testing.assert_allclose(picture, shown(3.0 * min(frame, MOVING)), atol=0.03)
 
 
-@pytest.mark.parametrize("oversampling", [1, 1.5])
-def test_a_film_shows_the_whole_picture(tmp_path, scene, oversampling):
-    scene.frame_end = 2
+@pytest.mark.parametrize("percentage", [100, 150])
+def test_a_film_shows_the_whole_picture(tmp_path, scene, percentage):
+    scene.frame_end, scene.render.resolution_percentage = 2, percentage
     scene.render.use_border, scene.render.border_max_x = True, 0.25  # the rest stays black
-    movie.render_movie(scene, tmp_path / "a.mp4", oversampling=oversampling)
+    movie.render_movie(scene, tmp_path / "a.mp4")
     picture, _ = frames_of(tmp_path / "a.mp4", 2)
     np.testing.assert_allclose(picture[:, :28], shown(3.0), atol=0.05)
     np.testing.assert_allclose(picture[:, 36:], 0, atol=0.05)
