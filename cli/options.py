@@ -15,7 +15,7 @@ from ..core.errors import OptionError
 from ..core.option import Option, declared
 from ..core.threads import THREADS
 
-_OFFERED, _SHORT = "offered", "shorthands"  # names of the options, and the shorthands that are given, in a namespace
+_OFFERED = "offered"  # names of the options, in a namespace
 
 
 def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) -> None:
@@ -23,11 +23,12 @@ def add_to(parser: argparse.ArgumentParser, *, without: Collection[str] = ()) ->
     group = parser.add_argument_group("relaxation")
     offered = [option for option in declared(RelaxOptions) if option.name not in without]
     for option in offered:
-        group.add_argument(flag(option), **_declaration(option))
+        ways = group.add_mutually_exclusive_group() if option.shorthands else group
+        ways.add_argument(flag(option), **_declaration(option))
         for word, value in option.shorthands.items():
             text = f"the same as {flag(option)} {value}"
-            group.add_argument(f"--{word}", dest=_SHORT, action="append_const", const=word, help=text)
-    parser.set_defaults(**{_SHORT: [], _OFFERED: [option.name for option in offered]})
+            ways.add_argument(f"--{word}", dest=option.name, action="store_const", const=value, help=text)
+    parser.set_defaults(**{_OFFERED: [option.name for option in offered]})
 
 
 def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
@@ -78,20 +79,9 @@ def inputs(arguments: argparse.Namespace) -> dict[str, str]:
 
 
 def _value(option: Option, given: Mapping[str, Any]) -> Any:
-    """What is given, with words turned into the items of a tuple, and shorthands into what they stand for.
-
-    Of several shorthands the one whose choice comes last in the list of choices holds.
-    """
+    """What is given, with words turned into the items of a tuple."""
     value = given[option.name]
-    if option.repeated:
-        return tuple(item for word in value for item in option.read(word))
-    meant = {word: option.shorthands[word] for word in given[_SHORT] if word in option.shorthands}
-    if value is None and option.shorthands:
-        return max(meant.values(), key=list(option.choices or ()).index, default=option.default)
-    other = next((word for word in meant if meant[word] != value), None)
-    if other is not None:
-        raise OptionError(f"{flag(option)} {value:.60} and --{other} contradict each other; leave one of them out")
-    return value
+    return tuple(item for word in value for item in option.read(word)) if option.repeated else value
 
 
 def flag(option: Option) -> str:
@@ -101,7 +91,7 @@ def flag(option: Option) -> str:
 
 def _declaration(option: Option) -> dict[str, Any]:
     """What argparse is told of an option."""
-    common = {"dest": option.name, "help": option.help, "default": None if option.shorthands else option.default}
+    common = {"dest": option.name, "help": option.help, "default": option.default}
     if option.kind is bool:
         return common | {"action": "store_true"}
     common |= {"metavar": option.metavar}

@@ -36,7 +36,7 @@ class Option:
     read: Callable[[str], Iterable[object]] = field(default=str, repr=False)
     metavar: str = "NAME"  # placeholder of its value in the command line's help
     row: bool = False  # whether Blender's panel shows it, as what artists might set; scripts can set them all
-    # words of the command line, each with the choice it selects
+    # words of the command line, each with the choice it selects; one of them at most, or the option itself
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
     repeated: bool = False  # whether its value is a tuple, whose items are checked
     flag: str = ""  # what it is called on the command line, if not by its name

@@ -54,12 +54,6 @@ def test_every_option_can_be_given(each):
     assert asdict(parsed(*words)) == asdict(RelaxOptions()) | {each.name: value}
 
 
-@pytest.mark.parametrize("words", [["--adaptive", "--resolve"], ["--resolve", "--adaptive"]])
-def test_of_two_short_words_the_one_that_goes_farther_holds(words):
-    """An adaptive mesh ends finer where strands are near, too: who writes both wants both, in whatever order."""
-    assert parsed(*words).mesh == "adaptive"
-
-
 def test_one_more_option_appears_by_itself(monkeypatch):
     monkeypatch.setattr(relax_options, "RelaxOptions", OneMore)
     assert parsed().patience is None
@@ -95,14 +89,16 @@ def test_keyframes_follow_all_changes_of_mesh(word, tmp_path):
     assert main(["relax", str(tmp_path / "a.txt"), str(tmp_path / "o.blend"), *words]) == 0
 
 
-@pytest.mark.parametrize("words", [["--mesh", "fixed", "--adaptive"], ["--resolve", "--mesh", "adaptive"]])
-def test_what_contradicts_itself_is_refused(words):
-    with pytest.raises(OptionError, match=r"--mesh \w+ and --\w+ contradict each other; leave one of them out"):
-        parsed(*words)
-
-
-def test_saying_it_twice_is_no_contradiction():
-    assert parsed("--mesh", "adaptive", "--adaptive").mesh == "adaptive"
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--resolve", "--adaptive"], "argument --adaptive: not allowed with argument --resolve"),
+        (["--adaptive", "--mesh=fixed"], "argument --mesh: not allowed with argument --adaptive"),
+    ],
+)
+def test_one_option_is_said_in_one_way(words, said, capsys):
+    assert main(["relax", "a.txt", "b.txt", *words]) == 2
+    assert said in capsys.readouterr().err
 
 
 def test_options_of_the_subcommand_itself_are_not_the_relaxations():
