@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -94,5 +95,8 @@ def peak_megabytes() -> float:
 
 
 if __name__ == "__main__":
-    mode, *words = sys.argv[1:]
-    {"workers": workers, "many": many}[mode](*words)
+    parser = ArgumentParser(description=__doc__, formatter_class=RawDescriptionHelpFormatter)
+    parser.add_argument("mode", choices=("workers", "many"))
+    parser.add_argument("words", nargs="*")
+    given = parser.parse_args()
+    {"workers": workers, "many": many}[given.mode](*given.words)

@@ -4,7 +4,6 @@ One line per curve: the first contact along a long motion, the proof of a leg tw
 the verifier's filter on that leg, in milliseconds of processor time. Run it with one BLAS thread on a quiet machine.
 """
 
-import sys
 from collections.abc import Callable, Iterator
 from time import process_time
 
@@ -13,6 +12,7 @@ from mobius_flow.core import Curve
 from mobius_flow.core.collision import check_embedded, free_motion, is_free, minimal_gap
 from mobius_flow.core.types import FloatArray
 from mobius_flow.core.verify.filter import doubtful_pairs
+from words import words
 
 
 def torus_knot(n: int, p: int = 2, q: int = 3) -> FloatArray:
@@ -93,4 +93,4 @@ def measure(curve: Curve, repetitions: int) -> Iterator[float]:
 
 
 if __name__ == "__main__":
-    main([int(x) for x in sys.argv[1:]] or [200, 600, 1000, 10_000, 100_000])
+    main(words(__doc__, "vertices", [200, 600, 1000, 10_000, 100_000], int))

@@ -5,11 +5,10 @@ in milliseconds of processor time; up to 10,000 vertices also the dense energy w
 error. Run it with one BLAS thread on a quiet machine.
 """
 
-import sys
-
 from collision import CURVES, best
 from mobius_flow.core import Curve, MoebiusEnergy
 from mobius_flow.core.hierarchy import BlockList, HierarchicalMoebiusEnergy
+from words import words
 
 MOST_DENSE = 10_000
 
@@ -39,4 +38,4 @@ def line(curve: Curve, repetitions: int) -> str:
 
 
 if __name__ == "__main__":
-    main([int(x) for x in sys.argv[1:]] or [1_000, 10_000, 100_000])
+    main(words(__doc__, "vertices", [1_000, 10_000, 100_000], int))

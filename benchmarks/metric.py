@@ -5,7 +5,6 @@ a step of Newton's method back to the constraints, in milliseconds of processor 
 one BLAS thread on a quiet machine.
 """
 
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from time import process_time
@@ -18,6 +17,7 @@ from mobius_flow.core.constraints import Constraints
 from mobius_flow.core.curve import refine
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
 from mobius_flow.core.knots import knot, torus_knot
+from words import words
 
 _Value = TypeVar("_Value")
 
@@ -61,7 +61,7 @@ def line(curve: Curve) -> str:
 
 def main() -> None:
     """All curves in all sizes."""
-    sizes = [int(size) for size in sys.argv[1:]] or [1000, 10_000, 100_000]
+    sizes = words(__doc__, "vertices", [1000, 10_000, 100_000], int)
     print(f"{'':18}{'n':>8}   build   product     model  gradient   C^† big     small")
     for name, make in CURVES.items():
         for n in sizes:

@@ -6,7 +6,6 @@ Without names: the famous unknots of the table, the codes in ../shared/hard_unkn
 unknots, and scrambled knots.
 """
 
-import sys
 import tempfile
 import time
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,6 +18,7 @@ from mobius_flow.core.diagrams import views
 from mobius_flow.core.knots import HARD_UNKNOTS, knot, knot_type, scramble
 from mobius_flow.core.passes import Stage, untangled
 from mobius_flow.core.verify import Verdict, verify
+from words import words
 
 SHARED = Path(__file__).parents[2] / "shared/hard_unknots"
 SCRAMBLED = ("5_2", "7_4", "8_19", "L6a4")
@@ -75,4 +75,4 @@ def main(names: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(words(__doc__, "curves", (), str))

@@ -7,12 +7,11 @@ The energy of the smooth curve is extrapolated from that of the curve that a run
 halved, and halved again: the ratio of the two differences is 4 where the error is of the midpoint rule's second order.
 """
 
-import sys
-
 from hard_curves import lattice_knot
 from mobius_flow.core import RelaxOptions, minimize
 from mobius_flow.core.extrapolation import extrapolated
 from mobius_flow.core.knots import KNOTS
+from words import words
 
 CROSSINGS = range(3, 8)
 
@@ -31,10 +30,12 @@ def row(name: str) -> str:
 
 def main() -> None:
     """Print a table in Markdown."""
-    knots = [name for name in KNOTS if "_" in name and int(name.split("_")[0]) in CROSSINGS]
+    names = words(
+        __doc__, "names", [name for name in KNOTS if "_" in name and int(name.split("_")[0]) in CROSSINGS], str
+    )
     print("| knot | vertices | energy | of the smooth curve | above it | ratio |")
     print("| --- | --- | --- | --- | --- | --- |")
-    for name in sys.argv[1:] or knots:
+    for name in names:
         print(row(name), flush=True)
 
 

@@ -30,7 +30,7 @@ PHASES = ["lists", "energy", "derivative", "metric", "gradient", "retract", "pro
 
 
 def test_every_benchmark_is_tried():
-    assert {path.stem for path in BENCHMARKS.glob("*.py")} - {"step_costs"} == set(ARGUMENTS)
+    assert {path.stem for path in BENCHMARKS.glob("*.py")} - {"step_costs", "words"} == set(ARGUMENTS)
 
 
 def run(name, *arguments):
@@ -49,6 +49,13 @@ def test_it_runs(name, tmp_path, monkeypatch):
     few = {"batch": 1, "soak": 1, "resolution": 3, "hops": 3, "knots": 6, "tries": 3}
     least = few.get(name, 5)  # a title, and a line for each of four curves
     assert len(done.stdout.splitlines()) >= least
+
+
+@pytest.mark.parametrize("name", ["batch", "collision", pytest.param("passes", marks=pytest.mark.slow)])
+def test_it_explains_itself(name):
+    done = run(name, "--help")
+    assert done.returncode == 0
+    assert done.stdout.startswith(f"usage: {name}.py")
 
 
 @pytest.mark.slow
