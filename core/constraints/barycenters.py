@@ -7,7 +7,7 @@ import numpy as np
 
 from ..curve import Curve, Mesh
 from ..curve.pins import NO_PINS, Pins
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 
 Parts = tuple[int, ...]
 
@@ -62,8 +62,10 @@ class Barycenters:
 
     def derivative(self, curve: Curve) -> "BarycenterDerivative":
         ell, mesh = curve.edge_lengths, curve.mesh
-        member = np.equal.outer(self.loose, self.parts).astype(np.float64)
-        return BarycenterDerivative(mesh, 0.5 * mesh.scatter(ell, ell), ell[:, None] * curve.midpoints, member)
+        row = np.full(max(self.parts) + 1, len(self.loose))
+        row[list(self.loose)] = np.arange(len(self.loose))
+        masses, moments = 0.5 * mesh.scatter(ell, ell), ell[:, None] * curve.midpoints
+        return BarycenterDerivative(mesh, masses, moments, row[list(self.parts)], len(self.loose))
 
     def memberships(self, mesh: Mesh) -> Iterator[FloatArray]:
         """For each loose part, 1 at its edges and 0 elsewhere; shape (edges,)."""
@@ -81,21 +83,24 @@ class BarycenterDerivative:
     mesh: Mesh
     masses: FloatArray  # (ℓ_I + ℓ_{I−1})/2 at each vertex; shape (n,)
     moments: FloatArray  # ℓ_I m_I; shape (edges, m)
-    member: FloatArray  # which components are in which of p parts, as 0 and 1; shape (p, components)
+    part: IntArray  # which of p parts each component is in, p if in none; shape (components,)
+    parts: int  # p
 
     @property
     def rows(self) -> int:
-        return len(self.member) * self.moments.shape[1]
+        return self.parts * self.moments.shape[1]
 
     def apply(self, u: FloatArray, stretch: FloatArray) -> FloatArray:
         """Σ over each part of what displaces its vertices and stretches its edges."""
         stretched = self.mesh.at_tails(stretch[:, None] * self.moments)
         stretched += self.masses[:, None] * u
-        return np.asarray((self.member @ np.add.reduceat(stretched, self.mesh.offsets[:-1], axis=0)).ravel())
+        total = np.zeros((self.parts + 1, u.shape[1]))
+        np.add.at(total, self.part, np.add.reduceat(stretched, self.mesh.offsets[:-1], axis=0))
+        return total[: self.parts].ravel()
 
     def loads(self, multipliers: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The multiplier of its part's barycenter pulls at each vertex and edge."""
-        pull = self.member.T @ multipliers.reshape(-1, self.moments.shape[1])
+        pull = np.append(multipliers, np.zeros(self.moments.shape[1])).reshape(self.parts + 1, -1)[self.part]
         at_edges = pull.take(self.mesh.edge_component, axis=0)
         at_vertices = pull.take(self.mesh.component, axis=0)
         at_vertices *= self.masses[:, None]
