@@ -1,14 +1,21 @@
 """What it gains that the library works with one BLAS thread: seconds of a relaxation, also while every core is busy.
 
 python benchmarks/threads.py 4_1 --max-iterations 80
+
+Then what more threads could gain at most: the shares of processor time that sums over tiles of pairs have, and LAPACK's
+factorisations, and how many times as fast a run would be if two threads halved them.
 """
 
 import argparse
+import cProfile
 import os
+import pstats
 import subprocess
 import sys
 import time
+from collections import Counter
 from contextlib import ExitStack
+from pathlib import Path
 
 from mobius_flow.core import RelaxOptions, Task, relax
 from mobius_flow.core.driver.hopping import hopping
@@ -43,7 +50,24 @@ def main() -> int:
                     pass
                 seconds, processor = time.perf_counter() - began, time.process_time() - processor
                 print(f"{busy} processes  {words:19} {seconds:8.2f}   {processor:8.2f}", flush=True)
+    profile = cProfile.Profile(builtins=False)  # of built-in functions it would cost more than they take
+    profile.runcall(list, relax(curve, options))
+    tiles, lapack = shares(pstats.Stats(profile))
+    for words, share in (("tiles", tiles), ("tiles and LAPACK", tiles + lapack)):
+        print(
+            f"{words}: {share:.0%} of the time, so two threads gain a factor of {1.0 / (1.0 - 0.5 * share):.2f} at most"
+        )
     return 0
+
+
+def shares(profiled: pstats.Stats) -> tuple[float, float]:
+    """The parts of all time that the default energy and metric take, and the factorisations."""
+    own, within, total = Counter[str](), Counter[str](), 0.0
+    for (file, _, function), (_, _, seconds, cumulative, _) in profiled.stats.items():  # type: ignore[attr-defined]
+        name = f"{Path(file).parent.name}/{Path(file).stem}.{function}"
+        own[name], within[name], total = own[name] + seconds, within[name] + cumulative, total + seconds
+    tiles = sum(within[name] for name in ("energies/moebius.value_and_derivative", "metrics/moebius.at"))
+    return tiles / total, (within["saddle/dense.cholesky"] + own["metrics/inner_product.inverse"]) / total
 
 
 if __name__ == "__main__":
