@@ -55,7 +55,8 @@ def curves(names: Sequence[str]) -> Iterator[tuple[str, Curve]]:
 
 def main(names: Sequence[str]) -> None:
     """Print the table."""
-    print("| curve | vertices | crossings | left | meshes | legs | s | verified | type |\n" + "|---" * 9 + "|")
+    columns = ("curve", "vertices", "crossings", "left", "moves", "meshes", "legs", "s", "verified", "type")
+    print("|", " | ".join(columns), "|\n" + "|---" * len(columns) + "|", flush=True)
     for name, curve in curves(names):
         seen = min((view.crossings for view in views(curve, 12)), default=0)
         began = time.process_time()
@@ -69,8 +70,8 @@ def main(names: Sequence[str]) -> None:
         seconds = time.process_time() - began
         legs = sum(len(stage.path) for stage in stages)
         accepted = "yes" if verdict(curve, stages).accepted else "NO"
-        kind = knot_type(stages[-1].end if stages else curve)
-        row = (name, len(curve), seen, found.crossings, len(stages), legs, f"{seconds:.1f}", accepted, kind)
+        made = found.crossings, found.moves, len(stages), legs, f"{seconds:.1f}"
+        row = (name, len(curve), seen, *made, accepted, knot_type(stages[-1].end if stages else curve))
         print("|", " | ".join(map(str, row)), "|", flush=True)
 
 

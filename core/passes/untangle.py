@@ -1,6 +1,7 @@
 """From a tangled curve to one with few crossings, by strand moves that are seen on its diagram and made in space."""
 
 from collections.abc import Callable, Generator, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from ..collision import free_motion
 from ..curve import Curve
 from ..curve.pins import NOWHERE
 from ..diagrams.rerouting import shortenings
-from ..diagrams.simplify import is_least
+from ..diagrams.simplify import is_least, simplified
 from ..messages import Message
 from ..obstacle import Obstacle
 from ..types import IntArray
@@ -24,6 +25,7 @@ from .views import MOST_VERTICES, drawn, face, turn
 _ATTEMPTS = 6  # from different views, as long as moves lead to fewer crossings
 _FAILURES = 8  # moves in a row that are not free, after which a view is given up
 _NEAR = 4e-3  # of the curve's size: strands nearer than that are spread
+_NEARER = 1e-4  # of its size: what is spread must not have strands nearer than that, unless they were nearer before
 _PART = 0.9  # of a motion's free part, if it is not free as a whole
 
 UNTOUCHED = Message("only curves in space with at most {most:,} vertices are untangled", most=MOST_VERTICES)
@@ -31,11 +33,12 @@ NONE_LEFT = Message("no crossing is left")
 
 
 class Untangled(NamedTuple):
-    """How it ended: with so many crossings, whether no diagram of the curve has fewer, and both in words."""
+    """How it ended: with so many crossings, whether no diagram has fewer, both in words, and after so many moves."""
 
     crossings: int | None
     least: bool
     reason: Message
+    moves: int = 0
 
 
 def untangled(
@@ -63,9 +66,9 @@ def untangled(
     try:
         face(body, rng)
         yield from _taken(body, rng)
+        thin(body)
+        _settle(body, rng)
         for _ in range(_ATTEMPTS):
-            thin(body)
-            _settle(body, rng)
             yield from _taken(body, rng)
             reached = drawn(body, rng).diagram.crossings
             if turn(body, rng, away=blocked) >= reached:
@@ -73,24 +76,23 @@ def untangled(
             blocked = yield from _moved(body, rng)
         diagram = drawn(body, rng).diagram
     except UnclearError as error:
-        return Untangled(reached, False, error.reason)
+        return Untangled(reached, False, error.reason, body.moves)
     reached = diagram.crossings
-    if is_least(diagram):
+    if is_least(diagram) and simplified(diagram).crossings == reached:
         body.resize(curve.length)
         yield from _taken(body, rng)
         left = Message("{count} crossings, the least", count=reached) if reached else NONE_LEFT
-        return Untangled(reached, True, left)
+        return Untangled(reached, True, left, body.moves)
     if blocked:
         left = Message("{count} crossings are left, as no way for a strand is free", count=reached)
     else:
         left = Message("{count} crossings are left, as no move of a strand is known that saves any", count=reached)
-    return Untangled(reached, False, left)
+    return Untangled(reached, False, left, body.moves)
 
 
 def _moved(body: MovingCurve, rng: np.random.Generator) -> Generator[Stage, None, bool]:
     """Make moves in one view until none is left to make; whether that is because they are not free."""
     failures = 0
-    thin(body)
     _settle(body, rng)
     while failures <= _FAILURES:
         yield from _taken(body, rng)
@@ -98,7 +100,7 @@ def _moved(body: MovingCurve, rng: np.random.Generator) -> Generator[Stage, None
         move = next(shortenings(drawing.diagram, rng if failures else None), None)
         if move is None:
             return False
-        if _made(body, lambda drawing=drawing, move=move: passed(body, drawing, move)):
+        if _made(body, partial(passed, body, drawing, move)):
             failures = 0
             body.moves += 1
             _settle(body, rng)
@@ -121,13 +123,19 @@ def _made(body: MovingCurve, motions: Callable[[], bool]) -> bool:
 
 def _settle(body: MovingCurve, rng: np.random.Generator) -> None:
     """Level the curve, leave out what it can do without, and spread it where strands are near each other."""
+    _level(body, rng)
+    gap, mark = body.gap, body.mark()
+    if gap < _NEAR * body.size and not body.held.any() and _made(body, lambda: spread(body, drawn(body, rng))):
+        _level(body, rng)
+        if body.gap < min(gap, _NEARER * body.size):
+            body.rewind(mark)
+
+
+def _level(body: MovingCurve, rng: np.random.Generator) -> None:
+    """Level the curve, and leave out what it can do without."""
     _lower(body, rng)
     thin(body)
     _lower(body, rng)
-    if body.gap < _NEAR * body.size and not body.held.any() and _made(body, lambda: spread(body, drawn(body, rng))):
-        _lower(body, rng)
-        thin(body)
-        _lower(body, rng)
 
 
 def _lower(body: MovingCurve, rng: np.random.Generator) -> None:

@@ -1,10 +1,11 @@
 """From where a curve is looked at: from where moves of its diagram lead to the fewest crossings.
 
-A knot that no move of a strand simplifies in one view comes apart in another one: level heights make ramps of strands,
-and seen from the side their crossings are others.  So far one of a dozen such views has been enough for every unknot.
+A knot that no move of a strand simplifies in one view comes apart in another: where heights are level, strands rise and
+fall slowly, and from the side their crossings are others.  So far two dozen such views were enough for all unknots.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -28,15 +29,10 @@ _WORK = 60_000  # crossings of diagrams that are visited to see where the moves 
 
 
 def drawn(body: MovingCurve, rng: np.random.Generator) -> Drawing:
-    """What is seen, if need be from a direction very near the frame's."""
-    for turn in range(_TURNS + 1):
-        try:
-            return Drawing.of(body.mesh, body.seen, body.held)
-        except UnclearError:
-            if turn == _TURNS:
-                raise
-            body.frame = body.frame @ rotation(np.eye(3) + _TILT * rng.normal(size=(3, 3)))
-    raise AssertionError
+    """What is seen, if need be from a direction very near the frame's, to which it is turned."""
+    tilts = (rotation(np.eye(3) + _TILT * rng.normal(size=(3, 3))) for _ in range(_TURNS))
+    body.frame, drawing = next(_seen(body, chain([body.frame], (body.frame @ tilt for tilt in tilts))))
+    return drawing
 
 
 def face(body: MovingCurve, rng: np.random.Generator, count: int = _VIEWS) -> Drawing:
@@ -89,18 +85,17 @@ def worth(curve: Curve, least: int = 0, seed: int = 20231) -> tuple[int, int]:
     return crossings - left, left
 
 
-def _seen(body: MovingCurve, frames: list[FloatArray]) -> Iterator[tuple[FloatArray, Drawing]]:
-    """What is seen in some frames, but for those where rounding hides it; an UnclearError if it does in all."""
-    reason: UnclearError | None = None
-    none = True
+def _seen(body: MovingCurve, frames: Iterable[FloatArray]) -> Iterator[tuple[FloatArray, Drawing]]:
+    """What is seen in some frames, but for those where that is unclear; an UnclearError if it is in all."""
+    clear, reason = False, UnclearError()
     for frame in frames:
         check_time()
         try:
             drawing = Drawing.of(body.mesh, body.curve.vertices @ frame, body.held)
         except UnclearError as error:
             reason = error
-            continue
-        none = False
-        yield frame, drawing
-    if none and reason is not None:
+        else:
+            clear = True
+            yield frame, drawing
+    if not clear:
         raise reason

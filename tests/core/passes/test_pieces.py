@@ -1,5 +1,6 @@
 """Each piece of a strand move keeps what it has to."""
 
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -52,8 +53,14 @@ def test_triangles_fill_the_rectangle_and_have_all_walls_for_edges(seed: int) ->
 
 
 def test_sides_are_decided_where_rounding_hides_them() -> None:
-    line = np.array([[0.0, 0.0], [1.0, 1.0 + 2**-50], [0.3, 0.3 + 2**-54], [0.5, 0.25]])
-    assert len(Triangles(line, [(0, 1)]).corners) == 2 * len(line) + 2
+    rng = np.random.default_rng(1)
+    for _ in range(200):
+        a, b = rng.uniform(-1.0, 1.0, (2, 2))
+        a *= 10.0 ** -rng.integers(8)  # so that differences are rounded too
+        found = Triangles(np.array([a, b, a + rng.uniform(0.1, 0.9) * 10.0 ** -rng.integers(6) * (b - a)]), [(0, 1)])
+        for corner, *others in found.points[found.corners]:
+            (x, y), (z, w) = ([Fraction(p) - Fraction(q) for p, q in zip(end, corner, strict=True)] for end in others)
+            assert x * w > y * z
     with pytest.raises(UnclearError):
         Triangles(np.array([[0.0, 0.0], [1.0, 1.0], [0.5, 0.5]]), [(0, 1)])
 
