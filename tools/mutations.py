@@ -10,7 +10,7 @@ RESTORATION, ADAPTIVE = "tests/core/test_restoration.py", "tests/core/test_adapt
 AVOID, OBSTACLES = "tests/core/test_avoid.py", "tests/core/collision/test_obstacles_exactly.py"
 WINDOWS = "tests/core/collision/test_windows.py"
 MOTIONS, HOPS = "tests/core/test_hop_motions.py", "tests/core/test_hops.py"
-KNOT_TYPE = "tests/core/knots/test_knot_type.py"
+KNOT_TYPE, PASSES = "tests/core/knots/test_knot_type.py", "tests/core/passes"
 HIERARCHY, ENGINE = "tests/core/hierarchy", "tests/addon/engine"
 UNTANGLING = "tests/core/test_untangling.py"
 CERTIFICATE, VERIFY, GROW = "tests/core/test_certificate.py", "tests/core/verify", "tests/core/test_grow.py"
@@ -663,6 +663,90 @@ MUTANTS = (
         "(following[x] == y or following[y] == x)",
         "following[x] == y",
         "tests/core/diagrams/test_moves.py::test_bigons_are_undone_whichever_way_their_strands_run",
+    ),
+    Mutant(
+        "strands that need no proof",
+        "core/passes/moving.py",
+        "if not is_free(self.mesh, self.curve.vertices, end, self.obstacles):",
+        "if False:",
+        f"{PASSES}/test_untangle.py::test_scrambled_knots_and_links_come_to_their_crossings",
+    ),
+    Mutant(
+        "pins that strands take along",
+        "core/passes/moving.py",
+        "end[vertices[free]] = places[free]",
+        "end[vertices] = places",
+        f"{PASSES}/test_untangle.py::test_pins_stay_and_strands_end_at_them",
+    ),
+    Mutant(
+        "pins that the curve can do without",
+        "core/passes/thin.py",
+        "np.flatnonzero(spare & ~body.held)",
+        "np.flatnonzero(spare)",
+        f"{PASSES}/test_untangle.py::test_pins_stay_and_strands_end_at_them",
+    ),
+    Mutant(
+        "motions that are not taken back",
+        "core/passes/moving.py",
+        "del self.stages[stages:]",
+        "del self.stages[stages + 1 :]",
+        f"{PASSES}/test_pieces.py::test_what_is_taken_back_leaves_no_trace",
+    ),
+    Mutant(
+        "thin at any price",
+        "core/passes/thin.py",
+        "minimal_gap(thinner)[0] >= gap and ",
+        "",
+        f"{PASSES}/test_pieces.py::test_thin_curves_have_their_type_and_no_more_crossings",
+    ),
+    Mutant(
+        "heights upside down",
+        "core/passes/heights.py",
+        "np.where(drawing.heights[0] > drawing.heights[1], 1.0, -1.0)",
+        "np.where(drawing.heights[0] > drawing.heights[1], -1.0, 1.0)",
+        f"{PASSES}/test_pieces.py::test_heights_keep_the_order_at_crossings_and_what_is_held",
+    ),
+    Mutant(
+        "lower strands above all else",
+        "core/passes/passing.py",
+        "targets[:, 2] = up * (top",
+        "targets[:, 2] = abs(up) * (top",
+        f"{PASSES}/test_pieces.py::test_a_move_in_space_leads_to_the_diagram_that_was_planned",
+    ),
+    Mutant(
+        "only as it lies on the table",
+        "core/passes/views.py",
+        "rng.normal(size=(count, 3, 3))",
+        "rng.normal(size=(0, 3, 3))",
+        f"{PASSES}/test_untangle.py::test_famous_unknots_lose_all_crossings",
+    ),
+    Mutant(
+        "untangled and shorter",
+        "core/passes/untangle.py",
+        "        body.resize(curve.length)\n",
+        "",
+        f"{PASSES}/test_untangle.py::test_famous_unknots_lose_all_crossings",
+    ),
+    Mutant(
+        "sides by rounding",
+        "core/passes/triangles.py",
+        "_ROUNDING = 4e-16",
+        "_ROUNDING = 0.0",
+        f"{PASSES}/test_pieces.py::test_sides_are_decided_where_rounding_hides_them",
+    ),
+    Mutant(
+        "both strands on one vertex",
+        "core/passes/spread.py",
+        "_ASIDE = 0.05",
+        "_ASIDE = 0.0",
+        f"{PASSES}/test_pieces.py::test_what_is_spread_has_its_diagram_and_wider_gaps",
+    ),
+    Mutant(
+        "arcs that alternate",
+        "core/diagrams/simplify.py",
+        "alternates and ENDS not in diagram.sequence",
+        "alternates",
+        "tests/core/diagrams/test_moves.py::test_alternating_diagrams_have_the_least_number_of_crossings",
     ),
     Mutant(
         "flips the other way",

@@ -9,7 +9,7 @@ import numpy as np
 from ..curve import Curve, Mesh
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .diagram import Diagram, Pass
+from .diagram import PIN, Diagram
 
 _TILT = 0.02  # radians, about, by which the flattest view is turned, so that nothing special is seen
 _ROWS = 64  # boxes looked at together
@@ -27,11 +27,13 @@ def views(curve: Curve, count: int, seed: int = 20217, clear: float = 1e-9) -> I
     points = np.ldexp(curve.vertices, -power)  # where products of coordinates neither overflow nor vanish
     middle = points - points.mean(axis=0)
     flattest = np.linalg.svd(middle, full_matrices=False)[2] + _TILT * rng.normal(size=(3, 3))
-    every = (_seen(curve, middle @ rotation(each), clear) for each in (flattest, *rng.normal(size=(count - 1, 3, 3))))
-    none = True
-    for diagram in filter(None, every):
-        none = False
-        yield diagram
+    none, mesh = True, curve.mesh
+    for each in (flattest, *rng.normal(size=(count - 1, 3, 3))):
+        turned = middle @ rotation(each)
+        found = seen(mesh, turned, plane_crossings(mesh, turned, clear), np.empty(0, dtype=np.intp), clear)
+        if found is not None:
+            none = False
+            yield found.diagram
     if none:
         raise CurveError("strands touch, or nearly do: no view of the curve shows which one is in front")
 
@@ -43,37 +45,41 @@ def rotation(frame: FloatArray) -> FloatArray:
     return np.asarray(q * [1.0, 1.0, np.sign(np.linalg.det(q))])
 
 
-def _seen(curve: Curve, points: FloatArray, clear: float) -> Diagram | None:
-    """The diagram of points, shape (n, 3), as seen along z; None if it is unclear."""
-    edges, at, turn = plane_crossings(curve.mesh, points)
-    heights = points[curve.mesh.tails[edges], 2] * (1.0 - at) + points[curve.mesh.heads[edges], 2] * at
-    above = heights[0] > heights[1]
-    size = float(np.abs(points).max())
-    margin = min(
-        at.min(initial=1.0), 1.0 - at.max(initial=0.0), np.abs(heights[0] - heights[1]).min(initial=size) / size
-    )
-    if margin < clear:
-        return None
-    signs = np.sign(np.where(above, turn, -turn)).astype(int).tolist()
-    along = (edges + at).ravel()
-    upper = np.concatenate([above, ~above])
-    crossing = np.tile(np.arange(len(signs)), 2)
-    order = np.argsort(along)
-    ends = np.searchsorted(along[order], curve.mesh.offsets)
-    passes: list[tuple[Pass, ...]] = []
-    for a, b in pairwise(ends.tolist()):
-        part = order[a:b]
-        passes.append(tuple(zip(crossing[part].tolist(), upper[part].tolist(), strict=True)))
-    diagram = Diagram(tuple(passes), tuple(signs))
-    return diagram if diagram.is_planar else None
-
-
 class PlaneCrossings(NamedTuple):
     """Pairs of edges without a common vertex whose inner points cross in the plane."""
 
     edges: IntArray  # ascending in each pair; shape (2, k)
     at: FloatArray  # where on them, as fractions of their lengths; shape (2, k)
     turn: FloatArray  # cross product of their vectors, positive if the second crosses from right to left; shape (k,)
+
+
+class Seen(NamedTuple):
+    """What is seen of polygons along the third axis."""
+
+    crossings: PlaneCrossings
+    heights: FloatArray  # of both edges at each crossing; shape (2, k)
+    diagram: Diagram
+    at: list[float]  # where each pass is: the tail of its edge plus a fraction
+
+
+def seen(mesh: Mesh, points: FloatArray, found: PlaneCrossings, held: IntArray, clear: float) -> Seen | None:
+    """The diagram of points, shape (n, 3), with these crossings and held vertices; None if it is unclear."""
+    edges, at = found.edges, found.at
+    heights = points[mesh.tails[edges], 2] * (1.0 - at) + points[mesh.heads[edges], 2] * at
+    apart = np.abs(heights[0] - heights[1]) / np.ptp(points, axis=0).max()
+    if min(at.min(initial=1.0), 1.0 - at.max(initial=0.0), apart.min(initial=1.0)) < clear:
+        return None
+    above = heights[0] > heights[1]
+    signs = np.sign(np.where(above, found.turn, -found.turn)).astype(int).tolist()
+    held = np.setdiff1d(held, mesh.ends[:, 1])
+    along = np.concatenate([(mesh.tails[edges] + at).ravel(), held])
+    crossing = np.concatenate([np.tile(np.arange(len(signs)), 2), np.full(len(held), PIN[0])])
+    upper = np.concatenate([above, ~above, ~np.isin(held, mesh.ends[:, 0])])  # as in PIN and ENDS
+    order = np.argsort(along, kind="stable")
+    parts = (order[a:b] for a, b in pairwise(np.searchsorted(along[order], mesh.offsets).tolist()))
+    passes = (tuple(zip(crossing[part].tolist(), upper[part].tolist(), strict=True)) for part in parts)
+    diagram = Diagram(tuple(passes), tuple(signs))
+    return Seen(found, heights, diagram, along[order].tolist()) if diagram.is_planar else None
 
 
 def plane_crossings(mesh: Mesh, points: FloatArray, beyond: float = 0.0) -> PlaneCrossings:

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from ..curve import Mesh
-from ..diagrams.diagram import ENDS, PIN, Diagram, Pass
-from ..diagrams.projection import PlaneCrossings, plane_crossings
+from ..diagrams.diagram import ENDS, Diagram
+from ..diagrams.projection import PlaneCrossings, plane_crossings, seen
 from ..messages import Message
 from ..types import BoolArray, FloatArray
 from .triangles import UnclearError
@@ -51,32 +51,13 @@ class Drawing:
     @classmethod
     def of(cls, mesh: Mesh, points: FloatArray, held: BoolArray) -> "Drawing":
         """The drawing of a curve some vertices of which are held; an UnclearError where rounding hides what it is."""
-        found = plane_crossings(mesh, points, _CLEAR)
-        if len(found.turn) >= MOST_CROSSINGS:
+        crossings = plane_crossings(mesh, points, _CLEAR)
+        if len(crossings.turn) >= MOST_CROSSINGS:
             raise CrowdedError
-        edges, fractions = found.edges, found.at
-        low, high = points[mesh.tails[edges], 2], points[mesh.heads[edges], 2]
-        heights = low * (1.0 - fractions) + high * fractions
-        size = float(np.ptp(points, axis=0).max())
-        apart = np.abs(heights[0] - heights[1]) / size
-        if min(fractions.min(initial=1.0), 1.0 - fractions.max(initial=0.0), apart.min(initial=1.0)) < _CLEAR:
+        found = seen(mesh, points, crossings, np.flatnonzero(held), _CLEAR)
+        if found is None:
             raise UnclearError
-        above = heights[0] > heights[1]
-        signs = np.sign(np.where(above, found.turn, -found.turn)).astype(int).tolist()
-        at = (mesh.tails[edges] + fractions).tolist()
-        found_at: list[tuple[float, Pass]] = []
-        for places, over in zip(at, (above.tolist(), (~above).tolist()), strict=True):
-            found_at += zip(places, enumerate(over), strict=True)
-        firsts, lasts = mesh.ends.T.tolist()
-        for vertex in set(np.flatnonzero(held).tolist()) - set(lasts):
-            found_at.append((float(vertex), ENDS if vertex in firsts else PIN))
-        ordered: list[list[tuple[float, Pass]]] = [[] for _ in mesh.component_sizes]
-        for place, each in sorted(found_at):
-            ordered[mesh.component[int(place)]].append((place, each))
-        diagram = Diagram(tuple(tuple(each for _, each in part) for part in ordered), tuple(signs))
-        if not diagram.is_planar:
-            raise UnclearError
-        return cls(mesh, points, found, heights, diagram, [place for part in ordered for place, _ in part])
+        return cls(mesh, points, *found)
 
     @cached_property
     def nodes(self) -> FloatArray:

@@ -10,17 +10,17 @@ from ..collision import free_motion
 from ..curve import Curve
 from ..curve.pins import NOWHERE
 from ..diagrams.rerouting import shortenings
-from ..diagrams.simplify import is_least, simplified
+from ..diagrams.simplify import simplified
 from ..messages import Message
 from ..obstacle import Obstacle
 from ..types import IntArray
-from .drawing import UnclearError
 from .heights import combed
 from .moving import MovingCurve, Stage
 from .passing import passed
 from .spread import spread
 from .thin import thin
-from .views import MOST_VERTICES, drawn, face, turn
+from .triangles import UnclearError
+from .views import MOST_VERTICES, drawn, face, shows_least, turn
 
 _ATTEMPTS = 6  # from different views, as long as moves lead to fewer crossings
 _FAILURES = 8  # moves in a row that are not free, after which a view is given up
@@ -78,7 +78,7 @@ def untangled(
     except UnclearError as error:
         return Untangled(reached, False, error.reason, body.moves)
     reached = diagram.crossings
-    if is_least(diagram) and simplified(diagram).crossings == reached:
+    if simplified(diagram).crossings == reached and shows_least(diagram):
         body.resize(curve.length)
         yield from _taken(body, rng)
         left = Message("{count} crossings, the least", count=reached) if reached else NONE_LEFT

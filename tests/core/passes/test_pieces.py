@@ -128,3 +128,16 @@ def test_a_move_in_space_leads_to_the_diagram_that_was_planned(name: str) -> Non
     after = drawing(found).diagram
     assert (after.crossings, after.writhe) == (move.after.crossings, move.after.writhe)
     assert jones(simplified(after)) == jones(simplified(seen.diagram))
+
+
+def test_what_is_taken_back_leaves_no_trace() -> None:
+    found = body("3_1")
+    thin(found)
+    before, count, mark = found.curve, len(found.stages), found.mark()
+    thinner, everything = found.mesh.size, np.arange(found.mesh.size)
+    assert found.move(everything, 1.01 * found.seen)
+    assert found.insert(np.array([0.5, 2.5]))
+    assert found.move(everything[:1], found.seen[:1])
+    found.rewind(mark)
+    assert (found.curve, len(found.stages), found.mesh.size) == (before, count, thinner)
+    np.testing.assert_array_equal(found.stages[-1].end.vertices, before.vertices)

@@ -33,7 +33,7 @@ def test_famous_unknots_lose_all_crossings(name: str) -> None:
     assert end.length == pytest.approx(knot(name).length)
 
 
-@pytest.mark.parametrize(("name", "crossings"), [("5_2", 5), ("m7_4", 7), ("L6a4", 6), ("3_1#m4_1", 7)])
+@pytest.mark.parametrize(("name", "crossings"), [("5_2", 5), ("m7_4", 7), ("L6a4", 6), ("3_1#m4_1", 7), ("3_1#3_1", 6)])
 def test_scrambled_knots_and_links_come_to_their_crossings(name: str, crossings: int) -> None:
     curve = scramble(knot(name, 100), 1, moves=3000)
     end, found = run(curve)
@@ -93,3 +93,26 @@ def test_what_cannot_be_untangled_is_left_alone() -> None:
     assert gone < left == 5
     gone, left = worth(knot("ochiai-2"), 20)
     assert gone > 20 > left
+
+
+@pytest.mark.parametrize("gap", [1e-9, 1e-13, 1e-15])
+def test_strands_too_near_to_tell_are_left_alone(gap: float) -> None:
+    turn = 4.0 * np.pi * np.arange(400) / 400  # a trefoil, twice
+    x, y = np.sin(turn) + 2.0 * np.sin(2.0 * turn), np.cos(turn) - 2.0 * np.cos(2.0 * turn)
+    aside = gap * np.cos(0.5 * np.outer(turn, [1, 3, 5]))
+    curve = Curve(np.column_stack([x, y, -np.sin(3.0 * turn)]) + aside)
+    work = untangled(curve)
+    with pytest.raises(StopIteration) as end:
+        next(work)
+    assert "strands touch, or nearly do" in end.value.value.reason
+    assert worth(curve) == (0, 0)
+
+
+def test_curves_with_too_many_crossings_are_left_alone() -> None:
+    rng, turn = np.random.default_rng(1), 2.0 * np.pi * np.arange(6000) / 6000
+    waves = sum(rng.normal(size=(3, 1)) * np.cos(k * turn + rng.uniform(0.0, 6.0, size=(3, 1))) for k in range(60, 130))
+    work = untangled(Curve(waves.T))
+    with pytest.raises(StopIteration) as end:
+        next(work)
+    assert "5,000 crossings" in end.value.value.reason
+    assert worth(Curve(waves.T)) == (0, 0)
