@@ -32,9 +32,6 @@ class Rest(Intervention):
     def __post_init__(self) -> None:
         self.started()
 
-    def __post_init__(self) -> None:
-        self.started()
-
     def started(self) -> None:
         self._shift, self._below = self.newton.first_shift, self.gradient
 
