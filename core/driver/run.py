@@ -178,7 +178,8 @@ class Run:
             before = self.iterate
             self._go(step)
             yield self.iterate
-            self.rises.change(before, self.iterate)
+            if not step.size:  # others have been found by a search, and lower the energy
+                self.rises.change(before, self.iterate)
         self.resolution = change.resolution or self.resolution
         if change.method is not None:
             self.method, self._memory = change.method, State()

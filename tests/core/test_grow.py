@@ -1,6 +1,7 @@
 """Growth: lengths become a multiple of those of the start, by proved motions, as far as there is room for that."""
 
 import json
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -81,8 +82,9 @@ def test_a_fixed_mesh_stays():
 def test_with_nothing_in_the_way_a_curve_is_scaled_at_once(factor):
     """Energy, which does not see size, and shape are those of the curve that does not grow."""
     curve = torus_trefoil(40)
-    plain = minimize(curve, RelaxOptions(vertices=40, mesh="fixed"))
-    result = minimize(curve, RelaxOptions(vertices=40, mesh="fixed", grow=factor))
+    loose = RelaxOptions(vertices=40, mesh="fixed", tolerance=1e-3)  # so coarse a mesh has several minima
+    plain = minimize(curve, loose)
+    result = minimize(curve, replace(loose, grow=factor))
     assert result.status is Status.CONVERGED
     assert result.certified
     assert result.curve.length == pytest.approx(factor * curve.length, rel=1e-9)
