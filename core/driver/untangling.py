@@ -14,7 +14,7 @@ from ..descent.step import attempt
 from ..errors import CurveError, MobiusFlowError
 from ..knots import knot_type
 from ..messages import Message
-from ..passes import Seen, Stage, Untangled, untangled, worth
+from ..passes import Stage, untangled, worth
 from ..task import check_refined
 from ..types import FloatArray, IntArray
 from .outcome import Outcome
@@ -105,27 +105,28 @@ class Untangling:
         middle = start.curve.vertices.mean(axis=0)
         knotted = None if start.curve.mesh.all_closed or not self._ends_are_pinned else _names(start.curve, middle)
         pins = np.array(start.pins, dtype=np.intp)
-        moves = _by_moves(untangled(start.curve, pins, run.problem.obstacles, run.options.seed))
+        work = untangled(start.curve, pins, run.problem.obstacles, run.options.seed)
         stages: list[Stage] = []
+        undone = False
         earlier, least, began = run.strand_moves, None, time.perf_counter()
         while True:
             try:
-                made, seen = next(moves)
+                stages.append(next(work))
             except StopIteration as end:
-                reason: Message = end.value
-                return KNOTTED if stages and knotted is not None else reason
-            stages += made
-            if least is None:
+                reason: Message = end.value.reason
+                return KNOTTED if undone else reason
+            if (seen := stages[-1].seen) is None:
+                continue
+            if least is None or earlier is None:
                 earlier = earlier or StrandMoves(seen.crossings, seen.crossings)
                 least = seen.crossings - 1 if run.options.untangle == "always" else seen.crossings // 2
             if seen.crossings > least:
                 continue
-            if knotted is not None and (not knotted or _names(stages[-1].end, middle) != knotted):
+            undone = knotted is not None and (not knotted or _names(stages[-1].end, middle) != knotted)
+            if undone:
                 continue
-            assert earlier is not None
-            point, least = lengths.point(stages[-1].end), seen.crossings
-            spent = (run.strand_moves or earlier).seconds + time.perf_counter() - began
-            so_far = run.strand_moves or earlier
+            point, least, so_far = lengths.point(stages[-1].end), seen.crossings, run.strand_moves or earlier
+            spent = so_far.seconds + time.perf_counter() - began
             now = so_far._replace(left=least, moves=earlier.moves + seen.moves, seconds=spent, done=False)
             yield from run.moved(stages, point, now)
             stages, began = [], time.perf_counter()
@@ -154,30 +155,18 @@ class Untangling:
             point, share = run.point, min(1.0, longest / run.point.infeasibility)
             try:
                 aim = point.vertices - share * point.tangent_space.pseudo_inverse(point.residual)
-                found = attempt(point, aim, (1.0 - share) * point.residual, lambda _: True)
+                found = attempt(point, aim, (1.0 - share) * point.residual, lambda end: bool(end.gradient_norm >= 0.0))
             except np.linalg.LinAlgError:
                 return
-            longest = min(LONGEST, 2.0 * longest) if isinstance(found, Leg) else 0.5 * longest
-            step = Step((found,), 0.0, None) if isinstance(found, Leg) else None
-            for _ in range(SETTLING):
-                if step is None or run.iterations_left <= 0:
+            if not isinstance(found, Leg):
+                longest *= 0.5
+                continue
+            longest = min(LONGEST, 2.0 * longest)
+            for k in range(SETTLING):
+                step = run.step() if k else Step((found,), 0.0, None)
+                if not isinstance(step, Step) or run.iterations_left <= 0:
                     break
                 yield run.accept(step)
-                step = next_step if isinstance(next_step := run.step(), Step) else None
-
-
-def _by_moves(work: Generator[Stage, None, Untangled]) -> Generator[tuple[list[Stage], Seen], None, Message]:
-    """The stages of each move, and what is seen after it; return how they end."""
-    stages: list[Stage] = []
-    while True:
-        try:
-            stages.append(next(work))
-        except StopIteration as end:
-            reason: Message = end.value.reason
-            return reason
-        if (seen := stages[-1].seen) is not None:
-            yield stages, seen
-            stages = []
 
 
 def _names(curve: Curve, middle: FloatArray) -> tuple[str, ...]:
