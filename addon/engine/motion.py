@@ -164,6 +164,11 @@ class Motion:
         return Course(*(np.interp(times, recorded, column) for column in columns))
 
     @property
+    def way(self) -> float:
+        """How far the fastest vertices have gone, in sizes of the curve."""
+        return float(self._course.distance[-1])
+
+    @property
     def _course(self) -> Course:
         """How far the relaxation has come at each of the recorded frames."""
         times = np.array([shape.time for shape in self._shapes])

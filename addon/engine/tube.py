@@ -14,6 +14,7 @@ from .placement import Frame
 _THICKEST = 0.016  # of a component's length: a round circle's tube is then a tenth of its radius
 _DISTINCT = 3.0  # two points lie on different strands if they are this many times further apart along the curve
 _AIR = 0.94  # of half the gap, so that strands do not seem to touch
+_THINNEST = 3e-3  # of a curve's size: a thinner tube is not seen in a film, nor is which strand is in front
 _GROWTH = 0.04  # of the thickest radius, per frame
 
 
@@ -47,7 +48,7 @@ def strand_gap(curve: Curve, widest: float) -> float:
 
 
 def animated_radii(mesh: Mesh, points: Sequence[Frame], frames: FloatArray) -> FloatArray:
-    """Radii of the tube at keyed curves: free at each, and changing gently from frame to frame; shape (keys,)."""
+    """Radii of the tube at keyed curves, (keys,): free at each unless too thin to see, and changing gently."""
     curves = [Curve(p.astype(np.float64), mesh) for p in points]
     thickest = thickest_radius(curves[0])
     radii = np.array([free_radius(curve, thickest) for curve in curves])
@@ -55,4 +56,4 @@ def animated_radii(mesh: Mesh, points: Sequence[Frame], frames: FloatArray) -> F
         view, steps = radii[order], np.abs(np.diff(frames[order]))
         for k, step in enumerate(steps):
             view[k + 1] = min(view[k + 1], view[k] + _GROWTH * thickest * step)
-    return radii
+    return np.maximum(radii, [_THINNEST * np.ptp(p, axis=0).max() for p in points])

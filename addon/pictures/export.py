@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 Target = str | os.PathLike[str]
 
-_MAX_KEYS = 1000  # in a .blend; more are of no use to the eye
-_MAX_FILM_KEYS = 200
 _PICTURE = (800, 450, 8)  # width, height, samples
 _FILM = (640, 360)
 _FILM_WITHOUT_DRIVER = (384, 216, 3)
@@ -54,35 +52,42 @@ def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
     ``iterates`` are those of a run, from the start to the last. Raises MobiusFlowError if Blender's module is missing
     or the file cannot be written.
     """
-    motion, origin = film.recorded(iterates)
-    keys = motion.keys(is_free, _MAX_KEYS)
-    scene = _empty_scene()
-    rendering.use_cycles(scene, *_PICTURE)
-    frames = film.steady(motion).frames(motion.course(keys))
-    film.compose(scene, keys, frames, motion.start.mesh, origin)
+    _, certified = _played(iterates, lambda scene: rendering.use_cycles(scene, *_PICTURE), in_place=True)
     _make(path, _save)
-    return keys.certified
+    return certified
 
 
 def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | None = None) -> bool:
-    """Render the relaxation to an .mp4 of a few seconds.
+    """Render the relaxation to an .mp4 of a few seconds, or half a minute where strands are moved one after the other.
 
     ``progress`` gets the number of frames done and of all frames. Otherwise as `write_blend`.
     """
-    motion, _ = film.recorded(iterates)
-    keys = motion.keys(is_free, _MAX_FILM_KEYS)
-    scene = _empty_scene()
-    if rendering.workbench_works():
-        rendering.use_workbench(scene, *_FILM)
-    else:
-        rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER, draft=True)
-        rendering.skip_frames(scene)
-    timing = film.smooth(keys)
-    frames = timing.frames(motion.course(keys))
-    film.compose(scene, keys, frames, motion.start.mesh)
-    scene.frame_start, scene.frame_end = timing.scene_range(frames)
+
+    def set_up(scene: "bpy.types.Scene") -> None:
+        if rendering.workbench_works():
+            rendering.use_workbench(scene, *_FILM)
+        else:
+            rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER, draft=True)
+            rendering.skip_frames(scene)
+
+    scene, certified = _played(iterates, set_up)
     _make(path, lambda temporary: render_movie(scene, temporary, progress))
-    return keys.certified
+    return certified
+
+
+def _played(
+    iterates: Sequence[Iterate], set_up: Callable[["bpy.types.Scene"], None], in_place: bool = False
+) -> tuple["bpy.types.Scene", bool]:
+    """A scene that plays a relaxation, and whether all it shows is proved; ``in_place``: where the curve is."""
+    motion, origin = film.recorded(iterates)
+    timing = film.timing(motion)
+    keys = motion.keys(is_free, timing.length, timing.pace)
+    frames = timing.frames(motion.course(keys))
+    scene = _empty_scene()
+    set_up(scene)
+    film.compose(scene, keys, frames, motion.start.mesh, origin if in_place else None)
+    scene.frame_start, scene.frame_end = timing.scene_range(frames)
+    return scene, keys.certified
 
 
 def write_still(path: Target, iterates: Sequence[Iterate]) -> bool:

@@ -12,7 +12,7 @@ from ...core.types import FloatArray
 from ..curves import keyframes
 from ..curves.exchange import new_curve_data
 from ..engine import tube
-from ..engine.key_options import Output, Pace, Timing
+from ..engine.key_options import Output, Timing
 from ..engine.motion import Keys, Motion
 from ..engine.placement import Link, Placement
 from . import camera, stage
@@ -22,9 +22,8 @@ if TYPE_CHECKING:
     import bpy
 
 _BEVEL_RESOLUTION = 7
-_MIN_FRAMES = 120  # frames of a keyframed relaxation, if its iterates can be spread over them
-_FRAMES_PER_KEY = 6
-_FILM = (60, 96)  # frames of a film in motion
+_FRAMES_PER_SIZE = 20  # in which the fastest vertex goes as far as the curve is wide
+_FILM = (72, 720)  # frames in motion, at least and at most
 _PAUSE = 6  # frames at rest before the motion begins
 _END = 12  # frames at rest after it
 _FAR = 8.0  # a curve further from the origin, in its own sizes, gets its own origin: 32 bits are few
@@ -119,13 +118,8 @@ def _put(scene: "bpy.types.Scene", origin: Origin) -> None:
             obj.data.clip_end *= origin.scale
 
 
-def steady(motion: Motion) -> Timing:
-    """Leave every iterate the same time, in whole frames."""
-    return Timing(pace=Pace.ITERATE, frames_per_iterate=max(1.0, round(_MIN_FRAMES / max(motion.last.index, 1))))
-
-
-def smooth(keys: Keys) -> Timing:
-    """Make a short film in which the curve moves about evenly, and rests for a moment before and after."""
+def timing(motion: Motion) -> Timing:
+    """Let a curve move about evenly, no faster than can be followed, and rest for a moment before and after."""
     low, high = _FILM
-    moving = min(max(_FRAMES_PER_KEY * (len(keys.keys) - 1), low), high)
+    moving = round(min(max(_FRAMES_PER_SIZE * motion.way, low), high))
     return Timing(length=1 + _PAUSE + moving + _END, hold_start=_PAUSE, hold_end=_END)

@@ -55,3 +55,10 @@ def test_tubes_become_thin_before_and_thick_after_a_narrow_place_at_the_same_pac
     np.testing.assert_allclose(radii, radii[::-1], rtol=1e-6)
     assert (np.abs(np.diff(radii)) > 0).all()
     assert np.abs(np.diff(radii)).max() <= 2.0 * 0.04 * thickest_radius(curves[0]) + 1e-9
+
+
+def test_tubes_are_never_too_thin_to_see():
+    ring = regular_polygon(60).vertices
+    curve = Curve.from_components([ring, ring + np.array([0.0, 0.0, 1e-6])])
+    radii = animated_radii(curve.mesh, [curve.vertices.astype(np.float32)], np.zeros(1))
+    assert radii == pytest.approx(3e-3 * np.ptp(ring, axis=0).max(), rel=1e-5)

@@ -121,7 +121,7 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
 def test_a_film_rests_before_and_after(iterates):
     motion, _ = film.recorded(iterates)
     keys = motion.keys(lambda *_: True)
-    timing = film.smooth(keys)
+    timing = film.timing(motion)
     frames = timing.frames(motion.course(keys))
     scene = bpy.context.scene
     film.compose(scene, keys, frames, motion.start.mesh)
