@@ -257,4 +257,5 @@ class Motion:
 
 def _way(a: FloatArray, b: FloatArray) -> float:
     """Way of the fastest vertex from one frame to another, in sizes of the curve: what the eye follows."""
-    return float(np.linalg.norm(b - a, axis=1).max() / np.ptp(a, axis=0).max())
+    size = max(np.ptp(a, axis=0).max(), np.ptp(b, axis=0).max())  # the larger one: it may just be scaled
+    return float(np.linalg.norm(b - a, axis=1).max() / size)
