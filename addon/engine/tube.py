@@ -50,10 +50,10 @@ def strand_gap(curve: Curve, widest: float) -> float:
 def animated_radii(mesh: Mesh, points: Sequence[Frame], frames: FloatArray) -> FloatArray:
     """Radii of the tube at keyed curves, (keys,): free at each unless too thin to see, and changing gently."""
     curves = [Curve(p.astype(np.float64), mesh) for p in points]
-    thickest = thickest_radius(curves[0])
-    radii = np.array([free_radius(curve, thickest) for curve in curves])
+    thickest = np.array(list(map(thickest_radius, curves)))
+    radii = np.array(list(map(free_radius, curves, thickest)))
     for order in (slice(None), slice(None, None, -1)):
-        view, steps = radii[order], np.abs(np.diff(frames[order]))
+        view, steps = radii[order], np.abs(np.diff(frames[order])) * _GROWTH * thickest[order][1:]
         for k, step in enumerate(steps):
-            view[k + 1] = min(view[k + 1], view[k] + _GROWTH * thickest * step)
+            view[k + 1] = min(view[k + 1], view[k] + step)
     return np.maximum(radii, [_THINNEST * np.ptp(p, axis=0).max() for p in points])

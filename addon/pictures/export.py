@@ -19,6 +19,7 @@ from ...core.deadline import termination_raises
 from ...core.errors import OutputError
 from ...core.files import atomic_write
 from ..engine.motion import Key, Keys
+from ..engine.size import Measure
 from . import film, rendering
 from .movie import Progress, render_movie
 
@@ -78,8 +79,8 @@ def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | 
 def _played(
     iterates: Sequence[Iterate], set_up: Callable[["bpy.types.Scene"], None], in_place: bool = False
 ) -> tuple["bpy.types.Scene", bool]:
-    """A scene that plays a relaxation, and whether all it shows is proved; ``in_place``: where the curve is."""
-    motion, origin = film.recorded(iterates)
+    """A scene that plays a relaxation, and whether all it shows is proved; ``in_place``: as large and where it is."""
+    motion, origin = film.recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
     timing = film.timing(motion)
     keys = motion.keys(is_free, timing.length, timing.pace)
     frames = timing.frames(motion.course(keys))

@@ -15,6 +15,7 @@ from ..engine import tube
 from ..engine.key_options import Output, Timing
 from ..engine.motion import Keys, Motion
 from ..engine.placement import Link, Placement
+from ..engine.size import Measure
 from . import camera, stage
 from .materials import colour_components
 
@@ -62,12 +63,15 @@ def check_dimension(curve: Curve) -> None:
         raise MobiusFlowError(f"the curve has {curve.dimension} coordinates; Blender shows curves in 2 or 3 dimensions")
 
 
-def recorded(iterates: Sequence[Iterate]) -> tuple[Motion, Origin]:
-    """Collect the iterates of a run in the numbers that Blender will store; raises MobiusFlowError if it cannot."""
+def recorded(iterates: Sequence[Iterate], measure: Measure = Measure.LENGTH) -> tuple[Motion, Origin]:
+    """Collect the iterates of a run in the numbers that Blender will store; raises MobiusFlowError if it cannot.
+
+    ``measure`` is what stays as it is, see `Motion`.
+    """
     start = iterates[0].curve
     check_dimension(start)
     origin = Origin.of(spatial(start.vertices))
-    motion = Motion(origin.link(start.mesh))
+    motion = Motion(origin.link(start.mesh), measure=measure)
     for iterate in iterates:
         motion.add(iterate)
     return motion, origin

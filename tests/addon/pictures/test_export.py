@@ -3,6 +3,7 @@
 import builtins
 import os
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -127,6 +128,19 @@ def test_a_film_rests_before_and_after(iterates):
     film.compose(scene, keys, frames, motion.start.mesh)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (film._PAUSE, film._END)
+
+
+def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
+    """Here a ring that goes six times to and fro over half its width, and is then scaled as a whole."""
+    ring = regular_polygon(30)
+    offset = np.array([0.5 * np.ptp(ring.vertices, axis=0).max(), 0.0, 0.0])
+    places = [ring.vertices + (k % 2) * offset for k in range(13)]
+    places.append(50.0 * places[-1])
+    start = next(relax(ring, RelaxOptions(vertices=30)))
+    moves = (replace(start, index=k, curve=ring.with_vertices(p), path=(p,)) for k, p in enumerate(places[1:], 1))
+    motion, _ = film.recorded([replace(start, curve=ring), *moves])
+    assert motion.way == pytest.approx(12 * 0.5 + 0.5 * 49 / 50, rel=0.1)
+    assert film.timing(motion).length == 1 + film._PAUSE + round(film._FRAMES_PER_SIZE * motion.way) + film._END
 
 
 def test_workbench_is_set_up():
