@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...core.types import FloatArray, IntArray
+from .interpolation import interpolated
 
 
 class Markers:
@@ -61,11 +62,7 @@ class Markers:
             if number > stage:
                 at = np.interp(at, np.arange(len(before)), before)
         places = np.interp(at, np.arange(len(self._places[stage])), self._places[stage])
-        tails = np.floor(places).astype(np.intp)
-        share = (places - tails)[:, None]
-        return np.asarray(
-            (1.0 - share) * vertices[tails % len(vertices)] + share * vertices[(tails + 1) % len(vertices)]
-        )
+        return interpolated(np.concatenate([vertices, vertices[:1]]), places % len(vertices))
 
 
 def _cut(parts: IntArray, pieces: IntArray) -> FloatArray:

@@ -56,15 +56,6 @@ def frames_of(link: Link, iterate: Iterate) -> list[Frame]:
     return [link.to_stored(iterate.curve.mesh, end).astype(np.float32) for end in ends]
 
 
-@dataclass(frozen=True, eq=False)
-class _Shape:
-    """What was recorded of one time: the vertices as stored, (n, 3), on the mesh that there was."""
-
-    time: float
-    points: Frame
-    stage: int  # number of the mesh
-
-
 class Motion:
     """The frames of a relaxation in the numbers that Blender will store, collected as they come.
 
@@ -79,7 +70,8 @@ class Motion:
         self._start: Curve | None = None
         self._last: Iterate | None = None  # as it is shown,
         self._reached: Curve | None = None  # and in its own size
-        self._shapes: list[_Shape] = []
+        self._shapes: list[Key] = []  # what was recorded, each on the mesh that there was:
+        self._stages: list[int] = []  # its number
         self._meshes: list[Mesh] = []
         self._markers: list[Markers] = []  # of each component
         self._ends: list[int] = []  # positions of the iterates among the shapes; the others are inner ends of legs
@@ -103,8 +95,8 @@ class Motion:
         else:
             self._change(self._reached, iterate.curve, frames[0])
         self._last, self._reached = shown, iterate.curve
-        times = self._leg_times(iterate.index, frames)
-        self._shapes += [_Shape(*each, len(self._meshes) - 1) for each in zip(times, frames, strict=True)]
+        self._shapes += map(Key, self._leg_times(iterate.index, frames), frames)
+        self._stages += len(frames) * [len(self._meshes) - 1]
         self._ends.append(len(self._shapes) - 1)
         self._steps.append(iterate.step_size if iterate.index else 0.0)
 
@@ -149,8 +141,9 @@ class Motion:
     def result(self, free: Proof) -> Keys:
         """Return the last iterate alone; it counts as proved if the way there and its rounding were."""
         last = Key(self._shapes[-1].time, self.frame)
-        exact = Curve(self._marked(self.last.curve.vertices, -1), self._mesh)
-        proved = self.last.certified and self._rounds_freely(exact, last, free)
+        assert self._last is not None, "a relaxation yields at least its start"
+        exact = Curve(self._marked(self._last.curve.vertices, -1), self._mesh)
+        proved = self._last.certified and self._rounds_freely(exact, last, free)
         return Keys((last,), int(not proved))
 
     def course(self, keys: Keys) -> Course:
@@ -172,9 +165,9 @@ class Motion:
     def _course(self) -> Course:
         """How far the relaxation has come at each of the recorded frames."""
         times = np.array([shape.time for shape in self._shapes])
-        common = [self._link.to_common(self._meshes[shape.stage], shape.points) for shape in self._shapes]
-        stays = [a.stage == b.stage for a, b in pairwise(self._shapes)]
-        ways = [_way(a, b) if same else 0.0 for (a, b), same in zip(pairwise(common), stays, strict=True)]
+        stages = zip(self._stages, self._shapes, strict=True)
+        common = [(stage, self._link.to_common(self._meshes[stage], shape.points)) for stage, shape in stages]
+        ways = [_way(a, b) if before == after else 0.0 for (before, a), (after, b) in pairwise(common)]
         flow_time = np.interp(times, times[self._ends], np.cumsum(self._steps))
         return Course(times, np.concatenate([[0.0], np.cumsum(ways)]), flow_time)
 
@@ -189,14 +182,9 @@ class Motion:
         """The last iterate as Blender will store it, with all points that keys have."""
         return self._key(-1).points
 
-    @property
-    def last(self) -> Iterate:
-        assert self._last is not None, "a relaxation yields at least its start"
-        return self._last
-
     def _key(self, position: int) -> Key:
-        shape = self._shapes[position]
-        return Key(shape.time, self._marked(shape.points, shape.stage).astype(np.float32))
+        shape, stage = self._shapes[position], self._stages[position]
+        return Key(shape.time, self._marked(shape.points, stage).astype(np.float32))
 
     def _marked(self, points: Frame | FloatArray, stage: int) -> FloatArray:
         """All markers of a polygon on the mesh of a stage."""
