@@ -30,6 +30,8 @@ _PART = 0.9  # of a motion's free part, if it is not free as a whole
 
 UNTOUCHED = Message("only curves in space with at most {most:,} vertices are untangled", most=MOST_VERTICES)
 NONE_LEFT = Message("no crossing is left")
+BLOCKED = "{count} crossings are left, as no way for a strand is free"
+STUCK = "{count} crossings are left, as no move of a strand is known that saves any"
 
 
 class Untangled(NamedTuple):
@@ -75,18 +77,15 @@ def untangled(
                 break
             blocked = yield from _moved(body, rng)
         diagram = drawn(body, rng).diagram
+        reached = diagram.crossings
     except UnclearError as error:
         return Untangled(reached, False, error.reason, body.moves)
-    reached = diagram.crossings
     if simplified(diagram).crossings == reached and shows_least(diagram):
         body.resize(curve.length)
         yield from _taken(body, rng)
         left = Message("{count} crossings, the least", count=reached) if reached else NONE_LEFT
         return Untangled(reached, True, left, body.moves)
-    if blocked:
-        left = Message("{count} crossings are left, as no way for a strand is free", count=reached)
-    else:
-        left = Message("{count} crossings are left, as no move of a strand is known that saves any", count=reached)
+    left = Message(BLOCKED if blocked else STUCK, count=reached)
     return Untangled(reached, False, left, body.moves)
 
 

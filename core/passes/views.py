@@ -51,11 +51,11 @@ def turn(body: MovingCurve, rng: np.random.Generator, *, away: bool = False, cou
 
     Returns how many they lead to.  If it is to turn ``away``, the moves that begin in the frame as it is do not count.
     """
-    best = drawn(body, rng).diagram.crossings
-    sides = [body.frame @ rotation(each) for each in rng.normal(size=(count, 3, 3)) * [1.0, 1.0, _SIDES]]
-    seen = sorted(_seen(body, sides), key=lambda each: each[1].diagram.crossings)
-    for frame, drawing in seen if away else [(body.frame, drawn(body, rng)), *seen]:
-        check_time()
+    best, here = drawn(body, rng).diagram.crossings, body.frame
+    sides = [here @ rotation(each) for each in rng.normal(size=(count, 3, 3)) * [1.0, 1.0, _SIDES]]
+    for frame, drawing in sorted(_seen(body, [here, *sides]), key=lambda each: each[1].diagram.crossings):
+        if away and frame is here:
+            continue
         left = simplified(drawing.diagram, _WORK)
         if left.crossings < best:
             best, body.frame = left.crossings, frame
