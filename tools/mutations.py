@@ -693,13 +693,6 @@ MUTANTS = (
         f"{PASSES}/test_pieces.py::test_what_is_taken_back_leaves_no_trace",
     ),
     Mutant(
-        "thin at any price",
-        "core/passes/thin.py",
-        "minimal_gap(thinner)[0] >= gap and ",
-        "",
-        f"{PASSES}/test_pieces.py::test_thin_curves_have_their_type_and_no_more_crossings",
-    ),
-    Mutant(
         "heights upside down",
         "core/passes/heights.py",
         "np.where(drawing.heights[0] > drawing.heights[1], 1.0, -1.0)",
