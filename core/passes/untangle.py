@@ -1,6 +1,7 @@
 """From a tangled curve to one with few crossings, by strand moves that are seen on its diagram and made in space."""
 
 from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
@@ -85,8 +86,7 @@ def untangled(
         yield from _taken(body, rng)
         left = Message("{count} crossings, the least", count=reached) if reached else NONE_LEFT
         return Untangled(reached, True, left, body.moves)
-    left = Message(BLOCKED if blocked else STUCK, count=reached)
-    return Untangled(reached, False, left, body.moves)
+    return Untangled(reached, False, Message(BLOCKED if blocked else STUCK, count=reached), body.moves)
 
 
 def _moved(body: MovingCurve, rng: np.random.Generator) -> Generator[Stage, None, bool]:
@@ -111,11 +111,9 @@ def _moved(body: MovingCurve, rng: np.random.Generator) -> Generator[Stage, None
 def _made(body: MovingCurve, motions: Callable[[], bool]) -> bool:
     """Make motions, or none of them where one is not free, or rounding hides which way is."""
     mark = body.mark()
-    try:
+    with suppress(UnclearError):
         if motions():
             return True
-    except UnclearError:
-        pass
     body.rewind(mark)
     return False
 

@@ -1,7 +1,6 @@
 """From where a curve is looked at: from where moves of its diagram lead to the fewest crossings.
 
-A knot that no move of a strand simplifies in one view comes apart in another: where heights are level, strands rise and
-fall slowly, and from the side their crossings are others.  So far two dozen such views were enough for all unknots.
+A knot that is stuck in one view comes apart in another: of level heights, two dozen views from the side were enough.
 """
 
 from collections.abc import Iterable, Iterator
