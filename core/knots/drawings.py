@@ -62,6 +62,7 @@ class Drawing:
         return cls(generic, points, passes, _upper(generic, passes))
 
     @classmethod
+    @checked
     def seen(cls, curve: Curve) -> "Drawing":
         """Find the crossings of closed polygons in space as seen from +z, where strands are over that are higher."""
         drawing = cls.of(Curve(curve.vertices[:, :2], curve.mesh))

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..arguments import checked
 from ..collision import is_free
 from ..curve import Curve, Mesh
 from ..curve.distances import nearest_strands
@@ -95,6 +96,7 @@ def _along(points: FloatArray, at: FloatArray, t: FloatArray) -> FloatArray:
     return np.stack([np.interp(t, np.append(at, 1.0), x) for x in closed.T], axis=1)
 
 
+@checked
 def rounded(curve: Curve, least: int = 320) -> Curve:
     """Round the corners of a polygon by averages of neighbours, as far as its motion there is proved free of contact.
 

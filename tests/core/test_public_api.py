@@ -122,6 +122,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "knot_type": (knots.knot_type, {"curve": TREFOIL, "effort": knots.Effort()}),
     "Effort": (knots.Effort, {"vertices": 1000, "views": 3, "doubled": 10, "names": 4}),
     "smooth_knot": (knots.smooth_knot, {"name": "3_1", "vertices": 20}),
+    "rounded": (knots.rounded, {"curve": TREFOIL, "least": 40}),
     "torus_knot": (knots.torus_knot, {"p": 2, "q": 3, "vertices": 20, "major": 1.0, "minor": 0.3}),
     "lissajous_knot": (
         knots.lissajous_knot,
@@ -139,6 +140,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     ),
     "overhand": (knots.overhand, {"vertices": 40}),
     "Drawing.of": (knots.Drawing.of, {"curve": PLANAR}),
+    "Drawing.seen": (knots.Drawing.seen, {"curve": TREFOIL}),
 }
 OF_THE_PROGRAM = {
     "CurveFile",
