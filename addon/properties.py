@@ -30,7 +30,7 @@ _MEASURES = {
 }
 _KEPT = "The radius, or the length where something is pinned or avoided, or grows"
 _PACES = {
-    Pace.EVEN: "The curves move about evenly over the whole length, and their last, small motions get some frames too",
+    Pace.EVEN: "The curves set off gently, move about evenly over the whole length, and come to rest gently",
     Pace.DISTANCE: "The curves move by the same distance in every frame of the whole length",
     Pace.FLOW_TIME: "The sizes of the steps add up evenly over the whole length: the time of a gradient flow",
     Pace.ITERATE: "Every iterate gets the same number of frames; the length follows",

@@ -17,7 +17,11 @@ LAST_FRAME = 1_048_574  # of any scene; up to it, 32-bit numbers tell a sixteent
 FRAMES_PER_ITERATE = (0.1, 10_000.0)
 _BY_ITERATE = Message("Start Frame, Frames/Iterate or Max Iterations")  # what the last frame depends on
 _BY_LENGTH = Message("Start Frame or Length")
-_EVENNESS = 0.85  # share of distance in an even motion; the rest leaves the last, small steps some frames too
+# shares of an even motion: of distance, of what the energy has fallen by, so that drift takes few frames, and of the
+# iterates, so that the last, small steps get some
+_EVEN = 0.55, 0.3, 0.15
+_RAMP = 0.12  # of the time, in which an even motion sets off, and in which it comes to rest
+_CREEP = 0.1  # of its speed, with which it begins and ends
 
 
 class Pace(Enum):
@@ -36,6 +40,7 @@ class Course:
     iterates: FloatArray  # number of iterates passed
     distance: FloatArray  # way of the fastest vertex, in sizes of the curve, summed up
     flow_time: FloatArray  # sum of the step sizes
+    fall: FloatArray  # of the logarithm of the energy above where it ends
 
     def share(self, pace: Pace) -> FloatArray:
         """Share of the time passed at each frame, from 0 to 1."""
@@ -43,8 +48,17 @@ class Course:
             return _share(self.iterates, self.iterates)
         passed = _share(self.flow_time if pace is Pace.FLOW_TIME else self.distance, self.iterates)
         if pace is Pace.EVEN:
-            return _EVENNESS * passed + (1 - _EVENNESS) * _share(self.iterates, self.iterates)
+            parts = passed, _share(self.fall, self.iterates), _share(self.iterates, self.iterates)
+            return _eased(np.asarray(_EVEN) @ np.array(parts))
         return passed
+
+
+def _eased(share: FloatArray) -> FloatArray:
+    """When shares of a motion have passed that sets off and comes to rest gently."""
+    time = np.linspace(0.0, 1.0, 1001)
+    speed = np.clip(np.minimum(time, 1.0 - time) / _RAMP, _CREEP, 1.0)
+    passed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))])
+    return np.asarray(np.interp(share, passed / passed[-1], time))
 
 
 def _share(passed: FloatArray, otherwise: FloatArray) -> FloatArray:

@@ -22,6 +22,8 @@ from .size import Measure, Size
 Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
 
 _HALVINGS = 5  # of one leg; its keys are then still further apart in time than what Blender tells apart
+_BIT = 0.01  # of the least energy: falls far below that are not seen
+_TINY = 1e-300
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +78,7 @@ class Motion:
         self._markers: list[Markers] = []  # of each component
         self._ends: list[int] = []  # positions of the iterates among the shapes; the others are inner ends of legs
         self._steps: list[float] = []  # sizes of the steps that led to the iterates
+        self._energies: list[float] = []
 
     def add(self, iterate: Iterate) -> None:
         """Append an iterate with its legs; raises MobiusFlowError if none lead to it, and it is not the last one."""
@@ -99,6 +102,7 @@ class Motion:
         self._stages += len(frames) * [len(self._meshes) - 1]
         self._ends.append(len(self._shapes) - 1)
         self._steps.append(iterate.step_size if iterate.index else 0.0)
+        self._energies.append(iterate.energy)
 
     def _change(self, old: Curve, new: Curve, frame: Frame) -> None:
         """Go on to another mesh; vertices that stay keep the numbers that they are stored as."""
@@ -153,7 +157,7 @@ class Motion:
         """
         times = [key.time for key in keys.keys]
         recorded, whole = [shape.time for shape in self._shapes], self._course
-        columns = (whole.iterates, whole.distance, whole.flow_time)
+        columns = (whole.iterates, whole.distance, whole.flow_time, whole.fall)
         return Course(*(np.interp(times, recorded, column) for column in columns))
 
     @property
@@ -168,8 +172,16 @@ class Motion:
         stages = zip(self._stages, self._shapes, strict=True)
         common = [(stage, self._link.to_common(self._meshes[stage], shape.points)) for stage, shape in stages]
         ways = [_way(a, b) if before == after else 0.0 for (before, a), (after, b) in pairwise(common)]
-        flow_time = np.interp(times, times[self._ends], np.cumsum(self._steps))
-        return Course(times, np.concatenate([[0.0], np.cumsum(ways)]), flow_time)
+        reached = times[self._ends]
+        flow_time = np.interp(times, reached, np.cumsum(self._steps))
+        return Course(times, np.concatenate([[0.0], np.cumsum(ways)]), flow_time, np.interp(times, reached, self._fall))
+
+    @property
+    def _fall(self) -> FloatArray:
+        """By how much the logarithm of the energy above its least, and a bit, has fallen at each iterate."""
+        energies = np.minimum.accumulate(self._energies)
+        above = np.log(energies - energies[-1] + _BIT * max(abs(energies[-1]), _TINY))
+        return np.asarray(above[0] - above)
 
     @property
     def start(self) -> Curve:

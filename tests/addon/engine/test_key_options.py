@@ -73,7 +73,7 @@ def test_thinned_keys_are_spread_over_the_frames(motion):
 def course(distance, flow_time=None):
     distance = np.array(distance, dtype=float)
     flow_time = distance if flow_time is None else np.array(flow_time, dtype=float)
-    return Course(np.arange(len(distance), dtype=float), distance, flow_time)
+    return Course(np.arange(len(distance), dtype=float), distance, flow_time, distance)
 
 
 @pytest.mark.parametrize(
@@ -82,11 +82,27 @@ def course(distance, flow_time=None):
         (Pace.ITERATE, [0, 0.5, 1]),
         (Pace.DISTANCE, [0, 0.75, 1]),
         (Pace.FLOW_TIME, [0, 0.1, 1]),
-        (Pace.EVEN, [0, 0.85 * 0.75 + 0.15 * 0.5, 1]),
     ],
 )
 def test_what_passes_evenly(pace, expected):
     assert course([0, 3, 4], [0, 1, 10]).share(pace) == pytest.approx(expected)
+
+
+def test_an_even_motion_sets_off_and_comes_to_rest_gently():
+    """Full speed in between, a fifth of it or less at both ends; the middle is reached in the middle."""
+    share = course(np.linspace(0, 1, 1001)).share(Pace.EVEN)
+    speed = 1e-3 / np.diff(share)
+    assert share[500] == pytest.approx(0.5)
+    assert max(speed[0], speed[-1]) < 0.2 * speed[500]
+    assert np.diff(speed[100:900]) == pytest.approx(0, abs=1e-6)
+
+
+def test_drift_without_a_fall_of_the_energy_takes_fewer_frames():
+    distance, fall = np.arange(11.0), np.minimum(np.arange(11.0), 2.0)
+    plain = Course(distance, distance, distance, distance)
+    drifting = Course(distance, distance, distance, fall)
+    assert drifting.share(Pace.EVEN)[2] > 1.5 * plain.share(Pace.EVEN)[2]
+    assert (np.diff(drifting.share(Pace.EVEN)) > 0).all()
 
 
 def test_flow_time_is_the_sum_of_the_steps():
@@ -126,7 +142,7 @@ def test_keys_stay_apart_in_blenders_numbers(start, pace):
     """Keys of short ways lie nearer together than 32 bits tell frames apart; none may fall on another."""
     times = np.concatenate([k + np.array([0, 1e-7, 2e-7, 0.5, 0.5 + 1e-9]) for k in range(50)])
     distance = np.minimum(times, 20.0)  # all is crowded at the end
-    frames = Timing(pace=pace, start_frame=start).frames(Course(times, distance, distance))
+    frames = Timing(pace=pace, start_frame=start).frames(Course(times, distance, distance, distance))
     assert (np.diff(frames.astype(np.float32)) > 0).all()
     last = start + times[-1] if pace is Pace.ITERATE else start + 249
     assert abs(frames[-1] - last) < 0.1
@@ -136,7 +152,7 @@ def test_keys_stay_apart_in_blenders_numbers(start, pace):
 def test_keys_that_all_fall_on_one_frame_begin_there():
     times = np.array([0.0, 0.1, 0.2])
     timing = Timing(pace=Pace.ITERATE, start_frame=1_000_000, frames_per_iterate=0.1)
-    frames = timing.frames(Course(times, times, times))
+    frames = timing.frames(Course(times, times, times, times))
     assert frames[0] == 1_000_000
     assert (np.diff(frames.astype(np.float32)) > 0).all()
 
