@@ -14,7 +14,7 @@ import numpy as np
 from ..arguments import checked_fields, number
 from ..deadline import check_time
 from ..energies.energy import Approximate
-from ..saddle.indefinite import FactorisedHessian
+from ..saddle.indefinite import Chains, FactorisedHessian
 from .directions import LimitedMemoryBFGS
 from .hessian import ASSEMBLED_SIZE, lagrangian_matrix
 from .problem import Point
@@ -27,7 +27,9 @@ class Curvature:
 
     def __init__(self, point: Point) -> None:
         check_time()
-        self.point, self._matrix, self._metric = point, lagrangian_matrix(point), point.inner_product.dense()
+        self.point, self._chains = point, Chains(point.tangent_space.constraints)
+        self._hessian = self._chains.of_hessian(lagrangian_matrix(point))
+        self._metric = self._chains.of_metric(point.inner_product.dense())
 
     @staticmethod
     def is_known(point: Point) -> bool:
@@ -39,10 +41,7 @@ class Curvature:
     def shifted(self, shift: float) -> FactorisedHessian:
         """D²L + σ J for a shift σ; as many of its eigenvalues are negative as D²L has below −σ against J."""
         check_time()
-        (n, m), matrix = self.point.vertices.shape, self._matrix.copy()
-        for k in range(m):
-            matrix.reshape(n, m, n, m)[:, k, :, k] += shift * self._metric
-        return FactorisedHessian(matrix, self.point.tangent_space.constraints)
+        return FactorisedHessian(self._hessian + shift * self._metric, self._chains)
 
     def gain(self, inverse: FactorisedHessian) -> float:
         """The decrease of the energy that a quadratic model promises, half the square of Newton's decrement."""
