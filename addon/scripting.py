@@ -11,14 +11,14 @@ and with the Python package beside `bpy`::
 
 import numbers
 import os
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ..core import Curve, MobiusFlowError, OptionError
+from ..core import Curve, Hand, Iterate, MobiusFlowError, OptionError
 from ..core.errors import choice, likeliest
 from .curves import bake
 from .curves.baked_keys import BakedKeys
@@ -77,7 +77,12 @@ class Relaxation:
         self.objects = objects
         self.sample_splines = sample_splines
 
-    def relax(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
+    def relax(
+        self,
+        avoid: Iterable[bpy.types.Object] = (),
+        drag: Callable[[Hand, Iterate], object] | None = None,
+        **settings: Any,
+    ) -> Report:
         """Relax from how the curves are, or were before they were baked, and keep the motion as keyframes.
 
         Parameters
@@ -85,6 +90,8 @@ class Relaxation:
         avoid
             Objects that the curves never touch, as they are shown at the current frame; those that are relaxed
             themselves are left out.
+        drag
+            Is called with a `Hand` and every iterate, in the world, and may tell the hand what to do next.
         **settings
             Those of the operator ``curve.mobius_flow_relax``, by the same names; defaults for those left out. Besides,
             ``pins``: points that stay where they are, as those do that are pinned already. They are counted from 0
@@ -96,7 +103,7 @@ class Relaxation:
             What was done; its ``sentence`` says so, and ``certified`` whether all of it was proved. What cannot be
             relaxed, or is no setting, raises a MobiusFlowError.
         """
-        return begin(self.objects, complete(settings) | {"avoid": avoid}, False, self.sample_splines).run()
+        return begin(self.objects, complete(settings) | {"avoid": avoid}, False, self.sample_splines).run(drag)
 
     def relax_further(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.

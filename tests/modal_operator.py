@@ -33,7 +33,8 @@ class Operator:
     def report(self, kind, message):
         self.reports.append((kind, message))
 
-    def start(self):
+    def start(self, stays=False):
+        self.stays = stays
         manager = SimpleNamespace(
             event_timer_add=lambda *_, **__: object(),
             event_timer_remove=lambda _: None,
@@ -55,9 +56,9 @@ class Operator:
                 patch.setattr(sys, "executable", "")  # then there is no Python to start
             return self.begin(self.context)
 
-    def event(self, kind="TIMER", mouse=(0, 0), **keys):
-        modifiers = {"ctrl": False, "shift": False, "oskey": False} | keys
-        event = SimpleNamespace(type=kind, value="NOTHING" if kind == "TIMER" else "PRESS", **modifiers)
+    def event(self, kind="TIMER", mouse=(0, 0), value="PRESS", **keys):
+        modifiers = {"ctrl": False, "shift": False, "alt": False, "oskey": False} | keys
+        event = SimpleNamespace(type=kind, value="NOTHING" if kind == "TIMER" else value, **modifiers)
         event.mouse_x, event.mouse_y = mouse
         return self.modal(self.context, event)
 

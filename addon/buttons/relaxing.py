@@ -49,6 +49,7 @@ class Relaxing(Listening, Button):
     }
     needs = (RELAXABLE,)
     continues = False  # whether baked curves are relaxed on from the ends of their animations
+    stays = False  # whether a live run waits for a hand where it comes to rest
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Relax the selected curves live; ask first if smooth splines have to become polygons."""
@@ -62,7 +63,7 @@ class Relaxing(Listening, Button):
     def begin(self, context: bpy.types.Context) -> set[str]:
         try:
             values = self.values(context)
-            run = Run(self.session(context, values), Refresh(values["view_every"]))
+            run = Run(self.session(context, values), Refresh(values["view_every"]), self.stays)
         except MobiusFlowError as error:
             return self.fail(error)
         registry.begin(run)
@@ -97,6 +98,18 @@ class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):
     """Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes"""
 
     bl_label = "Relax"
+
+
+class CURVE_OT_mobius_flow_grab(Relaxing, bpy.types.Operator):
+    """Relax the selected curves, and wait for strands to be dragged in the view until the shape is kept; curves with \
+keys go on from the end of their animation"""
+
+    bl_label = "Grab"
+    stays = True
+
+    @property
+    def continues(self) -> bool:
+        return BAKED.of(selected_curves(bpy.context)) is None
 
 
 class CURVE_OT_mobius_flow_bake_again(Relaxing, bpy.types.Operator):

@@ -13,11 +13,11 @@ from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions
 from ..engine.motion import Keys
-from ..engine.placement import Frame, Spot, spots
+from ..engine.placement import Frame, Placement, Spot, spots
 from ..engine.words import in_blenders_words, named, spline_names
 from .exchange import read_link
 from .member import Member
-from .pins import pinned_vertices
+from .pins import pin, pinned_vertices, unpin
 from .splines import coordinates
 
 if TYPE_CHECKING:
@@ -117,6 +117,34 @@ class Group:
         self._shown = start, frame
         for member, vertices in zip(self._members, self.link.slices(start.mesh), strict=True):
             member.move(frame[vertices])
+
+    @property
+    def in_view(self) -> Curve | None:
+        """The link where it is shown now, which for a single object may be elsewhere; None if there is none."""
+        if self._shown is None or len(self.objects) < len(self._members):
+            return None
+        start, frame = self._shown
+        parts = zip(self._placements, self.link.slices(start.mesh), strict=True)
+        return start.with_vertices(np.concatenate([each.to_world(frame[s].astype(np.float64)) for each, s in parts]))
+
+    def unmoved(self, component: int, point: FloatArray) -> FloatArray:
+        """Where a point in view, shape (3,), would be on a component if no object had been moved."""
+        member = int(np.searchsorted(np.cumsum(self.link.counts), component, side="right"))
+        return self.link.placements[member].to_world(self._placements[member].to_local(point[None]))[0]
+
+    @property
+    def _placements(self) -> list[Placement]:
+        return [Placement.from_matrix(obj.matrix_world) for obj in self.objects]
+
+    def mark_pins(self, vertices: Sequence[int]) -> None:
+        """Let vertices of the link that is shown be the pinned points, and no others."""
+        held, first = np.zeros(len(self._shown[1]) if self._shown else 0, dtype=bool), 0
+        held[list(vertices)] = True
+        for spline in (spline for obj in self.objects for spline in obj.data.splines):
+            chosen = held[first : first + len(spline.points)]
+            first += len(chosen)
+            pin(spline, chosen)
+            unpin(spline, ~chosen)
 
     def make_polygons(self, refined: Curve) -> None:
         """Give all splines the points of the refined link; where they are is left open."""

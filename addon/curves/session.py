@@ -4,7 +4,7 @@ A plain class: a blocking operator runs it, a modal one hands it the iterates of
 What it knows lives here and never in the file.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ import numpy as np
 from ...core import (
     Curve,
     CurveError,
+    Hand,
     Iterate,
     MobiusFlowError,
     Obstacle,
@@ -139,10 +140,13 @@ class Session:
             raise OptionError(Message("Balance does not go with what is avoided; leave it out, or avoid nothing"))
         return task
 
-    def run(self) -> Report:
-        """Do the whole job; raises MobiusFlowError if the curves cannot be relaxed, or an object is gone."""
+    def run(self, drag: Callable[[Hand, Iterate], object] | None = None) -> Report:
+        """Do the whole job; raises MobiusFlowError if the curves cannot be relaxed, or an object is gone.
+
+        ``drag`` gets a hand, and the iterates in the world, between which it may tell the hand what to do.
+        """
         try:
-            prepared = self._relaxed()
+            prepared = self._relaxed(drag)
             if reason := self.lost():
                 raise MobiusFlowError(Message("{reason} during the relaxation; nothing was written", reason=reason))
             for _ in self.writing(prepared):
@@ -152,11 +156,14 @@ class Session:
             raise
         return self.report(prepared)
 
-    def _relaxed(self) -> Prepared:
+    def _relaxed(self, drag: Callable[[Hand, Iterate], object] | None) -> Prepared:
+        hand = Hand()
         try:
-            run = WithOutcome(relax(self.task, self.options))
+            run = WithOutcome(relax(self.task, self.options, hand))
             for iterate in run:
                 self.take(iterate)
+                if drag is not None:
+                    drag(hand, iterate)
         except CurveError as error:
             raise self.reworded(error) from error
         assert run.outcome is not None, "the loop is through"
@@ -189,6 +196,10 @@ class Session:
     def take(self, iterate: Iterate) -> None:
         """Record an iterate as it is shown, in the size that is to be kept."""
         self._motion.add(iterate)
+
+    def unsized(self, point: FloatArray, iterate: Iterate) -> FloatArray:
+        """The point of the relaxation, shape (3,), that is shown at another while an iterate is."""
+        return point if self._size is None else self._size.taken_from(point, iterate.curve)
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""

@@ -1,4 +1,4 @@
-"""The worker's program: relaxes a curve in a process of its own, and ends as soon as Blender does.
+"""The worker's program: relaxes a curve in a process of its own, as a hand may drag it, and ends as Blender does.
 
 Blender runs this file by its path, with its own Python. The package is loaded under a private name, because in
 Blender it is called something like ``bl_ext.user_default.mobius_flow``, which a plain Python cannot import.
@@ -8,9 +8,12 @@ import contextlib
 import importlib
 import importlib.util
 import os
+import queue
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
+from typing import IO, Any
 
 _PACKAGE = "_mobius_flow_worker"
 
@@ -20,11 +23,11 @@ def main() -> None:
     _load_package(Path(__file__).resolve().parents[2])
     wire = importlib.import_module(f"{_PACKAGE}.addon.engine.wire")
     worker = importlib.import_module(f"{_PACKAGE}.addon.engine.worker")
-    message = wire.read(sys.stdin.buffer)
-    threading.Thread(target=_end_with_blender, daemon=True).start()
+    inbox: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    threading.Thread(target=_take_in, args=(wire.read, inbox), daemon=True).start()
     with contextlib.suppress(BrokenPipeError), os.fdopen(os.dup(1), "wb") as out:
         os.dup2(2, 1)  # whatever a library prints must not get in between
-        for reply in worker.messages(message):
+        for reply in worker.messages(inbox):
             wire.write(out, reply)
     os._exit(0)  # the thread still reads
 
@@ -40,10 +43,11 @@ def _load_package(root: Path) -> None:
     spec.loader.exec_module(package)
 
 
-def _end_with_blender() -> None:
-    """Blender never writes again: the input ends when Blender closes it, crashes or is killed."""
-    while os.read(0, 1024):
-        pass
+def _take_in(read: Callable[[IO[bytes]], Any], inbox: "queue.SimpleQueue[Any]") -> None:
+    """Put what Blender says into the inbox; the input ends when Blender closes it, crashes or is killed."""
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            inbox.put(read(sys.stdin.buffer))
     os._exit(0)
 
 

@@ -81,7 +81,13 @@ class Motion:
         self._energies: list[float] = []
 
     def add(self, iterate: Iterate) -> None:
-        """Append an iterate with its legs; raises MobiusFlowError if none lead to it, and it is not the last one."""
+        """Append an iterate with its legs; raises MobiusFlowError if none lead to it, and it is not the last one.
+
+        If there is one of its number, it takes its place, and those after that one go: a drag was taken back.
+        """
+        if 0 < iterate.index < len(self._ends):
+            del self._ends[iterate.index :], self._steps[iterate.index :]
+            del self._shapes[self._ends[-1] + 1 :], self._stages[self._ends[-1] + 1 :]
         if self._reached is None and self._measure is not Measure.LENGTH:
             self._size = Size.of(self._measure, iterate.curve)
         shown = iterate if self._size is None else self._size.given_to_iterate(iterate)

@@ -59,6 +59,11 @@ class Size:
         factor, center = self.factor(curve), barycenter(curve)
         return curve if factor == 1.0 else curve.with_vertices(center + factor * (curve.vertices - center))
 
+    def taken_from(self, point: FloatArray, curve: Curve) -> FloatArray:
+        """The point, shape (m,), that is seen at another when a curve is seen at this size."""
+        center = barycenter(curve)
+        return np.asarray(center + (point - center) / self.factor(curve))
+
     def given_to_iterate(self, iterate: Iterate) -> Iterate:
         """An iterate whose curve, and whose path to it, are scaled leg by leg."""
         curve = iterate.curve

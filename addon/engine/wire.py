@@ -12,6 +12,7 @@ import numpy as np
 from ...core import (
     Curve,
     CurveError,
+    Hand,
     Iterate,
     Mesh,
     MobiusFlowError,
@@ -58,8 +59,8 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
     return data
 
 
-def pack_job(task: Task, options: RelaxOptions, link: Link) -> Packet:
-    header = {**_pack_mesh(task.curve.mesh), "options": asdict(options), "counts": link.counts}
+def pack_job(task: Task, options: RelaxOptions, link: Link, stays: bool = False) -> Packet:
+    header = {**_pack_mesh(task.curve.mesh), "options": asdict(options), "counts": link.counts, "stays": stays}
     header |= {
         "pins": task.pins,
         "pin_tangents": task.pin_tangents,
@@ -82,6 +83,16 @@ def unpack_job(message: Packet) -> tuple[Task, RelaxOptions, Link]:
         pin_tangents=header["pin_tangents"],
     )
     return task, RelaxOptions(**header["options"]), link
+
+
+def pack_deed(deed: str, *facts: Any) -> Packet:
+    """What a hand does: a method of `Hand`, and what it is given."""
+    return {"deed": deed, "facts": facts}, []
+
+
+def unpack_deed(message: Packet, hand: Hand) -> None:
+    """Let the hand do it."""
+    getattr(hand, message[0]["deed"])(*message[0]["facts"])
 
 
 def _pack_mesh(mesh: Mesh) -> dict[str, Any]:

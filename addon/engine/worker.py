@@ -14,13 +14,13 @@ import threading
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 import scipy
 import threadpoolctl
 
-from ...core import Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
+from ...core import Hand, Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
 from ...core.collision import is_free
 from ...core.curve import Mesh
 from ...core.messages import Message
@@ -34,18 +34,31 @@ _AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the w
 _PATIENCE = 0.1  # seconds between looks at whether anybody still wants the next iterate
 
 
-def messages(job: wire.Packet) -> Iterator[wire.Packet]:
-    """Yield the iterates of a job as messages, or one message with the reason why it cannot be done."""
-    task, options, link = wire.unpack_job(job)
+Inbox = queue.SimpleQueue[wire.Packet | None]
+
+
+def messages(inbox: Inbox) -> Iterator[wire.Packet]:
+    """Yield the iterates of a job as messages, or one message with the reason why it cannot be done.
+
+    The inbox has the job first, and then what the hand does, which is looked at between steps; None ends it.
+    """
+    job = inbox.get()
+    if job is None:
+        return
+    (task, options, link), hand = wire.unpack_job(job), Hand(stays=job[0]["stays"])
     obstacles = in_common_space(task.obstacles, link)
     last: Frame | None = None
     try:
-        run = WithOutcome(relax(task, options))
+        run = WithOutcome(relax(task, options, hand=hand))
         for iterate in run:
             frames = frames_of(link, iterate)
             proved = _proved(iterate, link, [*([] if last is None else [last]), *frames], obstacles)
             yield wire.pack_iterate(iterate, proved)
             last = frames[-1]
+            while hand.rests or not inbox.empty():
+                if (said := inbox.get()) is None:
+                    return
+                wire.unpack_deed(said, hand)
         assert run.outcome is not None, "the loop is through"
         yield wire.pack_outcome(run.outcome)
     except MobiusFlowError as error:
@@ -68,11 +81,12 @@ class WorkerError(MobiusFlowError):
 class Worker:
     """A relaxation in another process, or in a thread where no process can be started.
 
-    ``link``: where Blender stores the vertices; motions of the stored ones are proved too.
+    ``link``: where Blender stores the vertices; motions of the stored ones are proved too. ``stays``: as for `Hand`.
     """
 
-    def __init__(self, task: Task, options: RelaxOptions, link: Link) -> None:
-        self._job = wire.pack_job(task, options, link)
+    def __init__(self, task: Task, options: RelaxOptions, link: Link, stays: bool = False) -> None:
+        self._inbox: Inbox = queue.SimpleQueue()
+        self._inbox.put(wire.pack_job(task, options, link, stays))
         self._obstacles = in_common_space(task.obstacles, link)
         self._proved: set[str] = set()
         self._queue: queue.Queue[wire.Packet | None] = queue.Queue(_AHEAD)
@@ -80,6 +94,12 @@ class Worker:
         self.process = _start()
         self._thread = threading.Thread(target=self._feed, name="Möbius Flow", daemon=True)
         self._thread.start()
+        if self.process is not None:
+            threading.Thread(target=_send, args=(self.process, self._inbox), daemon=True).start()
+
+    def tell(self, deed: str, *facts: Any) -> None:
+        """Have the hand do something as soon as the present step is done: a method of `Hand`, by its name."""
+        self._inbox.put(wire.pack_deed(deed, *facts))
 
     def poll(self) -> Iterate | Outcome | None:
         """Take the next iterate if there is one; after the last one comes the outcome.
@@ -107,6 +127,7 @@ class Worker:
     def close(self) -> None:
         """End the process now and the thread with it; harmless to repeat."""
         self._closed.set()
+        self._inbox.put(None)
         if self.process is not None:
             self.process.kill()
             self.process.wait()
@@ -119,16 +140,15 @@ class Worker:
     def _feed(self) -> None:
         """Pass messages on until there are no more or nobody wants them."""
         try:
-            for message in messages(self._job) if self.process is None else _replies(self.process, self._job):
+            for message in messages(self._inbox) if self.process is None else _replies(self.process):
                 if not self._put(message):
                     return
             self._put(None)
         except (EOFError, OSError, ValueError):
             self._put(None)
         finally:
-            for stream in _pipes(self.process) if self.process is not None else ():
-                with contextlib.suppress(OSError):  # what was still to be written goes nowhere
-                    stream.close()
+            if self.process is not None:
+                _pipes(self.process)[1].close()
 
     def _put(self, message: wire.Packet | None) -> bool:
         while not self._closed.is_set():
@@ -140,11 +160,17 @@ class Worker:
         return False
 
 
-def _replies(process: "subprocess.Popen[bytes]", job: wire.Packet) -> Iterator[wire.Packet]:
-    to_worker, from_worker = _pipes(process)
-    wire.write(to_worker, job)
+def _replies(process: "subprocess.Popen[bytes]") -> Iterator[wire.Packet]:
     while True:
-        yield wire.read(from_worker)
+        yield wire.read(_pipes(process)[1])
+
+
+def _send(process: "subprocess.Popen[bytes]", inbox: Inbox) -> None:
+    """Pass on what is put into the inbox, in a thread of its own: a pipe may be full."""
+    to_worker = _pipes(process)[0]
+    with contextlib.suppress(OSError), to_worker:  # to a worker that is gone
+        for packet in iter(inbox.get, None):
+            wire.write(to_worker, packet)
 
 
 def _pipes(process: "subprocess.Popen[bytes]") -> tuple[IO[bytes], IO[bytes]]:

@@ -7,7 +7,7 @@ import bpy
 from ...core.messages import Message
 from ..curves.session import Report
 from ..translations import iface_, rpt_
-from . import registry
+from . import drag, registry
 from .run import Run, State
 
 _INTERVAL = 1 / 60  # seconds
@@ -34,6 +34,8 @@ class Loop:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":
             self.run.tick()
+        elif not self.run.waits and drag.handle(self.run, context, event):
+            handled = {"RUNNING_MODAL"}
         elif event.value == "PRESS" and not self.run.waits and _is_meant(context, event):
             handled = self._key(event)
         if self._visible() != self._shown:
@@ -44,11 +46,13 @@ class Loop:
 
     def _visible(self) -> tuple[object, ...]:
         """All that what is shown depends on."""
-        return self.run.state, self.run.shown, self.run.waits
+        return self.run.state, self.run.shown, self.run.waits, id(self.run.drag and self.run.drag.target)
 
     def _key(self, event: bpy.types.Event) -> set[str]:
         undo = event.type == "Z" and (event.ctrl or event.oskey) and not event.shift
-        if event.type == "ESC" or (undo and not registry.history.others):
+        if (self.run.drag and event.type == "ESC") or (self.run.drags and undo and not registry.history.others):
+            self.run.take_back()
+        elif event.type == "ESC" or (undo and not registry.history.others):
             self.run.cancel()
         elif event.type in {"RET", "NUMPAD_ENTER"}:
             self.run.keep()
@@ -96,7 +100,8 @@ def status_line(run: Run) -> str:
         where = Message("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
     if run.state is State.PAUSED:
         where = Message("paused") if run.last is None else Message("paused at {where}", where=where)
-    return iface_("{names}: {where}   |   Enter: keep this shape   |   Esc: put all back", names=run.name, where=where)
+    keys = Message("Drag: pull a strand, Ctrl pins it   |   Enter: keep this shape   |   Esc: put all back")
+    return iface_("{names}: {where}   |   {keys}", names=run.name, where=where, keys=keys)
 
 
 def redraw_views(manager: bpy.types.WindowManager) -> None:

@@ -1,7 +1,7 @@
 """What is drawn over the 3D views: the energy of the run that the panel shows, places of trouble, and pinned points."""
 
 import logging
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import blf
@@ -57,6 +57,7 @@ def _draw() -> None:
         _pins(context)
         if run is not None:
             _marks(context, run)
+            _hand(context, run)
             if context.scene.mobius_flow_panel.show_plot and run.energies:
                 _plot(context, run)
     except Exception:  # whatever happens to windows, files and graphics cards, nobody is to be interrupted by it
@@ -125,11 +126,27 @@ def _right(context: bpy.types.Context) -> float:
 
 def _marks(context: bpy.types.Context, run: Run) -> None:
     scale = context.preferences.system.ui_scale
-    turns = np.linspace(0.0, 2.0 * np.pi, 33)
-    ring = scale * _RADIUS * np.column_stack([np.cos(turns), np.sin(turns)])
+    ring = scale * _ring(_RADIUS)
     marks = [(obj, mark) for obj, spot in run.spots.items() for mark in spot.marks]
     for there in _seen(context, marks):
         line(there + ring, _RED, scale * _LINE)
+
+
+def _hand(context: bpy.types.Context, run: Run) -> None:
+    """Mark the strand that is held, and draw a line from there to where it is pulled."""
+    curve = run.group.in_view if run.drag is not None else None
+    if run.drag is None or curve is None:
+        return
+    scale = context.preferences.system.ui_scale
+    held, target = (_in_region(context, place.tolist()) for place in (run.drag.held(curve), run.drag.target))
+    if held is not None and target is not None:
+        line(held + scale * _ring(0.5 * _RADIUS), _GOLD, scale * _LINE)
+        line(np.stack([held, target]), _GOLD, scale * _LINE)
+
+
+def _ring(radius: float) -> FloatArray:
+    turns = np.linspace(0.0, 2.0 * np.pi, 33)
+    return np.asarray(radius * np.column_stack([np.cos(turns), np.sin(turns)]))
 
 
 def _pins(context: bpy.types.Context) -> None:
@@ -144,9 +161,13 @@ def _pins(context: bpy.types.Context) -> None:
 def _seen(context: bpy.types.Context, places: Iterable[tuple[bpy.types.Object, FloatArray]]) -> Iterator[FloatArray]:
     """Yield where places of objects are in the view at hand, those that are; shape (2,)."""
     for obj, place in places:
-        world = obj.matrix_world @ mathutils.Vector(place)
-        if (there := location_3d_to_region_2d(context.region, context.region_data, world)) is not None:
-            yield np.array(there)
+        if (there := _in_region(context, obj.matrix_world @ mathutils.Vector(place))) is not None:
+            yield there
+
+
+def _in_region(context: bpy.types.Context, place: Sequence[float]) -> FloatArray | None:
+    there = location_3d_to_region_2d(context.region, context.region_data, place)
+    return None if there is None else np.array(there)
 
 
 def area(low: tuple[float, float], high: tuple[float, float], colour: Colour) -> None:

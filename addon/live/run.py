@@ -10,10 +10,12 @@ from enum import Enum
 from functools import cached_property
 
 import bpy
+import numpy as np
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
 from ...core.errors import Place
 from ...core.messages import Message
+from ...core.types import FloatArray
 from ..curves.group import Group
 from ..curves.session import Report, Session
 from ..curves.splines import digest
@@ -21,6 +23,7 @@ from ..engine.placement import Spot
 from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
+from .drag import Drag
 from .key_writer import KeyWriter
 
 _CANCELLED = Message("Cancelled; all is as it was")
@@ -72,7 +75,7 @@ class Refresh:
 class Run:
     """A session that is fed by a worker, while its curves are shown."""
 
-    def __init__(self, session: Session, refresh: Refresh) -> None:
+    def __init__(self, session: Session, refresh: Refresh, stays: bool = False) -> None:
         self.state = State.RUNNING
         self.message, self.failed = "", False  # what is to be said of its end
         self.on_end: Callable[[], None] = lambda: None
@@ -80,11 +83,13 @@ class Run:
         self.report: Report | None = None
         self.shown: Iterate | None = None
         self.energies: list[float] = []
+        self.drag: Drag | None = None  # the one that is going on
+        self.drags = 0  # those that may be taken back
         self.trouble: list[Spot] = []  # where the reason is why it failed or got stuck, if it is somewhere
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self._session, self._refresh = session, refresh
         try:
-            self._worker = Worker(self._session.task, self._session.options, self.group.link)
+            self._worker = Worker(self._session.task, self._session.options, self.group.link, stays)
         except BaseException:
             self.group.discard()
             raise
@@ -134,6 +139,31 @@ class Run:
         self._show()
         self.state = {State.RUNNING: State.PAUSED, State.PAUSED: State.RUNNING}.get(self.state, self.state)
 
+    def grab(self, drag: Drag) -> None:
+        """Take hold of a strand; `pull` and `let_go` follow."""
+        self.drag, self.drags = drag, self.drags + 1
+        self._worker.tell("grab", drag.component, drag.share)
+
+    def pull(self, target: FloatArray) -> None:
+        """Pull what is held to a place in view, shape (3,)."""
+        assert self.last is not None, "it is shown"
+        if self.drag is not None and np.isfinite(target).all():
+            self.drag.target = target
+            place = self._session.unsized(self.group.unmoved(self.drag.component, target), self.last)
+            self._worker.tell("move", place.tolist())
+
+    def let_go(self, pin: bool = False) -> None:
+        """Let go of the strand; with a pin it stays there."""
+        self.drag = None
+        self._worker.tell("release", pin)
+
+    def take_back(self) -> None:
+        """Go back to before the last drag, if there was one."""
+        self.drag = None
+        if self.drags:
+            self.drags -= 1
+            self._worker.tell("undo")
+
     def keep(self, reason: str = "") -> None:
         """Keep the curve as it is now: stop computing, then prove and write the keys."""
         if self.state not in (State.RUNNING, State.PAUSED):
@@ -142,6 +172,7 @@ class Run:
             self.cancel(Message("Stopped before anything had moved"))
             return
         self._show()
+        self.drag = None
         if self._session.outcome is None:
             reason = reason or Message("stopped after {count} iterations", count=self.last.index)
             self._session.outcome = Outcome(Status.INTERRUPTED, (reason,))
@@ -207,7 +238,7 @@ class Run:
                 return
             self._session.take(arrived)
             self.last = arrived
-            self.energies.append(arrived.energy)
+            self.energies[arrived.index :] = [arrived.energy]
             if self._refresh.ends_batch(arrived.index):
                 break
         if self.last is not None and self._refresh.due(self.last.index):
@@ -228,6 +259,8 @@ class Run:
     def _show(self) -> None:
         if self.last is not None and self.last is not self.shown:
             self.group.show(self._session.start, self._session.frame)
+            if self.shown is not None and self.last.pins != self.shown.pins:
+                self.group.mark_pins(self.last.pins)
             self.shown = self.last
             self._refresh.shown()
 
@@ -253,7 +286,7 @@ class Run:
 
     def _close(self, state: State, message: str, discard: bool = True) -> bool:
         """End, putting the curves back or not; return whether all are as they were."""
-        self.state, self.message = state, message
+        self.state, self.message, self.drag = state, message, None
         self._worker.close()
         self._keys.abandon()
         self.on_end()

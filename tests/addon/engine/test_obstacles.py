@@ -1,5 +1,6 @@
 """What objects show becomes obstacles of the world, and reaches the worker and the common space to the last digit."""
 
+import queue
 from io import BytesIO
 from itertools import pairwise
 
@@ -121,7 +122,9 @@ def test_the_worker_proves_motions_beside_obstacles(placement):
 
 
 def _frames_are_free(task, options, link, beside):
-    *replies, end = messages(wire.pack_job(task, options, link))
+    inbox = queue.SimpleQueue()
+    inbox.put(wire.pack_job(task, options, link))
+    *replies, end = messages(inbox)
     assert "outcome" in end[0]
     received = [wire.unpack_iterate(reply) for reply in replies]
     proved = {name for _, names in received for name in names}

@@ -1,0 +1,291 @@
+"""Strands that are dragged while they relax, by a double of the mouse in a double of a 3D view."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored  # noqa: E402
+from mathutils import Matrix  # noqa: E402
+from mobius_flow import Relaxation  # noqa: E402
+from mobius_flow.addon.curves import pins  # noqa: E402
+from mobius_flow.addon.live.drag import Drag, projected  # noqa: E402
+from mobius_flow.addon.live.run import State  # noqa: E402
+from mobius_flow.core import MobiusFlowError  # noqa: E402
+from modal_operator import keys  # noqa: E402
+from shapes import regular_polygon, torus_trefoil  # noqa: E402
+
+SIZE = 600.0
+WIDE = 12.0  # of the view, in the world
+
+
+def area(overlapping=()):
+    """A 3D view from above, in which one unit is 50 pixels."""
+    view = SimpleNamespace(
+        perspective_matrix=Matrix.Diagonal((2 / WIDE, 2 / WIDE, -0.01, 1.0)),
+        view_matrix=Matrix.Translation((0.0, 0.0, -10.0)),
+        is_perspective=False,
+        view_perspective="ORTHO",
+    )
+    region = SimpleNamespace(type="WINDOW", x=100, y=50, width=SIZE, height=SIZE, data=view)
+    return SimpleNamespace(type="VIEW_3D", x=100, y=50, width=SIZE, height=SIZE, regions=[region, *overlapping])
+
+
+def begin(operator, stays=True, **more):
+    operator.given |= {"vertices": 60} | more
+    operator.start(stays)
+    screen = SimpleNamespace(areas=[area()], is_animation_playing=False)
+    operator.context.window = SimpleNamespace(screen=screen)
+    operator.context.workspace = SimpleNamespace(status_text_set=lambda _: None)
+    view = SimpleNamespace(gizmo_size_navigate_view=80, show_navigate_ui=True)
+    operator.context.preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0), view=view)
+    operator.reach(1)
+
+
+def pixel(place):
+    return 100 + SIZE * (place[0] / WIDE + 0.5), 50 + SIZE * (place[1] / WIDE + 0.5)
+
+
+def press(operator, place, **keys):
+    return operator.event("LEFTMOUSE", pixel(place), **keys)
+
+
+def move(operator, place):
+    return operator.event("MOUSEMOVE", pixel(place), value="NOTHING")
+
+
+def release(operator, place, **keys):
+    return operator.event("LEFTMOUSE", pixel(place), value="RELEASE", **keys)
+
+
+def key(operator, name, ctrl=False):
+    return operator.event(name, (400, 350), ctrl=ctrl)
+
+
+def moved(place, *by):
+    return place + np.array(by)
+
+
+def on_curve(operator, vertex=0):
+    return operator.run.group.in_view.vertices[vertex]
+
+
+def gap(operator, target):
+    drag = operator.run.drag
+    return np.linalg.norm(drag.held(operator.run.group.in_view)[:2] - target[:2])
+
+
+def test_a_strand_follows_the_mouse_and_all_is_proved(operator):
+    add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    place = on_curve(operator)
+    assert press(operator, place) == {"RUNNING_MODAL"}
+    target = moved(place, 1.0, 0.5, 0.0)
+    assert move(operator, target) == {"RUNNING_MODAL"}
+    operator.until(lambda: gap(operator, target) < 0.2)
+    assert release(operator, target) == {"RUNNING_MODAL"}
+    assert operator.run.drag is None
+    assert key(operator, "RET") == {"RUNNING_MODAL"}
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert operator.run.report.certified
+
+
+@pytest.mark.parametrize("operator", ["process"], indirect=True)
+def test_the_worker_takes_in_where_the_mouse_goes(operator):
+    add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    place = on_curve(operator)
+    press(operator, place)
+    for k in range(1, 11):
+        target = moved(place, 0.1 * k, 0.0, 0.0)
+        move(operator, target)
+        operator.event()
+    operator.until(lambda: gap(operator, target) < 0.2)
+    held = operator.run.last.index
+    release(operator, target)
+    operator.reach(held + 1)
+    assert operator.run.last.certified
+
+
+@pytest.mark.parametrize("operator", ["process"], indirect=True)
+def test_a_worker_that_dies_in_mid_drag_loses_nothing(operator):
+    add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    place = on_curve(operator)
+    press(operator, place)
+    operator.run._worker.process.kill()
+    operator.run._worker.process.wait()
+    for k in range(50):
+        move(operator, moved(place, 0.1 * k, 0.0, 0.0))
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert "memory may have run out" in operator.run.message
+    assert operator.run.report.certified
+
+
+def test_what_is_beside_the_curve_or_pressed_with_a_key_is_blenders(operator):
+    add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    place = on_curve(operator)
+    assert press(operator, [5.5, 5.5, 0.0]) == {"PASS_THROUGH"}
+    for modifier in ("ctrl", "shift", "alt", "oskey"):
+        assert press(operator, place, **{modifier: True}) == {"PASS_THROUGH"}
+    assert operator.event("MIDDLEMOUSE", pixel(place)) == {"PASS_THROUGH"}
+    assert move(operator, place) == {"PASS_THROUGH"}
+    assert release(operator, place) == {"PASS_THROUGH"}
+    sidebar = SimpleNamespace(type="UI", x=100, y=50, width=SIZE, height=SIZE)
+    operator.context.window.screen.areas = [area([sidebar])]
+    assert press(operator, place) == {"PASS_THROUGH"}
+    assert operator.run.drag is None
+
+
+def test_at_rest_it_waits_for_the_mouse_and_otherwise_ends(operator):
+    add_curve([regular_polygon(30).vertices])
+    begin(operator)
+    operator.until(lambda: at_rest(operator))
+    assert operator.run.state is State.RUNNING
+    place = on_curve(operator)
+    press(operator, place)
+    move(operator, 1.3 * place)
+    index = operator.run.last.index
+    operator.reach(index + 3)
+
+
+def at_rest(operator):
+    """Whether the last iterate is one that comes where nothing moves any more."""
+    last = operator.run.last
+    return last.index > 0 and last.step_size == 0.0
+
+
+def test_ctrl_leaves_a_pin_that_is_kept(operator):
+    obj = add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    place = on_curve(operator, 7)
+    press(operator, place)
+    target = moved(place, 0.5, 0.0, 0.0)
+    move(operator, target)
+    operator.until(lambda: gap(operator, target) < 0.2)
+    release(operator, target, ctrl=True)
+    operator.until(lambda: operator.run.shown.pins)
+    assert pins.count(obj.data) == 1
+    (vertex,) = operator.run.shown.pins
+    held = operator.run.group.in_view.vertices[vertex]
+    operator.reach(operator.run.last.index + 5)
+    np.testing.assert_array_equal(operator.run.group.in_view.vertices[vertex], held)
+    key(operator, "RET")
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert operator.run.report.certified
+    assert pins.count(obj.data) == 1
+    np.testing.assert_array_equal(pins.places(obj.data)[0], held.astype(np.float32))
+
+
+@pytest.mark.parametrize("let_go", [True, False], ids=["after", "meanwhile"])
+@pytest.mark.parametrize("pressed", [("Z", True), ("ESC", False)], ids=["undo", "escape"])
+def test_a_drag_is_taken_back(operator, let_go, pressed):
+    if let_go and pressed[0] == "ESC":
+        pytest.skip("that ends the run")
+    obj = add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    operator.until(lambda: at_rest(operator))
+    before, index = stored(obj.data), operator.run.last.index
+    place = on_curve(operator)
+    press(operator, place)
+    target = moved(place, 2.0, 0.0, 0.0)
+    move(operator, target)
+    operator.until(lambda: gap(operator, target) < 1.0)
+    if let_go:
+        release(operator, target, ctrl=True)
+    assert np.abs(stored(obj.data) - before).max() > 0.1
+    assert key(operator, *pressed) == {"RUNNING_MODAL"}
+    operator.until(lambda: np.array_equal(stored(obj.data), before))
+    assert operator.run.drag is None
+    assert pins.count(obj.data) == 0
+    assert operator.run.state is State.RUNNING
+    operator.until(lambda: at_rest(operator))
+    key(operator, "RET")
+    assert operator.until(lambda: False) == {"FINISHED"}
+    assert operator.run.report.certified
+    assert len(keys(obj)) == operator.run.last.index + 1
+    assert operator.run.last.index <= index + 3
+    assert len(operator.run.energies) == operator.run.last.index + 1
+
+
+def test_an_object_that_is_deleted_in_mid_drag_ends_the_run(operator):
+    obj = add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    press(operator, on_curve(operator))
+    bpy.data.objects.remove(obj)
+    assert move(operator, [0.0, 0.0, 0.0]) == {"RUNNING_MODAL"}
+    assert operator.event() == {"CANCELLED"}
+    assert operator.run.drag is None
+
+
+def test_targets_that_are_nowhere_are_left_out(operator):
+    add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    place = on_curve(operator)
+    press(operator, place)
+    operator.run.pull(np.array([np.nan, 0.0, np.inf]))
+    operator.run.pull(np.array([1e300, 0.0, 0.0]))
+    release(operator, place)
+    operator.reach(operator.run.last.index + 1)
+
+
+def test_the_strand_in_front_is_held_where_two_cross(operator):
+    add_hopf_link()
+    begin(operator)
+    curve = operator.run.group.in_view
+    region = area().regions[0]
+    flat, depth, seen = projected(region, curve.vertices)
+    assert seen.all()
+    vertex = int(depth.argmin())
+    drag = Drag.at(curve, region, flat[vertex], 15.0)
+    assert np.linalg.norm(drag.target - curve.vertices[vertex]) < 0.3
+    assert Drag.at(curve, region, np.array([1.0, 1.0]), 15.0) is None
+
+
+def test_an_object_that_was_moved_is_dragged_where_it_is(operator):
+    obj = add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    obj.location = (2.0, -1.0, 0.0)
+    bpy.context.view_layer.update()
+    place = on_curve(operator)
+    press(operator, place)
+    target = moved(place, 0.5, 0.5, 0.0)
+    move(operator, target)
+    operator.until(lambda: gap(operator, target) < 0.2)
+
+
+@pytest.mark.parametrize("size", ["BOX", "RADIUS"])
+def test_curves_of_a_size_are_dragged_where_they_are_seen(operator, size):
+    add_curve([torus_trefoil(40).vertices])
+    begin(operator, keep_size=size)
+    operator.until(lambda: at_rest(operator))
+    place = on_curve(operator)
+    press(operator, place)
+    target = moved(place, 0.3, 0.3, 0.0)
+    move(operator, target)
+    operator.until(lambda: at_rest(operator))
+    move(operator, target)
+    operator.until(lambda: at_rest(operator))
+    assert gap(operator, target) < 0.2
+
+
+def test_scripts_drag_too():
+    obj, seen = add_trefoil(), []
+
+    def drag(hand, iterate):
+        seen.append(iterate.index)
+        if iterate.index == 2:
+            hand.grab(0, 0.5)
+        if 2 <= iterate.index < 12:
+            hand.move([0.2 * iterate.index, 0.0, 0.0])
+        if iterate.index == 12:
+            hand.release(pin=True)
+
+    report = Relaxation(obj).relax(drag=drag, vertices=120)
+    assert report.certified
+    assert len(seen) > 13
+    with pytest.raises(MobiusFlowError, match="finite"):
+        Relaxation(obj).relax(drag=lambda hand, _: hand.move([np.nan] * 3), vertices=120)
