@@ -138,10 +138,9 @@ class Group:
 
     def mark_pins(self, vertices: Sequence[int]) -> None:
         """Let vertices of the link that is shown be the pinned points, and no others."""
-        held, first = np.zeros(len(self._shown[1]) if self._shown else 0, dtype=bool), 0
-        held[list(vertices)] = True
+        first = 0
         for spline in (spline for obj in self.objects for spline in obj.data.splines):
-            chosen = held[first : first + len(spline.points)]
+            chosen = np.isin(np.arange(first, first + len(spline.points)), vertices)
             first += len(chosen)
             pin(spline, chosen)
             unpin(spline, ~chosen)

@@ -127,6 +127,8 @@ class Session:
             self.group.discard()
             raise
         self._motion = Motion(self.group.link, self.group.stored if continues else None, self._measure)
+        self._last: Iterate | None = None
+        self._repinned = False  # whether a hand has left pins
         self.outcome: Outcome | None = None
 
     def _task(self, held: Held, balance: bool) -> Task:
@@ -195,11 +197,32 @@ class Session:
 
     def take(self, iterate: Iterate) -> None:
         """Record an iterate as it is shown, in the size that is to be kept."""
+        before, self._last = self._last, iterate
+        if before is not None and before.curve.mesh == iterate.curve.mesh:
+            self._repinned |= before.pins != iterate.pins
         self._motion.add(iterate)
 
-    def unsized(self, point: FloatArray, iterate: Iterate) -> FloatArray:
-        """The point of the relaxation, shape (3,), that is shown at another while an iterate is."""
-        return point if self._size is None else self._size.taken_from(point, iterate.curve)
+    def unsized(self, point: FloatArray) -> FloatArray:
+        """The point of the relaxation, shape (3,), that is shown at another."""
+        return self._motion.unsized(point)
+
+    @property
+    def pinnable(self) -> bool:
+        """Whether a pin stays where it is: keys that are scaled move it."""
+        return self._measure is Measure.LENGTH
+
+    def show(self) -> None:
+        """Show the last iterate, with the pins that a hand has left."""
+        self.group.show(self.start, self.frame)
+        self._mark_pins()
+
+    def _mark_pins(self) -> None:
+        """Mark the points that are where the last iterate has pins, of which there may be fewer vertices."""
+        if self._repinned and self._last is not None:
+            link, curve = self.group.link, self._last.curve
+            shown = link.to_common(self.start.mesh, self.frame)
+            pins = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))[list(self._last.pins)]
+            self.group.mark_pins([int(np.linalg.norm(shown - pin, axis=1).argmin()) for pin in pins])
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
@@ -243,6 +266,7 @@ class Session:
     def writing(self, prepared: Prepared) -> Iterator[None]:
         """Write in short pieces, so that a window can be drawn in between; all objects must be there."""
         self.group.make_polygons(self.start)
+        self._mark_pins()
         yield from self.group.writing(
             self.start.mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii
         )

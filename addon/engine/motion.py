@@ -5,7 +5,7 @@ from one key to the next: another path, which needs its own proof, in the number
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -90,7 +90,8 @@ class Motion:
             del self._shapes[self._ends[-1] + 1 :], self._stages[self._ends[-1] + 1 :]
         if self._reached is None and self._measure is not Measure.LENGTH:
             self._size = Size.of(self._measure, iterate.curve)
-        shown = iterate if self._size is None else self._size.given_to_iterate(iterate)
+        # what a hand pins is scaled with the rest
+        shown = iterate if self._size is None else replace(self._size.given_to_iterate(iterate), pins=())
         frames = frames_of(self._link, shown)
         if self._reached is None:
             self._start, self._mesh = shown.curve, iterate.curve.mesh
@@ -98,7 +99,7 @@ class Motion:
             self._markers = list(map(Markers, self._mesh.component_sizes, self._mesh.closed))
             frames = frames if self._first is None else [self._first]
         elif iterate.path:
-            held = list(iterate.pins)
+            held = list(shown.pins)
             for frame in frames:
                 frame[held] = self._shapes[-1].points[held]  # rounding them anew might move them
         else:
@@ -109,6 +110,12 @@ class Motion:
         self._ends.append(len(self._shapes) - 1)
         self._steps.append(iterate.step_size if iterate.index else 0.0)
         self._energies.append(iterate.energy)
+
+    def unsized(self, point: FloatArray) -> FloatArray:
+        """The point of the relaxation, shape (3,), that is at another in the size of the last frame."""
+        if self._size is None or self._reached is None:
+            return point
+        return self._size.taken_from(point, self._reached)
 
     def _change(self, old: Curve, new: Curve, frame: Frame) -> None:
         """Go on to another mesh; vertices that stay keep the numbers that they are stored as."""

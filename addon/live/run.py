@@ -146,16 +146,15 @@ class Run:
 
     def pull(self, target: FloatArray) -> None:
         """Pull what is held to a place in view, shape (3,)."""
-        assert self.last is not None, "it is shown"
-        if self.drag is not None and np.isfinite(target).all():
+        if self.drag is not None and self.group.in_view is not None and np.isfinite(target).all():
             self.drag.target = target
-            place = self._session.unsized(self.group.unmoved(self.drag.component, target), self.last)
+            place = self._session.unsized(self.group.unmoved(self.drag.component, target))
             self._worker.tell("move", place.tolist())
 
     def let_go(self, pin: bool = False) -> None:
-        """Let go of the strand; with a pin it stays there."""
+        """Let go of the strand; with a pin it stays there, unless the curve's size is kept."""
         self.drag = None
-        self._worker.tell("release", pin)
+        self._worker.tell("release", pin and self._session.pinnable)
 
     def take_back(self) -> None:
         """Go back to before the last drag, if there was one."""
@@ -258,9 +257,7 @@ class Run:
 
     def _show(self) -> None:
         if self.last is not None and self.last is not self.shown:
-            self.group.show(self._session.start, self._session.frame)
-            if self.shown is not None and self.last.pins != self.shown.pins:
-                self.group.mark_pins(self.last.pins)
+            self._session.show()
             self.shown = self.last
             self._refresh.shown()
 

@@ -88,7 +88,7 @@ class Hand:
         self._say(lambda hold: hold.release(pin))
 
     def undo(self) -> None:
-        """Go back to the iterate before the last grab, as if what came after it had never been.
+        """Go back to the iterate before the last grab, as if what came after it had never been; not to another mesh.
 
         The next iterate has the number after that one; no `Trajectory` that has the others takes it.
         """
@@ -172,6 +172,6 @@ class Hold(Intervention):
         run.start_from(run.point.changing(constraints=replace(held, pins=pins, lengths=lengths)))
 
     def undo(self) -> None:
-        if self._before:
+        if self._before and self._before[-1][0].problem.mesh is self.run.problem.mesh:
             self.run.go_back(*self._before.pop())
             self.run.renew()
