@@ -111,6 +111,11 @@ keys go on from the end of their animation"""
     def continues(self) -> bool:
         return BAKED.of(selected_curves(bpy.context)) is None
 
+    def values(self, context: bpy.types.Context) -> dict[str, Any]:
+        """Those of Relax, but that lengths stay unless another size is asked for: pins are to stay where they are."""
+        values = super().values(context)
+        return values | ({"keep_size": "LENGTH"} if values["keep_size"] == "AUTO" else {})
+
 
 class CURVE_OT_mobius_flow_bake_again(Relaxing, bpy.types.Operator):
     """Relax the selected curves anew from how they were before they were baked; new keys replace the old ones"""

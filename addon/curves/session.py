@@ -198,7 +198,7 @@ class Session:
     def take(self, iterate: Iterate) -> None:
         """Record an iterate as it is shown, in the size that is to be kept."""
         before, self._last = self._last, iterate
-        if before is not None and before.curve.mesh == iterate.curve.mesh:
+        if self.pinnable and before is not None and before.curve.mesh == iterate.curve.mesh:
             self._repinned |= before.pins != iterate.pins
         self._motion.add(iterate)
 

@@ -140,8 +140,8 @@ def _hand(context: bpy.types.Context, run: Run) -> None:
     scale = context.preferences.system.ui_scale
     held, target = (_in_region(context, place.tolist()) for place in (run.drag.held(curve), run.drag.target))
     if held is not None and target is not None:
-        line(held + scale * _ring(0.5 * _RADIUS), _GOLD, scale * _LINE)
-        line(np.stack([held, target]), _GOLD, scale * _LINE)
+        line(held + scale * _ring(0.5 * _RADIUS), GOLD, scale * _LINE)
+        line(np.stack([held, target]), GOLD, scale * _LINE)
 
 
 def _ring(radius: float) -> FloatArray:

@@ -13,7 +13,8 @@ from ..constraints import Block, Constraints
 from ..curve import Curve, Mesh
 from ..curve.pins import Pins
 from ..deadline import check_time
-from ..energies import Objective, Pull
+from ..energies import Objective
+from ..energies.pull import Pull
 from ..errors import OptionError
 from ..metrics import InnerProduct, Metric, SparseInnerProduct
 from ..obstacle import Obstacle

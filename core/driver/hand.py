@@ -12,8 +12,8 @@ from ..curve.pins import Pins
 from ..descent import NoStep, Point, Step
 from ..descent.searches.trials import on_target
 from ..descent.step import leg
-from ..energies import Pull
 from ..energies.components import energy_scale
+from ..energies.pull import Pull
 from ..errors import MobiusFlowError, shown
 from ..obstacle import MAX_COORDINATE
 from ..types import FloatArray

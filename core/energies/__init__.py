@@ -12,7 +12,6 @@ from .energy import Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invaria
 from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
 from .objective import Objective, Weighted
-from .pull import Pull
 
 ENERGIES: Mapping[str, Energy] = MappingProxyType(
     {
@@ -49,7 +48,6 @@ __all__ = [
     "KPointEnergy",
     "MoebiusEnergy",
     "Objective",
-    "Pull",
     "Rule",
     "Stiff",
     "Term",

@@ -20,8 +20,7 @@ from mobius_flow.core import (
     WithOutcome,
     relax,
 )
-from mobius_flow.core.energies import Pull
-from mobius_flow.core.energies.pull import REACH, share_of
+from mobius_flow.core.energies.pull import REACH, Pull, share_of
 from mobius_flow.core.knots import knot, knot_type
 from mobius_flow.core.metrics import DenseInnerProduct, SparseInnerProduct
 from mobius_flow.core.taylor import derivative_slope, hessian_slope
