@@ -140,7 +140,8 @@ def test_what_is_beside_the_curve_or_pressed_with_a_key_is_blenders(operator):
     assert operator.run.drag is None
 
 
-def test_at_rest_it_waits_for_the_mouse_and_otherwise_ends(operator):
+@pytest.mark.parametrize("operator", ["thread", "process"], indirect=True)
+def test_at_rest_it_waits_for_the_mouse(operator):
     add_curve([regular_polygon(30).vertices])
     begin(operator)
     operator.until(lambda: at_rest(operator))

@@ -7,11 +7,13 @@ from scene import is_, iterate, look, obj, points, ready, run
 
 
 def case() -> Steps:
-    yield from ready("4_1", 160)
+    yield from ready("3_1", 100)
+    window().scene.mobius_flow.tolerance = 1e-3
     before = points()
     yield from button("curve.mobius_flow_grab")
-    yield from until(resting, "the knot to rest and wait")
-    assert run() is not None
+    yield from until(lambda: run() is not None, "a run")
+    yield from until(resting, "the knot to rest and wait", 120)
+    assert run() is not None, state()
     yield from look()
     yield from picture("hand-1-resting")
     at_rest = points()
@@ -29,7 +31,7 @@ def case() -> Steps:
 
     yield from key("Z", ctrl=True)
     yield from until(lambda: np.array_equal(points(), at_rest), "the drag to be taken back")
-    assert run() is not None
+    assert run() is not None, state()
     start = pixel(20)
     yield from press(*start)
     yield from move_to(start[0] + 60, start[1])
