@@ -1,16 +1,18 @@
 """A hand in the view: strands are dragged with the mouse, pinned, and taken back; the view can still be turned."""
 
+import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, button, here, key, region, window
-from scene import is_, iterate, look, obj, points, ready, run
+from hands import addon, here, key, region, window
+from scene import is_, iterate, look, obj, points, ready, run, state
 
 
 def case() -> Steps:
     yield from ready("3_1", 100)
     window().scene.mobius_flow.tolerance = 1e-3
     before = points()
-    yield from button("curve.mobius_flow_grab")
+    with here():
+        assert bpy.ops.curve.mobius_flow_grab("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
     yield from until(lambda: run() is not None, "a run")
     yield from until(resting, "the knot to rest and wait", 120)
     assert run() is not None, state()
@@ -69,7 +71,7 @@ def case() -> Steps:
 def resting() -> bool:
     """Whether the run waits for the hand."""
     latest = addon("live.registry").latest()
-    return iterate() > 0 and latest.shown is latest.last and latest.last.step_size == 0.0
+    return iterate() > 0 and latest.shown is latest.last and bool(latest.last.path) and latest.last.step_size == 0.0
 
 
 def pixel(vertex: int) -> tuple[int, int]:
