@@ -130,7 +130,8 @@ class Group:
     def unmoved(self, component: int, point: FloatArray) -> FloatArray:
         """Where a point in view, shape (3,), would be on a component if no object had been moved."""
         member = int(np.searchsorted(np.cumsum(self.link.counts), component, side="right"))
-        return self.link.placements[member].to_world(self._placements[member].to_local(point[None]))[0]
+        local = self._placements[member].to_local(point[None])
+        return np.asarray(self.link.placements[member].to_world(local)[0])
 
     @property
     def _placements(self) -> list[Placement]:

@@ -52,7 +52,7 @@ class Drag:
     def held(self, curve: Curve) -> FloatArray:
         """Where the strand that is held is on a curve; shape (3,)."""
         place = self.share * curve.component_lengths[[self.component]]
-        return points_along(curve, np.array([self.component]), place)[0]
+        return np.asarray(points_along(curve, np.array([self.component]), place)[0])
 
     def under(self, mouse: FloatArray) -> FloatArray:
         """The place under the mouse in the plane of the view through the target; shape (3,)."""
@@ -85,7 +85,7 @@ def handle(run: "Run", context: bpy.types.Context, event: bpy.types.Event) -> bo
 
 
 def _modified(event: bpy.types.Event) -> bool:
-    return event.ctrl or event.shift or event.alt or event.oskey
+    return bool(event.ctrl or event.shift or event.alt or event.oskey)
 
 
 def _under(run: "Run", context: bpy.types.Context, mouse: FloatArray) -> Drag | None:

@@ -8,7 +8,7 @@ from scene import is_, iterate, look, obj, points, ready, run, state
 
 
 def case() -> Steps:
-    yield from ready("3_1", 100)
+    yield from ready("3_1", 0)
     window().scene.mobius_flow.tolerance = 1e-3
     before = points()
     with here():
@@ -71,6 +71,7 @@ def case() -> Steps:
 def resting() -> bool:
     """Whether the run waits for the hand."""
     latest = addon("live.registry").latest()
+    print("AT", latest.last, latest.shown is latest.last, latest.state, latest.message, flush=True)
     return iterate() > 0 and latest.shown is latest.last and bool(latest.last.path) and latest.last.step_size == 0.0
 
 
