@@ -289,7 +289,7 @@ for owner in owners:
     for name in ("energy", "metric", "method"):
         print(name, *(item.identifier for item in owner[name].enum_items))
     print(owner["patience"].name, owner["patience"].description)
-print(*(option.name for option in properties.shown("basic")))
+print(*(option.name for option in properties.shown()))
 """
 
 
