@@ -15,9 +15,9 @@ _SPEC.loader.exec_module(tool)
 
 
 @pytest.mark.kernels
-@pytest.mark.parametrize("name", family(["3_1", "4_1", "L2a1"], every=2))
+@pytest.mark.parametrize("name", family(["3_1", "4_1"], every=2))
 def test_shapes_are_made_anew_as_they_are_stored(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """To a few quanta, as linear algebra may round otherwise than where they were made; no axis fits a circle best."""
+    """To a few quanta, as linear algebra may round otherwise than where they were made; links turn over freely."""
     monkeypatch.setattr(tool, "KEPT", tmp_path)
     made, stored = tool.shape(name).coefficients, shapes()[name].coefficients
     assert len(made) == len(stored)
