@@ -66,15 +66,15 @@ class Newton:
             shift *= self.factor
         return inverse, shift
 
-    def along(self, point: Point, inverse: FactorisedHessian, most: int) -> Iterator[Step]:
-        """At most so many steps from a point on, until one is short, or none is found."""
+    def along(self, point: Point, inverse: FactorisedHessian, most: int, least: float) -> Iterator[Step]:
+        """At most so many steps from a point on, until one is short, or gains less than ``least``, or none is found."""
         rule, state = LineSearch(LimitedMemoryBFGS(inverse=inverse.solve), self.search, self.steps), State()
         for _ in range(min(most, self.steps)):
             step, state = rule.step(point, state)
             if not isinstance(step, Step):
                 return
             yield step
-            if step.size < self.short:
+            if step.size < self.short or point.energy - step.point.energy < least:
                 return
             point = step.point
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 from ...arguments import checked_fields, number
-from ...descent import METHODS, Step
+from ...descent import METHODS, Point, Step
 from ...descent.newton import Curvature, Newton
 from ...descent.searches.trials import on_target
 from ...energies.components import energy_scale
@@ -56,7 +56,7 @@ class Rest(Intervention):
         index: int | None
         if self._applies:
             point, zero = self.run.point, unresolved(self.run.point.curve)
-            least = self.exact * energy_scale(point.problem.mesh, point.energy)
+            least = self._least(point)
             curvature = Curvature(point)
             inverse, shift = self.newton.definite(curvature, min(zero, self._shift))
             if curvature.gain(inverse) > least:
@@ -74,9 +74,13 @@ class Rest(Intervention):
         return self._told(replace(outcome, negative_eigenvalues=index))
 
     def _steps(self, inverse: FactorisedHessian) -> tuple[Step, ...]:
-        steps = tuple(self.newton.along(self.run.point, inverse, self.run.iterations_left))
+        point, most = self.run.point, self.run.iterations_left
+        steps = tuple(self.newton.along(point, inverse, most, self._least(point)))
         self._shift = self.newton.next_shift(self._shift, steps)
         return steps
+
+    def _least(self, point: Point) -> float:
+        return self.exact * energy_scale(point.problem.mesh, point.energy)
 
     def _told(self, outcome: Outcome) -> Outcome:
         index, options = outcome.negative_eigenvalues, self.run.options
