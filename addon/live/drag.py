@@ -10,12 +10,15 @@ from bpy_extras.view3d_utils import region_2d_to_location_3d
 from ...core import Curve
 from ...core.curve.distances import points_along
 from ...core.types import FloatArray
+from ..curves.exchange import stretch
 
 if TYPE_CHECKING:
     from .run import Run
 
 _NEAR = 15.0  # pixels from the mouse to a strand, at the usual scale of the interface
 _ALIKE = 4.0  # pixels by which a strand in front may be farther from the mouse than one behind
+_STRAND = 0.05  # part of all edges within which those under the mouse are of one strand
+_OVER = ("UI", "TOOLS", "HEADER", "TOOL_HEADER")  # regions that may lie over a view
 _GIZMOS = np.array([1.2, 4.0])  # width and height of the navigation gizmo's corner, in sizes of the gizmo
 
 
@@ -30,8 +33,11 @@ class Drag:
     offset: FloatArray  # from the mouse to the target, in pixels, when it was pressed; shape (2,)
 
     @classmethod
-    def at(cls, curve: Curve, region: Any, mouse: FloatArray, near: float) -> "Drag | None":
-        """That of the strand under the mouse, the one in front if there are several; None if none is near."""
+    def at(cls, curve: Curve, region: Any, mouse: FloatArray, near: float, radius: float = 0.0) -> "Drag | None":
+        """That of the strand under the mouse, the one in front if there are several; None if none is near.
+
+        ``near``: how far it may be, in pixels; ``radius``: that of the tube, in the world.
+        """
         flat, depth, seen = projected(region, curve.vertices)
         tails, heads = curve.mesh.tails, curve.mesh.heads
         along, way = flat[heads] - flat[tails], mouse - flat[tails]
@@ -39,10 +45,15 @@ class Drag:
         t = np.clip(t, 0.0, 1.0)
         distance = np.linalg.norm(way - t[:, None] * along, axis=1)
         distance[~(seen[tails] & seen[heads])] = np.inf
-        if not distance.min() <= near:
+        aside = np.array(region.data.view_matrix, dtype=np.float64)[0, :3]  # to the right, whatever the view's scale
+        edges_of_tube = projected(region, curve.vertices + radius / np.linalg.norm(aside) * aside)[0]
+        beside = np.maximum(0.0, distance - np.linalg.norm(edges_of_tube - flat, axis=1)[tails])
+        if not beside.min() <= near:
             return None
-        under = np.flatnonzero(distance <= min(near, distance.min() + _ALIKE))
-        edge = int(under[np.argmin(((1.0 - t) * depth[tails] + t * depth[heads])[under])])
+        under = np.flatnonzero(beside <= min(near, beside.min() + _ALIKE))
+        front = under[np.argmin(((1.0 - t) * depth[tails] + t * depth[heads])[under])]
+        strand = under[curve.mesh.index_distance(np.full_like(under, front), under) <= _STRAND * len(curve)]
+        edge = int(strand[np.argmin(distance[strand])])
         component = int(curve.mesh.edge_component[edge])
         length = curve.arc_starts[edge] + t[edge] * curve.edge_lengths[edge]
         place = curve.vertices[tails[edge]] + t[edge] * curve.edge_vectors[edge]
@@ -93,15 +104,21 @@ def _under(run: "Run", context: bpy.types.Context, mouse: FloatArray) -> Drag | 
     if run.state.name != "RUNNING" or run.last is None:
         return None
     region, curve = _region(context, mouse), run.group.in_view
-    scale = context.preferences.system.ui_scale
-    return None if region is None or curve is None else Drag.at(curve, region, mouse - _corner(region), scale * _NEAR)
+    if region is None or curve is None:
+        return None
+    near, radius = (
+        _NEAR * context.preferences.system.ui_scale,
+        max(stretch(each) * each.data.bevel_depth for each in run.group.objects),
+    )
+    return Drag.at(curve, region, mouse - _corner(region), near, radius)
 
 
 def _region(context: bpy.types.Context, mouse: FloatArray) -> Any:
     """The region of a 3D view that has the mouse, unless a sidebar, a header or the navigation gizmo has it."""
     areas = context.window.screen.areas if context.window else []
-    regions = [region for area in areas if area.type == "VIEW_3D" for region in area.regions if _inside(region, mouse)]
-    if len(regions) != 1 or regions[0].type != "WINDOW":
+    found = [region for area in areas if area.type == "VIEW_3D" for region in area.regions if _inside(region, mouse)]
+    regions = [region for region in found if region.type == "WINDOW"]
+    if not regions or any(region.type in _OVER for region in found):
         return None
     view, system = context.preferences.view, context.preferences.system
     corner = _GIZMOS * view.gizmo_size_navigate_view * system.ui_scale

@@ -176,9 +176,9 @@ def test_energies_are_those_without_the_hand() -> None:
 def test_a_held_curve_is_not_at_its_end_and_says_no_rises() -> None:
     hand = Hand()
     iterates, outcome = drag(
-        torus_trefoil(60), hand, {3: held, 4: pulled_out, 30: lambda *_: hand.release()}, max_iterations=20
+        torus_trefoil(60), hand, {2: held, 3: pulled_out, 25: lambda *_: hand.release()}, max_iterations=15
     )
-    assert len(iterates) > 30
+    assert len(iterates) > 25
     assert "rose" not in outcome.message
 
 

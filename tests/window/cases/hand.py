@@ -71,7 +71,6 @@ def case() -> Steps:
 def resting() -> bool:
     """Whether the run waits for the hand."""
     latest = addon("live.registry").latest()
-    print("AT", latest.last, latest.shown is latest.last, latest.state, latest.message, flush=True)
     return iterate() > 0 and latest.shown is latest.last and bool(latest.last.path) and latest.last.step_size == 0.0
 
 
