@@ -121,7 +121,7 @@ def _region(context: bpy.types.Context, mouse: FloatArray) -> Any:
     if not regions or any(region.type in _OVER for region in found):
         return None
     view, system = context.preferences.view, context.preferences.system
-    corner = _GIZMOS * view.gizmo_size_navigate_view * system.ui_scale
+    corner = _GIZMOS * view.gizmo_size_navigate_v3d * system.ui_scale
     far = _corner(regions[0]) + _size(regions[0]) - mouse
     return None if view.show_navigate_ui and (far < corner).all() else regions[0]
 

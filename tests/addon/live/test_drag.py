@@ -39,8 +39,7 @@ def begin(operator, stays=True, **more):
     screen = SimpleNamespace(areas=[area()], is_animation_playing=False)
     operator.context.window = SimpleNamespace(screen=screen)
     operator.context.workspace = SimpleNamespace(status_text_set=lambda _: None)
-    view = SimpleNamespace(gizmo_size_navigate_view=80, show_navigate_ui=True)
-    operator.context.preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0), view=view)
+    operator.context.preferences = bpy.context.preferences
     operator.reach(1)
 
 
