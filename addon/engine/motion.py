@@ -86,7 +86,7 @@ class Motion:
         If there is one of its number, it takes its place, and those after that one go: a drag was taken back.
         """
         if 0 < iterate.index < len(self._ends):
-            del self._ends[iterate.index :], self._steps[iterate.index :]
+            del self._ends[iterate.index :], self._steps[iterate.index :], self._energies[iterate.index :]
             del self._shapes[self._ends[-1] + 1 :], self._stages[self._ends[-1] + 1 :]
         if self._reached is None and self._measure is not Measure.LENGTH:
             self._size = Size.of(self._measure, iterate.curve)

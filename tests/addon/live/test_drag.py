@@ -39,7 +39,8 @@ def begin(operator, stays=True, **more):
     screen = SimpleNamespace(areas=[area()], is_animation_playing=False)
     operator.context.window = SimpleNamespace(screen=screen)
     operator.context.workspace = SimpleNamespace(status_text_set=lambda _: None)
-    operator.context.preferences = bpy.context.preferences
+    view = bpy.context.preferences.view  # without a window interfaces have no scale
+    operator.context.preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0), view=view)
     operator.reach(1)
 
 
