@@ -49,7 +49,7 @@ class Course:
         passed = _share(self.flow_time if pace is Pace.FLOW_TIME else self.distance, self.iterates)
         if pace is Pace.EVEN:
             parts = passed, _share(self.fall, self.iterates), _share(self.iterates, self.iterates)
-            return _eased(np.asarray(_EVEN) @ np.array(parts))
+            return _eased(np.average(parts, axis=0, weights=_EVEN))
         return passed
 
 
