@@ -185,5 +185,7 @@ def _phases(result: Result) -> str:
     """How the time went to meshes, if there were several, and not very many."""
     if len(result.phases) > NAMED:
         return f" on {len(result.phases)} meshes"
-    each = (f"{phase.iterations} with {phase.vertices} vertices, {phase.seconds:.1f} s" for phase in result.phases)
-    return f" ({'; '.join(each)})" if len(result.phases) > 1 else ""
+    each = [f"{phase.iterations} with {phase.vertices} vertices, {phase.seconds:.1f} s" for phase in result.phases]
+    if result.last.strand_moves and result.phases[0].iterations == 0:  # the mesh as it was given saw nothing else
+        each[0] = f"strand moves, {result.phases[0].seconds:.1f} s"
+    return f" ({'; '.join(each)})" if len(each) > 1 else ""

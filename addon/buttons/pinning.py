@@ -28,7 +28,7 @@ _OPEN = Condition(
     "No selected curve has an open spline without keys; select one in Object Mode",
     lambda context: not any(closable(selected_curves(context))),
 )
-_NEARBY = Condition("Everything near the selected curves is already avoided", lambda context: not _near(context))
+_NEARBY = Condition("Nothing near the selected curves is left to avoid", lambda context: not _near(context))
 
 
 class _Pinning(Button):

@@ -104,7 +104,7 @@ def _check(scene: bpy.types.Scene, path: Path, overwrite: bool) -> None:
     if scene.camera is None:
         raise MobiusFlowError(Message("The scene has no camera; press Set Up Stage first, or add one"))
     if any(side % 2 for side in sides):
-        sentence = "Frames are {width} × {height} pixels, but films need even numbers"
+        sentence = "Frames are {width} × {height} pixels, but films need even numbers; change Size of Pictures"
         raise MobiusFlowError(Message(sentence, width=sides[0], height=sides[1]))
     if path.exists() and not overwrite:
         sentence = "{path} is there already; give the film another name, or let it be overwritten"

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import sys
 
 import numpy as np
@@ -50,6 +51,13 @@ def test_the_last_line_tells_objective_and_energy(tmp_path, capsys):
     assert abs(values["energy"][-1] - energy) > 1e-3 * energy
     assert f"objective {values['energy'][0]:.6g} → {values['energy'][-1]:.9g} in 5 iterations" in line
     assert f"Möbius energy {energy:.6g}" in line
+
+
+def test_the_last_line_tells_how_long_strands_were_moved(tmp_path, capsys):
+    start = tmp_path / "in.txt"
+    write_curve(start, knot("culprit"))
+    assert run("relax", start, tmp_path / "out.txt", "--untangle", "always", "--vertices", 100) == 0
+    assert re.search(r" s \(strand moves, \S+ s; \d+ with \d+ vertices, \S+ s\), Möbius energy 4", capsys.readouterr().err)
 
 
 def test_an_unknown_knot_is_told_where_the_names_are(tmp_path, capsys):

@@ -79,7 +79,7 @@ def test_nothing_is_changed_where_nothing_is_near(scene):
         obj.hide_set(True)
     with pytest.raises(RuntimeError) as error:
         bpy.ops.curve.mobius_flow_avoid()
-    assert "Everything near the selected curves is already avoided" in str(error.value)
+    assert "Nothing near the selected curves is left to avoid" in str(error.value)
     assert collection() is None
 
 
