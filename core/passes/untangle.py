@@ -84,7 +84,7 @@ def untangled(
     if simplified(diagram).crossings == reached and shows_least(diagram):
         body.resize(curve.length)
         yield from _taken(body, rng)
-        left = Message("{count} crossings, the least", count=reached) if reached else NONE_LEFT
+        left = Message("{count} crossings are left, as few as can be", count=reached) if reached else NONE_LEFT
         return Untangled(reached, True, left, body.moves)
     return Untangled(reached, False, Message(BLOCKED if blocked else STUCK, count=reached), body.moves)
 

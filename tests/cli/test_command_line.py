@@ -57,7 +57,8 @@ def test_the_last_line_tells_how_long_strands_were_moved(tmp_path, capsys):
     start = tmp_path / "in.txt"
     write_curve(start, knot("culprit"))
     assert run("relax", start, tmp_path / "out.txt", "--untangle", "always", "--vertices", 100) == 0
-    assert re.search(r" s \(strand moves, \S+ s; \d+ with \d+ vertices, \S+ s\), Möbius energy 4", capsys.readouterr().err)
+    line = capsys.readouterr().err
+    assert re.search(r" s \(strand moves, \S+ s; \d+ with \d+ vertices, \S+ s\), Möbius energy 4", line)
 
 
 def test_an_unknown_knot_is_told_where_the_names_are(tmp_path, capsys):
