@@ -53,18 +53,20 @@ class Curvature:
 class Newton:
     """Steps that share one second derivative."""
 
-    first_shift: float = number(2e-3)  # σ of the first: below the bulk of the eigenvalues, above those of Möbius maps
-    factor: float = number(4.0, above=1)  # by which σ falls after full steps, and grows where it does not suffice
+    factor: float = number(8.0, above=1)  # by which σ grows until the Hessian is positive definite
     steps: int = number(8)
-    short: float = number(0.3, most=1)  # part of a step that shows that the model is outdated, or σ too small
+    short: float = number(0.3, most=1)  # part of a step that shows that the model is outdated
     # full steps gain half of what their slope promises, and so must not be asked for that
     search: Armijo = field(default_factory=lambda: Armijo(decrease=0.1))
 
-    def definite(self, curvature: Curvature, shift: float) -> tuple[FactorisedHessian, float]:
-        """The factors for the least shift, from a given one on, that makes the Hessian positive definite."""
-        while (inverse := curvature.shifted(shift)).negative:
+    def definite(self, curvature: Curvature, shift: float) -> tuple[FactorisedHessian, int, float]:
+        """The factors for the first σ, from a given one on, that makes it so, the index at the given one, and σ."""
+        inverse = curvature.shifted(shift)
+        index = inverse.negative
+        while inverse.negative:
             shift *= self.factor
-        return inverse, shift
+            inverse = curvature.shifted(shift)
+        return inverse, index, shift
 
     def along(self, point: Point, inverse: FactorisedHessian, most: int, least: float) -> Iterator[Step]:
         """At most so many steps from a point on, until one is short, or gains less than ``least``, or none is found."""
@@ -77,8 +79,3 @@ class Newton:
             if step.size < self.short or point.energy - step.point.energy < least:
                 return
             point = step.point
-
-    def next_shift(self, shift: float, steps: tuple[Step, ...]) -> float:
-        """σ for the next second derivative, as the first step with this one was full, or short."""
-        first = steps[0].size if steps else 0.0
-        return shift / self.factor if first == 1.0 else shift * self.factor if first < self.short else shift

@@ -33,7 +33,7 @@ class Rest(Intervention):
         self.started()
 
     def started(self) -> None:
-        self._shift, self._below = self.newton.first_shift, self.gradient
+        self._below = self.gradient
 
     def stepped(self, step: Step) -> Change | None:
         point, mesh = self.run.point, self.run.options.mesh
@@ -43,9 +43,8 @@ class Rest(Intervention):
         if self.run.options.ends_finer and is_unresolved(self.run.iterate.curve):
             return None
         self._below = 0.5 * relative  # unless it helps
-        inverse, self._shift = self.newton.definite(Curvature(point), self._shift)
-        if self._shift > self.trusted:
-            self._shift = self.newton.first_shift
+        inverse, _, shift = self.newton.definite(Curvature(point), unresolved(point.curve))
+        if shift > self.trusted:
             return None
         steps = self._steps(inverse)
         if steps and steps[0].size >= self.newton.short:
@@ -55,18 +54,13 @@ class Rest(Intervention):
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
         index: int | None
         if self._applies:
-            point, zero = self.run.point, unresolved(self.run.point.curve)
-            least = self._least(point)
+            point, least = self.run.point, self._least(self.run.point)
             curvature = Curvature(point)
-            inverse, shift = self.newton.definite(curvature, min(zero, self._shift))
+            inverse, index, _ = self.newton.definite(curvature, unresolved(point.curve))
             if curvature.gain(inverse) > least:
-                if shift < self._shift:
-                    inverse, shift = self.newton.definite(curvature, self._shift)
-                self._shift = shift
                 steps = self._steps(inverse)
                 if steps and steps[-1].point.energy < point.energy - least:
                     return Change(steps)
-            index = 0 if shift <= zero else curvature.shifted(zero).negative
         elif self.run.options.stability or self.run.options.escape_saddles:
             index = stability(self.run.point).index
         else:
@@ -75,9 +69,7 @@ class Rest(Intervention):
 
     def _steps(self, inverse: FactorisedHessian) -> tuple[Step, ...]:
         point, most = self.run.point, self.run.iterations_left
-        steps = tuple(self.newton.along(point, inverse, most, self._least(point)))
-        self._shift = self.newton.next_shift(self._shift, steps)
-        return steps
+        return tuple(self.newton.along(point, inverse, most, self._least(point)))
 
     def _least(self, point: Point) -> float:
         return self.exact * energy_scale(point.problem.mesh, point.energy)

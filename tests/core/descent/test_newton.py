@@ -43,8 +43,10 @@ def test_the_matrix_is_that_of_the_reference(name: str) -> None:
 
 def test_the_shift_is_what_makes_a_saddle_definite() -> None:
     point, newton = POINTS["saddle"](), Newton()
-    inverse, shift = newton.definite(Curvature(point), newton.first_shift)
-    lowest = dense_modes(point)[0][0]
+    inverse, index, shift = newton.definite(Curvature(point), 1e-4)
+    values = dense_modes(point)[0]
+    lowest = values[0]
+    assert index == np.count_nonzero(values < -1e-4) > 0
     assert not inverse.negative
     assert -lowest < shift < newton.factor * -lowest
 
