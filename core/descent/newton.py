@@ -2,8 +2,8 @@
 
 Near a minimum J_C⁻¹ D²L has a few eigenvalues far below its bulk, those of Möbius maps being some 11/N²: in the metric
 hundreds of steps crawl along their valleys.  With a multiple of the metric that makes it positive definite on the
-tangent space, D²L + σ J_C is factorised as a whole, which is as dear as a few steps; the next steps share it, and the
-pairs of L-BFGS tell what changes on the way.  Newton's method it is where one step suffices.
+tangent space, D²L + σ J_C is assembled, which is as dear as a few steps, and factorised; the next steps share it, and
+the pairs of L-BFGS tell what changes on the way.  Newton's method it is where one step suffices.
 """
 
 from collections.abc import Iterator
