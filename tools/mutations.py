@@ -794,8 +794,8 @@ MUTANTS = (
     Mutant(
         "strand moves are iterations",
         "core/driver/run.py",
-        "        self.charged -= len(frames)\n",
-        "        pass\n",
+        "            self.charged -= 1\n            self.strand_moves",
+        "            self.strand_moves",
         f"{UNTANGLING}::test_strand_moves_are_no_iterations",
     ),
     Mutant(

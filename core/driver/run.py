@@ -150,13 +150,14 @@ class Run:
         for before, stage in zip(meshes, stages, strict=False):
             frames += [(stage.start, ())] * (stage.start.mesh is not before)
             frames += [(stage.end, stage.path)] * bool(stage.path)
-        self.charged -= len(frames)
-        self.strand_moves = strand_moves._replace(iterates=strand_moves.iterates + len(frames))
         self.point, pins = end, end.problem.constraints.pins
         there = self._described(self.iterate.index)
-        for curve, path in frames:
+        for made, (curve, path) in enumerate(frames, strand_moves.iterates + 1):
+            self.charged -= 1
+            self.strand_moves = strand_moves._replace(iterates=made)  # so far, for the run may be interrupted here
             held = tuple(pins.on(curve).vertices.tolist())
-            self.iterate = replace(there, index=self.iterate.index + 1, curve=curve, path=path, pins=held)
+            now = replace(there, curve=curve, path=path, pins=held, strand_moves=self.strand_moves)
+            self.iterate = replace(now, index=self.iterate.index + 1)
             yield self.iterate
 
     def restarted(self, point: Point) -> Iterate:
