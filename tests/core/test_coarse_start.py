@@ -63,8 +63,8 @@ def test_fewer_vertices_at_first_and_all_in_the_end(curve: Curve, tmp_path: Path
 @pytest.mark.usefixtures("everywhere")
 def test_the_same_minimum_in_fewer_steps_on_the_fine_mesh() -> None:
     curve = bent(torus_trefoil(600))
-    fixed, _ = relaxed(curve, mesh="fixed")
-    iterates, _ = relaxed(curve)
+    fixed, _ = relaxed(curve, mesh="fixed", method="cg")  # which second derivatives do not end
+    iterates, _ = relaxed(curve, method="cg")
     assert iterates[-1].energy == pytest.approx(fixed[-1].energy, rel=1e-6)
     assert sum(bool(iterate.path) for iterate in iterates if len(iterate.curve) == 600) < len(fixed)
 
