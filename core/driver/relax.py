@@ -145,9 +145,8 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand |
     `minimize`.  BLAS runs with one thread while this computes, and as the caller set it between iterates.
 
     The curve is an embedded polygon, in any units and place, or a `Task`: one with obstacles and pins.  A hand drags it
-    meanwhile.  Raises
-    CurveError if it touches itself or an obstacle, or is degenerate; the message says where.  Raises OptionError if
-    options contradict the task or each other.
+    meanwhile.  Raises CurveError if it touches itself or an obstacle, or is degenerate; the message says where.  Raises
+    OptionError if options contradict the task or each other.
     """
     began = time.perf_counter()
     options = RelaxOptions() if options is None else options
