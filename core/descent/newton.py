@@ -21,6 +21,8 @@ from .problem import Point
 from .searches import Armijo, LineSearch
 from .step import State, Step
 
+_LARGEST = 1e6  # σ; that of a Hessian whose steps are those of the metric is 1
+
 
 class Curvature:
     """The Lagrangian's second derivative at a point, on the tangent space, against the metric there."""
@@ -60,11 +62,16 @@ class Newton:
     search: Armijo = field(default_factory=lambda: Armijo(decrease=0.1))
 
     def definite(self, curvature: Curvature, shift: float) -> tuple[FactorisedHessian, int, float]:
-        """The factors for the first σ, from a given one on, that makes it so, the index at the given one, and σ."""
+        """The factors for the first σ, from a given one on, that makes it so, the index at the given one, and σ.
+
+        Raises LinAlgError if none does, which rounding alone can bring about.
+        """
         inverse = curvature.shifted(shift)
         index = inverse.negative
         while inverse.negative:
             shift *= self.factor
+            if not shift < _LARGEST:
+                raise np.linalg.LinAlgError("no multiple of the metric makes the second derivative definite")
             inverse = curvature.shifted(shift)
         return inverse, index, shift
 

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from ...arguments import checked_fields, number
 from ...descent import METHODS, Point, Step
 from ...descent.newton import Curvature, Newton
@@ -43,7 +45,10 @@ class Rest(Intervention):
         if self.run.options.ends_finer and is_unresolved(self.run.iterate.curve):
             return None
         self._below = 0.5 * relative  # unless it helps
-        inverse, _, shift = self.newton.definite(Curvature(point), unresolved(point.curve))
+        try:
+            inverse, _, shift = self.newton.definite(Curvature(point), unresolved(point.curve))
+        except np.linalg.LinAlgError:
+            return None
         if shift > self.trusted:
             return None
         steps = self._steps(inverse)
@@ -52,6 +57,12 @@ class Rest(Intervention):
         return Change(steps) if steps else None
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
+        try:
+            return self._at_rest(outcome)
+        except np.linalg.LinAlgError:
+            return None  # at rest it is, by its gradient
+
+    def _at_rest(self, outcome: Outcome) -> Outcome | Change | None:
         index: int | None
         if self._applies:
             point, least = self.run.point, self._least(self.run.point)

@@ -11,6 +11,7 @@ from mobius_flow.core.descent.hessian import lagrangian_matrix
 from mobius_flow.core.descent.newton import Curvature, Newton
 from mobius_flow.core.driver.interventions.rest import Rest
 from mobius_flow.core.knots import torus_knot
+from mobius_flow.core.saddle.indefinite import FactorisedHessian
 from shapes import lattice_knot, torus_trefoil
 
 EXACT = [name for name in POINTS if name != "hierarchical"]
@@ -88,3 +89,13 @@ def test_second_derivatives_take_over_from_gradients(monkeypatch: pytest.MonkeyP
 
 def test_loose_tolerances_ask_for_no_more_than_gradients() -> None:
     assert minimize(torus_trefoil(80), replace(FIXED, tolerance=1e-3)).outcome.negative_eigenvalues is None
+
+
+def test_where_nothing_makes_it_definite_gradients_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    point = POINTS[EXACT[0]]()
+    monkeypatch.setattr(FactorisedHessian, "negative", 1)
+    with pytest.raises(np.linalg.LinAlgError, match="no multiple of the metric"):
+        Newton().definite(Curvature(point), 1e-3)
+    result = minimize(torus_trefoil(40), FIXED)
+    assert result.status is Status.CONVERGED
+    assert result.outcome.negative_eigenvalues is None
