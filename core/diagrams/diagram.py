@@ -10,7 +10,7 @@ They divide edges, and no strand goes on there; at ends a face meets itself.
 """
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ..errors import CurveError
@@ -153,6 +153,11 @@ class Diagram:
         return Diagram(
             tuple(tuple((number[c], over) for c, over in part if c in number) for part in self.passes), signs
         )
+
+    @property
+    def without_pins(self) -> "Diagram":
+        """The code without the places where the curve is held but goes on, which no circle needs to go through."""
+        return replace(self, passes=tuple(tuple(each for each in part if each != PIN) for part in self.passes))
 
     def restricted(self, components: set[int]) -> "Diagram":
         """The sublink of some components."""

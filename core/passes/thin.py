@@ -47,7 +47,8 @@ class _Corners:
         mesh, points = body.mesh, body.seen
         least = np.array([_LEAST[closed] for closed in mesh.closed])
         spare = (np.array(mesh.component_sizes) > least)[mesh.component]
-        every = cls(mesh, points, np.flatnonzero(spare & ~body.held), gap)
+        spare &= ~body.held & ~(body.held[mesh.anticycle] & body.held[mesh.cycle])  # arcs between pins stay bent
+        every = cls(mesh, points, np.flatnonzero(spare), gap)
         start, end = points[mesh.tails], points[mesh.heads]
         k, edge = meeting_boxes(every.low, every.high, np.minimum(start, end)[:, :2], np.maximum(start, end)[:, :2])
         ends = np.stack([mesh.tails[edge], mesh.heads[edge]])

@@ -65,7 +65,7 @@ def turn(body: MovingCurve, rng: np.random.Generator, *, away: bool = False, cou
 
 def shows_least(diagram: Diagram) -> bool:
     """Whether no diagram has fewer crossings than a simplified one: that is so for sums of alternating ones."""
-    return all(is_least(factor) for piece in diagram.pieces() for factor in factors(piece))
+    return all(is_least(factor) for piece in diagram.without_pins.pieces() for factor in factors(piece))
 
 
 def worth(curve: Curve, least: int = 0, seed: int = 20231) -> tuple[int, int]:

@@ -18,6 +18,7 @@ from mobius_flow.core.passes.passing import passed
 from mobius_flow.core.passes.spread import spread
 from mobius_flow.core.passes.thin import thin
 from mobius_flow.core.passes.triangles import Triangles, UnclearError
+from mobius_flow.core.passes.views import face, turn
 
 NOWHERE = np.empty(0, dtype=np.intp)
 
@@ -102,6 +103,46 @@ def test_thin_curves_have_their_type_and_no_more_crossings(name: str) -> None:
     assert str(knot_type(found.curve)) == kind
     assert drawing(found).diagram.crossings <= crossings
     assert found.gap >= 0.98 * min(gap, 4e-3 * found.size)
+
+
+def test_corners_that_would_cross_together_are_not_dropped_together() -> None:
+    below = [(-8.0, 0.0), (0.0, 0.0), (2.0, 2.0), (4.0, 0.0), (-6.0, -3.6)]
+    above = [(-3.0, -9.5), (2.0, 0.5), (6.0, 1.0), (3.0, -1.0), (3.0, -12.0)]
+    points = np.column_stack([np.array(below + above), np.repeat([0.0, 1.0], 5)])
+    found = MovingCurve(Curve(points, Mesh((5, 5), (False, False))), NOWHERE)
+    crossings = drawing(found).diagram.crossings
+    thin(found)
+    assert drawing(found).diagram.crossings <= crossings
+
+
+def test_hairpins_are_not_made_points() -> None:
+    found = body("3_1")
+    start, end = found.curve.vertices[[0, 1]]
+    hairpin = np.cross(end - start, np.eye(3)[np.abs(end - start).argmin()])
+    middle, aside = 0.5 * (start + end), 1e-4 * found.gap * hairpin / np.linalg.norm(hairpin)
+    at = middle - 1e-9 * (end - start), middle + aside, middle + 1e-9 * (end - start)
+    found = MovingCurve(Curve(np.insert(found.curve.vertices, [1, 1, 1], at, axis=0)), NOWHERE)
+    thin(found)
+    assert found.curve.edge_lengths.min() > 1e-6 * found.size
+
+
+def test_arcs_between_pins_stay_bent() -> None:
+    found = body("5_2", held=tuple(range(0, 60, 3)))
+    places = found.curve.vertices[found.held]
+    thin(found)
+    held = np.flatnonzero(found.held)
+    np.testing.assert_array_equal(found.curve.vertices[held], places)
+    assert (np.diff(held, append=found.mesh.size) >= 2).all()
+
+
+def test_a_view_whose_moves_are_not_free_is_left_for_another_one() -> None:
+    found = body("3_1")
+    face(found, np.random.default_rng(1))
+    best, here = turn(found, np.random.default_rng(1)), found.frame
+    assert turn(found, np.random.default_rng(1)) == best
+    assert found.frame is here
+    turn(found, np.random.default_rng(1), away=True)
+    assert found.frame is not here
 
 
 def test_what_is_spread_has_its_diagram_and_wider_gaps() -> None:
