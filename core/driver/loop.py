@@ -45,7 +45,7 @@ def within(limit: TimeLimit, relaxation: Relaxation) -> Relaxation:
             if up.limit is not limit:
                 raise
             reached = Message("stopped at the time limit ({seconds:g} s)", seconds=limit.seconds)
-            return Outcome(Status.TIME_LIMIT, (reached,))
+            return Outcome(Status.TIME_LIMIT, (reached,)).noting(up)
         yield iterate
 
 

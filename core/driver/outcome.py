@@ -61,6 +61,10 @@ class Outcome:
         """The same, with another clause."""
         return replace(self, clauses=(*self.clauses, Message(template, **facts)))
 
+    def noting(self, error: BaseException) -> "Outcome":
+        """The same, with the notes of what ended it."""
+        return replace(self, clauses=(*self.clauses, *getattr(error, "__notes__", ())))
+
     def stalling(self, reason: str, **facts: object) -> "Outcome":
         """Stalled instead, for another reason; the other clauses stay."""
         return replace(

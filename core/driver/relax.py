@@ -202,7 +202,7 @@ def finish(
     last: Iterate | None = None
     given = 0  # vertices at the start
     meshes: list[tuple[int, int, float]] = []  # vertices, and when they were new: iterate, seconds
-    run = WithOutcome(relaxation)
+    run, cut_short = WithOutcome(relaxation), False
     try:
         for last in run:
             given = given or len(last.curve)
@@ -218,10 +218,11 @@ def finish(
     except (KeyboardInterrupt, MemoryError) as error:
         if last is None:
             raise
-        run.outcome = OUT_OF_MEMORY if isinstance(error, MemoryError) else INTERRUPTED
+        run.outcome = (OUT_OF_MEMORY if isinstance(error, MemoryError) else INTERRUPTED).noting(error)
+        cut_short = True
     assert last is not None, "relax yields at least its start"
     assert run.outcome is not None, "the loop is through"
-    cut_short = run.outcome in (OUT_OF_MEMORY, INTERRUPTED) or run.outcome.status is Status.TIME_LIMIT
+    cut_short |= run.outcome.status is Status.TIME_LIMIT
     if cut_short and moves and not moves.done:
         under_way = "strands were being moved, and {left} of {before} crossings are left"
         run.outcome = run.outcome.adding(under_way, left=moves.left, before=moves.before)

@@ -1,18 +1,19 @@
 """Strand moves before the flow, and where it is stuck: what is tangled in a diagram needs no flow to come apart."""
 
 import time
-from collections.abc import Generator, Hashable, Iterator
+from collections.abc import Generator, Hashable, Iterable, Iterator
 
 import numpy as np
 
 from ..collision import check_gap
 from ..curve import Curve, refine
 from ..curve.pins import arcs, holds
+from ..deadline import TimeIsUp
 from ..descent import Leg, Point, Step
 from ..descent.searches.trials import on_target
 from ..descent.step import attempt
-from ..errors import CurveError, MobiusFlowError
-from ..knots import knot_type
+from ..diagrams import QuickInvariants, quick_invariants
+from ..errors import MobiusFlowError
 from ..messages import Message
 from ..passes import Stage, untangled, worth
 from ..task import check_refined
@@ -26,9 +27,15 @@ MANY = 20  # crossings that go, from which on it is worth while before the flow,
 ROOM = 50  # iterations left where the flow is stuck, with fewer of which it might end higher
 LONGEST, SHORTEST = 0.2, 1e-3  # logarithmic change of lengths in one motion; less is left to the flow
 SETTLING = 6  # iterations to the next one
-FAR = 20.0  # of their distance from the middle, that ends are led away to be joined
+MOST = (
+    2.0  # times as long as it was may an arc between pins be after a move: what is wound round others may not come back
+)
+FAR = 10.0  # lengths of the curve from its middle, where ends are joined in different
+WAYS = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
 NO_ITERATIONS = Message("none, as there are to be no iterations")
 KNOTTED = Message("others would undo a knot between pinned ends")
+STRETCHED = Message("others would stretch the curve between pins")
+IN_VAIN = "strands were being moved, but with {left} of {before} crossings left nothing is kept of that"
 
 
 class Untangling:
@@ -37,6 +44,7 @@ class Untangling:
     def __init__(self, run: Run) -> None:
         self.run = run
         self._reasons: list[Message] = []
+        self._in_vain: Message | None = None
 
     def before_flow(self) -> Iterator[Iterate]:
         """Yield the motions that come first, if they are asked for, or a diagram shows that many crossings go.
@@ -84,10 +92,15 @@ class Untangling:
     def _untangled(self) -> Iterator[Iterate]:
         """Yield the motions, and at last the curve on a mesh for the flow, and with its lengths."""
         run, first, lengths = self.run, self.run.iterate, _Lengths(self.run)
+        self._in_vain = None
         try:
             reason = yield from self._moved(lengths)
         except (MobiusFlowError, np.linalg.LinAlgError) as error:
             reason = Message("stopped where the curve is too degenerate: {error}", error=str(error))
+        except (TimeIsUp, KeyboardInterrupt, MemoryError) as stop:
+            if run.iterate is first and self._in_vain:
+                stop.add_note(self._in_vain)
+            raise
         if run.iterate is first:
             self._reasons.append(Message("none are made: {reason}", reason=reason))
             return
@@ -102,30 +115,33 @@ class Untangling:
         Nothing is done before it is known to be worth while: with "auto" until no more crossings stay than have gone.
         """
         run, start = self.run, self.run.iterate
-        middle = start.curve.vertices.mean(axis=0)
-        knotted = None if start.curve.mesh.all_closed or not self._ends_are_pinned else _names(start.curve, middle)
         pins = np.array(start.pins, dtype=np.intp)
+        held = self._ends_are_pinned and not start.curve.mesh.all_closed
+        ways = start.curve.vertices.mean(axis=0) + FAR * start.curve.length * WAYS if held else ()
+        knots = _closures(start.curve, ways)
         work = untangled(start.curve, pins, run.problem.obstacles, run.options.seed)
         stages: list[Stage] = []
-        undone = False
+        refused: Message | None = None
         earlier, least, began = run.strand_moves, None, time.perf_counter()
         while True:
             try:
                 stages.append(next(work))
             except StopIteration as end:
                 reason: Message = end.value.reason
-                return KNOTTED if undone else reason
+                return refused or reason
             if (seen := stages[-1].seen) is None:
                 continue
             if least is None or earlier is None:
                 earlier = earlier or StrandMoves(seen.crossings, seen.crossings)
                 least = seen.crossings - 1 if run.options.untangle == "always" else seen.crossings // 2
+            self._in_vain = Message(IN_VAIN, left=seen.crossings, before=earlier.before)
             if seen.crossings > least:
                 continue
-            undone = knotted is not None and (not knotted or _names(stages[-1].end, middle) != knotted)
-            if undone:
+            end = stages[-1].end
+            refused = STRETCHED if lengths.stretched(end) else KNOTTED if _closures(end, ways) != knots else None
+            if refused:
                 continue
-            point, least, so_far = lengths.point(stages[-1].end), seen.crossings, run.strand_moves or earlier
+            point, least, so_far = lengths.point(end), seen.crossings, run.strand_moves or earlier
             spent = so_far.seconds + time.perf_counter() - began
             now = so_far._replace(left=least, moves=earlier.moves + seen.moves, seconds=spent, done=False)
             yield from run.moved(stages, point, now)
@@ -169,18 +185,14 @@ class Untangling:
                 yield run.accept(step)
 
 
-def _names(curve: Curve, middle: FloatArray) -> tuple[str, ...]:
-    """Those of the type of a curve whose ends are led far away from a point and joined; none if it is not known."""
-    parts = []
-    for part, closed in zip(curve.components, curve.mesh.closed, strict=True):
-        start, end = FAR * (part[[0, -1]] - middle)
-        across = np.cross(end - start, np.eye(3)[np.abs(end - start).argmin()])
-        across *= (np.linalg.norm(start) + np.linalg.norm(end)) / np.linalg.norm(across)
-        parts.append(part if closed else np.array([*part, middle + end, middle + across, middle + start]))
-    try:
-        return knot_type(Curve.from_components(parts)).names
-    except CurveError:
-        return ()
+def _closures(curve: Curve, ways: Iterable[FloatArray]) -> list[QuickInvariants]:
+    """What tells types apart, of a curve with the ends of its arcs joined at points far away, one after the other.
+
+    Ends are only points, around which a knot slips off: one that is there whichever way they go on is the arc's own.
+    """
+    pairs = list(zip(curve.components, curve.mesh.closed, strict=True))
+    joined = ([part if closed else np.vstack([part, way]) for part, closed in pairs] for way in ways)
+    return [quick_invariants(Curve.from_components(parts)) for parts in joined]
 
 
 class _Lengths:
@@ -204,6 +216,11 @@ class _Lengths:
         point = self._problem.on(curve, lengths)
         point.gradient_norm  # noqa: B018 (computed here, where its failure can be met)
         return point
+
+    def stretched(self, curve: Curve) -> bool:
+        """Whether an arc between pins is much longer than it was."""
+        now = ((place, curve.edge_lengths[arc].sum()) for place, arc in self._arcs(curve) if isinstance(place, tuple))
+        return any(length > MOST * self._of.get(place, np.inf) for place, length in now)
 
     def _arcs(self, curve: Curve) -> Iterator[tuple[Hashable, IntArray]]:
         """Each with what it has on all meshes: the pin where it begins, or the number of its component."""

@@ -1,6 +1,8 @@
 """Strand moves within a run: when they are made, what iterates and reports say of them, and what they must not lose."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
@@ -17,10 +19,13 @@ from mobius_flow.core import (
     Trajectory,
     minimize,
 )
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.deadline import TimeLimit, check_time
 from mobius_flow.core.driver import untangling
 from mobius_flow.core.driver.compare import compare
 from mobius_flow.core.driver.outcome import converged
 from mobius_flow.core.knots import knot, scramble
+from mobius_flow.core.passes import Stage
 from mobius_flow.core.units import Units
 from mobius_flow.core.verify import verify
 from solids import plate
@@ -90,6 +95,49 @@ def test_without_iterations_nothing_moves() -> None:
     asked = minimize(knot("tuzun-sikora"), RelaxOptions(max_iterations=0, untangle="always"))
     assert asked.message.endswith("strand moves: none, as there are to be no iterations")
     assert asked.report()["strand_moves"] is None
+
+
+def _cut(monkeypatch: pytest.MonkeyPatch, crossings: int, stop: Callable[[], None]) -> None:
+    """Have strand moves stopped in the middle of the next one, once so few crossings are left."""
+    whole = untangling.untangled
+
+    def cut(*given: object) -> Iterator[Stage]:
+        few = False
+        for stage in whole(*given):
+            if few and stage.seen is None:
+                yield replace(stage, path=stage.path[:1])
+                stop()
+            few = few or (stage.seen is not None and stage.seen.crossings <= crossings)
+            yield stage
+
+    monkeypatch.setattr(untangling, "untangled", cut)
+
+
+@pytest.mark.parametrize("ending", ["time limit", "interrupt"])
+@pytest.mark.parametrize(("crossings", "kept"), [(15, False), (9, True)])
+def test_what_is_cut_short_within_a_move_says_where_it_stands(ending, crossings, kept, monkeypatch, tmp_path) -> None:
+    def stop() -> None:
+        monkeypatch.setattr(TimeLimit, "is_reached", True)
+        check_time()
+        raise KeyboardInterrupt
+
+    _cut(monkeypatch, crossings, stop)
+    options = RelaxOptions(time_limit=1e6 if ending == "time limit" else None)
+    result, iterates = relaxed(knot("tuzun-sikora"), options, tmp_path)
+    assert result.status is (Status.TIME_LIMIT if options.time_limit else Status.INTERRUPTED)
+    assert (result.last.strand_moves is not None) is kept
+    said = "and {} of 21 crossings are left" if kept else "but with {} of 21 crossings left nothing is kept of that"
+    left = [result.last.strand_moves.left] if kept else range(11, crossings + 1)
+    assert any(result.message.endswith("; strands were being moved, " + said.format(count)) for count in left)
+    check_embedded(result.curve)
+    assert kept or len(iterates) == 1
+
+
+def test_seconds_of_all_moves_are_counted(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
+    monkeypatch.setattr(untangling.time, "perf_counter", count().__next__)
+    _, iterates = relaxed(knot("tuzun-sikora"), RelaxOptions(max_iterations=1), tmp_path)
+    seconds = sorted({each.strand_moves.seconds for each in iterates if each.strand_moves})
+    assert seconds == list(range(1, len(seconds) + 1))
 
 
 def test_interrupted_runs_say_where_they_stand() -> None:
