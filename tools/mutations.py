@@ -497,6 +497,13 @@ MUTANTS = (
         f"{ENGINE}/test_motion.py::test_strand_moves_are_keyed",
     ),
     Mutant(
+        "markers more than a turn behind",
+        "addon/engine/markers.py",
+        "after -= size * np.floor(after[0] / size)",
+        "pass",
+        f"{ENGINE}/test_motion.py::test_the_first_marker_may_come_to_lie_between_new_vertices",
+    ),
+    Mutant(
         "the start is rounded for nothing",
         "addon/engine/motion.py",
         "int(not self._rounds_freely(self.start, keys[0], free))",
@@ -686,6 +693,41 @@ MUTANTS = (
         f"{PASSES}/test_untangle.py::test_pins_stay_and_strands_end_at_them",
     ),
     Mutant(
+        "corners that cross when they are gone",
+        "core/passes/thin.py",
+        " and _crossings(thinner, body.frame) <= crossings",
+        "",
+        f"{PASSES}/test_pieces.py::test_corners_that_would_cross_together_are_not_dropped_together",
+    ),
+    Mutant(
+        "hairpins that shrink to points",
+        "core/passes/thin.py",
+        "(crossed <= now) & long)",
+        "(crossed <= now))",
+        f"{PASSES}/test_pieces.py::test_hairpins_are_not_made_points",
+    ),
+    Mutant(
+        "the same view again",
+        "core/passes/views.py",
+        "if away and frame is here:",
+        "if False:",
+        f"{PASSES}/test_pieces.py::test_a_view_whose_moves_are_not_free_is_left_for_another_one",
+    ),
+    Mutant(
+        "seconds of the last move alone",
+        "core/driver/untangling.py",
+        "spent = so_far.seconds +",
+        "spent = earlier.seconds +",
+        f"{UNTANGLING}::test_seconds_of_all_moves_are_counted",
+    ),
+    Mutant(
+        "arcs wound round others",
+        "core/driver/untangling.py",
+        "STRETCHED if lengths.stretched(end) else",
+        "",
+        f"{UNTANGLING}::test_arcs_between_many_pins_do_not_wind_round_others",
+    ),
+    Mutant(
         "motions that are not taken back",
         "core/passes/moving.py",
         "del self.stages[stages:]",
@@ -822,8 +864,8 @@ MUTANTS = (
     Mutant(
         "arcs are undone",
         "core/driver/untangling.py",
-        "            if undone:\n",
-        "            if False:\n",
+        "KNOTTED if _closures(end, ways) != knots else",
+        "",
         f"{UNTANGLING}::test_a_knot_between_pinned_ends_stays",
     ),
     Mutant(

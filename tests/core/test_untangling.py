@@ -174,6 +174,13 @@ def test_arcs_between_pins_have_their_lengths_again(tmp_path) -> None:
     assert result.curve.edge_lengths[edges].sum() == pytest.approx(curve.edge_lengths[:12].sum())
 
 
+def test_arcs_between_many_pins_do_not_wind_round_others(tmp_path) -> None:
+    curve = knot("goeritz")
+    task = Task(curve=curve, pins=tuple(range(0, len(curve), 2)))
+    result, _ = relaxed(task, RelaxOptions(untangle="always", max_iterations=2), tmp_path)
+    assert "strand moves: none are made: others would stretch the curve between pins" in result.message
+
+
 def test_curves_grow_after_strand_moves(tmp_path) -> None:
     curve = knot("goeritz")
     result, _ = relaxed(curve, RelaxOptions(untangle="always", grow=1.5, max_iterations=30), tmp_path)

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mobius_flow.addon.engine.key_options import Pace
+from mobius_flow.addon.engine.markers import Markers
 from mobius_flow.addon.engine.motion import Motion
 from mobius_flow.addon.engine.placement import Link, Placement
 from mobius_flow.core import Curve, Iterate, MobiusFlowError, RelaxOptions, relax
@@ -158,6 +159,21 @@ def test_strand_moves_are_keyed(untangled, limit):
         assert {tuple(vertex) for vertex in curve.vertices.astype(np.float32)} <= {tuple(p) for p in key.points}
         assert points.length == pytest.approx(curve.length, rel=1e-5)
     assert len(motion.start) < 1.5 * max(len(each.curve) for each in untangled)
+
+
+def test_the_first_marker_may_come_to_lie_between_new_vertices():
+    hexagon = np.array(regular_polygon(6).vertices)
+    hexagon[0] = 0.5 * (hexagon[5] + hexagon[1])
+    along = np.linspace(hexagon[5], hexagon[1], 5)[1:-1]
+    finer = np.concatenate([hexagon[1:], along])
+    markers = Markers(6, closed=True)
+    markers.change([1, 2, 3, 4, 5], [0, 1, 2, 3, 4], 8)
+    markers.change(range(8), range(8), 8)
+    shapes = [markers.on(vertices, stage) for stage, vertices in enumerate((hexagon, finer, finer))]
+    for shape in shapes:
+        np.testing.assert_allclose(shape[0], hexagon[0], atol=1e-12)
+        assert Curve(shape).length == pytest.approx(Curve(hexagon).length)
+    np.testing.assert_allclose(shapes[1], shapes[2], atol=1e-12)
 
 
 def test_nothing_moves_while_the_mesh_changes(untangled):
