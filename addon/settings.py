@@ -71,6 +71,12 @@ class MobiusFlowSurroundings(bpy.types.PropertyGroup):
         description="Collection whose visible objects are never touched by curves that are relaxed",
         type=bpy.types.Collection,
     )
+    container: PointerProperty(
+        name="Container",
+        description="Mesh in which Pack lets curves grow; what lies in it never touches it",
+        type=bpy.types.Object,
+        poll=lambda _surroundings, obj: obj.type == "MESH",
+    )
 
 
 def _knots(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> list[tuple[str, str, str, int, int]]:

@@ -3,7 +3,6 @@
 import re
 
 import bpy
-import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 from mathutils import Vector
@@ -12,7 +11,7 @@ from ...core import Curve, OptionError, knots
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves import bevel
-from ..curves.exchange import new_curve_data, write_points
+from ..curves.exchange import box, new_curve_data, write_points
 from ..engine.knot_list import labels, name_of
 from ..live.requirements import Condition
 from ..pictures.materials import colour_components
@@ -123,17 +122,11 @@ class AddsKnot(Button, AddObjectHelper):
 def _beside(context: bpy.types.Context, obj: bpy.types.Object) -> Vector:
     """Where an object is clear of all others that are visible: where it is, or else to their right."""
     context.view_layer.update()
-    low, high = _box(obj)
-    boxes = [_box(each) for each in context.visible_objects if each is not obj and each.type in _SOLID]
+    low, high = box(obj)
+    boxes = [box(each) for each in context.visible_objects if each is not obj and each.type in _SOLID]
     if any((low < other[1]).all() and (other[0] < high).all() for other in boxes):
         return obj.location + Vector((max(other[1][0] for other in boxes) + _MARGIN * (high - low)[0] - low[0], 0, 0))
     return obj.location
-
-
-def _box(obj: bpy.types.Object) -> tuple[FloatArray, FloatArray]:
-    """The least and the greatest coordinates of its corners in the world."""
-    corners = np.array([obj.matrix_world @ Vector(corner) for corner in obj.bound_box])
-    return corners.min(axis=0), corners.max(axis=0)
 
 
 class CURVE_OT_mobius_flow_add_knot(AddsKnot, bpy.types.Operator):

@@ -18,7 +18,7 @@ from ..engine.words import named
 from ..live import registry
 from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
 from ..live.modal import Listening, report_result, unseen
-from ..live.requirements import Condition, avoided, selected_curves
+from ..live.requirements import Condition, avoided, container, selected_curves
 from ..live.run import Refresh, Run
 from ..properties import SETTINGS, relax_options, settings
 from ..scripting import Relaxation, begin, implied
@@ -28,6 +28,11 @@ from .button import Button, button
 _ANIMATED = Condition(
     "Select a curve that was baked first", lambda context: bake.scene_range(selected_curves(context)) is None
 )
+_PICKED = Condition(
+    "Pick a mesh as the container first", lambda context: context.scene.mobius_flow_surroundings.container is None
+)
+_INSIDE = Condition("Put the curves inside the container first", lambda context: container(context) is None)
+_FULL = 20.0  # times its length, which no curve reaches in a container that it is to fill
 
 
 class Relaxing(Listening, Button):
@@ -115,6 +120,20 @@ keys go on from the end of their animation"""
         """Those of Relax, but that lengths stay unless another size is asked for: pins are to stay where they are."""
         values = super().values(context)
         return values | ({"keep_size": "LENGTH"} if values["keep_size"] == "AUTO" else {})
+
+
+class CURVE_OT_mobius_flow_pack(Relaxing, bpy.types.Operator):
+    """Let the selected curves grow inside the container, which they never touch, until it is full or you press Keep"""
+
+    bl_label = "Pack"
+    needs = (RELAXABLE, _PICKED, _INSIDE)
+
+    def values(self, context: bpy.types.Context) -> dict[str, Any]:
+        """Those of Relax, but that curves grow, and avoid the container in any case."""
+        values = super().values(context)
+        if not self.properties.is_property_set("grow"):
+            values["grow"] = _FULL
+        return values | {"avoid": [*values["avoid"], container(context)]}
 
 
 class CURVE_OT_mobius_flow_bake_again(Relaxing, bpy.types.Operator):

@@ -56,6 +56,13 @@ def stretch(obj: "bpy.types.Object") -> float:
     return float(np.linalg.norm(np.array(obj.matrix_world)[:3, :3], 2))
 
 
+def box(obj: "bpy.types.Object") -> tuple[FloatArray, FloatArray]:
+    """The least and the greatest coordinates of the corners of an object's box in the world."""
+    matrix = np.array(obj.matrix_world)
+    corners = np.array(obj.bound_box) @ matrix[:3, :3].T + matrix[:3, 3]
+    return corners.min(axis=0), corners.max(axis=0)
+
+
 def length(scene: "bpy.types.Scene", value: float) -> str:
     """Write a length with its unit, in four digits or so."""
     import bpy

@@ -9,6 +9,7 @@ import bpy
 
 from ...core import MobiusFlowError
 from ...core.messages import Message
+from ..curves.exchange import box
 from ..curves.surroundings import avoidable
 from . import registry
 
@@ -137,11 +138,23 @@ def _is_wire(obj: bpy.types.Object) -> bool:
 
 
 def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.types.Object]:
-    """The visible objects of the scene's collection to avoid, or of one given by name, but for the selected curves.
+    """What the selected curves are not to touch: visible objects of a collection, and the container they lie in.
 
-    An empty name means to avoid nothing; raises MobiusFlowError if there is no collection of that name.
+    The collection is the scene's, or one given by name, and then there is no container. An empty name means to avoid
+    nothing; raises MobiusFlowError if there is no collection of that name.
     """
     collection = context.scene.mobius_flow_surroundings.avoid if name is None else bpy.data.collections.get(name)
     if name and collection is None:
         raise MobiusFlowError(Message("There is no collection '{name}' to avoid", name=name))
-    return list(avoidable(collection, selected_curves(context)))
+    found = list(avoidable(collection, selected_curves(context)))
+    outer = container(context) if name is None else None
+    return found if outer is None or outer in found or not outer.visible_get() else [*found, outer]
+
+
+def container(context: bpy.types.Context) -> bpy.types.Object | None:
+    """The mesh that was picked as a container, if the boxes of all selected curves lie in its own."""
+    outer, boxes = context.scene.mobius_flow_surroundings.container, list(map(box, selected_curves(context)))
+    if outer is None or not boxes:
+        return None
+    low, high = box(outer)
+    return outer if all((low <= least).all() and (most <= high).all() for least, most in boxes) else None

@@ -15,7 +15,7 @@ _OPERATORS = (
     ("balance", "check", "leave_saddle"),
     ("fit_tube", "color_components"),
     ("pin", "pin_ends", "unpin"),
-    ("close",),
+    ("pack", "close"),
     ("object_mode", "make_local", "single_user", "make_3d", "to_poly", "copy", "to_curve"),
 )
 

@@ -40,12 +40,10 @@ def _pin_count(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _avoided(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    if context.scene.mobius_flow_surroundings.avoid is None:
-        return
     found = avoided(context)
-    if not found:
+    if not found and context.scene.mobius_flow_surroundings.avoid is not None:
         sentence(layout, context, Message("Nothing in it is visible"))
-    elif not unsteady(found, selected_curves(context)):
+    elif found and not unsteady(found, selected_curves(context)):
         names = named([obj.name for obj in found])
         sentence(layout, context, Message("Curves never touch {names}", names=names))
 
@@ -54,8 +52,8 @@ class VIEW3D_PT_mobius_flow_surroundings(SubPanel, bpy.types.Panel):
     bl_label = "Pins and Surroundings"
     rows = (
         column(button("pin", "PINNED"), row(button("pin_ends", "PINNED"), button("unpin", "UNPINNED"))),
-        settings("pin_tangents"),
-        settings("avoid", of="mobius_flow_surroundings"),
+        settings("avoid", "container", of="mobius_flow_surroundings"),
+        button("pack", "CUBE"),
         _pin_count,
         _avoided,
     )

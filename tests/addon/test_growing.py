@@ -7,6 +7,10 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, relax  # noqa: E402
 from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
+from mobius_flow.addon.curves.exchange import box  # noqa: E402
+from mobius_flow.addon.curves.surroundings import Surroundings  # noqa: E402
+from mobius_flow.addon.live.requirements import avoided  # noqa: E402
+from mobius_flow.core.collision.clearance import clears  # noqa: E402
 from shapes import regular_polygon  # noqa: E402
 
 SHORT = {"grow": 1.2, "max_iterations": 8}
@@ -32,3 +36,53 @@ def test_a_size_that_is_kept_is_kept_while_they_grow():
     boxes = [np.ptp(curve.vertices, axis=0).max() for curve in keys.curves]
     np.testing.assert_allclose(boxes, boxes[0], rtol=1e-5)
     assert keys.unproved == 0
+
+
+def add_ball(radius=1.3):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=radius)
+    ball = bpy.context.object
+    ball.select_set(False)
+    bpy.context.scene.mobius_flow_surroundings.container = ball
+    return ball
+
+
+def test_a_curve_is_packed_into_its_container():
+    obj, ball = add_ring(), add_ball()
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    assert bpy.ops.curve.mobius_flow_pack(max_iterations=20, vertices=60) == {"FINISHED"}
+    keys = BakedKeys([obj])
+    lengths = [curve.length for curve in keys.curves]
+    assert lengths[-1] > 1.2 * lengths[0]
+    assert keys.unproved == 0
+    assert clears(keys.curves[-1], Surroundings.of([ball], []).obstacles, 0.0)
+    low, high = box(ball)
+    assert all((low < each.vertices).all() and (each.vertices < high).all() for each in keys.curves)
+
+
+def test_what_lies_in_the_container_never_touches_it_whatever_is_pressed():
+    obj, ball = add_ring(), add_ball()
+    obj.select_set(True)
+    assert avoided(bpy.context) == [ball]
+    assert avoided(bpy.context, "") == []
+    ball.hide_set(True)
+    assert avoided(bpy.context) == []
+    ball.hide_set(False)
+    obj.location.x = 2.0
+    bpy.context.view_layer.update()
+    assert avoided(bpy.context) == []
+
+
+def test_packing_says_what_is_missing():
+    obj = add_ring()
+    with pytest.raises(RuntimeError, match="Pick a mesh as the container first"):
+        bpy.ops.curve.mobius_flow_pack()
+    ball = add_ball(0.5)
+    obj.select_set(True)
+    with pytest.raises(RuntimeError, match="Put the curves inside the container first"):
+        bpy.ops.curve.mobius_flow_pack()
+    ball.scale = (3, 3, 3)
+    bpy.context.view_layer.update()
+    ball.hide_set(True)
+    with pytest.raises(RuntimeError, match="'Icosphere' is hidden; show it first"):
+        bpy.ops.curve.mobius_flow_pack()
