@@ -36,7 +36,7 @@ class Group:
     def __init__(self, objects: Sequence["bpy.types.Object"], continues: bool = False) -> None:
         self.continues = continues
         self._members = [Member(obj, continues) for obj in objects]
-        self._shown: tuple[Curve, Frame] | None = None
+        self._shown: tuple[Curve, Frame, KeyOptions, float | None] | None = None
         try:
             for member in self._members:
                 member.begin()
@@ -110,20 +110,24 @@ class Group:
         """The splines' vertices as Blender stores them; shape (n, 3)."""
         return np.concatenate([coordinates(spline) for obj in self.objects for spline in obj.data.splines])
 
-    def show(self, start: Curve, frame: Frame) -> None:
-        """Move all points, (n, 3) in each object's own coordinates; ``start``: the start with as many vertices."""
+    def show(self, start: Curve, frame: Frame, options: KeyOptions, radius: float | None) -> None:
+        """Move all points, (n, 3) in each object's own coordinates; ``start``: the start with as many vertices.
+
+        Tubes that are to be fitted are given the radius, in the common space.
+        """
         if self._shown is None or self._shown[0].mesh != start.mesh:
             self.make_polygons(start)
-        self._shown = start, frame
-        for member, vertices in zip(self._members, self.link.slices(start.mesh), strict=True):
-            member.move(frame[vertices])
+        self._shown = start, frame, options, radius
+        for member, vertices, scale in zip(self._members, self.link.slices(start.mesh), self.link.scales, strict=True):
+            fitted = radius is not None and member.fits(options)
+            member.move(frame[vertices], radius / scale if fitted else None)
 
     @property
     def in_view(self) -> Curve | None:
         """The link where it is shown now, which for a single object may be elsewhere; None if there is none."""
         if self._shown is None or len(self.objects) < len(self._members):
             return None
-        start, frame = self._shown
+        start, frame = self._shown[:2]
         parts = zip(self._placements, self.link.slices(start.mesh), strict=True)
         return start.with_vertices(np.concatenate([each.to_world(frame[s].astype(np.float64)) for each, s in parts]))
 

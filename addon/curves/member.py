@@ -84,10 +84,12 @@ class Member:
             self._splines.polygons(drawn, refined).fill(self.data)
             self._shape = shape(self.data)
 
-    def move(self, points: Frame) -> None:
-        """Move the points, unless they are lost; shape (n, 3), the object's coordinates."""
+    def move(self, points: Frame, radius: float | None) -> None:
+        """Move the points, unless they are lost, (n, 3), and make the tube as thick, in the object's coordinates."""
         if not self.lost():
             write_points(self.data, points)
+            if radius is not None:
+                bevel.draw(self.data, radius)
 
     def lost(self) -> Message | None:
         """Say what somebody did to the curve that makes going on impossible."""
@@ -162,6 +164,8 @@ class Member:
         if data is not None and (shape(data) != self._shape or self._foreign_keys(data)):
             del data[_MARK]
             original.use_fake_user = True  # whoever changed it may want that too
+            if self._fitted:
+                bevel.fit(data, data.bevel_depth)
             return False
         if data is not None:
             _show_original(data)

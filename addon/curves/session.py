@@ -6,7 +6,7 @@ What it knows lives here and never in the file.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -172,7 +172,7 @@ class Session:
         self.end(run.outcome)
         return self.prepare(partial(is_free, obstacles=self._avoided))
 
-    @property
+    @cached_property
     def _avoided(self) -> tuple[Obstacle, ...]:
         return in_common_space(self.task.obstacles, self.group.link)
 
@@ -212,8 +212,9 @@ class Session:
         return self._measure is Measure.LENGTH
 
     def show(self) -> None:
-        """Show the last iterate, with the pins that a hand has left."""
-        self.group.show(self.start, self.frame)
+        """Show the last iterate, its tube as thick as at a key, with the pins that a hand has left."""
+        frame, fits = self.frame, self.group.fits(self._key_options)
+        self.group.show(self.start, frame, self._key_options, self._radius(frame) if fits else None)
         self._mark_pins()
 
     def _mark_pins(self) -> None:
@@ -237,9 +238,12 @@ class Session:
         # an animation that goes on may have shape keys whatever is asked for, see `Member.writing`
         shape_keys = self._key_options.output is Output.SHAPE_KEYS or self.group.continues
         shown = keys.keys if shape_keys else keys.keys[-1:]
-        mesh, common = self.start.mesh, self.group.link.to_common
-        beside = self._avoided
-        return np.array([bevel.fitting_radius(Curve(common(mesh, key.points), mesh), beside) for key in shown])
+        return np.array([self._radius(key.points) for key in shown])
+
+    def _radius(self, frame: Frame) -> float:
+        """Radius of the tube, as thick as free of contact allows, in the common space."""
+        mesh = self.start.mesh
+        return bevel.fitting_radius(Curve(self.group.link.to_common(mesh, frame), mesh), self._avoided)
 
     def reopen(self) -> None:
         """Go on after `Group.discard`; raises MobiusFlowError if the curves are not what they were at the start."""

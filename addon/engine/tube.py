@@ -14,6 +14,8 @@ from .placement import Frame
 _THICKEST = 0.016  # of a component's length: a round circle's tube is then a tenth of its radius
 _DISTINCT = 3.0  # two points lie on different strands if they are this many times further apart along the curve
 _AIR = 0.94  # of half the gap, so that strands do not seem to touch
+_FINE = 8.0  # edges this many times shorter than a distance tell it
+_FEWEST = 16  # vertices of a component that is thinned
 _THINNEST = 3e-3  # of a curve's size: a thinner tube is not seen in a film, nor is which strand is in front
 _GROWTH = 0.04  # of the thickest radius, per frame
 
@@ -30,21 +32,43 @@ def free_radius(curve: Curve, thickest: float) -> float:
 
 def radius_beside(curve: Curve, radius: float, obstacles: Sequence[Obstacle]) -> float:
     """A radius, or as much less, to 2 %, as obstacles leave room for; at least a thousandth of it."""
-    if clears(curve, obstacles, radius / _AIR):
+
+    def fits(thick: float) -> bool:
+        return clears(_thinned(curve, thick), obstacles, thick / _AIR)
+
+    if not obstacles or fits(radius):
         return radius
     low, high = 1e-3 * radius, radius
     while high > 1.02 * low:
         middle = float(np.sqrt(low * high))
-        low, high = (middle, high) if clears(curve, obstacles, middle / _AIR) else (low, middle)
+        low, high = (middle, high) if fits(middle) else (low, middle)
     return low
 
 
 def strand_gap(curve: Curve, widest: float) -> float:
-    """Least distance between strands of a curve, inf if it is more than ``widest``."""
-    spacing = float(curve.edge_lengths.max())
-    nearest = nearest_strands(curve, _DISTINCT, widest + spacing)
-    # Edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side.
-    return float(np.sqrt(max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2)))
+    """Least distance between strands of a curve, inf if it is more than ``widest``, to 1 %.
+
+    Where edges are much shorter than that, some of the vertices tell as much as all of them, which make too many pairs;
+    where these say that strands are near, more of them look for what is nearer still.
+    """
+    while True:
+        some = _thinned(curve, widest)
+        spacing = float(some.edge_lengths.max())
+        nearest = nearest_strands(some, _DISTINCT, widest + spacing)
+        if some is curve or nearest >= 0.5 * widest:
+            # Edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side.
+            return float(np.sqrt(max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2)))
+        widest = nearest
+
+
+def _thinned(curve: Curve, distance: float) -> Curve:
+    """A curve with as few vertices, a few at least of each component, as tell such a distance; itself if all do."""
+    stride = int(distance / (_FINE * curve.edge_lengths.max()))
+    if stride <= 1:
+        return curve
+    steps = [max(1, min(stride, len(each) // _FEWEST)) for each in curve.components]
+    pieces = [np.concatenate([p[:-1:k], p[-1:]]) for p, k in zip(curve.components, steps, strict=True)]
+    return Curve.from_components(pieces, curve.mesh.closed)
 
 
 def animated_radii(mesh: Mesh, points: Sequence[Frame], frames: FloatArray) -> FloatArray:

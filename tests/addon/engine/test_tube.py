@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from mobius_flow.addon.engine.tube import animated_radii, free_radius, radius_beside, strand_gap, thickest_radius
 from mobius_flow.core import Curve, Obstacle
+from mobius_flow.core.curve.distances import nearest_strands
+from mobius_flow.core.knots import smooth_knot
 from shapes import regular_polygon
 
 
@@ -42,6 +44,24 @@ def test_strands_side_by_side_have_a_gap_however_long_their_edges_are(pieces):
     gap = strand_gap(Curve.from_components(strands, (False, False)), 2.0)
     assert gap + 1e-12 >= 0.05
     assert gap <= 0.1
+
+
+@pytest.mark.parametrize("name", ["3_1", "10_165", "L6a4"])
+@pytest.mark.parametrize("flat", [1.0, 0.3, 0.02])
+def test_some_of_the_vertices_tell_gaps_as_all_do(name, flat):
+    knot = smooth_knot(name, 3000)
+    knot = knot.with_vertices(knot.vertices * [1.0, 1.0, flat])
+    widest = 2.0 * thickest_radius(knot)
+    nearest = np.sqrt(nearest_strands(knot, 3.0, widest) ** 2 - 0.25 * knot.edge_lengths.max() ** 2)
+    assert min(strand_gap(knot, widest), widest) == pytest.approx(min(nearest, widest), rel=0.01)
+
+
+def test_open_ends_count_however_few_vertices_do():
+    x = np.linspace(0.0, 1.0, 1999)
+    strand = np.stack([x, 0 * x, 0 * x], axis=1)
+    crossing = np.stack([1.0 + 0 * x, x - 0.5, 0 * x + 0.01], axis=1)
+    gap = strand_gap(Curve.from_components([strand, crossing], (False, False)), 0.4)
+    assert gap == pytest.approx(0.01, rel=0.01)
 
 
 def test_tubes_become_thin_before_and_thick_after_a_narrow_place_at_the_same_pace():
