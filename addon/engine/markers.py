@@ -54,6 +54,12 @@ class Markers:
         self._places.append(after)
         self._size = size
 
+    def back(self, stage: int, size: int) -> None:
+        """Go back to one of the meshes, of so many vertices, as if there had been none after it."""
+        del self._places[stage + 1 :]
+        self._more = [(number, before) for number, before in self._more if number <= stage]
+        self._size = size
+
     def on(self, vertices: FloatArray, stage: int) -> FloatArray:
         """All markers on a polygon with one of the meshes, (n, m) to (markers, m)."""
         stage %= len(self._places)  # the last is −1 too

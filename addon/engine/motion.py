@@ -70,8 +70,8 @@ class Motion:
         self._link, self._first, self._measure = link, first, measure
         self._size: Size | None = None
         self._start: Curve | None = None
-        self._last: Iterate | None = None  # as it is shown,
-        self._reached: Curve | None = None  # and in its own size
+        self._last: Iterate | None = None  # as it is shown
+        self._reached: list[Curve] = []  # the iterates in their own size
         self._shapes: list[Key] = []  # what was recorded, each on the mesh that there was:
         self._stages: list[int] = []  # its number
         self._meshes: list[Mesh] = []
@@ -86,14 +86,13 @@ class Motion:
         If there is one of its number, it takes its place, and those after that one go: a drag was taken back.
         """
         if 0 < iterate.index < len(self._ends):
-            del self._ends[iterate.index :], self._steps[iterate.index :], self._energies[iterate.index :]
-            del self._shapes[self._ends[-1] + 1 :], self._stages[self._ends[-1] + 1 :]
-        if self._reached is None and self._measure is not Measure.LENGTH:
+            self._go_back(iterate.index)
+        if not self._reached and self._measure is not Measure.LENGTH:
             self._size = Size.of(self._measure, iterate.curve)
         # what a hand pins is scaled with the rest
         shown = iterate if self._size is None else replace(self._size.given_to_iterate(iterate), pins=())
         frames = frames_of(self._link, shown)
-        if self._reached is None:
+        if not self._reached:
             self._start, self._mesh = shown.curve, iterate.curve.mesh
             self._meshes.append(self._mesh)
             self._markers = list(map(Markers, self._mesh.component_sizes, self._mesh.closed))
@@ -103,8 +102,9 @@ class Motion:
             for frame in frames:
                 frame[held] = self._shapes[-1].points[held]  # rounding them anew might move them
         else:
-            self._change(self._reached, iterate.curve, frames[0])
-        self._last, self._reached = shown, iterate.curve
+            self._change(self._reached[-1], iterate.curve, frames[0])
+        self._last = shown
+        self._reached.append(iterate.curve)
         self._shapes += map(Key, self._leg_times(iterate.index, frames), frames)
         self._stages += len(frames) * [len(self._meshes) - 1]
         self._ends.append(len(self._shapes) - 1)
@@ -113,9 +113,20 @@ class Motion:
 
     def unsized(self, point: FloatArray) -> FloatArray:
         """The point of the relaxation, shape (3,), that is at another in the size of the last frame."""
-        if self._size is None or self._reached is None:
+        if self._size is None or not self._reached:
             return point
-        return self._size.taken_from(point, self._reached)
+        return self._size.taken_from(point, self._reached[-1])
+
+    def _go_back(self, index: int) -> None:
+        """Forget the iterates from a number on, and the meshes that came with them."""
+        for each in (self._ends, self._steps, self._energies, self._reached):
+            del each[index:]
+        for each in (self._shapes, self._stages):
+            del each[self._ends[-1] + 1 :]
+        del self._meshes[self._stages[-1] + 1 :]
+        for markers, size in zip(self._markers, self._meshes[-1].component_sizes, strict=True):
+            markers.back(self._stages[-1], size)
+        self._mesh = Mesh(tuple(map(len, self._markers)), self._meshes[-1].closed)
 
     def _change(self, old: Curve, new: Curve, frame: Frame) -> None:
         """Go on to another mesh; vertices that stay keep the numbers that they are stored as."""

@@ -88,7 +88,7 @@ class Hand:
         self._say(lambda hold: hold.release(pin))
 
     def undo(self) -> None:
-        """Go back to the iterate before the last grab, as if what came after it had never been; not to another mesh.
+        """Go back to the iterate before the last grab, as if what came after it had never been.
 
         The next iterate has the number after that one; no `Trajectory` that has the others takes it.
         """
@@ -107,11 +107,13 @@ class Hold(Intervention):
     _before: list[tuple[Point, Iterate]] = field(default_factory=list, init=False)  # each grab that may be undone
 
     def __call__(self, event: Event) -> Event | Change:
-        said, self.hand._said = self.hand._said, []
+        said, self.hand._said, mesh = self.hand._said, [], self.run.problem.mesh
         for each in said:
             each(self)
         if self._pull is not None:
             self.run.renew()
+        if self.run.problem.mesh is not mesh:
+            return Change()  # the event was about another
         if isinstance(event, NoStep | Outcome):
             if said:
                 return Change()  # it was found before
@@ -172,6 +174,6 @@ class Hold(Intervention):
         run.start_from(run.point.changing(constraints=replace(held, pins=pins, lengths=lengths)))
 
     def undo(self) -> None:
-        if self._before and self._before[-1][0].problem.mesh is self.run.problem.mesh:
+        if self._before:
             self.run.go_back(*self._before.pop())
             self.run.renew()

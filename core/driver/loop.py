@@ -77,9 +77,9 @@ def summarised(outcome: Outcome, run: Run) -> Outcome:
 def _descent(run: Run, interventions: Sequence[Callable[[Event], Event | Change]]) -> Relaxation:
     event: Event = Start()
     while True:
+        mesh = run.problem.mesh
         answer = _answer(event, interventions)
         if isinstance(answer, Change) and run.allows(answer):
-            mesh = run.problem.mesh
             yield from run.change(answer)
             if run.problem.mesh is not mesh:
                 event = Start()

@@ -375,3 +375,26 @@ def test_pins_of_a_refined_mesh_keep_the_numbers_of_its_coarse_keys():
     motion.add(iterate(2, shifted, fine, pins=(6,)))
     frames = np.stack([key.points for key in motion.keys(lambda *_: True).keys])
     np.testing.assert_array_equal(frames[:, 6], np.broadcast_to(coarse.vertices[3].astype(np.float32), (3, 3)))
+
+
+def test_a_drag_that_is_taken_back_takes_its_meshes_along():
+    """The same iterates with a detour over two finer meshes between the third and the fourth make the same keys."""
+    task, options = torus_trefoil(40), RelaxOptions(vertices=40, mesh="adaptive", max_iterations=30)
+    run = list(relax(task, options))
+    stage = next(k for k, each in enumerate(run) if k and not each.path)
+    plain, detour = Motion(at_rest(1)), Motion(at_rest(1))
+    for each in run:
+        plain.add(each)
+    for each in run[: stage - 1]:
+        detour.add(each)
+    curve = run[stage - 2].curve
+    for k in range(2):
+        curve = subdivide(curve, np.full(curve.mesh.edges, 2))
+        detour.add(iterate(stage - 1 + k, curve.vertices, curve, ()))
+    for each in run[stage - 1 :]:
+        detour.add(each)
+    expected, found = plain.keys(is_free), detour.keys(is_free)
+    assert_proved(found, detour.start.mesh)
+    assert len(found.keys) == len(expected.keys)
+    for a, b in zip(found.keys, expected.keys, strict=True):
+        np.testing.assert_array_equal(a.points, b.points)

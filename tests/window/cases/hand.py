@@ -1,9 +1,8 @@
 """A hand in the view: strands are dragged with the mouse, pinned, and taken back; the view can still be turned."""
 
-import bpy
 import numpy as np
 from case import Steps, picture, until
-from hands import addon, here, key, region, window
+from hands import addon, button, here, key, region, window
 from scene import is_, iterate, look, obj, points, ready, run, state
 
 
@@ -11,8 +10,7 @@ def case() -> Steps:
     yield from ready("3_1", 0)
     window().scene.mobius_flow.tolerance = 1e-3
     before = points()
-    with here():
-        assert bpy.ops.curve.mobius_flow_grab("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    yield from button("curve.mobius_flow_grab")
     yield from until(lambda: run() is not None, "a run")
     yield from until(resting, "the knot to rest and wait", 120)
     assert run() is not None, state()
