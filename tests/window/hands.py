@@ -104,7 +104,7 @@ def found(operator: str) -> Generator[None, None, tuple[int, int]]:
     """Find a button of the sidebar with the mouse, and where it is."""
     sidebar = region("UI")
     ys = range(sidebar.y + sidebar.height - 10, sidebar.y + 10, -10)
-    for share, y in [(share, y) for share in (0.2, 0.5, 0.8, 0.93) for y in ys]:
+    for share, y in [(share, y) for share in (0.2, 0.5, 0.83) for y in ys]:
         x = sidebar.x + int(share * sidebar.width)
         yield from move(x, y)
         if f"bpy.ops.{operator}(" in _under_mouse(sidebar):
