@@ -198,18 +198,13 @@ class Session:
     def take(self, iterate: Iterate) -> None:
         """Record an iterate as it is shown, in the size that is to be kept."""
         before, self._last = self._last, iterate
-        if self.pinnable and before is not None and before.curve.mesh == iterate.curve.mesh:
+        if before is not None and before.curve.mesh == iterate.curve.mesh:
             self._repinned |= before.pins != iterate.pins
         self._motion.add(iterate)
 
     def unsized(self, point: FloatArray) -> FloatArray:
         """The point of the relaxation, shape (3,), that is shown at another."""
         return self._motion.unsized(point)
-
-    @property
-    def pinnable(self) -> bool:
-        """Whether a pin stays where it is: keys that are scaled move it."""
-        return self._measure is Measure.LENGTH
 
     def show(self) -> None:
         """Show the last iterate, its tube as thick as at a key, with the pins that a hand has left."""
@@ -219,10 +214,10 @@ class Session:
 
     def _mark_pins(self) -> None:
         """Mark the points that are where the last iterate has pins, of which there may be fewer vertices."""
-        if self._repinned and self._last is not None:
-            link, curve = self.group.link, self._last.curve
+        if self._repinned and (last := self._motion.last) is not None:
+            link, curve = self.group.link, last.curve
             shown = link.to_common(self.start.mesh, self.frame)
-            pins = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))[list(self._last.pins)]
+            pins = link.to_common(curve.mesh, link.to_stored(curve.mesh, curve.vertices))[list(last.pins)]
             self.group.mark_pins([int(np.linalg.norm(shown - pin, axis=1).argmin()) for pin in pins])
 
     def prepare(self, proof: Proof) -> Prepared:

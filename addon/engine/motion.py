@@ -70,7 +70,7 @@ class Motion:
         self._link, self._first, self._measure = link, first, measure
         self._size: Size | None = None
         self._start: Curve | None = None
-        self._last: Iterate | None = None  # as it is shown
+        self.last: Iterate | None = None  # as it is shown
         self._reached: list[Curve] = []  # the iterates in their own size
         self._shapes: list[Key] = []  # what was recorded, each on the mesh that there was:
         self._stages: list[int] = []  # its number
@@ -89,8 +89,9 @@ class Motion:
             self._go_back(iterate.index)
         if not self._reached and self._measure is not Measure.LENGTH:
             self._size = Size.of(self._measure, iterate.curve)
-        # what a hand pins is scaled with the rest
-        shown = iterate if self._size is None else replace(self._size.given_to_iterate(iterate), pins=())
+        if self._size is not None and self._reached:  # what a hand has pinned stays where it is
+            self._size = replace(self._size, like=(self._size.like or self._reached[-1]) if iterate.pins else None)
+        shown = iterate if self._size is None else self._size.given_to_iterate(iterate)
         frames = frames_of(self._link, shown)
         if not self._reached:
             self._start, self._mesh = shown.curve, iterate.curve.mesh
@@ -103,7 +104,7 @@ class Motion:
                 frame[held] = self._shapes[-1].points[held]  # rounding them anew might move them
         else:
             self._change(self._reached[-1], iterate.curve, frames[0])
-        self._last = shown
+        self.last = shown
         self._reached.append(iterate.curve)
         self._shapes += map(Key, self._leg_times(iterate.index, frames), frames)
         self._stages += len(frames) * [len(self._meshes) - 1]
@@ -169,9 +170,9 @@ class Motion:
     def result(self, free: Proof) -> Keys:
         """Return the last iterate alone; it counts as proved if the way there and its rounding were."""
         last = Key(self._shapes[-1].time, self.frame)
-        assert self._last is not None, "a relaxation yields at least its start"
-        exact = Curve(self._marked(self._last.curve.vertices, -1), self._mesh)
-        proved = self._last.certified and self._rounds_freely(exact, last, free)
+        assert self.last is not None, "a relaxation yields at least its start"
+        exact = Curve(self._marked(self.last.curve.vertices, -1), self._mesh)
+        proved = self.last.certified and self._rounds_freely(exact, last, free)
         return Keys((last,), int(not proved))
 
     def course(self, keys: Keys) -> Course:

@@ -9,7 +9,7 @@ up to a translation: the straight motion from A to B, passed at another pace and
 contact exactly where that is.  What remains to be proved, as always, is what rounding to Blender's numbers makes of it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import numpy as np
@@ -42,26 +42,27 @@ def barycenter(curve: Curve) -> FloatArray:
 
 @dataclass(frozen=True)
 class Size:
-    """A size that all curves of a motion are given."""
+    """A size that all curves of a motion are given, until something is pinned: then all are scaled like that one."""
 
     measure: Measure  # what is measured
     value: float  # how much of it they are to have
+    like: Curve | None = field(default=None, compare=False)  # the curve whose factor and centre are those of all
 
     @classmethod
     def of(cls, measure: Measure, curve: Curve) -> "Size":
         return cls(measure, measure.of(curve))
 
     def factor(self, curve: Curve) -> float:
-        return self.value / self.measure.of(curve)
+        return self.value / self.measure.of(self.like or curve)
 
     def given_to(self, curve: Curve) -> Curve:
         """A curve of this size, scaled about its barycenter."""
-        factor, center = self.factor(curve), barycenter(curve)
+        factor, center = self.factor(curve), barycenter(self.like or curve)
         return curve if factor == 1.0 else curve.with_vertices(center + factor * (curve.vertices - center))
 
     def taken_from(self, point: FloatArray, curve: Curve) -> FloatArray:
         """The point, shape (m,), that is seen at another when a curve is seen at this size."""
-        center = barycenter(curve)
+        center = barycenter(self.like or curve)
         return np.asarray(center + (point - center) / self.factor(curve))
 
     def given_to_iterate(self, iterate: Iterate) -> Iterate:

@@ -152,9 +152,9 @@ class Run:
             self._worker.tell("move", place.tolist())
 
     def let_go(self, pin: bool = False) -> None:
-        """Let go of the strand; with a pin it stays there, unless the curve's size is kept."""
+        """Let go of the strand; with a pin it stays there, and the curve is scaled no more to keep its size."""
         self.drag = None
-        self._worker.tell("release", pin and self._session.pinnable)
+        self._worker.tell("release", pin)
 
     def take_back(self) -> None:
         """Go back to before the last drag, if there was one."""

@@ -159,9 +159,10 @@ def at_rest(operator):
     return bool(last.path) and last.step_size == 0.0
 
 
-def test_ctrl_leaves_a_pin_that_is_kept(operator):
+@pytest.mark.parametrize("size", ["LENGTH", "RADIUS"])
+def test_ctrl_leaves_a_pin_that_is_kept(operator, size):
     obj = add_curve([torus_trefoil(40).vertices])
-    begin(operator)
+    begin(operator, keep_size=size)
     place = on_curve(operator, 7)
     press(operator, place)
     target = moved(place, 0.5, 0.0, 0.0)
