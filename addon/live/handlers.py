@@ -28,8 +28,10 @@ def _before_undo(run: Run, others: int) -> None:
 
 
 def _after_undo(run: Run, count: int) -> None:
-    registry.history.undo(count)
+    drag = registry.history.undo(count)
     run.group.resume()
+    if drag:
+        run.take_back()
 
 
 def _before_saving(run: Run) -> None:

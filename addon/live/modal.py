@@ -30,6 +30,7 @@ class Loop:
         """Handle an event; most do not concern the relaxation, and Blender stays usable."""
         handled = _PASS
         registry.history.look()
+        registry.history.push(self.run)
         if self.run.state.over:
             pass  # ended by a handler, such as the one for undo
         elif event.type == "TIMER":
@@ -50,7 +51,7 @@ class Loop:
 
     def _key(self, event: bpy.types.Event) -> set[str]:
         undo = event.type == "Z" and (event.ctrl or event.oskey) and not event.shift
-        if (self.run.drag and event.type == "ESC") or (self.run.drags and undo and not registry.history.others):
+        if self.run.drag and event.type == "ESC":
             self.run.take_back()
         elif event.type == "ESC" or (undo and not registry.history.others):
             self.run.cancel()

@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ..translations import iface_
+
 if TYPE_CHECKING:
     from .run import Run
 
@@ -13,16 +15,26 @@ _latest: "list[Run]" = []
 class History:
     """Counts other actions during a run, such as selecting or moving an object: undo takes these back before the run.
 
-    ``others`` were done and not undone, ``undone`` may be redone.
+    ``others`` were done and not undone, ``undone`` may be redone. Drags have one step of undo among them, made anew
+    after each undo: Blender's takes back the last one then.
     """
 
     def __init__(self) -> None:
-        self.others = self.undone = self._seen = 0
+        self.others = self.undone = self._seen = self._step = 0
 
     def begin(self) -> None:
         """Count from now on."""
-        self.others = self.undone = 0
+        self.others = self.undone = self._step = 0
         self._seen = _last_operation()
+
+    def push(self, run: "Run") -> None:
+        """Let there be a step of undo if there are drags; the file has the originals in it."""
+        if run.drags and not self._step and run.endures:
+            run.group.hide()
+            bpy.ops.ed.undo_push(message=iface_("Drag"))
+            run.group.resume()
+            self.others, self.undone, self._seen = self.others + 1, 0, _last_operation()
+            self._step = self.others
 
     def look(self) -> None:
         """Notice a new action; to be called often, since Blender's list has lost it by the time undo is announced."""
@@ -31,10 +43,13 @@ class History:
             self.others, self.undone = self.others + 1, 0
         self._seen = last
 
-    def undo(self, count: int = 1) -> None:
-        """Note that an action was undone, or redone if ``count`` is -1."""
+    def undo(self, count: int = 1) -> bool:
+        """Note that an action was undone, or redone if ``count`` is -1; whether it was the drags' step."""
         self.others, self.undone = self.others - count, self.undone + count
         self._seen = _last_operation()
+        if drag := self._step > self.others:
+            self._step = 0
+        return drag
 
 
 def _last_operation() -> int:

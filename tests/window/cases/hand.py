@@ -3,6 +3,7 @@
 import numpy as np
 from case import Steps, picture, until
 from hands import addon, button, here, key, region, window
+from interruption import undo
 from scene import is_, iterate, look, obj, points, ready, run, state
 
 
@@ -29,6 +30,9 @@ def case() -> Steps:
     yield from until(resting, "the knot to rest again")
     yield from picture("hand-3-released", differs_from="hand-1-resting")
 
+    yield from drag(pixel(10))
+    undo()
+    yield from until(lambda: run().drags == 1 and resting(), "Edit > Undo to take the second drag back")
     yield from key("Z", ctrl=True)
     yield from until(lambda: np.array_equal(points(), at_rest), "the drag to be taken back")
     assert run() is not None, state()
@@ -64,6 +68,14 @@ def case() -> Steps:
     yield from picture("hand-5-kept")
     yield from key("Z", ctrl=True)
     yield from until(lambda: np.array_equal(points(), before), "undo of all of it")
+
+
+def drag(start: tuple[int, int]) -> Steps:
+    """Pull a strand a little, and let it go."""
+    yield from press(*start)
+    yield from until(lambda: run().drag is not None, "a strand to be held")
+    yield from move_to(start[0] + 60, start[1])
+    yield from let_go(start[0] + 60, start[1])
 
 
 def resting() -> bool:
