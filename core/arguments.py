@@ -105,6 +105,7 @@ def _hints(function: Callable[..., object]) -> dict[str, Any]:
     return get_type_hints(function)
 
 
+@cache
 def _spelt_out(hint: Any) -> Any:
     """Resolve an alias, such as NDArray from NumPy 2.5 on."""
     return getattr(get_origin(hint) or hint, "__value__", hint)

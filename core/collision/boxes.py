@@ -139,12 +139,17 @@ def _padded(upper: FloatArray) -> FloatArray:
     return np.concatenate([upper, np.full((*upper.shape[:2], 1), _NOWHERE)], axis=2)
 
 
+_HALVES = {  # numbers of the halves of the first and of the second box, if either is halved
+    (halved, also): np.array([(k, j) for k in range(1 + halved) for j in range(1 + also)]).T[:, :, None]
+    for halved in (False, True)
+    for also in (False, True)
+}
+
+
 def _halved(a: IntArray, b: IntArray, first: bool, second: bool) -> tuple[IntArray, IntArray]:
     """Pairs of halves of the first, of the second, or of both boxes of each pair."""
-    left = 2 * a + np.array([[0], [1]]) if first else a[None]
-    right = 2 * b + np.array([[0], [1]]) if second else b[None]
-    left, right = np.broadcast_arrays(left[:, None], right[None])
-    return left.ravel(), right.ravel()
+    left, right = _HALVES[first, second]
+    return ((1 + first) * a + left).ravel(), ((1 + second) * b + right).ravel()
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ and the length of an edge between two pins, which cannot change, is no row eithe
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -207,4 +208,5 @@ class ConstraintDerivative:
 
 
 def _split(rows: FloatArray, blocks: Sequence[Block] | Sequence[BlockDerivative]) -> list[FloatArray]:
-    return np.split(rows, np.cumsum([block.rows for block in blocks])[:-1]) if blocks else []
+    ends = accumulate((block.rows for block in blocks), initial=0)
+    return [rows[first:last] for first, last in pairwise(ends)]

@@ -54,10 +54,10 @@ class Barycenters:
         ell, mesh, u = curve.edge_lengths, curve.mesh, u.copy()
         # what the change of lengths does to Σ ℓ_I m_I, translations are to undo
         moments = stretch[:, None] * curve.midpoints + (0.5 * ell)[:, None] * (u[mesh.tails] + u[mesh.heads])
-        for member, missing in zip(self.memberships(mesh), self._by_part(-residual), strict=True):
-            own = member > 0.0
-            moved = np.isin(mesh.component, mesh.edge_component[own])
-            u[moved] += (missing - moments[own].sum(axis=0)) / ell[own].sum()
+        part = np.asarray(self.parts)
+        for k, missing in zip(self.loose, self._by_part(-residual), strict=True):
+            own = part[mesh.edge_component] == k
+            u[part[mesh.component] == k] += (missing - moments[own].sum(axis=0)) / ell[own].sum()
         return u
 
     def derivative(self, curve: Curve) -> "BarycenterDerivative":

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -105,6 +106,8 @@ class Objective:
 
     def frozen_at(self, curve: Curve) -> "Objective":
         """What a search from a curve should see: approximations that stay the same for all that is near."""
+        if not any(isinstance(term, Approximate) for term in self.terms):
+            return self
         energy = _frozen(self.energy, curve)
         further = tuple(each._replace(term=_frozen(each.term, curve)) for each in self.further)
         frozen = replace(self, energy=energy, further=further)
@@ -155,8 +158,12 @@ class Objective:
         energy, barrier = self.energy, self.barrier
         if barrier.replaces_midpoint:
             energy = cast(WithMidpointPairs, energy).leaving_out(replaced_pairs(curve))
-            barrier = replace(barrier, left_out=True)
+            barrier = self._barrier_alone
         return (Weighted(energy), Weighted(barrier), *self.further)
+
+    @cached_property
+    def _barrier_alone(self) -> Barrier:
+        return replace(self.barrier, left_out=True)
 
     def _check_hessian(self) -> None:
         lacking = self.without_hessian

@@ -10,8 +10,9 @@ from scipy.sparse.csgraph import connected_components
 from ...arguments import checked_fields, number
 from ...constraints import Barycenters, Parts
 from ...curve import Curve
-from ...curve.distances import near_by_octave
+from ...curve.distances import STRAND_RATIO, arc_distance_of_pairs, near_by_octave
 from ...descent import Step
+from ...energies.barrier import near_pairs
 from ...hierarchy import moebius_energy
 from ...knots.composite import Ball, is_searchable, knotted_ball
 from ...obstacle import Obstacle
@@ -134,6 +135,13 @@ def shrinking_ball(run: Run) -> Ball | None:
     return ball if ball is not None and all(map(ball.is_clear_of, run.problem.obstacles)) else None
 
 
+def is_unresolved(curve: Curve) -> bool:
+    """Whether strands, not merely edges of very different lengths, are so near that the barrier still acts."""
+    i, j = near_pairs(curve)
+    distance = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)
+    return bool(np.any(arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance))
+
+
 def _may_shrink(run: Run) -> list[Curve]:
     """The curve's parts that may be composite, unless the energy sees size; between pins no part shrinks either."""
     if run.problem.objective.sees_size or len(run.problem.constraints.pins):
@@ -142,8 +150,11 @@ def _may_shrink(run: Run) -> list[Curve]:
 
 
 def _may_be_composite(curve: Curve) -> bool:
-    """Whether there is energy enough for that, in space, on closed components: arcs can be unknotted."""
-    if curve.dimension != 3 or not curve.mesh.all_closed:
+    """Whether there is energy enough for that, in space, on closed components: arcs can be unknotted.
+
+    A part that has shrunk as far as the mesh lets it is not resolved any more.
+    """
+    if curve.dimension != 3 or not curve.mesh.all_closed or not is_unresolved(curve):
         return False
     components = len(curve.mesh.component_sizes)
     return moebius_energy(curve)[0] >= (COMPOSITE_KNOT if components == 1 else COMPOSITE_LINK)

@@ -8,19 +8,17 @@ import numpy as np
 from ...arguments import checked_fields, number
 from ...collision import Contact, survives_rounding
 from ...curve import Curve
-from ...curve.distances import STRAND_RATIO, arc_distance_of_pairs
 from ...curve.refine import Resolution, affordable_pieces, subdivide
 from ...curve.remesh import Remeshed, graded_spacing, needs_remesh, remesh, superfluous
 from ...descent import Leg, NoStep, Point, Problem, Step
 from ...descent.soft_modes import BULK
-from ...energies.barrier import near_pairs
 from ...errors import MobiusFlowError
 from ...messages import Message, joined
 from ...task import check_refined
 from ...types import FloatArray, IntArray
 from ..outcome import Outcome
 from ..run import Change, Intervention
-from .links import shrinking_ball
+from .links import is_unresolved, shrinking_ball
 
 ADVICE = Message("a finer or an adaptive mesh may help")
 UNRESOLVED = "strands are closer than this mesh resolves: a finer one would reach a lower energy"
@@ -110,7 +108,8 @@ class FinerMesh(Intervention):
     # that are left: it takes two or three to get back what corners cost when their edges are split
     min_iterations: int = number(5)
     share: float = number(0.1, most=1)  # of the error, up to which a gain is small
-    pause: float = number(1.25, above=1)  # factor of the number of steps on this mesh from one look to the next
+    recent: float = number(0.8, most=1)  # part of the steps on this mesh after which gains count
+    pause: float = number(1.1, above=1)  # factor of the number of steps on this mesh from one look to the next
 
     def __post_init__(self) -> None:
         self._resolution = replace(self.run.resolution, edges_per_gap=self.edges_per_gap)
@@ -118,21 +117,19 @@ class FinerMesh(Intervention):
         self.started()
 
     def started(self) -> None:
-        self._steps, self._looked, self._energy = 0, 0, self.run.point.energy
+        self._energies, self._looked = [self.run.point.energy], 0
 
     def stepped(self, step: Step) -> Change | None:
-        self._steps += 1
-        if self._steps < self.pause * self._looked:
+        self._energies.append(self.run.point.energy)
+        steps, energy = len(self._energies) - 1, self._energies[-1]
+        if steps < self.pause * self._looked or not self._may_leave:
             return None
-        before, self._energy, self._looked = self._energy, self.run.point.energy, self._steps
-        if not self._may_leave:
+        gain = max(self._energies[int(self.recent * steps)] - energy, 0.5 * self.run.point.gradient_norm**2 / BULK)
+        if gain > self.share**2 * energy:  # errors are hardly a tenth of it
             return None
-        gain = max(before - self._energy, 0.5 * self.run.point.gradient_norm**2 / BULK)
-        finer = self._finer() if gain <= self.share**2 * self._energy else None  # errors are hardly a tenth of it
-        if finer is None or gain > self.share * abs(finer.energy - self._energy):
-            return None
-        if shrinking_ball(self.run) is not None:
-            return None  # it would shrink on, until that mesh does not resolve it either
+        self._looked, finer = steps, self._finer()
+        if finer is None or gain > self.share * abs(finer.energy - energy) or shrinking_ball(self.run) is not None:
+            return None  # a ball would shrink on, until that mesh does not resolve it either
         return Change(point=finer, resolution=self._resolution)
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
@@ -148,7 +145,7 @@ class FinerMesh(Intervention):
         if len(run.point.vertices) < self._given:
             return False
         grown = math.isclose(run.iterate.grown, run.options.grow)
-        return run.feasible and grown and run.iterations_left >= max(self._steps, self.min_iterations)
+        return run.feasible and grown and run.iterations_left >= max(len(self._energies), self.min_iterations)
 
     def _finer(self) -> Point | None:
         """The same curve on a finer mesh; None if that is not wanted, or there is none."""
@@ -167,10 +164,3 @@ def split_edges(problem: Problem, curve: Curve, pieces: IntArray) -> Point | Non
         return problem.on(finer, np.repeat(problem.constraints.lengths / pieces, pieces) * problem.units.scale)
     except MobiusFlowError:
         return None
-
-
-def is_unresolved(curve: Curve) -> bool:
-    """Whether strands, not merely edges of very different lengths, are so near that the barrier still acts."""
-    i, j = near_pairs(curve)
-    distance = np.linalg.norm(curve.midpoints[i] - curve.midpoints[j], axis=1)
-    return bool(np.any(arc_distance_of_pairs(curve, i, j) > STRAND_RATIO * distance))

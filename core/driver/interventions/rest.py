@@ -13,7 +13,7 @@ from ...metrics import MoebiusMetric
 from ...saddle.indefinite import FactorisedHessian
 from ..outcome import Outcome
 from ..run import Change, Intervention
-from .remesh import is_unresolved
+from .links import is_unresolved
 from .saddle import stability, unresolved
 
 MINIMUM = "a minimum"
