@@ -8,7 +8,7 @@ from functools import partial
 from typing import NamedTuple
 
 from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
-from ..core.driver import finish
+from ..core.driver import Relaxation, finish
 from ..core.errors import counted
 from . import curves, signals
 from . import options as relax_options
@@ -45,6 +45,14 @@ def add_relax(parser: argparse.ArgumentParser) -> None:
     """Describe ``relax``."""
     parser.description, parser.epilog = "Relax a curve: lower its energy without changing its knot type.", _EPILOG
     curves.add_input(parser, "polygons, closed or open")
+    add_outputs(parser)
+    relax_options.add_to(parser)
+    relax_options.add_task(parser)
+    parser.set_defaults(run=_run)
+
+
+def add_outputs(parser: argparse.ArgumentParser) -> None:
+    """Add what is written: see `write_results`."""
     text = f"what to write, by suffix: {', '.join(OUTPUTS)}, or - for standard output"
     parser.add_argument("output", metavar="OUT", help=text)
     as_device = {curves.STREAM: curves.DEVICE}  # standard output, for reports and trajectories
@@ -54,17 +62,13 @@ def add_relax(parser: argparse.ArgumentParser) -> None:
     ):
         parser.add_argument(name, type=lambda path: as_device.get(path, path), metavar=metavar, help=text)
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    relax_options.add_to(parser)
-    relax_options.add_task(parser)
-    parser.set_defaults(run=_run)
 
 
 def _run(options: argparse.Namespace) -> int:
     """Relax, write every requested output, and return the exit status."""
     output = output_for(options.output, options.format)
     wanted = relax_options.from_arguments(options)
-    outputs = {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
-    check_places(relax_options.inputs(options), outputs)
+    check_places(relax_options.inputs(options), places(options))
     file = curves.read(options.input, options.format)
     with curves.refusals(file):
         task = relax_options.task(options, file)
@@ -72,20 +76,22 @@ def _run(options: argparse.Namespace) -> int:
     respected = {"pins": task.pins, "pin_tangents": task.pin_tangents, "avoid": [each.name for each in task.obstacles]}
     origin = relax_options.provenance(vars(wanted) | respected, str(file.source.path), file.source.sha256)
     with curves.refusals(file):
-        result, iterates = _relax(task, wanted, output, options)
-    _write_all(_jobs(options, output, result, iterates, origin))
-    if not options.quiet:
-        print(_summary(result), file=sys.stderr)
+        result, iterates = run_to_end(relax(task, wanted), task, wanted, output, options)
+    write_results(options, output, result, iterates, origin)
     return EXIT_STATUS[result.status]
 
 
-def _relax(
-    task: Task, wanted: RelaxOptions, output: Output, options: argparse.Namespace
+def places(options: argparse.Namespace) -> dict[str, str | None]:
+    """The files that are written, by what they are on the command line."""
+    return {"OUT": options.output, "--report": options.report, "--trajectory": options.trajectory}
+
+
+def run_to_end(
+    relaxation: Relaxation, task: Task, wanted: RelaxOptions, output: Output, options: argparse.Namespace
 ) -> tuple[Result, list[Iterate]]:
     """Run to the end or an interrupt. Signals interrupt steps only: neither what is recorded nor the end is lost."""
     iterates: list[Iterate] = []
     recorded = output.is_scene or options.trajectory is not None
-    relaxation = relax(task, wanted)
     signals.hold()
     progress = Progress(wanted)
     with bar(_shown(options), total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}") as shown:
@@ -120,6 +126,15 @@ class _Job(NamedTuple):
         if self.slow:
             signals.allow()
         self.write(path)
+
+
+def write_results(
+    options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
+) -> None:
+    """Write every requested output, and say on standard error how the run ended, unless it is to be quiet."""
+    _write_all(_jobs(options, output, result, iterates, origin))
+    if not options.quiet:
+        print(_summary(result), file=sys.stderr)
 
 
 def _write_all(jobs: Iterable[_Job]) -> None:

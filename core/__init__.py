@@ -9,6 +9,7 @@ from .descent import METHODS
 from .driver import Hand, Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, WithOutcome, minimize, relax
 from .energies import MoebiusEnergy, Objective
 from .errors import CurveError, CurveFileError, MobiusFlowError, OptionError
+from .morphing import NoMotionError, morph
 from .obstacle import Obstacle
 from .obstacle_files import read_obstacle
 from .task import Task
@@ -23,6 +24,7 @@ __all__ = [
     "Mesh",
     "MobiusFlowError",
     "MoebiusEnergy",
+    "NoMotionError",
     "Objective",
     "Obstacle",
     "OptionError",
@@ -34,6 +36,7 @@ __all__ = [
     "Trajectory",
     "WithOutcome",
     "minimize",
+    "morph",
     "read_curve",
     "read_obstacle",
     "relax",

@@ -25,6 +25,7 @@ FLOORS = (
     {"core.hierarchy"},
     {"core.descent"},
     {"core.driver"},
+    {"core.morphing"},
     {"core"},
     {"addon"},
     {"cli"},

@@ -16,6 +16,7 @@ ARGUMENTS = {
     "hops": ["T34", "--hops", "1"],
     "knots": ["knots", "--only", "3_1,L2a1,unknot-rope", "--tolerance", "1e-2"],
     "metric": ["100"],
+    "morphs": ["--only", "ochiai"],
     "obstacles": ["--vertices", "60"],
     "passes": ["goeritz"],
     "repulsion": ["60", "--latitudes", "12"],

@@ -122,7 +122,7 @@ def test_the_identity_is_no_gain(monkeypatch: pytest.MonkeyPatch) -> None:
     start, identity = point(bumpy, edge_lengths="equal"), np.array([1.0, 0.0, 0.0, 0.0])
     image = MoebiusImages(start.curve, start.problem.constraints.lengths).at(identity)
     assert bending(image) < 0.95 * bending(start.curve)
-    monkeypatch.setattr(balance, "_least", lambda *_: [identity])
+    monkeypatch.setattr(balance, "least_bending", lambda *_: [identity])
     assert way_to_balance(start) == ()
 
 
@@ -160,8 +160,8 @@ def test_the_next_best_where_there_is_no_way_to_the_best(monkeypatch: pytest.Mon
 
 def test_images_that_bend_more_than_their_vertices_promised_are_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
     start = point(unbalanced(torus_knot(2, 3, 120), 0.3, 0.1, 0.2))
-    found = balance._least(MoebiusImages(start.curve, start.curve.edge_lengths), 3)
-    monkeypatch.setattr(balance, "_least", lambda *_: [np.array([0.6, 0.8, 0.0, 0.0]), *found])
+    found = balance.least_bending(MoebiusImages(start.curve, start.curve.edge_lengths), 3)
+    monkeypatch.setattr(balance, "least_bending", lambda *_: [np.array([0.6, 0.8, 0.0, 0.0]), *found])
     assert bending(way_to_balance(start)[-1].point.curve) < 0.96 * bending(start.curve)
 
 

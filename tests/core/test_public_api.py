@@ -94,6 +94,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "Hand.move": (core.Hand().move, {"target": (0.0, 0.0, 1.0)}),
     "Hand.release": (core.Hand().release, {"pin": True}),
     "minimize": (minimize, {"curve": TREFOIL, "options": SHORT, "callback": lambda *_: None}),
+    "morph": (core.morph, {"a": TREFOIL, "b": TREFOIL, "options": SHORT, "callback": lambda *_: None}),
     "Iterate": (Iterate, vars(START)),
     "Outcome": (Outcome, {"status": Status.STALLED, "clauses": ("stuck",), "place": None}),
     "Result": (

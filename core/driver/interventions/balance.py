@@ -104,7 +104,7 @@ class Balance(Intervention):
         # against the identity's image too: what smoothing alone takes off is no gain, the flow would put it back
         still = images.at(np.eye(point.curve.dimension + 1)[0])
         enough = (1.0 - self.gain) * min(bending(point.curve), bending(still))
-        for q in _least(images, point.curve.dimension):
+        for q in least_bending(images, point.curve.dimension):
             image = images.at(q)
             if bending(image) > enough:
                 continue
@@ -137,10 +137,10 @@ class Balance(Intervention):
 def balanced(curve: Curve) -> Curve:
     """The Möbius image that bends least, of the same energy; no way to it is proved, as pictures need none."""
     images = MoebiusImages(curve, curve.edge_lengths)
-    return min((images.at(q) for q in _least(images, curve.dimension)), key=bending, default=curve)
+    return min((images.at(q) for q in least_bending(images, curve.dimension)), key=bending, default=curve)
 
 
-def _least(images: MoebiusImages, dimension: int) -> list[FloatArray]:
+def least_bending(images: MoebiusImages, dimension: int) -> list[FloatArray]:
     """Local minimisers of the bending, the lowest first, of length 1 with c ≥ 0; none is found twice."""
     found = [minimize(images.of_vertices, start, jac=True, method="BFGS") for start in _starts(dimension)]
     distinct: list[FloatArray] = []

@@ -1,0 +1,91 @@
+"""``mobius-flow morph``: a proved motion from one curve to another."""
+
+import argparse
+import sys
+
+from ..core import CurveError, RelaxOptions, Status, Task, read_obstacle
+from ..core.curve.io import CurveFile
+from ..core.morphing import NoMotionError, morphing
+from . import curves
+from . import options as relax_options
+from .outputs import admit, output_for
+from .places import check_places
+from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
+from .streams import one_line
+
+NOT_FOUND = 1
+_ONE_CURVE = ("balance", "grow", "mesh", "edge_lengths", "stability", "escape_saddles")  # what is not for two
+_EPILOG = """\
+examples:
+  mobius-flow morph a.txt b.txt film.mp4
+  mobius-flow morph a.txt b.txt b.obj --trajectory proof.npz
+  mobius-flow verify proof.npz
+  mobius-flow morph a.txt b.txt b.obj --hops 20
+
+Both curves are relaxed; where their shapes meet, the way of B is run backwards. The first frame of the trajectory is A
+and the last is B, bit for bit, so that it proves that both are the same knot or link. If the outcome says that
+components have another order or direction in the end, so have the vertices of the last frame. Open components are held
+at their ends, which must be in the same places in A and B.
+
+exit status:
+  0    a motion was found, and proved free of contact
+  1    there is none, as invariants show, or none was found: one line says which, and nothing is written; or the time
+       was up, and what was reached is written
+  2    bad input or bad options, or an output that cannot be written; one line says what and where
+  130  interrupted by Ctrl-C, SIGTERM or SIGHUP; what was reached is written
+"""
+
+
+def add_morph(parser: argparse.ArgumentParser) -> None:
+    """Describe ``morph``."""
+    parser.description, parser.epilog = "Find a motion from one curve to another, free of contact with proof.", _EPILOG
+    add_pair(parser)
+    add_outputs(parser)
+    parser.set_defaults(run=_run)
+
+
+def add_pair(parser: argparse.ArgumentParser) -> None:
+    """Add two curves, and how they are relaxed."""
+    for name in ("A", "B"):
+        parser.add_argument(name.lower(), metavar=name, help=f"polygons, closed or open: {', '.join(curves.FORMATS)}")
+    curves.add_format(parser)
+    relax_options.add_to(parser, without=_ONE_CURVE)
+    text = "OBJ file of triangles or polylines that both avoid, and the motion does; may be given several times"
+    parser.add_argument("--avoid", metavar="MESH.obj", action="append", default=[], help=text)
+
+
+def inputs(options: argparse.Namespace) -> dict[str, str]:
+    """The files that are read, by what they are on the command line."""
+    return {"A": options.a, "B": options.b, **{f"--avoid {path}": path for path in options.avoid}}
+
+
+def read_pair(options: argparse.Namespace, wanted: RelaxOptions) -> tuple[tuple[CurveFile, Task], ...]:
+    """Both curves with their files, and what they avoid; raises CurveFileError if one cannot be relaxed."""
+    if options.a == options.b == curves.STREAM:
+        raise CurveError("standard input can be read once only; give - once")
+    files = [curves.read(path, options.format) for path in (options.a, options.b)]
+    obstacles = tuple(map(read_obstacle, options.avoid))
+    pairs = tuple((file, Task(curve=file.curve, obstacles=obstacles)) for file in files)
+    for file, task in pairs:
+        with curves.refusals(file):
+            task.refined(wanted.vertices)
+    return pairs
+
+
+def _run(options: argparse.Namespace) -> int:
+    """Find the motion, write every requested output, and return the exit status."""
+    output = output_for(options.output, options.format)
+    wanted = relax_options.from_arguments(options)
+    check_places(inputs(options), places(options))
+    (file, task), (other, goal) = read_pair(options, wanted)
+    admit(output, options.output, file.curve)
+    settings = vars(wanted) | {"avoid": [each.name for each in task.obstacles]}
+    origin = relax_options.provenance(settings, str(file.source.path), file.source.sha256)
+    origin["to"] = {"name": str(other.source.path), "sha256": other.source.sha256}
+    try:
+        result, iterates = run_to_end(morphing((task, goal), wanted), task, wanted, output, options)
+    except NoMotionError as error:
+        print(one_line(f"mobius-flow: {error}"), file=sys.stderr)
+        return NOT_FOUND
+    write_results(options, output, result, iterates, origin)
+    return NOT_FOUND if result.status is Status.TIME_LIMIT else EXIT_STATUS[result.status]

@@ -1,0 +1,174 @@
+"""Where a shape lies upon another best: over rotations, starting points, directions and orders of components.
+
+Strands are compared at samples that are evenly spread over each component.  For a given rotation the best starting
+points of all pairs of components are maxima of cross-correlations, which an FFT gives for all of them; for given
+starting points the best rotation is Kabsch's (Acta Cryst. A 32, 1976).  By turns they climb to a maximum from each of
+many rotations.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial.transform import Rotation
+
+from ..curve import Curve
+from ..types import BoolArray, FloatArray, IntArray
+
+SAMPLES = 256  # of a component: half a spacing is some 0.01 radii of gyration
+STARTS, AROUND = 400, 64  # rotations to climb from, and those about a single axis
+TURNS = 12  # of a climb, at most
+AS_GIVEN = 0.03  # radii of gyration by which one may lie worse that keeps directions and order of components,
+STILL = 0.01  # or needs no rotation, where π is the largest
+NEVER = -1e300  # score of what is not allowed
+DISTINCT = 0.3  # difference of rotation matrices, from which they are looked at both
+
+
+@dataclass(frozen=True, eq=False)
+class Freedom:
+    """The similarities that are allowed: rotations about any or one axis, if any; and shifts and scalings or none."""
+
+    rotates: bool = True
+    axis: FloatArray | None = None  # the only one, of length 1; shape (3,)
+    fixed: FloatArray | None = None  # a point that neither shifts nor scalings may move; shape (3,)
+
+    def best(self, covariances: FloatArray) -> FloatArray:
+        """The rotations R with the largest tr(RᵀK), of each K = Σ y xᵀ; shapes (k, 3, 3)."""
+        if not self.rotates:
+            return np.broadcast_to(np.eye(3), covariances.shape)
+        if self.axis is None:
+            u, _, v = np.linalg.svd(covariances)
+            u[:, :, 2] *= np.linalg.det(u @ v)[:, None]
+            return np.asarray(u @ v)
+        across = np.cross(np.eye(3), self.axis)  # u ↦ axis × u is its transpose's negative
+        cosine = np.trace(covariances, axis1=1, axis2=2) - self.axis @ covariances @ self.axis
+        angles = np.arctan2(np.einsum("ij,kij->k", across, covariances), cosine)
+        return np.asarray(Rotation.from_rotvec(angles[:, None] * self.axis).as_matrix())
+
+    def starts(self) -> FloatArray:
+        """Rotations all over; shape (k, 3, 3)."""
+        if not self.rotates:
+            return np.eye(3)[None]
+        if self.axis is None:
+            found = Rotation.from_quat(np.random.default_rng(1).normal(size=(STARTS, 4))).as_matrix()
+            return np.concatenate([np.eye(3)[None], found])
+        angles = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
+        return np.asarray(Rotation.from_rotvec(angles[:, None] * self.axis).as_matrix())
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """The similarity x ↦ target + scale · R (x − source) that takes a curve to about where another one is.
+
+    ``order`` has for each of its components that of the other one, ``backwards`` whether that is run through in its
+    opposite direction, ``begins`` the share of its length, so run through, at which the curve's first vertex is;
+    ``distance`` is what is left, root mean square, in radii of gyration.
+    """
+
+    rotation: FloatArray  # R, shape (3, 3)
+    scale: float
+    source: FloatArray
+    target: FloatArray
+    order: tuple[int, ...]
+    backwards: tuple[bool, ...]
+    begins: tuple[float, ...]
+    distance: float
+
+    @property
+    def as_given(self) -> bool:
+        """Whether components keep their order and their directions."""
+        return self.order == tuple(range(len(self.order))) and not any(self.backwards)
+
+    @property
+    def cost(self) -> float:
+        """What is to be least: the distance, and a bit for what had rather be avoided."""
+        return self.distance + AS_GIVEN * (not self.as_given) + STILL * self.angle / np.pi
+
+    @property
+    def angle(self) -> float:
+        return float(Rotation.from_matrix(self.rotation).magnitude())
+
+    def moved(self, vertices: FloatArray, share: float) -> FloatArray:
+        """Vertices, shape (n, m), after a share of the way there."""
+        rotation = Rotation.from_rotvec(share * Rotation.from_matrix(self.rotation).as_rotvec()).as_matrix()
+        m = vertices.shape[1]
+        place = (self.source + share * (self.target - self.source))[:m]
+        return np.asarray(place + self.scale**share * (vertices - self.source[:m]) @ rotation[:m, :m].T)
+
+
+def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
+    """Ways to lay a curve upon another one with as many components, closed and open ones; the best first."""
+    x, y = _samples(curve), _samples(other)
+    source = target = freedom.fixed
+    scale = 1.0
+    if source is None or target is None:
+        source, target = x.mean(axis=(0, 1)), y.mean(axis=(0, 1))
+        scale = float(np.sqrt(np.square(y - target).sum() / np.square(x - source).sum()))
+    x, y = x - source, y - target
+    pairs = _Pairs(scale * x, y, np.array(curve.mesh.closed), np.array(other.mesh.closed))
+    rotations = freedom.starts()
+    for _ in range(TURNS):
+        covariances, orders, backwards, begins = pairs.best(rotations)
+        before, rotations = rotations, freedom.best(covariances)
+        if np.allclose(rotations, before):
+            break
+    radius = np.sqrt(np.square(y).sum(axis=2).mean())
+    squares = scale**2 * np.square(x).sum() + np.square(y).sum() - 2.0 * np.einsum("kij,kij->k", rotations, covariances)
+    distances = np.sqrt(np.maximum(squares, 0.0) / (len(y) * SAMPLES)) / radius
+    found = [
+        Alignment(rotation, scale, source, target, tuple(order), tuple(back), tuple(begin / SAMPLES), distance)
+        for rotation, order, back, begin, distance in zip(
+            rotations, orders.tolist(), backwards.tolist(), begins, distances.tolist(), strict=True
+        )
+    ]
+    distinct: list[Alignment] = []
+    for each in sorted(found, key=lambda each: each.cost):
+        if all(np.linalg.norm(each.rotation - one.rotation) > DISTINCT for one in distinct):
+            distinct.append(each)
+    return distinct
+
+
+class _Pairs:
+    """Cross-correlations Σ_k y_{k+s} x_kᵀ of the samples of all pairs of components, in both directions, at all s.
+
+    Open components are held at their ends: each is compared with that of its number alone, as both are.
+    """
+
+    def __init__(self, x: FloatArray, y: FloatArray, closed: BoolArray, other_closed: BoolArray) -> None:
+        back = y[:, ::-1].copy()
+        back[other_closed] = np.roll(back[other_closed], 1, axis=1)  # from the first vertex, too
+        spectra = np.fft.rfft(np.stack([y, back]), axis=2), np.fft.rfft(x, axis=1).conj()
+        products = np.einsum("deka,ckb->cedkab", *spectra)
+        self._all = np.fft.irfft(products, SAMPLES, axis=3).reshape(len(x), len(x), 2 * SAMPLES, 9)
+        self._allowed = np.repeat((closed[:, None] & other_closed)[:, :, None], 2 * SAMPLES, axis=2)
+        self._allowed[~closed, ~closed, 0] = True
+
+    def best(self, rotations: FloatArray) -> tuple[FloatArray, IntArray, BoolArray, IntArray]:
+        """Covariances, (k, 3, 3), for each rotation's best orders, directions and shifts, (k, components) each."""
+        count, flat = len(self._all), rotations.reshape(-1, 9)
+        scores, where = np.empty((count, count, len(flat))), np.empty((count, count, len(flat)), dtype=np.intp)
+        for c, e in np.ndindex(count, count):
+            values = np.where(self._allowed[c, e, :, None], self._all[c, e] @ flat.T, NEVER)
+            scores[c, e], where[c, e] = values.max(axis=0), values.argmax(axis=0)
+        orders = np.array([linear_sum_assignment(-scores[:, :, k])[1] for k in range(len(flat))])
+        rows = np.arange(count)
+        chosen = where[rows, orders, np.arange(len(flat))[:, None]]
+        covariances = self._all[rows, orders, chosen].sum(axis=1).reshape(-1, 3, 3)
+        return covariances, orders, chosen >= SAMPLES, chosen % SAMPLES
+
+
+def _samples(curve: Curve) -> FloatArray:
+    """Points evenly along each component, in space; shape (components, samples, 3)."""
+    found = np.zeros((len(curve.components), SAMPLES, 3))
+    for k, (part, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
+        points = np.concatenate([part, part[:1]]) if closed else part
+        shares = np.linspace(0.0, 1.0, SAMPLES, endpoint=not closed)
+        for axis in range(curve.dimension):
+            found[k, :, axis] = np.interp(shares, arc_shares(curve, k), points[:, axis])
+    return found
+
+
+def arc_shares(curve: Curve, component: int) -> FloatArray:
+    """Shares of a component's length at which its vertices are, and 1 at the end of a closed one."""
+    along = np.concatenate([[0.0], np.cumsum(curve.edge_lengths[curve.mesh.edge_slices[component]])])
+    return np.asarray(along / along[-1])

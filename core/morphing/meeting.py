@@ -1,0 +1,122 @@
+"""Where two relaxed curves meet: Möbius images of both, laid upon each other, and a straight way from one to the other.
+
+All curves that they come to by Möbius maps have the same energy.  The images that bend least are few, so that curves at
+the same minimum have one in common, up to a similarity.
+"""
+
+from collections.abc import Callable
+from itertools import product
+
+import numpy as np
+
+from ..collision import survives_rounding
+from ..curve.measures import bending
+from ..driver import Iterate
+from ..driver.interventions.balance import MoebiusImages, least_bending
+from ..task import Task
+from ..types import FloatArray
+from .alignment import Alignment, Freedom, alignments
+from .joint import refined_alike
+from .ways import back, followed, gone, on_mesh, renamed
+
+IMAGES = 3  # of each curve, those that bend least
+TRIES = 8  # to join them, the best alignment first
+MOEBIUS, TURN, ACROSS = 0.02, 0.2, 0.125  # legs at most: radians in the sphere and in space, share of the straight way
+NEAR = 1e-3  # half the angle of rotation, in radians, of a Möbius map that is hardly any
+STILL = Freedom(rotates=False, fixed=np.zeros(3))
+
+
+class Shape:
+    """A curve at rest in a task, the last iterate of its way, and its Möbius images that bend least."""
+
+    def __init__(self, end: Iterate, task: Task) -> None:
+        self.end, self.task = end, task
+        self.curves = [end.curve]
+        self._maps: list[FloatArray | None] = [None]
+        if end.curve.mesh.all_closed and not task.obstacles:
+            self._images = MoebiusImages(end.curve, end.curve.edge_lengths)
+            maps = [q for q in least_bending(self._images, end.curve.dimension) if np.linalg.norm(q[1:]) > NEAR]
+            self._maps += maps
+            self.curves += [self._images.at(q) for q in maps]
+
+    @property
+    def best(self) -> list[int]:
+        """The numbers of the curves that bend least, the least first."""
+        return sorted(range(len(self.curves)), key=lambda k: bending(self.curves[k]))[:IMAGES]
+
+    def way(self, number: int) -> list[Iterate] | None:
+        """The iterates from the curve to an image, the curve included; None if strands interfere."""
+        q = self._maps[number]
+        if q is None:
+            return [self.end]
+        for pole in (q, -q):  # the same map, the pole having come from the one side or from the other
+            legs = followed(self.end.curve, self._rotation(pole, number), MOEBIUS / np.arccos(pole[0]))
+            if legs is not None:
+                return [self.end, *gone(self.end, legs)]
+        return None
+
+    def _rotation(self, q: FloatArray, number: int) -> Callable[[float], FloatArray]:
+        angle, axis = np.arccos(q[0]), q[1:] / np.linalg.norm(q[1:])
+
+        def at(share: float) -> FloatArray:
+            part = np.array([np.cos(share * angle), *(np.sin(share * angle) * axis)])
+            return (self.curves[number] if share == 1.0 else self._images.at(part)).vertices
+
+        return at
+
+
+def meeting(x: Shape, y: Shape) -> tuple[Alignment, list[Iterate]] | None:
+    """How one shape was aligned with another, and the iterates from it to that one, which are named as it is.
+
+    None if no way was found that is free of contact.
+    """
+    pairs = [
+        (alignment, i, j)
+        for i, j in product(x.best, y.best)
+        for freedom in _freedoms(x.task)
+        for alignment in alignments(x.curves[i], y.curves[j], freedom)[:TRIES]
+    ]
+    for alignment, i, j in sorted(pairs, key=lambda each: each[0].cost)[:TRIES]:
+        way, other = x.way(i), y.way(j)
+        if way is None or other is None:
+            continue
+        other = [renamed(each, alignment) for each in other]
+        if (joint := _joint(way[-1], other[-1], alignment, x.task)) is not None:
+            return alignment, [*way[1:], *joint, *back(other)]
+    return None
+
+
+def _freedoms(task: Task) -> tuple[Freedom, ...]:
+    """Similarities that may be tried: open components are held at their ends, and walls may be in the way."""
+    curve = task.curve
+    if not curve.mesh.all_closed:
+        start, end = curve.vertices[[0, -1]]
+        single = curve.dimension == 3 and len(curve.mesh.component_sizes) == 1
+        return (STILL, Freedom(axis=(end - start) / np.linalg.norm(end - start), fixed=start)) if single else (STILL,)
+    free = Freedom(axis=np.array([0.0, 0.0, 1.0]) if curve.dimension == 2 else None)
+    return (STILL, free) if task.obstacles else (free,)
+
+
+def _joint(x: Iterate, y: Iterate, alignment: Alignment, task: Task) -> list[Iterate] | None:
+    """The iterates from one aligned curve to another, that one included; None if they are not proved free."""
+    curve, ends = x.curve, x.curve.mesh.ends
+
+    def turned(share: float) -> FloatArray:
+        moved = alignment.moved(curve.vertices, share)
+        moved[ends] = curve.vertices[ends]
+        return moved
+
+    turn = followed(curve, turned, TURN / max(alignment.angle, TURN), task.obstacles)
+    if turn is None:
+        return None
+    start, goal = refined_alike(curve.with_vertices(turn[-1]), y.curve, alignment.begins)
+    if not all(survives_rounding(each, task.obstacles) for each in (start, goal)):
+        return None
+    difference = goal.vertices - start.vertices
+    legs = followed(
+        start, lambda t: goal.vertices if t == 1.0 else start.vertices + t * difference, ACROSS, task.obstacles
+    )
+    if legs is None:
+        return None
+    begun = on_mesh(y, start, tuple(start.mesh.ends.ravel().tolist()))
+    return [*gone(x, turn), begun, *gone(begun, legs), on_mesh(y, y.curve, y.pins)]

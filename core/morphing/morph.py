@@ -1,0 +1,163 @@
+"""From one curve to another: both are relaxed, where they come to the same shape they meet, and one way is run back."""
+
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise, product
+
+from ..arguments import checked
+from ..curve import Curve
+from ..deadline import TimeLimit
+from ..driver import Iterate, Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
+from ..driver.loop import within
+from ..errors import CurveError, MobiusFlowError, OptionError, counted
+from ..messages import Message
+from ..task import Task
+from ..threads import BLAS
+from .alignment import Freedom, alignments
+from .evidence import difference, type_of
+from .meeting import Shape, meeting
+from .ways import back, on_mesh, renamed
+
+MET = "the shapes that they relax to met, {distance:.2g} radii of gyration apart"
+RENAMED = "in the end components have another order or direction than they were given in"
+
+
+class NoMotionError(MobiusFlowError):
+    """No motion leads from one curve to another, or none was found; the message says which of the two, and why."""
+
+
+@checked
+def morph(
+    a: Curve | Task,
+    b: Curve | Task,
+    options: RelaxOptions | None = None,
+    callback: Callable[[Iterate], None] | None = None,
+) -> Result:
+    """Find a motion from one curve to another that is proved free of contact, all along.
+
+    Both are relaxed with the options, so that they come to a common shape but for Möbius maps and similarities, which
+    are motions too; where one ``b`` is at rest, the other's way is joined to its own, run backwards.  The first iterate
+    is ``a`` and the last one ``b``, bit for bit, with its vertices in their order, unless shapes fit only with
+    components in another order or run through in opposite directions, which the outcome says then.  Open components
+    are held at their ends, which are in the same places in both.  Obstacles are those of ``a``; both avoid them.
+
+    ``callback`` gets every iterate; a `Trajectory` of them all is what `verify` checks.  Raises NoMotionError if
+    invariants say that there is no way, or none was found; CurveError or OptionError if the curves cannot be relaxed,
+    or do not go together.
+    """
+    task, wanted = Task.of(a), options or RelaxOptions()
+    return finish(morphing((task, Task.of(b)), wanted), task, wanted, callback)
+
+
+def morphing(tasks: Sequence[Task], options: RelaxOptions) -> Relaxation:
+    """Yield the iterates from the first curve over all others to the last one; return how it ended.
+
+    Obstacles are those of the first task.  Raises as `morph` does.
+    """
+    for a, b in pairwise(tasks):
+        check_alike(a.curve, b.curve)
+    ways = [_Way(each, tasks[0]) for each in tasks]
+    work = BLAS.bounding(_numbered(_chain(ways, options)))
+    return work if options.time_limit is None else within(TimeLimit(options.time_limit), work)
+
+
+def _chain(ways: "Sequence[_Way]", options: RelaxOptions) -> Relaxation:
+    kinds = [type_of(each.task.curve) for each in ways]
+    for a, b in pairwise(kinds):
+        if a and b and (reason := difference(a, b)):
+            raise NoMotionError(reason)
+    alone, found = replace(options, time_limit=None, balance=False, hops=0), []
+    yield from ways[0].relaxed(alone)
+    for here, there in pairwise(ways):
+        yield from here.iterates[1:] if found else ()
+        deque(there.relaxed(alone), maxlen=0)
+        met = meeting(here.shape, there.shape)
+        for way in sorted((here, there), key=lambda each: -each.shape.end.energy) if options.hops else ():
+            if met is None:
+                hops = way.relaxed(replace(alone.at_rest(way.shape.end.curve), hops=options.hops))
+                yield from hops if way is here else ()
+                deque(hops, maxlen=0)
+                met = meeting(here.shape, there.shape)
+        if met is None:
+            raise NoMotionError(_apart(here.shape, there.shape))
+        alignment, joint = met
+        there.iterates = [renamed(each, alignment) for each in there.iterates]
+        yield from joint
+        yield from back(there.iterates)
+        found.append(alignment)
+    met_at = Message(MET, distance=max(each.distance for each in found))
+    outcome = Outcome(Status.CONVERGED, (met_at,))
+    return outcome if all(each.as_given for each in found) else outcome.adding(RENAMED)
+
+
+def _numbered(work: Relaxation) -> Relaxation:
+    """The iterates of several runs as those of one."""
+    run, certified = WithOutcome(work), True
+    for index, iterate in enumerate(run):
+        certified &= iterate.certified
+        yield replace(iterate, index=index, certified=certified, strand_moves=None)
+    assert run.outcome is not None, "the loop is through"
+    return run.outcome
+
+
+class _Way:
+    """The way of a curve to where it comes to rest: its iterates, the given curve first."""
+
+    def __init__(self, task: Task, first: Task) -> None:
+        if task.pins:
+            raise OptionError("a morph holds the ends of open components, and no other vertices; leave pins out")
+        ends = tuple(task.curve.mesh.ends.ravel().tolist())
+        self.task = Task(curve=task.curve, obstacles=first.obstacles, pins=ends)
+        self.iterates: list[Iterate] = []
+
+    @property
+    def shape(self) -> Shape:
+        """The curve where it comes to rest."""
+        return Shape(self.iterates[-1], self.task)
+
+    def relaxed(self, options: RelaxOptions) -> Iterator[Iterate]:
+        """Go on from where it ends, and yield what comes there."""
+        on = bool(self.iterates)
+        task = replace(self.task, curve=self.iterates[-1].curve, pins=self.iterates[-1].pins) if on else self.task
+        for iterate in relax(task, options):
+            new = [iterate]
+            if iterate.index == 0:
+                given = on_mesh(iterate, task.curve, task.pins)
+                new = [] if on else [given, iterate][: 1 + (len(iterate.curve) > len(task.curve))]
+            self.iterates += new
+            yield from new
+
+
+def check_alike(a: Curve, b: Curve) -> None:
+    """Raise a CurveError unless two curves are in one space, with the same numbers of closed and of open components.
+
+    Open components have the same ends in both.
+    """
+    if a.dimension != b.dimension or a.dimension > 3:
+        where = "motions are proved in the plane and in space, from one curve to another there"
+        raise CurveError(f"A is in dimension {a.dimension}, B in dimension {b.dimension}; {where}")
+    kinds = [_kind(each) for each in (a, b)]
+    if kinds[0] != kinds[1]:
+        raise CurveError(f"A is {kinds[0]}, B {kinds[1]}; motions neither open, close, join nor divide components")
+    if a.mesh.closed != b.mesh.closed:
+        raise CurveError("open and closed components have another order in A than in B; put open ones first in both")
+    if (a.vertices[a.mesh.ends] != b.vertices[b.mesh.ends]).any():
+        raise CurveError("open components begin or end in other places in A than in B; move their ends together")
+
+
+def _kind(curve: Curve) -> str:
+    closed = sum(curve.mesh.closed)
+    parts = [(closed, "closed component"), (len(curve.mesh.closed) - closed, "open component")]
+    return " and ".join(counted(count, noun) for count, noun in parts if count)
+
+
+def _apart(x: Shape, y: Shape) -> Message:
+    """Say that shapes do not meet, how much they differ, and what to try."""
+    apart = min(alignments(x.curves[i], y.curves[j], Freedom())[0].distance for i, j in product(x.best, y.best))
+    facts = {"a": f"{x.end.energy:.6g}", "b": f"{y.end.energy:.6g}", "distance": f"{apart:.2g}"}
+    return Message(
+        "no motion was found, though no invariant tells A and B apart: they come to rest at energies {a} and {b}, in "
+        "shapes that differ by {distance} radii of gyration; more hops may lead both to the same shape",
+        **facts,
+    )
