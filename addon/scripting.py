@@ -22,6 +22,7 @@ from ..core import Curve, Hand, Iterate, MobiusFlowError, OptionError
 from ..core.errors import choice, likeliest
 from .curves import bake
 from .curves.baked_keys import BakedKeys
+from .curves.exchange import read_link
 from .curves.pins import Held
 from .curves.session import Report, Session
 from .curves.surroundings import Surroundings
@@ -105,6 +106,15 @@ class Relaxation:
         """
         return begin(self.objects, complete(settings) | {"avoid": avoid}, False, self.sample_splines).run(drag)
 
+    def morph(self, *goals: bpy.types.Object, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
+        """Become another curve, or one after the other, by a motion that is proved, and keep it as keyframes.
+
+        The goals are curve objects with splines of the same kinds, and stay as they are.  Raises MobiusFlowError if no
+        motion leads there, or none is found; otherwise as `relax`.
+        """
+        values = complete(settings) | {"avoid": avoid}
+        return begin(self.objects, values, False, self.sample_splines, Relaxation(*goals).objects).run()
+
     def relax_further(self, avoid: Iterable[bpy.types.Object] = (), **settings: Any) -> Report:
         """Go on from the end of the animation, with new keys after the old ones; otherwise as `relax`.
 
@@ -145,20 +155,25 @@ class Relaxation:
 
 
 def begin(
-    objects: Sequence[bpy.types.Object], values: Mapping[str, Any], continues: bool, sample_splines: bool
+    objects: Sequence[bpy.types.Object],
+    values: Mapping[str, Any],
+    continues: bool,
+    sample_splines: bool,
+    goals: Sequence[bpy.types.Object] = (),
 ) -> Session:
-    """A session with the values of all settings; raises MobiusFlowError."""
+    """A session with the values of all settings, to become other objects if there are any; raises MobiusFlowError."""
     _update()
     require(
-        idle() or RELAXABLE.of(objects),
+        idle() or RELAXABLE.of(objects) or READABLE.of(goals),
         BAKED.of(objects) if continues else None,
         UNEDITED.of(objects),
         None if sample_splines else POLYGONS.of(objects),
     )
     options = key_options(values)
     options = bake.continued(objects, options) if continues else options
-    surroundings = Surroundings.of(_objects(values["avoid"]), objects)
-    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values))
+    surroundings = Surroundings.of(_objects(values["avoid"]), [*objects, *goals])
+    shapes = [read_link([each])[0] for each in goals]
+    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values), shapes)
 
 
 def _update() -> None:

@@ -33,6 +33,10 @@ _PICKED = Condition(
 )
 _INSIDE = Condition("Put the curves inside the container first", lambda context: container(context) is None)
 _FULL = 20.0  # times its length, which no curve reaches in a container that it is to fill
+_SEVERAL = Condition(
+    "Select a curve, and then the one that it is to become",
+    lambda context: context.active_object not in selected_curves(context) or len(selected_curves(context)) < 2,
+)
 
 
 class Relaxing(Listening, Button):
@@ -103,6 +107,21 @@ class CURVE_OT_mobius_flow_relax(Relaxing, bpy.types.Operator):
     """Relax the selected curves together, never through themselves or each other, and keep the motion as keyframes"""
 
     bl_label = "Relax"
+
+
+class CURVE_OT_mobius_flow_morph(Relaxing, bpy.types.Operator):
+    """Let the selected curve become the active one by a motion that never passes through itself, and keep it as \
+keyframes; of several, the first by name moves, and becomes one after the other on its way"""
+
+    bl_label = "Morph to Active"
+    needs = (RELAXABLE, POLYGONS, _SEVERAL)
+
+    def session(self, context: bpy.types.Context, values: dict[str, Any]) -> Session:
+        active = context.active_object
+        moving, *between = sorted(
+            (obj for obj in selected_curves(context) if obj is not active), key=lambda obj: obj.name
+        )
+        return begin([moving], values, False, self.sample_splines, [*between, active])
 
 
 class CURVE_OT_mobius_flow_grab(Relaxing, bpy.types.Operator):

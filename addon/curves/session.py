@@ -24,7 +24,6 @@ from ...core import (
     Status,
     Task,
     WithOutcome,
-    relax,
 )
 from ...core.collision import is_free
 from ...core.messages import Message, Sentence
@@ -35,6 +34,7 @@ from ..engine.obstacles import in_common_space
 from ..engine.placement import Frame
 from ..engine.size import Measure
 from ..engine.words import named
+from ..engine.worker import begun
 from . import bake, bevel
 from .exchange import stretch
 from .group import Group
@@ -102,8 +102,9 @@ class Prepared:
 class Session:
     """A relaxation of curve objects as one link; ``objects`` and ``continues`` as for `Group`.
 
-    Raises MobiusFlowError if the curves cannot be relaxed, or there is no room for their keys. ``outcome``: how the
-    relaxation ended, once it has.
+    ``goals``: curves in the world that it is to become, one after the other; by default it is relaxed alone.
+    ``outcome``: how the relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or
+    there is no room for their keys.
     """
 
     def __init__(
@@ -114,9 +115,10 @@ class Session:
         continues: bool = False,
         surroundings: Surroundings = NOTHING,
         held: Held = FREE,
+        goals: Sequence[Curve] = (),
     ) -> None:
         key_options.check_room(options.max_iterations)
-        self.surroundings = surroundings
+        self.surroundings, self.goals = surroundings, goals
         self._key_options = key_options
         self.group = Group(objects, continues)
         try:
@@ -161,7 +163,7 @@ class Session:
     def _relaxed(self, drag: Callable[[Hand, Iterate], object] | None) -> Prepared:
         hand = Hand()
         try:
-            run = WithOutcome(relax(self.task, self.options, hand))
+            run = WithOutcome(begun(self.task, self.options, self.goals, hand))
             for iterate in run:
                 self.take(iterate)
                 if drag is not None:
@@ -192,6 +194,8 @@ class Session:
     @property
     def _measure(self) -> Measure:
         """What stays as it is."""
+        if self.goals:  # which have sizes of their own
+            return Measure.LENGTH
         stays = self.task.pins or self.task.obstacles or self.options.grow != 1.0
         return self._key_options.keep_size or (Measure.LENGTH if stays else Measure.RADIUS)
 

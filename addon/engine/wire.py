@@ -59,22 +59,24 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
     return data
 
 
-def pack_job(task: Task, options: RelaxOptions, link: Link, stays: bool = False) -> Packet:
+def pack_job(task: Task, options: RelaxOptions, link: Link, stays: bool = False, goals: Sequence[Curve] = ()) -> Packet:
     header = {**_pack_mesh(task.curve.mesh), "options": asdict(options), "counts": link.counts, "stays": stays}
     header |= {
         "pins": task.pins,
         "pin_tangents": task.pin_tangents,
         "obstacles": [each.name for each in task.obstacles],
+        "goals": [_pack_mesh(each.mesh) for each in goals],
     }
     linear = np.stack([placement.linear for placement in link.placements])
     origins = np.stack([placement.origin for placement in link.placements])
     obstacles = [array for each in task.obstacles for array in (each.vertices, each.faces.astype(np.float64))]
-    return header, [task.curve.vertices, linear, origins, *obstacles]
+    return header, [task.curve.vertices, linear, origins, *obstacles, *(each.vertices for each in goals)]
 
 
 def unpack_job(message: Packet) -> tuple[Task, RelaxOptions, Link]:
     header, (vertices, linear, origins, *arrays) = message
     link = Link(tuple(map(Placement, linear, origins)), tuple(header["counts"]))
+    arrays = arrays[: 2 * len(header["obstacles"])]
     faces = [each.astype(np.intp) for each in arrays[1::2]]
     task = Task(
         curve=Curve(vertices, _unpack_mesh(header)),
@@ -83,6 +85,13 @@ def unpack_job(message: Packet) -> tuple[Task, RelaxOptions, Link]:
         pin_tangents=header["pin_tangents"],
     )
     return task, RelaxOptions(**header["options"]), link
+
+
+def unpack_goals(message: Packet) -> list[Curve]:
+    """The curves of a job that the first one is to become, one after the other."""
+    header, arrays = message
+    meshes = header["goals"]
+    return [Curve(*each) for each in zip(arrays[len(arrays) - len(meshes) :], map(_unpack_mesh, meshes), strict=True)]
 
 
 def pack_deed(deed: str, *facts: Any) -> Packet:

@@ -11,7 +11,7 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import IO, Any
@@ -20,10 +20,12 @@ import numpy as np
 import scipy
 import threadpoolctl
 
-from ...core import Hand, Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
+from ...core import Curve, Hand, Iterate, MobiusFlowError, Obstacle, Outcome, RelaxOptions, Task, WithOutcome, relax
 from ...core.collision import is_free
 from ...core.curve import Mesh
+from ...core.driver import Relaxation
 from ...core.messages import Message
+from ...core.morphing import morphing
 from ...core.types import FloatArray
 from . import wire
 from .motion import frames_of
@@ -46,10 +48,11 @@ def messages(inbox: Inbox) -> Iterator[wire.Packet]:
     if job is None:
         return
     (task, options, link), hand = wire.unpack_job(job), Hand(stays=job[0]["stays"])
+    goals = wire.unpack_goals(job)
     obstacles = in_common_space(task.obstacles, link)
     last: Frame | None = None
     try:
-        run = WithOutcome(relax(task, options, hand=hand))
+        run = WithOutcome(begun(task, options, goals, hand))
         for iterate in run:
             frames = frames_of(link, iterate)
             proved = _proved(iterate, link, [*([] if last is None else [last]), *frames], obstacles)
@@ -74,6 +77,11 @@ def _proved(iterate: Iterate, link: Link, frames: list[Frame], obstacles: tuple[
     return [wire.digest(a, b) for a, b in pairwise(common) if is_free(mesh, a, b, obstacles)]
 
 
+def begun(task: Task, options: RelaxOptions, goals: Sequence[Curve], hand: Hand) -> Relaxation:
+    """The relaxation of a task, which a hand may drag, or, if there are goals, its motion to one after the other."""
+    return morphing((task, *map(Task.of, goals)), options) if goals else relax(task, options, hand)
+
+
 class WorkerError(MobiusFlowError):
     """The worker ended without saying why."""
 
@@ -81,12 +89,15 @@ class WorkerError(MobiusFlowError):
 class Worker:
     """A relaxation in another process, or in a thread where no process can be started.
 
-    ``link``: where Blender stores the vertices; motions of the stored ones are proved too. ``stays``: as for `Hand`.
+    ``link``: where Blender stores the vertices; motions of the stored ones are proved too. ``stays``: as for `Hand`;
+    ``goals``: as for `begun`.
     """
 
-    def __init__(self, task: Task, options: RelaxOptions, link: Link, stays: bool = False) -> None:
+    def __init__(
+        self, task: Task, options: RelaxOptions, link: Link, stays: bool = False, goals: Sequence[Curve] = ()
+    ) -> None:
         self._inbox: Inbox = queue.SimpleQueue()
-        self._inbox.put(wire.pack_job(task, options, link, stays))
+        self._inbox.put(wire.pack_job(task, options, link, stays, goals))
         self._obstacles = in_common_space(task.obstacles, link)
         self._proved: set[str] = set()
         self._queue: queue.Queue[wire.Packet | None] = queue.Queue(_AHEAD)

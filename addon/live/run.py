@@ -89,7 +89,7 @@ class Run:
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self._session, self._refresh = session, refresh
         try:
-            self._worker = Worker(self._session.task, self._session.options, self.group.link, stays)
+            self._worker = Worker(session.task, session.options, self.group.link, stays, session.goals)
         except BaseException:
             self.group.discard()
             raise

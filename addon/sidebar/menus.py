@@ -10,7 +10,7 @@ from .layout import operator
 
 _FAMILIES = ("TORUS", "BRAID", "LISSAJOUS", "CABLE", "DOUBLE")
 _OPERATORS = (
-    ("bake_again", "continue", "clear", "scene_range"),
+    ("bake_again", "continue", "morph", "clear", "scene_range"),
     ("keep_size", "lay_flat", "face_camera"),
     ("balance", "check", "leave_saddle"),
     ("fit_tube", "color_components"),

@@ -28,6 +28,7 @@ def _buttons(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     large.scale_y = 1.8
     if run is None:
         operator(large, "relax", text=text, icon="PLAY")
+        operator(large, "morph", text="", icon="MOD_SIMPLEDEFORM")
         operator(large, "grab", text="", icon="VIEW_PAN")
     else:
         text, icon = (iface_("Resume"), "PLAY") if run.state is State.PAUSED else (iface_("Pause"), "PAUSE")

@@ -1,0 +1,69 @@
+"""Morph to Active: the selected curve becomes the active one, keyed and proved as a relaxation is."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, stored  # noqa: E402
+from mobius_flow import Relaxation  # noqa: E402
+from mobius_flow.addon.curves import bake  # noqa: E402
+from mobius_flow.addon.engine import wire  # noqa: E402
+from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Task  # noqa: E402
+from mobius_flow.core.knots import knot  # noqa: E402
+
+SHORT = {"vertices": 12, "length": 30, "untangle": "never"}
+RECTANGLE = [(0.0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)]
+ZIGZAG = [(0.0, 0, 0), (1, 0, 0.5), (2, 0, 0), (2, 2, -0.5), (1, 1, -1), (0, 2, 0)]
+
+
+def test_the_selected_curve_becomes_the_active_one():
+    goal = add_curve([ZIGZAG])
+    goal.location, goal.scale = (5, 6, 7), (2, 2, 2)
+    moving = add_curve([RECTANGLE])
+    moving.location = (1, 0, 0)
+    moving.select_set(True)
+    goal.select_set(True)
+    bpy.context.view_layer.objects.active = goal
+    before = stored(goal.data)
+    assert bpy.ops.curve.mobius_flow_morph(**SHORT) == {"FINISHED"}
+    assert bake.scene_range([moving]) == (1, 30)
+    np.testing.assert_array_equal(stored(goal.data), before)
+    curves = Relaxation(moving).curves
+    first, last = ({tuple(np.round(p, 4)) for p in each.vertices.tolist()} for each in (curves[0], curves[-1]))
+    assert {(x + 1.0, y, z) for x, y, z in RECTANGLE} <= first
+    assert {(5 + 2 * x, 6 + 2 * y, 7 + 2 * z) for x, y, z in ZIGZAG} <= last
+
+
+def test_a_script_goes_over_several_and_says_what_it_proved():
+    objects = [add_curve([RECTANGLE]), add_curve([ZIGZAG]), add_curve([RECTANGLE])]
+    objects[2].location = (0, 0, 4)
+    report = Relaxation(objects[0]).morph(*objects[1:], **SHORT)
+    assert report.certified
+    assert "met" in report.sentence
+    assert report.scene_range == (1, 30)
+
+
+def test_what_cannot_be_is_said_and_nothing_changes():
+    moving, goal = (add_curve([knot(name).vertices.tolist()]) for name in ("3_1", "m3_1"))
+    with pytest.raises(MobiusFlowError, match="signatures −2 and 2"):
+        Relaxation(moving).morph(goal, **SHORT | {"vertices": 60})
+    assert not moving.data.shape_keys
+    moving.select_set(True)
+    goal.select_set(False)
+    with pytest.raises(RuntimeError, match="Select a curve, and then the one that it is to become"):
+        bpy.ops.curve.mobius_flow_morph()
+
+
+def test_goals_reach_the_worker(tmp_path):
+    link = Link((Placement(np.eye(3), np.zeros(3)),), (1,))
+    goals = [knot("hopf", 40), Curve(ZIGZAG)]
+    job = wire.pack_job(Task(curve=Curve(RECTANGLE)), RelaxOptions(), link, False, goals)
+    with (tmp_path / "job").open("w+b") as pipe:
+        wire.write(pipe, job)
+        pipe.seek(0)
+        received = wire.unpack_goals(wire.read(pipe))
+    assert [each.mesh for each in received] == [each.mesh for each in goals]
+    for one, other in zip(received, goals, strict=True):
+        np.testing.assert_array_equal(one.vertices, other.vertices)
