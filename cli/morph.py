@@ -4,7 +4,7 @@ import argparse
 import sys
 
 from ..core import CurveError, RelaxOptions, Status, Task, read_obstacle
-from ..core.curve.io import CurveFile
+from ..core.curve.io import FORMATS, CurveFile
 from ..core.morphing import NoMotionError, morphing
 from . import curves
 from . import options as relax_options
@@ -47,7 +47,7 @@ def add_morph(parser: argparse.ArgumentParser) -> None:
 def add_pair(parser: argparse.ArgumentParser) -> None:
     """Add two curves, and how they are relaxed."""
     for name in ("A", "B"):
-        parser.add_argument(name.lower(), metavar=name, help=f"polygons, closed or open: {', '.join(curves.FORMATS)}")
+        parser.add_argument(name.lower(), metavar=name, help=f"polygons, closed or open: {', '.join(FORMATS)}")
     curves.add_format(parser)
     relax_options.add_to(parser, without=_ONE_CURVE)
     text = "OBJ file of triangles or polylines that both avoid, and the motion does; may be given several times"

@@ -119,8 +119,7 @@ class Group:
             self.make_polygons(start)
         self._shown = start, frame, options, radius
         for member, vertices, scale in zip(self._members, self.link.slices(start.mesh), self.link.scales, strict=True):
-            fitted = radius is not None and member.fits(options)
-            member.move(frame[vertices], radius / scale if fitted else None)
+            member.move(frame[vertices], radius / scale if radius is not None and member.fits(options) else None)
 
     @property
     def in_view(self) -> Curve | None:

@@ -120,10 +120,8 @@ class Motion:
 
     def _go_back(self, index: int) -> None:
         """Forget the iterates from a number on, and the meshes that came with them."""
-        for each in (self._ends, self._steps, self._energies, self._reached):
-            del each[index:]
-        for each in (self._shapes, self._stages):
-            del each[self._ends[-1] + 1 :]
+        del self._ends[index:], self._steps[index:], self._energies[index:], self._reached[index:]
+        del self._shapes[self._ends[-1] + 1 :], self._stages[self._ends[-1] + 1 :]
         del self._meshes[self._stages[-1] + 1 :]
         for markers, size in zip(self._markers, self._meshes[-1].component_sizes, strict=True):
             markers.back(self._stages[-1], size)

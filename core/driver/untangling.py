@@ -126,8 +126,8 @@ class Untangling:
         while True:
             try:
                 stages.append(next(work))
-            except StopIteration as end:
-                reason: Message = end.value.reason
+            except StopIteration as stop:
+                reason: Message = stop.value.reason
                 return refused or reason
             if (seen := stages[-1].seen) is None:
                 continue

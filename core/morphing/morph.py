@@ -14,7 +14,7 @@ from ..errors import CurveError, MobiusFlowError, OptionError, counted
 from ..messages import Message
 from ..task import Task
 from ..threads import BLAS
-from .alignment import Freedom, alignments
+from .alignment import Alignment, Freedom, alignments
 from .evidence import difference, type_of
 from .meeting import Shape, meeting
 from .ways import back, on_mesh, renamed
@@ -67,7 +67,8 @@ def _chain(ways: "Sequence[_Way]", options: RelaxOptions) -> Relaxation:
     for a, b in pairwise(kinds):
         if a and b and (reason := difference(a, b)):
             raise NoMotionError(reason)
-    alone, found = replace(options, time_limit=None, balance=False, hops=0), []
+    alone = replace(options, time_limit=None, balance=False, hops=0)
+    found: list[Alignment] = []
     yield from ways[0].relaxed(alone)
     for here, there in pairwise(ways):
         yield from here.iterates[1:] if found else ()

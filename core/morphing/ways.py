@@ -66,7 +66,8 @@ def renamed(iterate: Iterate, alignment: Alignment) -> Iterate:
         part = np.arange(mesh.size)[mesh.slices[component]]
         parts.append(np.roll(part[::-1], 1) if backwards else part)
     names = np.concatenate(parts)
-    sizes, closed = (tuple(each[k] for k in alignment.order) for each in (mesh.component_sizes, mesh.closed))
+    sizes = tuple(mesh.component_sizes[k] for k in alignment.order)
+    closed = tuple(mesh.closed[k] for k in alignment.order)
     curve = Curve(iterate.curve.vertices[names], Mesh(sizes, closed))
     pins = tuple(np.flatnonzero(np.isin(names, iterate.pins)).tolist())
     return replace(iterate, curve=curve, path=tuple(leg[names] for leg in iterate.path), pins=pins)
