@@ -282,8 +282,8 @@ MUTANTS = (
     Mutant(
         "meshes that are left whatever their errors",
         "core/driver/interventions/remesh.py",
-        "gain > self.share * abs(finer.energy - self._energy)",
-        "gain > self._energy",
+        "gain > self.share * abs(finer.energy - energy)",
+        "gain > energy",
         "tests/core/test_finer_mesh.py::test_the_share_is_one_of_the_error",
     ),
     Mutant(

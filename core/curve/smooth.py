@@ -42,6 +42,13 @@ def _resampled(points: FloatArray, closed: bool, size: int, pins: IntArray, plac
     return np.asarray(spline(np.interp(wanted, arc, parameter)))
 
 
+def halved(curve: Curve) -> Curve:
+    """Closed polygons with a vertex more for each edge, on the splines through their vertices."""
+    splines = [cubic_spline(points) for points in curve.components]
+    places = [np.interp(np.arange(0.0, len(each.x) - 1.0, 0.5), np.arange(len(each.x)), each.x) for each in splines]
+    return Curve.from_components([spline(at) for spline, at in zip(splines, places, strict=True)])
+
+
 def cubic_spline(points: FloatArray, closed: bool = True) -> CubicSpline:
     """The cubic spline through the vertices of a polygon, shape (n, m), by its arc length; a natural one if open."""
     points = np.concatenate([points, points[:1]]) if closed else points
