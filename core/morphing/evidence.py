@@ -1,12 +1,29 @@
 """What is known of two curves without any motion: that there is none, by invariants, or that they are the same."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from ..curve import Curve
 from ..diagrams import Diagram, alexander, jones, signature
 from ..knots import KnotType, knot_type
 from ..knots.catalogue import bracket_key
 from ..messages import Message
+
+
+def _unsigned_linking(link: Diagram) -> tuple[int, ...]:
+    return tuple(sorted(map(abs, link.linking_numbers)))
+
+
+_JONES = Message("different Jones polynomials")
+# cheap ones first; those of links do not depend on their orientations
+_OF_KNOTS: tuple[tuple[Message, Callable[[Diagram], object]], ...] = (
+    (Message("signatures {a} and {b}"), signature),
+    (Message("Alexander polynomials {a} and {b}"), alexander),
+    (_JONES, jones),
+)
+_OF_LINKS: tuple[tuple[Message, Callable[[Diagram], object]], ...] = (
+    (Message("linking numbers {a} and {b}, without signs"), _unsigned_linking),
+    (_JONES, bracket_key),
+)
 
 
 def type_of(curve: Curve) -> KnotType | None:
@@ -28,40 +45,18 @@ def difference(a: KnotType, b: KnotType) -> Message | None:
     if not told and not (a.proved and b.proved and not set(a.names) & set(b.names)):
         return None
     one, other = str(a), str(b)
-    what = "A is {a}, B its mirror image {b}" if _mirror_image(one) == other else "A is {a}, B is {b}"
+    mirrored = other == (one[1:] if one.startswith("m") else f"m{one}")
+    what = "A is {a}, B its mirror image {b}" if mirrored else "A is {a}, B is {b}"
     types = Message(what, a=one, b=other) if a.names and b.names else Message("A and B are of different types")
     none = Message("{types}: no motion leads from one to the other", types=types)
     return Message("{none} ({told})", none=none, told=told) if told else none
 
 
 def _told_apart(a: Diagram, b: Diagram) -> Message | None:
-    """The first invariant that differs, cheap ones first; those of links do not depend on their orientations."""
-    if len(a.passes) > 1:
-        linking = [sorted(map(abs, each.linking_numbers)) for each in (a, b)]
-        if linking[0] != linking[1]:
-            one, other = (_listed(each) for each in linking)
-            return Message("linking numbers {a} and {b}, without signs", a=one, b=other)
-        return Message("different Jones polynomials") if _differ(bracket_key, a, b) else None
-    signatures = signature(a), signature(b)
-    if signatures[0] != signatures[1]:
-        one, other = (str(each).replace("-", "−") for each in signatures)
-        return Message("signatures {a} and {b}", a=one, b=other)
-    if _differ(alexander, a, b):
-        one, other = (_listed(alexander(each) or ()) for each in (a, b))
-        return Message("Alexander polynomials {a} and {b}", a=one, b=other)
-    return Message("different Jones polynomials") if _differ(jones, a, b) else None
-
-
-def _differ(invariant: Callable[[Diagram], object], a: Diagram, b: Diagram) -> bool:
-    """Whether an invariant differs, which is None where it is not computed."""
-    found = invariant(a), invariant(b)
-    return None not in found and found[0] != found[1]
-
-
-def _listed(numbers: Sequence[int]) -> str:
-    return f"[{', '.join(map(str, numbers))}]".replace("-", "−")
-
-
-def _mirror_image(name: str) -> str:
-    """The name of the mirror image of a prime knot or link."""
-    return name[1:] if name.startswith("m") else f"m{name}"
+    """The first invariant that differs; those are None that are not computed."""
+    for said, invariant in _OF_KNOTS if len(a.passes) == 1 else _OF_LINKS:
+        found = invariant(a), invariant(b)
+        if None not in found and found[0] != found[1]:
+            one, other = (str(list(each) if isinstance(each, tuple) else each).replace("-", "−") for each in found)
+            return Message(said.template, a=one, b=other)
+    return None

@@ -4,65 +4,51 @@ All curves that they come to by Möbius maps have the same energy.  The images t
 the same minimum have one in common, up to a similarity.
 """
 
-from collections.abc import Callable
 from itertools import product
 
 import numpy as np
 
 from ..collision import survives_rounding
+from ..curve import Curve
 from ..curve.measures import bending
 from ..driver import Iterate
-from ..driver.interventions.balance import MoebiusImages, least_bending
+from ..driver.interventions.balance import MoebiusImages, least_bending, turn
 from ..task import Task
 from ..types import FloatArray
 from .alignment import Alignment, Freedom, alignments
 from .joint import refined_alike
 from .ways import back, followed, gone, on_mesh, renamed
 
-IMAGES = 3  # of each curve, those that bend least
+IMAGES = 3  # of each curve, those that bend least, besides itself
 TRIES = 8  # to join them, the best alignment first
 MOEBIUS, TURN, ACROSS = 0.02, 0.2, 0.125  # legs at most: radians in the sphere and in space, share of the straight way
+LEG = 3e-4  # radii of gyration by which shapes may be further apart to save a leg of a Möbius map
 NEAR = 1e-3  # half the angle of rotation, in radians, of a Möbius map that is hardly any
 STILL = Freedom(rotates=False, fixed=np.zeros(3))
 
 
 class Shape:
-    """A curve at rest in a task, the last iterate of its way, and its Möbius images that bend least."""
+    """A curve at rest in a task, the last iterate of its way, and its Möbius images that bend least and are reached.
+
+    ``ways``: the iterates from the curve to each image, both included, and at first to the curve itself.
+    """
 
     def __init__(self, end: Iterate, task: Task) -> None:
         self.end, self.task = end, task
-        self.curves = [end.curve]
-        self._maps: list[FloatArray | None] = [None]
+        self.ways = [[end]]
         if end.curve.mesh.all_closed and not task.obstacles:
-            self._images = MoebiusImages(end.curve, end.curve.edge_lengths)
-            maps = [q for q in least_bending(self._images, end.curve.dimension) if np.linalg.norm(q[1:]) > NEAR]
-            self._maps += maps
-            self.curves += [self._images.at(q) for q in maps]
+            images = MoebiusImages(end.curve, end.curve.edge_lengths)
+            maps = [q for q in least_bending(images, end.curve.dimension) if np.linalg.norm(q[1:]) > NEAR]
+            maps = sorted(maps, key=lambda q: bending(images.at(q)))[:IMAGES]
+            # each map by both its signs: the pole comes from the one side or from the other
+            legs = (_rotated(end.curve, images, q) or _rotated(end.curve, images, -q) for q in maps)
+            self.ways += [[end, *gone(end, each)] for each in legs if each]
 
-    @property
-    def best(self) -> list[int]:
-        """The numbers of the curves that bend least, the least first."""
-        return sorted(range(len(self.curves)), key=lambda k: bending(self.curves[k]))[:IMAGES]
 
-    def way(self, number: int) -> list[Iterate] | None:
-        """The iterates from the curve to an image, the curve included; None if strands interfere."""
-        q = self._maps[number]
-        if q is None:
-            return [self.end]
-        for pole in (q, -q):  # the same map, the pole having come from the one side or from the other
-            legs = followed(self.end.curve, self._rotation(pole, number), MOEBIUS / np.arccos(pole[0]))
-            if legs is not None:
-                return [self.end, *gone(self.end, legs)]
-        return None
-
-    def _rotation(self, q: FloatArray, number: int) -> Callable[[float], FloatArray]:
-        angle, axis = np.arccos(q[0]), q[1:] / np.linalg.norm(q[1:])
-
-        def at(share: float) -> FloatArray:
-            part = np.array([np.cos(share * angle), *(np.sin(share * angle) * axis)])
-            return (self.curves[number] if share == 1.0 else self._images.at(part)).vertices
-
-        return at
+def _rotated(curve: Curve, images: MoebiusImages, q: FloatArray) -> list[FloatArray] | None:
+    """Ends of proved legs to the image of q; None if strands interfere."""
+    angle, map_of = turn(q)
+    return followed(curve, lambda share: images.at(map_of(share * angle)).vertices, MOEBIUS / angle)
 
 
 def meeting(x: Shape, y: Shape) -> tuple[Alignment, list[Iterate]] | None:
@@ -71,15 +57,13 @@ def meeting(x: Shape, y: Shape) -> tuple[Alignment, list[Iterate]] | None:
     None if no way was found that is free of contact.
     """
     pairs = [
-        (alignment, i, j)
-        for i, j in product(x.best, y.best)
+        (alignment, *ways)
+        for ways in product(x.ways, y.ways)
         for freedom in _freedoms(x.task)
-        for alignment in alignments(x.curves[i], y.curves[j], freedom)[:TRIES]
+        for alignment in alignments(*(way[-1].curve for way in ways), freedom)[:TRIES]
     ]
-    for alignment, i, j in sorted(pairs, key=lambda each: each[0].cost)[:TRIES]:
-        way, other = x.way(i), y.way(j)
-        if way is None or other is None:
-            continue
+    pairs.sort(key=lambda each: each[0].cost + LEG * (len(each[1]) + len(each[2])))
+    for alignment, way, other in pairs[:TRIES]:
         other = [renamed(each, alignment) for each in other]
         if (joint := _joint(way[-1], other[-1], alignment, x.task)) is not None:
             return alignment, [*way[1:], *joint, *back(other)]
@@ -112,10 +96,8 @@ def _joint(x: Iterate, y: Iterate, alignment: Alignment, task: Task) -> list[Ite
     start, goal = refined_alike(curve.with_vertices(turn[-1]), y.curve, alignment.begins)
     if not all(survives_rounding(each, task.obstacles) for each in (start, goal)):
         return None
-    difference = goal.vertices - start.vertices
-    legs = followed(
-        start, lambda t: goal.vertices if t == 1.0 else start.vertices + t * difference, ACROSS, task.obstacles
-    )
+    a, b = start.vertices, goal.vertices
+    legs = followed(start, lambda t: b if t == 1.0 else a + t * (b - a), ACROSS, task.obstacles)
     if legs is None:
         return None
     begun = on_mesh(y, start, tuple(start.mesh.ends.ravel().tolist()))

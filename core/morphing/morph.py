@@ -1,5 +1,6 @@
 """From one curve to another: both are relaxed, where they come to the same shape they meet, and one way is run back."""
 
+import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -59,7 +60,14 @@ def morphing(tasks: Sequence[Task], options: RelaxOptions) -> Relaxation:
         check_alike(a.curve, b.curve)
     ways = [_Way(each, tasks[0]) for each in tasks]
     work = BLAS.bounding(_numbered(_chain(ways, options)))
-    return work if options.time_limit is None else within(TimeLimit(options.time_limit), work)
+    return work if options.time_limit is None else _limited(work, options.time_limit)
+
+
+def _limited(work: Relaxation, seconds: float) -> Relaxation:
+    """The same until the time is up, but for the first curve, which is yielded in any case."""
+    began = time.perf_counter()
+    yield next(work)
+    return (yield from within(TimeLimit(seconds, used=time.perf_counter() - began), work))
 
 
 def _chain(ways: "Sequence[_Way]", options: RelaxOptions) -> Relaxation:
@@ -108,6 +116,8 @@ class _Way:
     def __init__(self, task: Task, first: Task) -> None:
         if task.pins:
             raise OptionError("a morph holds the ends of open components, and no other vertices; leave pins out")
+        if task.obstacles and {each.key for each in task.obstacles} != {each.key for each in first.obstacles}:
+            raise OptionError("A and B have different obstacles; a motion between them avoids the same ones all along")
         ends = tuple(task.curve.mesh.ends.ravel().tolist())
         self.task = Task(curve=task.curve, obstacles=first.obstacles, pins=ends)
         self.iterates: list[Iterate] = []
@@ -155,7 +165,8 @@ def _kind(curve: Curve) -> str:
 
 def _apart(x: Shape, y: Shape) -> Message:
     """Say that shapes do not meet, how much they differ, and what to try."""
-    apart = min(alignments(x.curves[i], y.curves[j], Freedom())[0].distance for i, j in product(x.best, y.best))
+    curves = ([way[-1].curve for way in each.ways] for each in (x, y))
+    apart = min(alignments(*each, Freedom())[0].distance for each in product(*curves))
     facts = {"a": f"{x.end.energy:.6g}", "b": f"{y.end.energy:.6g}", "distance": f"{apart:.2g}"}
     return Message(
         "no motion was found, though no invariant tells A and B apart: they come to rest at energies {a} and {b}, in "

@@ -1,6 +1,6 @@
 """Among the Möbius images of a curve, which have the same energy, the one that bends least, and a proved way there."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -116,13 +116,12 @@ class Balance(Intervention):
 
     def _way(self, point: Point, images: MoebiusImages, q: FloatArray, problem: Problem) -> tuple[Step, ...]:
         """Proved steps to the image of q by smaller rotations, halved where unproved; empty if strands interfere."""
-        sine = float(np.linalg.norm(q[1:]))
-        end, axis = np.arctan2(sine, q[0]), q[1:] / sine
+        end, turned_by = turn(q)
         steps: list[Step] = []
         here, angle, stride = point.placed, 0.0, self.longest
         while angle < end:
             further = min(angle + stride, end)
-            there = problem.at(images.at(np.concatenate([[np.cos(further)], np.sin(further) * axis])).vertices)
+            there = problem.at(images.at(turned_by(further)).vertices)
             proof = problem.free_motion(here, there.placed)
             if proof.time == 1.0:
                 steps.append(Step((Leg(there, proof),), 0.0, None))
@@ -138,6 +137,13 @@ def balanced(curve: Curve) -> Curve:
     """The Möbius image that bends least, of the same energy; no way to it is proved, as pictures need none."""
     images = MoebiusImages(curve, curve.edge_lengths)
     return min((images.at(q) for q in least_bending(images, curve.dimension)), key=bending, default=curve)
+
+
+def turn(q: FloatArray) -> tuple[float, Callable[[float], FloatArray]]:
+    """Half the sphere's angle of rotation in the map of q, and the maps that rotate it less, by half their angles."""
+    sine = float(np.linalg.norm(q[1:]))
+    axis = q[1:] / sine
+    return float(np.arctan2(sine, q[0])), lambda angle: np.concatenate([[np.cos(angle)], np.sin(angle) * axis])
 
 
 def least_bending(images: MoebiusImages, dimension: int) -> list[FloatArray]:

@@ -1,5 +1,8 @@
 """A morph begins at one curve and ends at the other, bit for bit, and the independent verifier accepts all of it."""
 
+import sys
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mobius_flow.core import (
@@ -33,7 +36,7 @@ def moved(curve, scale=3.0):
 
 def proved(a, b, options, path):
     """A morph, its iterates, and what `verify` says."""
-    trajectory, iterates = Trajectory(), []
+    trajectory, iterates = Trajectory(obstacles=Task.of(a).obstacles), []
 
     def take(iterate):
         iterates.append(iterate)
@@ -100,9 +103,25 @@ def test_the_invariant_that_tells_types_apart_is_named(a, b, invariant):
 
 def test_shapes_that_do_not_meet_are_told_with_their_energies():
     stopped = RelaxOptions(max_iterations=0, mesh="fixed")
-    walls = Obstacle([[-9.0, -9, 4.5], [9, -9, 4.5], [0, 30, 4.5]], [[0, 1, 2]])
+    corners = [[x, y, z] for x in (-9.0, 9.0) for y in (-9.0, 9.0) for z in (-9.0, 9.0)]
+    sides = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
+    walls = Obstacle(corners, [side[:3] for side in sides] + [(side[0], *side[2:]) for side in sides])
     with pytest.raises(NoMotionError, match=r"no motion was found.* energies .* radii of gyration"):
         morph(Task(curve=knot("3_1", 60), obstacles=(walls,)), moved(knot("3_1", 60), 0.1), stopped)
+
+
+@pytest.mark.parametrize("misses", [1, 2])
+def test_hops_from_one_end_and_then_from_the_other(misses, tmp_path, monkeypatch):
+    module, asked = sys.modules["mobius_flow.core.morphing.morph"], []
+    meet = module.meeting
+    monkeypatch.setattr(
+        module, "meeting", lambda *ends: asked.append(ends) or (meet(*ends) if len(asked) > misses else None)
+    )
+    options = replace(QUICK, hops=1, max_iterations=60)
+    result, _, verdict = proved(knot("4_1", 60), knot("4_1", 80), options, tmp_path / "t.npz")
+    assert verdict.accepted
+    assert len(asked) == misses + 1
+    assert np.array_equal(result.curve.vertices, knot("4_1", 80).vertices)
 
 
 def test_both_avoid_the_obstacles_of_the_first(tmp_path):
@@ -156,6 +175,9 @@ def test_what_no_motion_can_do_is_said(b, sentence):
 def test_pins_and_ends_elsewhere_are_refused():
     with pytest.raises(OptionError, match="leave pins out"):
         morph(Task(curve=Curve(RECTANGLE), pins=(0,)), Curve(ZIGZAG))
+    wall = Obstacle([[9.0, 0, 0], [9, 1, 0], [9, 0, 1]], [[0, 1, 2]])
+    with pytest.raises(OptionError, match="different obstacles"):
+        morph(Curve(RECTANGLE), Task(curve=Curve(ZIGZAG), obstacles=(wall,)))
     with pytest.raises(CurveError, match="move their ends together"):
         morph(overhand(), moved(overhand()))
 
