@@ -40,7 +40,7 @@ class Freedom:
             u, _, v = np.linalg.svd(covariances)
             u[:, :, 2] *= np.linalg.det(u @ v)[:, None]
             return np.asarray(u @ v)
-        across = np.cross(np.eye(3), self.axis)  # u ↦ axis × u is its transpose's negative
+        across = np.cross(np.eye(3), self.axis)  # the matrix of u ↦ axis × u
         cosine = np.trace(covariances, axis1=1, axis2=2) - self.axis @ covariances @ self.axis
         angles = np.arctan2(np.einsum("ij,kij->k", across, covariances), cosine)
         return np.asarray(Rotation.from_rotvec(angles[:, None] * self.axis).as_matrix())

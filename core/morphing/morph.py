@@ -82,9 +82,9 @@ def _chain(ways: "Sequence[_Way]", options: RelaxOptions) -> Relaxation:
         yield from here.iterates[1:] if found else ()
         deque(there.relaxed(alone), maxlen=0)
         met = meeting(here.shape, there.shape)
-        for way in sorted((here, there), key=lambda each: -each.shape.end.energy) if options.hops else ():
+        for way in sorted((here, there), key=lambda each: -each.end.energy) if options.hops else ():
             if met is None:
-                hops = way.relaxed(replace(alone.at_rest(way.shape.end.curve), hops=options.hops))
+                hops = way.relaxed(replace(alone.at_rest(way.end.curve), hops=options.hops))
                 yield from hops if way is here else ()
                 deque(hops, maxlen=0)
                 met = meeting(here.shape, there.shape)
@@ -123,14 +123,19 @@ class _Way:
         self.iterates: list[Iterate] = []
 
     @property
+    def end(self) -> Iterate:
+        """Where it comes to rest, so far."""
+        return self.iterates[-1]
+
+    @property
     def shape(self) -> Shape:
-        """The curve where it comes to rest."""
-        return Shape(self.iterates[-1], self.task)
+        """The curve there, and its images."""
+        return Shape(self.end, self.task)
 
     def relaxed(self, options: RelaxOptions) -> Iterator[Iterate]:
         """Go on from where it ends, and yield what comes there."""
         on = bool(self.iterates)
-        task = replace(self.task, curve=self.iterates[-1].curve, pins=self.iterates[-1].pins) if on else self.task
+        task = replace(self.task, curve=self.end.curve, pins=self.end.pins) if on else self.task
         for iterate in relax(task, options):
             new = [iterate]
             if iterate.index == 0:
