@@ -1,7 +1,8 @@
 """Möbius Flow: relax and untangle knotted curves without ever letting them pass through themselves.
 
 The same tree is a Blender extension and a Python package. Nothing is imported here before Blender
-asks for it, so the library works where there is no Blender. Scripts in Blender find `Relaxation` here.
+asks for it, so the library works where there is no Blender. Scripts in Blender find `Relaxation` here, notebooks
+`progress`.
 """
 
 from typing import Any
@@ -25,8 +26,12 @@ def unregister() -> None:
 
 def __getattr__(name: str) -> Any:
     """Import what scripts use when they ask for it."""
-    if name != "Relaxation":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from .addon.scripting import Relaxation
+    if name == "Relaxation":
+        from .addon.scripting import Relaxation
 
-    return Relaxation
+        return Relaxation
+    if name == "progress":
+        from .cli.progress import progress
+
+        return progress
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

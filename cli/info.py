@@ -6,9 +6,11 @@ from collections.abc import Iterator, Mapping
 
 from ..core import CurveError
 from ..core.arguments import check_known
+from ..core.curve.closing import closed_far_away
 from ..core.energies import ENERGIES
 from ..core.errors import counted
 from ..core.info import Info, info, measure
+from ..core.knots.knot_type import FLOER
 from . import curves
 from .streams import emit
 
@@ -58,6 +60,8 @@ def add_info(parser: argparse.ArgumentParser) -> None:
     """Describe ``info``."""
     parser.description, parser.epilog = "Identify the knot type of curves, and measure them.", _INFO_EPILOG
     curves.add_input(parser, "curves", "inputs", "+")
+    text = "close open components: their ends go straight away from the centre and are joined far out"
+    parser.add_argument("--close", action="store_true", help=text)
     parser.add_argument("--json", action="store_true", help="print JSON, a list if there are several inputs")
     parser.set_defaults(run=_info)
 
@@ -70,7 +74,7 @@ def _info(options: argparse.Namespace) -> int:
     found = []
     for path in options.inputs:
         with curves.measured(path, options.format) as curve:
-            found.append((path, info(curve)))
+            found.append((path, info(closed_far_away(curve) if options.close else curve)))
     if options.json:
         described = [_as_json(path, each) for path, each in found]
         emit(json.dumps(described if len(described) > 1 else described[0]))
@@ -96,6 +100,8 @@ def _as_json(path: str, found: Info) -> Mapping[str, object]:
             "linking_numbers": kind.diagram and list(kind.diagram.linking_numbers),
             "alexander": None if kind.alexander is None else list(kind.alexander),
             "determinant": kind.determinant,
+            "genus": kind.floer and kind.floer.genus,
+            "fibered": kind.floer and kind.floer.fibered,
             "jones": None if kind.jones is None else [[power / 2, c] for power, c in kind.jones.items()],
         },
         "energies": {**found.energies, "objective": rest and rest.objective},
@@ -116,6 +122,8 @@ def _rows(found: Info) -> Iterator[tuple[str, str]]:
     sizes = f" ({', '.join(map(str, found.components))} vertices)"
     yield "components", f"{counted(len(found.components), 'component')}{sizes}"
     yield "type", found.type.sentence
+    if found.type.floer is not None:
+        yield "genus", f"{found.type.floer.genus}{', fibered' * found.type.floer.fibered} (by {FLOER})"
     if found.type.diagram is not None and len(found.components) > 1:
         yield "linking numbers", ", ".join(map(str, found.type.diagram.linking_numbers))
     for name, value in found.energies.items():

@@ -1,13 +1,18 @@
 """``mobius-flow knot``: write a named knot as a curve file."""
 
 import argparse
+import os
+import re
+from pathlib import Path
 
-from ..core import CurveError
+from ..core import CurveError, MobiusFlowError, knot_list
 from ..core.curve.io import WRITTEN_FORMATS
+from ..core.errors import counted
 from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 
+LISTS = (".csv", ".tsv")
 _EPILOG = """\
 examples:
   mobius-flow knot 3_1 trefoil.txt
@@ -17,7 +22,11 @@ examples:
   mobius-flow knot "DT: [4 8 10 2 6]" coded.txt
   mobius-flow knot "[[1,5,2,4],[3,1,4,6],[5,3,6,2]]" coded.txt
   mobius-flow knot K11n34 larger.txt
+  mobius-flow knot knotinfo.csv knots/
   mobius-flow knot --list
+
+A list (.csv, .tsv: a table with a column such as pd_notation, dt_notation or braid_notation, or a code in each line)
+makes a file for each of its knots in the directory OUT.
 
 Knots are numbered as in KnotInfo: 10_162 to 10_165 are 10_163 to 10_166 in Rolfsen's book, where 10_161 stands twice
 (Perko's pair), and SnapPy has 10_83 and 10_86 the other way round.
@@ -51,6 +60,8 @@ def add_knot(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
+    if Path(options.name).suffix.lower() in LISTS and os.path.isfile(options.name):
+        return _write_list(options)
     curves.format_for(options.output, options.format)
     check_place(options.output)
     try:
@@ -61,4 +72,22 @@ def _run(options: argparse.Namespace) -> int:
         told = f"{options.name[:60]} gets {len(curve)} vertices, and no command takes more than {most}"
         raise CurveError(f"{told}; give --vertices {most}")
     curves.write(options.output, curve, options.format)
+    return 0
+
+
+def _write_list(options: argparse.Namespace) -> int:
+    """A file for each knot of a list; those that cannot be drawn are left out, and named in the end."""
+    if not os.path.isdir(options.output):
+        raise MobiusFlowError(f"{options.output}: is no directory; a list of knots makes a file for each in one")
+    suffix, refused = options.format or "txt", []
+    listed = knot_list(options.name)
+    for name, code in listed.items():
+        try:
+            curve = knot(code, options.vertices)
+        except MobiusFlowError as error:
+            refused.append(f"{name}: {error}")
+            continue
+        curves.write(os.path.join(options.output, f"{re.sub(r'[^0-9A-Za-z_+#-]', '_', name)}.{suffix}"), curve)
+    if refused:
+        raise MobiusFlowError(f"{len(refused)} of {counted(len(listed), 'knot')} cannot be made: {refused[0]}")
     return 0

@@ -1,4 +1,4 @@
-"""Progress on a terminal, with tqdm where it is installed."""
+"""Progress on a terminal or in a notebook, with tqdm where it is installed."""
 
 import math
 import sys
@@ -14,7 +14,7 @@ from ..core.driver.run import gradient_bound
 def bar(shown: bool, **options: Any) -> Iterator[Any]:
     """A bar of tqdm that vanishes in the end; None if it is not to be shown, or tqdm is not installed."""
     try:
-        from tqdm import tqdm
+        from tqdm.auto import tqdm
     except ImportError:
         shown = False
     if not shown:
@@ -43,6 +43,14 @@ class Progress:
         bar.set_postfix_str(
             f"iteration {iterate.index}, objective {iterate.energy:.6g}, gradient {iterate.gradient_norm:.2g}"
         )
+
+
+@contextmanager
+def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterator[Callable[[Iterate], None]]:
+    """Give what draws a bar when it is called with the iterates of a run, such as `minimize` does with a callback."""
+    drawn = Progress(RelaxOptions() if options is None else options)
+    with bar(shown, total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}") as made:
+        yield lambda iterate: drawn.update(made, iterate)
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from . import curves, signals
 from . import options as relax_options
 from .outputs import OUTPUTS, Output, admit, output_for
 from .places import Write, check_places, is_file, kept, writing
-from .progress import Progress, bar
+from .progress import progress
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 NAMED = 4  # meshes of a run that are listed individually
@@ -93,15 +93,14 @@ def run_to_end(
     iterates: list[Iterate] = []
     recorded = output.is_scene or options.trajectory is not None
     signals.hold()
-    progress = Progress(wanted)
-    with bar(_shown(options), total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}") as shown:
+    with progress(wanted, _shown(options)) as draw:
 
         def on_iterate(iterate: Iterate) -> None:
             if recorded:
                 iterates.append(iterate)
             if iterate.index == 0 and not options.quiet:
                 options.notes.show()  # the curve is accepted: there will be no refusal
-            progress.update(shown, iterate)
+            draw(iterate)
 
         return finish(signals.interruptible(relaxation), task, wanted, on_iterate), iterates
 

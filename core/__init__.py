@@ -4,7 +4,7 @@
 """
 
 from .curve import Curve, Mesh
-from .curve.io import read_curve, write_curve
+from .curve.io import knot_list, read_curve, write_curve
 from .descent import METHODS
 from .driver import Hand, Iterate, Outcome, RelaxOptions, Result, Status, Trajectory, WithOutcome, minimize, relax
 from .energies import MoebiusEnergy, Objective
@@ -35,6 +35,7 @@ __all__ = [
     "Task",
     "Trajectory",
     "WithOutcome",
+    "knot_list",
     "minimize",
     "morph",
     "read_curve",

@@ -386,7 +386,7 @@ class Check:
                 self.place, here = f"stage {number}, frame {k}: ", self.whole(frame)
                 need(all(frame[vertex] == pin for pin, vertex in held), "a vertex leaves its pin")
                 self.leg(last, here, mesh, self.triangles)
-                last, self.legs = here, self.legs + 1
+                last, self.legs = here, self.legs + (len(frames) > 1)
             before = last, mesh
 
     def whole(self, points):

@@ -1,6 +1,6 @@
 """Polygons in R^m, closed or open: the value that everything else takes and returns."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import cast
@@ -12,6 +12,9 @@ from ..arguments import is_list
 from ..errors import CurveError, Place, counted
 from ..types import FloatArray, frozen, real
 from .mesh import Mesh
+
+MAKERS: list[Callable[[object], "Curve | None"]] = []
+"""Of curves, from objects of other programs: None for all others.  Rooms above append what they can read."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +65,25 @@ class Curve:
                 )
         mesh = Mesh(tuple(len(array) for array in arrays), cast(tuple[bool, ...], closed))  # which checks it
         return cls(np.concatenate(arrays), mesh)
+
+    @classmethod
+    def of(cls, other: object) -> "Curve":
+        """A curve from what other programs have: a link of SnapPy or spherogram, or arrays of vertices.
+
+        Links, and whatever else has a ``PD_code()``, are drawn from above as `mobius_flow.core.knots.diagram_knot`
+        draws them.  Raises CurveError for objects that are none of these.
+
+        >>> Curve.of([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+        <Curve: 1 closed polygon, 3 vertices in R^3>
+        """
+        for make in MAKERS:
+            if (made := make(other)) is not None:
+                return made
+        if isinstance(other, Curve):
+            return other
+        if isinstance(other, list | tuple) and other and np.ndim(other[0]) == 2:
+            return cls.from_components(other)
+        return cls(cast(npt.ArrayLike, other))
 
     def __reduce__(self) -> tuple[type["Curve"], tuple[FloatArray, Mesh]]:
         # made anew, because arrays come out of pickles and deep copies writable

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -108,6 +109,15 @@ class Result:
     @cached_property
     def _final_energy(self) -> tuple[float, float]:
         return moebius_energy(centred(self.curve))
+
+    def show(self) -> Any:
+        """The result as a figure that turns, the objective beside it; notebooks draw it.
+
+        Raises MobiusFlowError if Plotly is not installed, CurveError if the curve is not in the plane or in space.
+        """
+        from ..view import figure, still  # pictures are made of results, not the other way round
+
+        return figure(still(self.curve, self.energies), title=f"Möbius energy {self.final_energy:.6g}")
 
     def report(self) -> dict[str, object]:
         """The result as the plain values that ``--report`` writes."""

@@ -23,10 +23,12 @@ from ..diagrams import (
 )
 from ..errors import counted
 from .catalogue import KNOTS_TO, LINKS_TO, Key, bracket_key, crossing_number, invariant_of, key, types_with
+from .floer import Floer, floer, of_least_genus
 
 _UNKNOT = re.compile(r"\b0_1\b")
 NO_CROSSINGS, JONES, ALEXANDER = "a diagram without crossings", "the Jones polynomial", "the Alexander polynomial"
 SIGNATURE, DOUBLED, LINKING = "the signature", "the Jones polynomial of the doubled knot", "linking numbers"
+FLOER, GENUS = "knot Floer homology", "its genus by knot Floer homology"
 
 
 @checked_fields
@@ -82,6 +84,11 @@ class KnotType:
         """Coefficients of the Jones polynomial by powers of √t; None where it was not computed."""
         found = jones(self.diagram) if self.diagram else None
         return None if found is None else dict(found)
+
+    @cached_property
+    def floer(self) -> Floer | None:
+        """Knot Floer homology, and by it genus and fiberedness; None for links, or without the extra "knots"."""
+        return floer(self.diagram) if self.diagram else None
 
     @property
     def determinant(self) -> int | None:
@@ -178,6 +185,9 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
     if not factor.crossings:
         return KnotType(("0_1",), True, factor, (NO_CROSSINGS,))
     complete = _complete(factor)
+    known = of_least_genus(found) if factor.crossings > complete and (found := floer(factor)) else ()
+    if known == ("0_1",):
+        return KnotType(known, True, factor, (GENUS,))
     bracket = bracket_key(factor)
     if bracket is None:
         return KnotType((), False, factor, ())
@@ -200,7 +210,10 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
             compare(signature, SIGNATURE)
         if names and factor.crossings <= effort.doubled and (len(names) > 1 or factor.crossings > KNOTS_TO):
             compare(_doubled, DOUBLED)
-    return KnotType(tuple(names), factor.crossings <= complete, factor, tuple(evidence))
+        if names and factor.crossings > KNOTS_TO:
+            compare(floer, FLOER)
+    names = [name for name in names if name in known] if known else names
+    return KnotType(tuple(names), factor.crossings <= complete or bool(known), factor, tuple(evidence))
 
 
 def _linking(link: Diagram) -> list[int]:

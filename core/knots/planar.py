@@ -14,6 +14,7 @@ from scipy.sparse.linalg import spsolve
 from ..arguments import checked
 from ..collision import check_embedded
 from ..curve import Curve, refine
+from ..curve.curve import MAKERS
 from ..diagrams import Diagram, PlanarCrossing, diagram_of
 from ..diagrams.codes import diagram_from_code
 from ..diagrams.simplify import without_nugatory
@@ -54,6 +55,22 @@ def drawn(diagram: Diagram) -> Curve:
     curve = Curve.from_components(parts)
     check_embedded(curve)
     return curve
+
+
+def _of_link(other: object) -> Curve | None:
+    """The drawing of an object that has a planar diagram code, or is made of one that has; None for others."""
+    makes_link = getattr(other, "link", None)  # as SnapPy's manifolds do
+    link = makes_link() if callable(makes_link) and not hasattr(other, "PD_code") else other
+    code_of = getattr(link, "PD_code", None)
+    if not callable(code_of):
+        return None
+    code = [tuple(map(int, edges)) for edges in code_of()]
+    diagram = diagram_of(code) if code else Diagram((), ())
+    circles = int(getattr(link, "unlinked_unknot_components", 0) or not code)  # which the code does not have
+    return drawn(Diagram((*diagram.passes, *((),) * circles), diagram.signs))
+
+
+MAKERS.append(_of_link)
 
 
 def _refined(curve: Curve, vertices: int | None) -> Curve:

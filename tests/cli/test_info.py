@@ -11,7 +11,8 @@ KEYS = {
     "average_crossing_number", "edges", "gap", "gradient_norm", "at_rest", "index",
 }  # fmt: skip
 TYPE_KEYS = {
-    "name", "names", "proved", "evidence", "crossings", "linking_numbers", "alexander", "determinant", "jones"
+    "name", "names", "proved", "evidence", "crossings", "linking_numbers", "alexander", "determinant", "jones",
+    "genus", "fibered",
 }  # fmt: skip
 
 

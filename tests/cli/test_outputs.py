@@ -283,7 +283,7 @@ def test_formats_that_are_only_read_are_no_outputs(
         if suffix != ".pd":  # which has no circles
             assert FORMATS[suffix].text(curve)
     only_read = set(FORMATS) - set(told)
-    assert only_read == {".dt", ".pdb"}
+    assert only_read == {".dt", ".pdb", ".cif"}
     for words in (["o.dt"], ["-", "--format", "dt"]):
         assert refused([command, trefoil if command == "relax" else "3_1", *words], capsys, monkeypatch)
     assert not Path("o.dt").exists()

@@ -114,6 +114,7 @@ FINE: dict[str, tuple[Callable[..., object], dict[str, object]]] = {
     "Trajectory.add": (Trajectory().add, {"iterate": START}),
     "Trajectory.save": (Trajectory().save, {"path": "t.npz"}),
     "read_curve": (core.read_curve, {"path": "missing.txt"}),
+    "knot_list": (core.knot_list, {"path": "missing.csv"}),
     "write_curve": (core.write_curve, {"path": "c.txt", "curve": TREFOIL, "form": None}),
     "read_obstacle": (core.read_obstacle, {"path": "missing.obj"}),
     "refine": (curve.refine, {"curve": TREFOIL, "vertices": 30}),

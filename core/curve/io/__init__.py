@@ -5,5 +5,16 @@ give it a line in :data:`FORMATS`; reading, error messages and the atomic replac
 """
 
 from .formats import FORMATS, WRITTEN_FORMATS, CurveFile, Format, format_of, load_curve, read_curve, write_curve
+from .lists import knot_list
 
-__all__ = ["FORMATS", "WRITTEN_FORMATS", "CurveFile", "Format", "format_of", "load_curve", "read_curve", "write_curve"]
+__all__ = [
+    "FORMATS",
+    "WRITTEN_FORMATS",
+    "CurveFile",
+    "Format",
+    "format_of",
+    "knot_list",
+    "load_curve",
+    "read_curve",
+    "write_curve",
+]

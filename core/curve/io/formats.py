@@ -35,7 +35,7 @@ class Format:
 
 
 _COLUMNS = Format(
-    "x y z per line, a blank line between components, # comments, the line # open before an open one",
+    "x y z per line, as KnotPlot writes it too, a blank line between components, # comments, # open before an open one",
     xyz.read,
     xyz.separated(" "),
 )
@@ -55,7 +55,10 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             "x, y, z between commas, with or without a first line of names", xyz.read, xyz.separated(",", True)
         ),
         ".tsv": Format("x y z between tabs, or Knoodle's crossings", codes.read_tsv, xyz.separated("\t")),
+        ".raw": _COLUMNS,
+        ".kp": _COLUMNS,
         ".pdb": Format("Protein Data Bank, the alpha carbons of each chain as an open arc (read only)", pdb.read, None),
+        ".cif": Format("PDBx/mmCIF, likewise (read only)", pdb.read_cif, None),
         ".pd": Format("planar diagram code of a knot or link, PD[X[1,5,2,4], ...]", codes.read_pd, codes.write_pd),
         ".dt": Format("Dowker-Thistlethwaite code, DT: [4 6 2] or DT: cacbca (read only)", codes.read_dt, None),
         ".gauss": Format("Gauss code, 1 -2 3 ... or with signs O1+U2+O3+...", codes.read_gauss, codes.write_gauss),

@@ -1,47 +1,101 @@
-"""Protein Data Bank files (.pdb): the alpha carbons of each chain, one after the other, as an open arc.
+"""Chains of proteins (.pdb, .cif): the alpha carbons of each, one after the other, as an open arc.
 
-Of several models the first is read, of several atoms at one place in the chain the first one.  Columns are those of the
-format's version 3.3, sections "ATOM" and "TER"; modified residues (HETATM) have alpha carbons too, and what comes after
-the end of a chain is no part of it.
+Of several models the first is read, of several atoms at one place in the chain the first one, and chains are those that
+authors name.  Columns of .pdb files are those of the format's version 3.3, sections "ATOM" and "TER"; modified residues
+(HETATM) have alpha carbons too, and what comes after the end of a chain is no part of it.  Of .cif files (PDBx/mmCIF)
+the loop of ``_atom_site`` is read, an atom in a line.
 """
 
 import logging
+import re
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from math import dist
+from typing import NamedTuple
 
 from .source import Polygon, Source
 
 _ALPHA_CARBON = " CA "  # in columns 13 to 16; calcium begins one column before
 _APART = 4.5  # Å; neighbours are 3.8 apart, so that residues are missing in between
+_WORD = re.compile(r"""'(?:[^']|'(?=\S))*'|"(?:[^"]|"(?=\S))*"|\S+""")
 _log = logging.getLogger(__name__)
 
 
+class _Atom(NamedTuple):
+    """An alpha carbon: its chain, the residue's name and number, and where it was read."""
+
+    chain: str
+    residue: str
+    line: int
+    point: tuple[float, ...]
+
+
 def read(source: Source) -> list[Polygon]:
-    """Read the chains; raises CurveFileError naming the line."""
-    chains: list[list[tuple[str, int, tuple[float, ...]]]] = []
-    chain, seen, ended = "", set[str](), set[str]()
+    """Read the chains of a .pdb file; raises CurveFileError naming the line."""
+    return _arcs(source, _atoms(source), len({line for line in source.lines if line.startswith("MODEL ")}))
+
+
+def _atoms(source: Source) -> Iterator[_Atom]:
+    chain, ended = "", set[str]()
     for number, line in enumerate(source.lines, start=1):
         record = line[:6].rstrip()
         if record == "ENDMDL":
             break
         if record == "TER":
             ended.add(chain)
-            chain = ""
         is_part = record == "ATOM" or (record == "HETATM" and line[21:22] not in ended)
-        if not is_part or line[12:16] != _ALPHA_CARBON or line[21:27] in seen:
+        if not is_part or line[12:16] != _ALPHA_CARBON:
             continue
         point = tuple(source.number(line[k : k + 8].strip(), number) for k in (30, 38, 46))
-        if line[21] != chain:
-            chain = line[21]
-            chains.append([])
-        chains[-1].append((line[17:27], number, point))
-        seen.add(line[21:27])
+        chain = line[21]
+        yield _Atom(chain, line[17:27], number, point)
+
+
+def read_cif(source: Source) -> list[Polygon]:
+    """Read the chains of an mmCIF file; raises CurveFileError naming the line."""
+    rows = list(_sites(source))
+    models = list(dict.fromkeys(row.get("pdbx_PDB_model_num", "1") for _, row in rows))
+    atoms = []
+    for number, row in rows:
+        is_carbon = row.get("label_atom_id") == "CA" and row.get("type_symbol", "C") == "C"
+        if not is_carbon or row.get("label_seq_id") == "." or row.get("pdbx_PDB_model_num", "1") != models[0]:
+            continue  # residues of a chain have a number in the sequence, and other molecules have none
+        chain, place = (row.get(f"auth_{key}", row.get(f"label_{key}", "")) for key in ("asym_id", "seq_id"))
+        residue = f"{row.get('label_comp_id', '')} {chain}{place}{row.get('pdbx_PDB_ins_code', '').strip('?.')}"
+        point = tuple(source.number(row.get(f"Cartn_{axis}", "nothing"), number) for axis in "xyz")
+        atoms.append(_Atom(chain, residue, number, point))
+    return _arcs(source, atoms, len(models))
+
+
+def _sites(source: Source) -> Iterator[tuple[int, dict[str, str]]]:
+    """The rows of the loop of atoms, by the names of its columns, with their lines."""
+    names: list[str] = []
+    for number, line in enumerate(source.lines, start=1):
+        if line.startswith("_atom_site."):
+            names.append(line.split()[0].partition(".")[2])
+        elif names and line.strip():
+            if line.startswith(("#", "_", "loop_", "data_")):
+                return
+            words = [word[1:-1] if word[0] in "'\"" else word for word in _WORD.findall(line)]
+            if len(words) != len(names):
+                raise source.error(f"{len(words)} values where the loop of atoms has {len(names)} columns", number)
+            yield number, dict(zip(names, words, strict=True))
+
+
+def _arcs(source: Source, atoms: Iterable[_Atom], models: int) -> list[Polygon]:
+    """One polygon for each chain."""
+    chains: dict[str, dict[str, _Atom]] = {}
+    for atom in atoms:
+        chains.setdefault(atom.chain, {}).setdefault(atom.residue.partition(" ")[2], atom)
     if not chains:
         raise source.error("no alpha carbon found: there must be ATOM records of atoms named CA")
-    for (one, _, a), (other, _, b) in (pair for each in chains for pair in pairwise(each)):
-        if dist(a, b) > _APART:
-            _log.warning("%s: residues may be missing from %s to %s; joined straight", source.path, one, other)
+    if models > 1:
+        _log.warning("%s: of %d models the first is read", source.path, models)
+    every = [list(each.values()) for each in chains.values()]
+    for a, b in (pair for each in every for pair in pairwise(each)):
+        if dist(a.point, b.point) > _APART:
+            what = "residues may be missing from %s to %s; joined straight"
+            _log.warning(f"%s: {what}", source.path, a.residue, b.residue)
     return [
-        Polygon([point for _, _, point in each], [number for _, number, _ in each].__getitem__, closed=False)
-        for each in chains
+        Polygon([atom.point for atom in each], [atom.line for atom in each].__getitem__, closed=False) for each in every
     ]

@@ -30,24 +30,24 @@ class Source:
     sha256: str
 
     @classmethod
-    def load(cls, path: Path) -> "Source":
+    def load(cls, path: Path, most: int = MAX_BYTES) -> "Source":
         """Read a text file; raises CurveFileError if it is missing, empty, too long or not UTF-8 text."""
         try:
             stream = path.open("rb")
         except (OSError, ValueError) as error:  # a ValueError for a path with a null character
             raise CurveFileError(path, f"cannot be read: {reason_of(error)}") from error
         with stream:
-            return cls.read(path, stream)
+            return cls.read(path, stream, most)
 
     @classmethod
-    def read(cls, path: Path, stream: BinaryIO) -> "Source":
+    def read(cls, path: Path, stream: BinaryIO, most: int = MAX_BYTES) -> "Source":
         """Read a stream, which need not end; otherwise as `load`."""
         try:
-            data = stream.read(MAX_BYTES + 1)
+            data = stream.read(most + 1)
         except OSError as error:
             raise CurveFileError(path, f"cannot be read: {reason_of(error)}") from error
-        if len(data) > MAX_BYTES:
-            raise CurveFileError(path, f"longer than {MAX_BYTES >> 20} MB, more than this program reads")
+        if len(data) > most:
+            raise CurveFileError(path, f"longer than {most >> 20} MB, more than this program reads")
         text = _decode(path, data).replace("\r\n", "\n").replace("\r", "\n")
         if text.count("\n") > MAX_LINES:
             raise CurveFileError(path, f"more than {MAX_LINES} lines, more than this program reads")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mobius_flow.core import CurveFileError
 from mobius_flow.core.curve.io import read_curve, write_curve
 from mobius_flow.core.knots import knot, knot_type
 
@@ -134,6 +135,64 @@ def test_missing_residues_are_noted(tmp_path: Path, caplog: pytest.LogCaptureFix
     with caplog.at_level(logging.WARNING):
         assert len(read_curve(_write(tmp_path, "gap.pdb", text))) == 2
     assert "residues may be missing from GLY A   1  to GLY A   7" in caplog.text
+
+
+CIF = """data_KNOT
+_entry.id KNOT
+loop_
+_atom_site.group_PDB
+_atom_site.type_symbol
+_atom_site.label_atom_id
+_atom_site.label_comp_id
+_atom_site.label_asym_id
+_atom_site.label_seq_id
+_atom_site.Cartn_x
+_atom_site.Cartn_y
+_atom_site.Cartn_z
+_atom_site.auth_asym_id
+_atom_site.auth_seq_id
+_atom_site.pdbx_PDB_model_num
+ATOM N N GLY A 1 9 9 9 A 5 1
+ATOM C CA GLY A 1 0 0 0 A 5 1
+ATOM O "O5'" GLY A 1 9 9 9 A 5 1
+ATOM C CA GLY A 1 0 0 1 A 5 1
+ATOM C CA GLY A 2 3 0 0 A 6 1
+HETATM C CA MSE A 3 0 3 0 A 7 1
+HETATM CA CA CA C . 9 9 9 A 101 1
+ATOM C CA GLY B 1 0 0 9 B 5 1
+ATOM C CA GLY B 2 3 0 9 B 6 1
+{more}#
+loop_
+_atom_type.symbol
+C
+"""
+
+
+def test_chains_of_cif_files(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.WARNING):
+        curve = read_curve(_write(tmp_path, "one.cif", CIF.format(more="")))
+    assert not caplog.records
+    assert curve.mesh.component_sizes == (3, 2)
+    assert curve.mesh.closed == (False, False)
+    assert curve.vertices[:3].tolist() == [[0, 0, 0], [3, 0, 0], [0, 3, 0]]
+    again = "ATOM C CA GLY A 1 0 0 0 A 5 2\n"
+    with caplog.at_level(logging.WARNING):
+        curve = read_curve(_write(tmp_path, "two.cif", CIF.format(more="ATOM C CA GLY B 9 8 8 8 B 9 1\n" + again)))
+    assert [record.message.partition(": ")[2] for record in caplog.records] == [
+        "of 2 models the first is read",
+        "residues may be missing from GLY B6 to GLY B9; joined straight",
+    ]
+    assert curve.mesh.component_sizes == (3, 3)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [("data_X\n", "no alpha carbon"), (CIF.format(more="ATOM C\n"), "2 values"), (CIF.format(more=""), "")],
+)
+def test_cif_files_that_are_none(tmp_path: Path, text: str, reason: str) -> None:
+    text = text if reason else text.replace("3 0 0 A", "x 0 0 A")
+    with pytest.raises(CurveFileError, match=reason or "not a number"):
+        read_curve(_write(tmp_path, "odd.cif", text))
 
 
 CODES = {

@@ -1,0 +1,76 @@
+"""``mobius-flow view``: a curve or a trajectory as a page to look at, a solid to print, or a surface that moves."""
+
+import argparse
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from ..core import MobiusFlowError
+from ..core.errors import wrong_suffix
+from ..core.gltf import animation
+from ..core.solids import solid
+from ..core.view import FRAMES, Motion, motion, page, still
+from . import curves
+from .places import check_places, writing
+
+_EPILOG = """\
+examples:
+  mobius-flow view knot.txt knot.html
+  mobius-flow view path.npz motion.html
+  mobius-flow view relaxed.obj print.3mf --width 3
+  mobius-flow view path.npz motion.glb
+
+An .html page holds all that it needs and works offline; trajectories have a slider and their energy beside it. Solids
+(.stl, .3mf) are refused where a wire of that width would run into itself; of a trajectory they show the last frame. In
+.glb files (glTF) the frames are morph targets, with an animation that plays them.
+
+exit status: 0, or 2 on bad input or bad options, or where OUT cannot be written
+"""
+
+Write = Callable[[Motion, float | None, str], bytes]
+
+
+def _solid(kind: str) -> Write:
+    return lambda shown, width, _: solid(shown.curves[-1], kind, width)
+
+
+WRITERS: Mapping[str, Write] = MappingProxyType(
+    {
+        ".html": lambda shown, width, title: page(shown, width and 0.5 * width, title).encode(),
+        ".stl": _solid("stl"),
+        ".3mf": _solid("3mf"),
+        ".glb": lambda shown, width, _: animation(shown, width and 0.5 * width),
+    }
+)
+
+
+def add_view(parser: argparse.ArgumentParser) -> None:
+    """Describe ``view``."""
+    parser.description, parser.epilog = "Show a curve or a trajectory, or make a solid of it.", _EPILOG
+    curves.add_input(parser, "curve, or trajectory (.npz)")
+    parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(WRITERS)}")
+    text = "width of the tubes, in the curve's units (default: what is well seen; for solids nine tenths of the widest)"
+    parser.add_argument("--width", type=float, metavar="W", help=text)
+    text = f"frames of a trajectory that are shown, evenly chosen, at most 1000 (default: {FRAMES})"
+    parser.add_argument("--frames", type=int, default=FRAMES, metavar="N", help=text)
+    parser.set_defaults(run=_run)
+
+
+def _run(options: argparse.Namespace) -> int:
+    suffix = Path(options.output).suffix.lower()
+    if suffix not in WRITERS:
+        raise MobiusFlowError(f"{options.output}: {wrong_suffix(Path(options.output), WRITERS, 'pictures')}")
+    if not 2 <= options.frames <= 1000:
+        raise MobiusFlowError(f"frames is {options.frames}; give 2 to 1000")
+    if options.width is not None and not 0.0 < options.width < float("inf"):
+        raise MobiusFlowError(f"width is {options.width:g}; give a positive number")
+    check_places({"IN": options.input}, {"OUT": options.output})
+    if Path(options.input).suffix.lower() == ".npz":
+        shown = motion(options.input, options.frames)
+    else:
+        with curves.measured(options.input, options.format) as curve:
+            shown = still(curve)
+    written = WRITERS[suffix](shown, options.width, Path(options.input).stem)
+    with writing(options.output) as temporary:
+        temporary.write_bytes(written)
+    return 0

@@ -1,0 +1,80 @@
+"""Lists of knots as people download them: a name and a code in each row (KnotInfo, LinkInfo, SnapPy, KnotFolio)."""
+
+import csv
+import os
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from ...arguments import checked
+from ...diagrams.codes import is_code
+from .source import Source
+
+_NAMES = ("name", "knot", "link", "id", "knot_name", "link_name")
+CODES: Mapping[str, str] = MappingProxyType(
+    {
+        "pd_notation": "PD: ", "pd_notation_math": "", "pd_notation_vector": "PD: ", "pd_code": "PD: ", "pd": "PD: ",
+        "dt_notation": "DT: ", "dt_code": "DT: ", "dt": "DT: ", "gauss_notation": "Gauss: ", "gauss_code": "Gauss: ",
+        "gauss": "Gauss: ", "braid_notation": "braid", "braid_word": "braid", "braid": "braid",
+    }
+)  # fmt: skip
+"""Columns that are read, the first one that a list has, and what must stand before their codes."""
+_BRAID = re.compile(r"[\[({]\s*(?:(\d+)\s*,\s*[\[({])?([^\[\](){}]*)[\])}\s]*")
+_DELIMITERS = ",\t|;"
+_MAX_BYTES = 256 << 20  # KnotInfo's own, with all invariants, has dozens of megabytes
+
+
+@checked
+def knot_list(path: str | os.PathLike[str]) -> dict[str, str]:
+    """The names in a list of knots and their codes, for `mobius_flow.core.knots.knot`: ``{"3_1": "PD: [[1,5,2,...``.
+
+    A list is a table with a first line of names, among which is one of `CODES`, separated by commas, tabs, semicolons
+    or bars; or it has a code in each line, after a name and a separator or alone.  Rows without a code are left out;
+    rows without a name of their own have numbers.  Raises CurveFileError if there is no code.
+    """
+    source = Source.load(Path(path), _MAX_BYTES)
+    found: dict[str, str] = {}
+    for number, (name, code) in enumerate(_rows(source.lines), start=1):
+        if code:
+            found[name if name and name not in found else f"{name or 'knot'}-{number}"] = code
+    if not found:
+        columns = ", ".join(CODES)
+        raise source.error(f"no list of knots: there is no code in any line, and no column named {columns}")
+    return found
+
+
+def _rows(lines: list[str]) -> Iterator[tuple[str, str]]:
+    """Names and codes, either of which may be empty."""
+    lines = [line for line in lines if line.strip() and not line.startswith("#")]
+    delimiter = max(_DELIMITERS, key=lines[0].count) if lines else ","
+    table = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
+    head = [cell.strip().lower().replace(" ", "_") for cell in next(table, [])]
+    column = next((head.index(name) for name in CODES if name in head), None)
+    if column is None:
+        yield from map(_plain, lines)
+        return
+    title = next((head.index(name) for name in _NAMES if name in head), None)
+    for row in table:
+        if column < len(row):
+            name = row[title].strip() if title is not None and title < len(row) else ""
+            yield name, _code(row[column].strip(), CODES[head[column]])
+
+
+def _plain(line: str) -> tuple[str, str]:
+    """A line with a code, and perhaps with a name before it: up to a separator, or a bracket."""
+    if is_code(line):
+        return "", line.strip()
+    name, _, code = re.sub(r"\s*[,\t|;:=]\s*|\s+(?=[\[({])", "\0", line.strip(), count=1).partition("\0")
+    return name.strip("\"' "), code.strip("\"' ") if is_code(code.strip("\"' ")) else ""
+
+
+def _code(text: str, before: str) -> str:
+    """What `knot` reads, of a cell; empty for cells that hold no code."""
+    if before != "braid":
+        return before + text if "[" in text or "{" in text or "(" in text else ""
+    match = _BRAID.fullmatch(text)
+    if match is None:
+        return ""
+    strands, letters = match.groups()
+    return f"BR[{strands},{{{letters}}}]" if strands else f"braid({letters})"

@@ -1,0 +1,203 @@
+"""Curves and motions as pictures that turn in a browser or a notebook, by Plotly."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .arguments import checked
+from .collision import check_embedded, minimal_gap
+from .curve import Curve
+from .errors import CurveError, MobiusFlowError
+from .hierarchy import moebius_energy
+from .tube import tubes
+from .types import FloatArray, IntArray
+from .units import centred
+from .verify.trajectory import TrajectoryError, count_legs, stages
+
+COLOURS = ("#3b6fb6", "#d1663f", "#4b9b6e", "#9b5fb0", "#c9a227", "#5aa7b8", "#b8436d", "#7a7a7a")
+FRAMES = 60  # of a motion
+_STATIONS = 400  # around a curve
+_LARGEST = 20_000  # vertices of a single curve
+_THICKEST, _THINNEST = 0.012, 0.002  # radius of tubes in lengths of the curve
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Curves on one mesh that follow each other, in space, and their energies or those of a whole run."""
+
+    curves: tuple[Curve, ...]
+    energies: tuple[float, ...] = ()
+    label: str = "Möbius energy"
+
+    @property
+    def radius(self) -> float:
+        """Of tubes that are well seen, and thinner where strands are near each other."""
+        length = max(curve.length for curve in self.curves)
+        gap = min(minimal_gap(curve)[0] for curve in self.curves)
+        return float(np.clip(0.45 * gap, _THINNEST * length, _THICKEST * length))
+
+
+@checked
+def motion(path: str | os.PathLike[str], frames: int = FRAMES) -> Motion:
+    """Frames of a trajectory file, evenly chosen, with the first and the last; all with as many vertices.
+
+    Raises MobiusFlowError if there is none.  That it is free of contact is for `verify` to say.
+    """
+    path = os.fspath(path)
+    chosen = set(np.linspace(0, count_legs(path), frames).round().astype(int).tolist())
+    curves, energies, number = [], [], 0
+    try:
+        for stage in stages(path):
+            sizes, closed = zip(*((each.size, each.closed) for each in stage.components), strict=True)
+            for k, frame in enumerate(stage.frames):
+                number += k > 0  # the first frame of a stage is the last of the one before
+                if number in chosen:
+                    chosen.remove(number)
+                    parts = np.split(frame, np.cumsum(sizes)[:-1])
+                    curve = Curve.from_components(parts, closed)
+                    check_embedded(curve)
+                    curves.append(curve)
+                    energies.append(moebius_energy(centred(curve))[0])
+    except (TrajectoryError, CurveError) as error:
+        raise MobiusFlowError(f"{path}: {error}") from error
+    return Motion(tuple(_on_one_mesh(curves)), tuple(energies))
+
+
+def _on_one_mesh(curves: Sequence[Curve]) -> list[Curve]:
+    """Points evenly along the curves, and those of a closed component begun where they are next to those before."""
+    share = curves[-1].component_lengths / curves[-1].length
+    counts = np.maximum(np.round(_STATIONS * share), 12).astype(int).tolist()
+    made: list[Curve] = []
+    for curve in curves:
+        parts = []
+        for k, (part, closed, count) in enumerate(zip(curve.components, curve.mesh.closed, counts, strict=True)):
+            points = _evenly(part, closed, count)
+            if made and closed:
+                before = made[-1].components[k]
+                products = np.fft.ifft(np.conj(np.fft.fft(before, axis=0)) * np.fft.fft(points, axis=0), axis=0)
+                points = np.roll(points, -int(products.real.sum(axis=1).argmax()), axis=0)
+            parts.append(points)
+        made.append(Curve.from_components(parts, curve.mesh.closed))
+    return made
+
+
+def _evenly(part: FloatArray, closed: bool, count: int) -> FloatArray:
+    """Points of a polygon at equal distances along it; shape (count, 3)."""
+    part = np.concatenate([part, part[:1]]) if closed else part
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(part, axis=0), axis=1))])
+    at = np.linspace(0.0, along[-1], count, endpoint=not closed)
+    points = np.stack([np.interp(at, along, x) for x in part.T], axis=1)
+    return np.pad(points, ((0, 0), (0, 3 - part.shape[1])))
+
+
+@checked
+def still(curve: Curve, energies: Sequence[float] = (), label: str = "objective") -> Motion:
+    """A curve that does not move, and the energies of a run that led to it; a CurveError if it cannot be shown."""
+    if curve.dimension > 3 or len(curve) > _LARGEST:
+        what = f"{len(curve)} vertices in dimension {curve.dimension}"
+        raise CurveError(f"the curve has {what}; shown are curves in the plane or in space with at most {_LARGEST}")
+    return Motion((curve,), tuple(energies), label)
+
+
+@checked
+def figure(shown: Motion, radius: float | None = None, title: str = "") -> Any:
+    """A ``plotly.graph_objects.Figure``: tubes, a slider through the motion, and the energy beside it.
+
+    ``radius`` is that of the tubes, in the curve's units.  Raises MobiusFlowError if Plotly is not installed.
+    """
+    try:
+        from plotly import graph_objects as go
+        from plotly.subplots import make_subplots
+    except ImportError as error:
+        raise MobiusFlowError('pictures need Plotly: pip install plotly (the extra "view")') from error
+    radius = shown.radius if radius is None else radius
+    energies, moves = shown.energies, len(shown.curves) > 1
+    made = make_subplots(1, 2, specs=[[{"type": "scene"}, {"type": "xy"}]], column_widths=[0.74, 0.26])
+    if not energies:
+        made = go.Figure()
+
+    def surfaces(curve: Curve, whole: bool) -> list[Any]:
+        traces = []
+        for k, tube in enumerate(tubes(curve, radius)):
+            x, y, z = tube.points.T.astype(np.float32)
+            rest = _surface(k, tube.faces.T) if whole else {}
+            traces.append(go.Mesh3d(x=x, y=y, z=z, **rest))
+        return traces
+
+    def marker(k: int) -> Any:
+        return go.Scatter(x=[k], y=[energies[k]], mode="markers", marker={"size": 11, "color": COLOURS[1]})
+
+    first = surfaces(shown.curves[0], whole=True)
+    for trace in first:
+        made.add_trace(trace, **({"row": 1, "col": 1} if energies else {}))
+    if energies:
+        line = go.Scatter(x=list(range(len(energies))), y=list(energies), mode="lines", line={"color": COLOURS[0]})
+        made.add_trace(line, row=1, col=2)
+        made.update_xaxes(title_text="frame" if moves else "iterate")
+        spread = max(energies) > 3.0 * min(energies) > 0.0
+        made.update_yaxes(title_text=shown.label, type="log" if spread else "linear")
+    if moves:
+        made.add_trace(marker(0), row=1, col=2)
+        numbers = [*range(len(first)), len(first) + 1]  # of the traces that change
+        made.frames = [
+            go.Frame(data=[*surfaces(curve, whole=False), marker(k)], traces=numbers, name=str(k))
+            for k, curve in enumerate(shown.curves)
+        ]
+    made.update_layout(
+        **_layout(shown.curves, radius, title), **(_controls(len(shown.curves)) if moves else {}), showlegend=False
+    )
+    return made
+
+
+def page(shown: Motion, radius: float | None = None, title: str = "") -> str:
+    """The figure as one HTML file that needs no network."""
+    made = figure(shown, radius, title)
+    return str(made.to_html(include_plotlyjs=True, auto_play=False, default_height="96vh"))
+
+
+def _surface(k: int, corners: IntArray) -> dict[str, Any]:
+    """What does not change of the surface of a component."""
+    i, j, last = corners.astype(np.int32)
+    light = {"ambient": 0.55, "diffuse": 0.8, "specular": 0.3, "roughness": 0.4}
+    return {
+        "i": i, "j": j, "k": last, "color": COLOURS[k % len(COLOURS)], "lighting": light,
+        "lightposition": {"x": 1e4, "y": 2e4, "z": 3e4}, "hoverinfo": "name", "name": f"component {k + 1}",
+    }  # fmt: skip
+
+
+def _layout(curves: Sequence[Curve], radius: float, title: str) -> dict[str, Any]:
+    """No axes, and room for every frame."""
+    points = np.concatenate([np.pad(curve.vertices, ((0, 0), (0, 3 - curve.dimension))) for curve in curves])
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    half = 0.5 * float(np.ptp(points, axis=0).max()) + 2.0 * radius
+    axes = {
+        f"{name}axis": {"visible": False, "range": [float(c) - half, float(c) + half]}
+        for name, c in zip("xyz", middle, strict=True)
+    }
+    camera = {"eye": {"x": 0.25, "y": -0.4, "z": 1.2}, "up": {"x": 0, "y": 1, "z": 0}}
+    scene = {**axes, "aspectmode": "cube", "camera": camera}
+    margin = {"l": 10, "r": 20, "t": 50 if title else 20, "b": 10}
+    return {"scene": scene, "title": {"text": title}, "template": "plotly_white", "margin": margin}
+
+
+def _controls(frames: int) -> dict[str, Any]:
+    """A button that plays the frames, and a slider through them."""
+
+    def shows(names: Any, duration: int) -> list[Any]:
+        timing = {"frame": {"duration": duration, "redraw": True}, "transition": {"duration": 0}, "mode": "immediate"}
+        return [names, timing | ({"fromcurrent": True} if duration else {})]
+
+    steps = [{"method": "animate", "label": str(k), "args": shows([str(k)], 0)} for k in range(frames)]
+    buttons = [
+        {"method": "animate", "label": "▶", "args": shows(None, 80)},
+        {"method": "animate", "label": "❚❚", "args": shows([None], 0)},
+    ]
+    menu = {"type": "buttons", "direction": "left", "buttons": buttons, "x": 0.0, "y": 0.0, "xanchor": "left"}
+    place = {"x": 0.12, "len": 0.58, "y": 0.02}
+    return {
+        "updatemenus": [menu | {"yanchor": "bottom", "showactive": False}],
+        "sliders": [{"steps": steps, "currentvalue": {"prefix": "frame "}, **place}],
+    }

@@ -1,0 +1,85 @@
+"""Knots from other programs: their objects, and the lists that people download."""
+
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from mobius_flow.cli import main
+from mobius_flow.core import Curve, CurveError, CurveFileError, knot_list
+from mobius_flow.core.knots import knot, knot_type
+
+KNOTINFO = """name|category|pd_notation|dt_notation|braid_notation
+Name|Category|PD Notation|DT Notation|Braid Notation
+3_1|3|[[1,5,2,4],[3,1,4,6],[5,3,6,2]]|[4, 6, 2]|[1,1,1]
+5_2|5|[[1,5,2,4],[3,9,4,8],[5,1,6,10],[7,3,8,2],[9,7,10,6]]|[4, 8, 10, 2, 6]|[1,1,1,2,-1,2]
+"""
+LISTS = {
+    "bars": (KNOTINFO, {"3_1": {"3_1", "m3_1"}, "5_2": {"5_2", "m5_2"}}),
+    "DT, tabs": ("Name\tDT Notation\n4_1\t[4, 6, 8, 2]\n\t[4, 6, 2]\n", {"4_1": {"4_1"}, "knot-2": {"3_1", "m3_1"}}),
+    "braids": (
+        'knot,braid_notation\n"3_1","[-1,-1,-1]"\n"L4a1","{2, {1, 1, 1, 1}}"\n',
+        {"3_1": {"m3_1"}, "L4a1": None},
+    ),
+    "SnapPy": ("DT: [(4, 6, 2)]\nPD: [(4, 2, 5, 1), (6, 4, 1, 3), (2, 6, 3, 5)]\n", {"knot-1": None, "knot-2": None}),
+    "names and codes": ("a, DT: [4 6 2]\nb [[1,5,2,4],[3,1,4,6],[5,3,6,2]]\n", {"a": None, "b": None}),
+    "LinkInfo": ('name,pd_notation_math\nL2a1,"PD[X[4, 1, 3, 2], X[2, 3, 1, 4]]"\n', {"L2a1": {"L2a1", "mL2a1"}}),
+}
+
+
+@pytest.mark.parametrize("kind", LISTS)
+def test_lists_as_people_download_them(kind, tmp_path):
+    text, wanted = LISTS[kind]
+    (tmp_path / "list.csv").write_text(text)
+    found = knot_list(tmp_path / "list.csv")
+    assert list(found) == list(wanted)
+    for name, names in wanted.items():
+        type_of = knot_type(knot(found[name]))
+        assert names is None or set(type_of.names) <= names
+        assert type_of.names
+
+
+@pytest.mark.parametrize("text", ["", "x,y,z\n1,2,3\n", "name,color\na,b\n", "\n\n"])
+def test_what_is_no_list(text, tmp_path):
+    (tmp_path / "list.csv").write_text(text)
+    with pytest.raises(CurveFileError, match=r"list\.csv"):
+        knot_list(tmp_path / "list.csv")
+
+
+def test_a_list_becomes_files(tmp_path, capsys):
+    (tmp_path / "list.csv").write_text(KNOTINFO + "odd|1|[[1,2,3,4]]|[2]|[0]\n")
+    assert main(["knot", str(tmp_path / "list.csv"), str(tmp_path / "none")]) == 2
+    (tmp_path / "out").mkdir()
+    assert main(["knot", str(tmp_path / "list.csv"), str(tmp_path / "out"), "--format", "obj"]) == 2
+    assert "1 of 3 knots cannot be made: odd: " in capsys.readouterr().err
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["3_1.obj", "5_2.obj"]
+
+
+def test_links_of_spherogram():
+    spherogram = pytest.importorskip("spherogram")
+    assert knot_type(Curve.of(spherogram.Link("8_20"))).names == ("8_20",)
+    link = spherogram.Link(braid_closure=[1, 1, 1])
+    assert set(knot_type(Curve.of(link)).names) <= {"3_1", "m3_1"}
+    assert len(Curve.of(spherogram.Link("L6a4")).components) == 3
+
+
+def test_objects_of_others():
+    class Diagram:
+        def PD_code(self):  # noqa: N802 (SnapPy's name)
+            return [[1, 5, 2, 4], [3, 1, 4, 6], [5, 3, 6, 2]]
+
+    assert knot_type(Curve.of(Diagram())).names == knot_type(knot("PD: [[1,5,2,4],[3,1,4,6],[5,3,6,2]]")).names
+    assert knot_type(Curve.of(SimpleNamespace(link=Diagram))).names
+    circle = SimpleNamespace(PD_code=list, unlinked_unknot_components=2)
+    assert len(Curve.of(circle).components) == 2
+    curve = knot("3_1")
+    assert Curve.of(curve) is curve
+    assert len(Curve.of([np.eye(3), 2 + np.eye(3)]).components) == 2
+    for odd in (None, "3_1", object()):
+        with pytest.raises(CurveError):
+            Curve.of(odd)
+
+
+def test_no_list_is_read_for_a_name(monkeypatch):
+    monkeypatch.setitem(sys.modules, "spherogram", None)
+    assert knot_type(knot("3_1")).names == ("3_1",)
