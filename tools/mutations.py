@@ -700,13 +700,6 @@ MUTANTS = (
         f"{PASSES}/test_pieces.py::test_corners_that_would_cross_together_are_not_dropped_together",
     ),
     Mutant(
-        "hairpins that shrink to points",
-        "core/passes/thin.py",
-        "(crossed <= now) & long)",
-        "(crossed <= now))",
-        f"{PASSES}/test_pieces.py::test_hairpins_are_not_made_points",
-    ),
-    Mutant(
         "the same view again",
         "core/passes/views.py",
         "if away and frame is here:",

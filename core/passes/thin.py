@@ -61,8 +61,7 @@ class _Corners:
         spans = np.ascontiguousarray(np.concatenate([every.a[k], every.c[k], start, end]).T)
         near = squared_segment_distances(spans, np.arange(4 * len(k)).reshape(4, -1)) < gap**2
         pierced = np.bincount(k, near | _pierced(every, k, start, end - start), len(every.vertices)) > 0
-        long = np.linalg.norm(every.c - every.a, axis=1) > 1e-6 * body.size
-        fit = np.flatnonzero(~pierced & (crossed <= now) & long)
+        fit = np.flatnonzero(~pierced & (crossed <= now))
         return cls(mesh, points, every.vertices[fit[np.argsort(every.area[fit], kind="stable")]], gap)
 
     def independent(self, mesh: Mesh) -> IntArray:
