@@ -9,7 +9,9 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_locat
 from mathutils import Vector
 
 from ...core import Curve, MobiusFlowError
+from ...core.curve.smooth import arc_lengths
 from ...core.knots import Drawing
+from ...core.knots.inscribed import averaged
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_splines
@@ -128,15 +130,12 @@ class Drawn:
 
 
 def _length(stroke: Sequence[FloatArray]) -> float:
-    return float(np.linalg.norm(np.diff(stroke, axis=0), axis=1).sum()) if len(stroke) > 1 else 0.0
+    return float(arc_lengths(np.array(stroke))[-1])
 
 
 def _even(stroke: Sequence[FloatArray]) -> FloatArray:
     """A stroke, closed, with points at equal distances and smooth; shape (n, 2)."""
     closed = np.array([*stroke, stroke[0]])
-    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+    arc = arc_lengths(closed)
     at = np.arange(0.0, arc[-1], 2 * _STEP)
-    points = np.column_stack([np.interp(at, arc, x) for x in closed.T])
-    for _ in range(_PASSES):
-        points = 0.5 * points + 0.25 * (np.roll(points, 1, axis=0) + np.roll(points, -1, axis=0))
-    return points
+    return averaged(Curve(np.column_stack([np.interp(at, arc, x) for x in closed.T])), _PASSES)

@@ -105,12 +105,13 @@ def rounded(curve: Curve, least: int = 320) -> Curve:
     pieces = math.ceil(least / len(curve))
     split = subdivide(curve, np.full(curve.mesh.edges, pieces))
     passes = max(1, pieces**2 // 2)  # reach about half an edge
-    while passes and not is_free(split.mesh, split.vertices, vertices := _averaged(split, passes)):
+    while passes and not is_free(split.mesh, split.vertices, vertices := averaged(split, passes)):
         passes //= 2
     return split.with_vertices(vertices) if passes else split
 
 
-def _averaged(curve: Curve, passes: int) -> FloatArray:
+def averaged(curve: Curve, passes: int) -> FloatArray:
+    """The vertices, shape (n, m), after averages of each with its neighbours, again and again; ends of arcs stay."""
     vertices, mesh = curve.vertices, curve.mesh
     for _ in range(passes):
         means = 0.5 * vertices + 0.25 * (vertices[mesh.anticycle] + vertices[mesh.cycle])
