@@ -1,13 +1,13 @@
 """Progress on a terminal or in a notebook, with tqdm where it is installed."""
 
-import math
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from ..addon.engine.words import time_left
 from ..core import Iterate, RelaxOptions
-from ..core.driver.run import gradient_bound
+from ..core.driver import TimeLeft
 
 
 @contextmanager
@@ -28,20 +28,21 @@ class Progress:
     """Lets a bar run from the first gradient norm down to the tolerance, on a logarithmic scale."""
 
     def __init__(self, options: RelaxOptions) -> None:
-        self._options = options
+        self._left = TimeLeft(options)
         self._start: float | None = None
 
     def update(self, bar: Any, iterate: Iterate) -> None:
         """Show an iterate, if there is a bar."""
         if bar is None:
             return
-        bound = gradient_bound(self._options, iterate.curve.mesh, iterate.energy)
-        distance = math.log(max(iterate.gradient_norm, bound) / bound)
+        self._left.add(iterate)
+        distance, seconds = self._left.distances[-1], self._left.seconds
         if self._start is None:
             self._start = max(distance, 1e-9)
         bar.n = max(bar.n, round(100 * (1 - distance / self._start)))
         bar.set_postfix_str(
             f"iteration {iterate.index}, objective {iterate.energy:.6g}, gradient {iterate.gradient_norm:.2g}"
+            f"{f', {time_left(seconds)}' if seconds else ''}"
         )
 
 

@@ -19,7 +19,8 @@ from ..live import registry
 from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
 from ..live.modal import Listening, report_result, unseen
 from ..live.requirements import Condition, avoided, container, selected_curves
-from ..live.run import Refresh, Run
+from ..live.run import Run
+from ..live.viewing import Refresh
 from ..properties import SETTINGS, relax_options, settings
 from ..scripting import Relaxation, begin, implied
 from ..translations import rpt_

@@ -29,7 +29,7 @@ from ...core.collision import is_free
 from ...core.messages import Message, Sentence
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions, Output
-from ..engine.motion import Keys, Motion, Proof
+from ..engine.motion import Key, Keys, Motion, Proof
 from ..engine.obstacles import in_common_space
 from ..engine.placement import Frame
 from ..engine.size import Measure
@@ -210,11 +210,16 @@ class Session:
         """The point of the relaxation, shape (3,), that is shown at another."""
         return self._motion.unsized(point)
 
-    def show(self) -> None:
-        """Show the last iterate, its tube as thick as at a key, with the pins that a hand has left."""
-        frame, fits = self.frame, self.group.fits(self._key_options)
+    def show(self, there: Key | None = None) -> None:
+        """Show a shape, by default the last iterate with the pins that a hand has left, its tube as thick as at a key."""
+        frame, fits = self.frame if there is None else there.points, self.group.fits(self._key_options)
         self.group.show(self.start, frame, self._key_options, self._radius(frame) if fits else None)
-        self._mark_pins()
+        if there is None:
+            self._mark_pins()
+
+    def at(self, frame: float) -> Key:
+        """The shape that a scene frame would have if this were the end."""
+        return self._motion.at(frame, self._key_options.timing)
 
     def _mark_pins(self) -> None:
         """Mark the points that are where the last iterate has pins, of which there may be fewer vertices."""

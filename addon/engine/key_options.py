@@ -114,8 +114,12 @@ class Timing:
 
     def frames(self, course: Course) -> FloatArray:
         """Frame of each key as Blender stores it, a 32-bit number, each later than the one before; (keys,)."""
+        return _apart(self.moments(course))
+
+    def moments(self, course: Course) -> FloatArray:
+        """The same in real numbers, which ascend, several perhaps alike; (keys,)."""
         begin, end = self._motion(course.iterates[-1])
-        return _apart(begin + (end - begin) * course.share(self.pace))
+        return np.asarray(begin + (end - begin) * course.share(self.pace))
 
     def scene_range(self, frames: FloatArray) -> tuple[int, int]:
         """First and last frame of an animation with its rests, as whole frames."""

@@ -14,7 +14,8 @@ from ...core import Curve, Iterate, MobiusFlowError
 from ...core.curve import Mesh
 from ...core.types import FloatArray
 from ...core.verify.transition import DifferentCurveError, common_vertices
-from .key_options import Course, Pace
+from .interpolation import interpolated
+from .key_options import Course, Pace, Timing
 from .markers import Markers
 from .placement import Frame, Link
 from .size import Measure, Size
@@ -76,6 +77,7 @@ class Motion:
         self._stages: list[int] = []  # its number
         self._meshes: list[Mesh] = []
         self._markers: list[Markers] = []  # of each component
+        self._ways: list[float] = []  # from each to the next, see `_way`
         self._ends: list[int] = []  # positions of the iterates among the shapes; the others are inner ends of legs
         self._steps: list[float] = []  # sizes of the steps that led to the iterates
         self._energies: list[float] = []
@@ -98,15 +100,20 @@ class Motion:
             self._meshes.append(self._mesh)
             self._markers = list(map(Markers, self._mesh.component_sizes, self._mesh.closed))
             frames = frames if self._first is None else [self._first]
+            ways = []
         elif iterate.path:
             held = list(shown.pins)
             for frame in frames:
                 frame[held] = self._shapes[-1].points[held]  # rounding them anew might move them
+            corners = [self._link.to_common(self._meshes[-1], each) for each in (self._shapes[-1].points, *frames)]
+            ways = [_way(a, b) for a, b in pairwise(corners)]
         else:
             self._change(self._reached[-1], iterate.curve, frames[0])
+            ways = [0.0]
         self.last = shown
         self._reached.append(iterate.curve)
-        self._shapes += map(Key, self._leg_times(iterate.index, frames), frames)
+        self._shapes += map(Key, _leg_times(iterate.index, ways), frames)
+        self._ways += ways
         self._stages += len(frames) * [len(self._meshes) - 1]
         self._ends.append(len(self._shapes) - 1)
         self._steps.append(iterate.step_size if iterate.index else 0.0)
@@ -121,7 +128,7 @@ class Motion:
     def _go_back(self, index: int) -> None:
         """Forget the iterates from a number on, and the meshes that came with them."""
         del self._ends[index:], self._steps[index:], self._energies[index:], self._reached[index:]
-        del self._shapes[self._ends[-1] + 1 :], self._stages[self._ends[-1] + 1 :]
+        del self._shapes[self._ends[-1] + 1 :], self._stages[self._ends[-1] + 1 :], self._ways[self._ends[-1] :]
         del self._meshes[self._stages[-1] + 1 :]
         for markers, size in zip(self._markers, self._meshes[-1].component_sizes, strict=True):
             markers.back(self._stages[-1], size)
@@ -139,15 +146,6 @@ class Motion:
         self._meshes.append(new.mesh)
         sizes = tuple(map(len, self._markers))
         self._mesh = self._mesh if sizes == self._mesh.component_sizes else Mesh(sizes, new.mesh.closed)
-
-    def _leg_times(self, index: int, frames: Sequence[Frame]) -> list[float]:
-        """End times of the legs, so that the fastest vertex keeps its speed from leg to leg."""
-        if len(frames) == 1:
-            return [float(index)]
-        corners = [self._link.to_common(self._meshes[-1], frame) for frame in (self._shapes[-1].points, *frames)]
-        ways = [float(np.abs(b - a).max()) for a, b in pairwise(corners)]
-        passed = np.cumsum(np.maximum(ways, 1e-3 * (max(ways) or 1.0)))
-        return [*(index - 1 + passed[:-1] / passed[-1]).tolist(), float(index)]
 
     def keys(self, free: Proof, limit: int | None = None, pace: Pace = Pace.ITERATE) -> Keys:
         """Choose the keys of an animation from the start to the last iterate.
@@ -183,6 +181,15 @@ class Motion:
         columns = (whole.iterates, whole.distance, whole.flow_time, whole.fall)
         return Course(*(np.interp(times, recorded, column) for column in columns))
 
+    def at(self, frame: float, timing: Timing) -> Key:
+        """The shape that an animation of what was recorded so far has at a scene frame; nothing is proved of it."""
+        place = np.interp(frame, timing.moments(self._course), np.arange(len(self._shapes)))
+        around = [self._key(k) for k in (int(place), min(int(place) + 1, len(self._shapes) - 1))]
+        part = np.array([place % 1.0])
+        (points,) = interpolated(np.stack([key.points for key in around]), part).astype(np.float32)
+        (time,) = interpolated(np.array([key.time for key in around]), part)
+        return Key(float(time), points)
+
     @property
     def way(self) -> float:
         """How far the fastest vertices have gone, in sizes of the curve."""
@@ -192,12 +199,10 @@ class Motion:
     def _course(self) -> Course:
         """How far the relaxation has come at each of the recorded frames."""
         times = np.array([shape.time for shape in self._shapes])
-        stages = zip(self._stages, self._shapes, strict=True)
-        common = [(stage, self._link.to_common(self._meshes[stage], shape.points)) for stage, shape in stages]
-        ways = [_way(a, b) if before == after else 0.0 for (before, a), (after, b) in pairwise(common)]
         reached = times[self._ends]
         flow_time = np.interp(times, reached, np.cumsum(self._steps))
-        return Course(times, np.concatenate([[0.0], np.cumsum(ways)]), flow_time, np.interp(times, reached, self._fall))
+        distance = np.concatenate([[0.0], np.cumsum(self._ways)])
+        return Course(times, distance, flow_time, np.interp(times, reached, self._fall))
 
     @property
     def _fall(self) -> FloatArray:
@@ -276,6 +281,14 @@ class Motion:
     def _common(self, points: Frame | FloatArray) -> FloatArray:
         """Stored points where motions are proved; shape (n, 3)."""
         return self._link.to_common(self._mesh, points)
+
+
+def _leg_times(index: int, ways: Sequence[float]) -> list[float]:
+    """End times of an iterate's legs, so that the fastest vertex keeps its speed from leg to leg."""
+    if len(ways) < 2:
+        return [float(index)]
+    passed = np.cumsum(np.maximum(ways, 1e-3 * (max(ways) or 1.0)))
+    return [*(index - 1 + passed[:-1] / passed[-1]).tolist(), float(index)]
 
 
 def _way(a: FloatArray, b: FloatArray) -> float:

@@ -47,3 +47,10 @@ def in_blenders_words(message: str, splines: Sequence[Message]) -> str:
         return Message(_WORDS[said.template], **said.facts) if said.template in _WORDS else said
 
     return message.reworded(word) if isinstance(message, Message) else message
+
+
+def time_left(seconds: float) -> Message:
+    """Say how long something will still take, to one digit."""
+    if seconds < 100.0:
+        return Message("about {count:.0f} s left", count=float(f"{seconds:.0e}"))
+    return Message("about {count:.0f} min left", count=float(f"{seconds / 60:.0e}"))

@@ -32,7 +32,7 @@ from .motion import frames_of
 from .obstacles import in_common_space
 from .placement import Frame, Link
 
-_AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the worker waits too: that is how it pauses
+_AHEAD = 64  # iterates that wait to be taken in while Blender draws; then the worker waits too
 _PATIENCE = 0.1  # seconds between looks at whether anybody still wants the next iterate
 
 
@@ -42,7 +42,7 @@ Inbox = queue.SimpleQueue[wire.Packet | None]
 def messages(inbox: Inbox) -> Iterator[wire.Packet]:
     """Yield the iterates of a job as messages, or one message with the reason why it cannot be done.
 
-    The inbox has the job first, and then what the hand does, which is looked at between steps; None ends it.
+    The inbox has the job first, and then pauses and what the hand does, looked at between steps; None ends it.
     """
     job = inbox.get()
     if job is None:
@@ -51,6 +51,7 @@ def messages(inbox: Inbox) -> Iterator[wire.Packet]:
     goals = wire.unpack_goals(job)
     obstacles = in_common_space(task.obstacles, link)
     last: Frame | None = None
+    paused = False
     try:
         run = WithOutcome(begun(task, options, goals, hand))
         for iterate in run:
@@ -58,10 +59,13 @@ def messages(inbox: Inbox) -> Iterator[wire.Packet]:
             proved = _proved(iterate, link, [*([] if last is None else [last]), *frames], obstacles)
             yield wire.pack_iterate(iterate, proved)
             last = frames[-1]
-            while hand.rests or not inbox.empty():
+            while paused or hand.rests or not inbox.empty():
                 if (said := inbox.get()) is None:
                     return
-                wire.unpack_deed(said, hand)
+                if said[0]["deed"] == "pause":
+                    (paused,) = said[0]["facts"]
+                else:
+                    wire.unpack_deed(said, hand)
         assert run.outcome is not None, "the loop is through"
         yield wire.pack_outcome(run.outcome)
     except MobiusFlowError as error:
@@ -109,7 +113,10 @@ class Worker:
             threading.Thread(target=_send, args=(self.process, self._inbox), daemon=True).start()
 
     def tell(self, deed: str, *facts: Any) -> None:
-        """Have the hand do something as soon as the present step is done: a method of `Hand`, by its name."""
+        """Have the hand do something as soon as the present step is done: a method of `Hand`, by its name.
+
+        ``pause`` is for the worker itself: whether it waits there.
+        """
         self._inbox.put(wire.pack_deed(deed, *facts))
 
     def poll(self) -> Iterate | Outcome | None:

@@ -101,7 +101,7 @@ def _modified(event: bpy.types.Event) -> bool:
 
 def _under(run: "Run", context: bpy.types.Context, mouse: FloatArray) -> Drag | None:
     """The strand of a running relaxation under the mouse, in a 3D view without anything over it."""
-    if run.state.name != "RUNNING" or run.last is None:
+    if run.state.name != "RUNNING" or run.shown is None:
         return None
     region, curve = _region(context, mouse), run.group.in_view
     if region is None or curve is None:

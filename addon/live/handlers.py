@@ -59,6 +59,7 @@ HANDLERS = {
     "redo_pre": _handler(lambda run: _before_undo(run, registry.history.undone)),
     "undo_post": _handler(lambda run: _after_undo(run, 1), show_originals),
     "redo_post": _handler(lambda run: _after_undo(run, -1), show_originals),
+    "frame_change_post": _handler(lambda run: run.look()),
     "save_pre": _handler(_before_saving),
     "save_post": _handler(lambda run: run.group.resume()),
     "save_post_fail": _handler(lambda run: run.group.resume()),

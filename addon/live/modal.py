@@ -47,7 +47,13 @@ class Loop:
 
     def _visible(self) -> tuple[object, ...]:
         """All that what is shown depends on."""
-        return self.run.state, self.run.shown, self.run.waits, id(self.run.drag and self.run.drag.target)
+        return (
+            self.run.state,
+            self.run.shown,
+            self.run.looked_at,
+            self.run.waits,
+            id(self.run.drag and self.run.drag.target),
+        )
 
     def _key(self, event: bpy.types.Event) -> set[str]:
         undo = event.type == "Z" and (event.ctrl or event.oskey) and not event.shift
@@ -99,7 +105,9 @@ def status_line(run: Run) -> str:
     where = Message("starting")
     if run.last is not None:
         where = Message("iterate {index}, energy {energy:.4f}", index=run.last.index, energy=run.last.energy)
-    if run.state is State.PAUSED:
+    if run.looked_at is not None and run.last is not None:
+        where = Message("looking back at iterate {index:.0f} of {last}", index=run.looked_at, last=run.last.index)
+    elif run.state is State.PAUSED:
         where = Message("paused") if run.last is None else Message("paused at {where}", where=where)
     keys = Message("Drag: pull a strand, Ctrl pins it   |   Enter: keep this shape   |   Esc: put all back")
     return iface_("{names}: {where}   |   {keys}", names=run.name, where=where, keys=keys)

@@ -13,6 +13,7 @@ import bpy
 import numpy as np
 
 from ...core import CurveError, Iterate, MobiusFlowError, Outcome, Status
+from ...core.driver import TimeLeft
 from ...core.errors import Place
 from ...core.messages import Message
 from ...core.types import FloatArray
@@ -25,10 +26,10 @@ from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
 from .drag import Drag
 from .key_writer import KeyWriter
+from .viewing import Refresh, looks_back
 
 _CANCELLED = Message("Cancelled; all is as it was")
 _SLICE = 0.02  # seconds of taking in iterates at a time
-_REST = 2.0  # times as long as drawing takes nothing is drawn after it: drawing gets a third of the time
 
 
 class State(Enum):
@@ -44,34 +45,6 @@ class State(Enum):
         return self in (State.DONE, State.CANCELLED, State.LOST)
 
 
-class Refresh:
-    """Decides which iterates are shown: every so many; 0: so that drawing takes at most a third of the time."""
-
-    def __init__(self, every: int = 0, clock: Callable[[], float] = time.perf_counter) -> None:
-        self._every, self._clock = every, clock
-        self._shown: float | None = None
-        self._next = clock()
-
-    def shown(self) -> None:
-        """Note that an iterate is being shown; Blender draws it before it sends the next event."""
-        self._shown = self._clock()
-
-    def drawn(self) -> None:
-        """Note that an event has come: what was shown last has been drawn."""
-        if self._shown is not None:
-            now = self._clock()
-            self._next = now + _REST * (now - self._shown)
-            self._shown = None
-
-    def ends_batch(self, index: int) -> bool:
-        """Whether an iterate must be shown before the next one is taken in."""
-        return self._every > 0 and index % self._every == 0
-
-    def due(self, index: int) -> bool:
-        """Whether an iterate, the last one taken in, is to be shown now."""
-        return self.ends_batch(index) if self._every else self._clock() >= self._next
-
-
 class Run:
     """A session that is fed by a worker, while its curves are shown."""
 
@@ -81,13 +54,15 @@ class Run:
         self.on_end: Callable[[], None] = lambda: None
         self.last: Iterate | None = None
         self.report: Report | None = None
-        self.shown: Iterate | None = None
+        self.shown: Iterate | None = None  # the newest one, unless the timeline
+        self.looked_at: float | None = None  # looks back at another: its number
         self.energies: list[float] = []
         self.drag: Drag | None = None  # the one that is going on
         self.drags = 0  # those that may be taken back
         self.trouble: list[Spot] = []  # where the reason is why it failed or got stuck, if it is somewhere
         self._left: dict[int, bytes] | None = None  # what the objects were at its end, by their identities
         self._session, self._refresh = session, refresh
+        self.time_left = TimeLeft(session.options)
         try:
             self._worker = Worker(session.task, session.options, self.group.link, stays, session.goals)
         except BaseException:
@@ -135,9 +110,25 @@ class Run:
         return self.state in (State.RUNNING, State.PAUSED)
 
     def toggle_pause(self) -> None:
-        """Stop or resume taking in iterates; during a pause the worker fills its queue and then waits too."""
-        self._show()
-        self.state = {State.RUNNING: State.PAUSED, State.PAUSED: State.RUNNING}.get(self.state, self.state)
+        """Stop, or go on with the next iterate; during a pause the worker waits too."""
+        if self.endures:
+            self._show()
+            self._refresh.wait()
+            self.time_left.restart()
+            self.state = State.PAUSED if self.state is State.RUNNING else State.RUNNING
+            self._worker.tell("pause", self.state is State.PAUSED)
+
+    def look(self) -> None:
+        """Show the shape that the scene's frame would have if the run ended here, while the timeline is used."""
+        if self.last is None or self.state.over or self.waits:
+            return
+        there = self._session.at(bpy.context.scene.frame_current_final) if self.endures and looks_back() else None
+        before, self.looked_at = self.looked_at, None if there is None else there.time
+        if there is not None and there.time != before:
+            self._session.show(there)
+            self.shown = None
+        elif there is None and self.shown is None:
+            self._show()
 
     def grab(self, drag: Drag) -> None:
         """Take hold of a strand; `pull` and `let_go` follow."""
@@ -154,6 +145,7 @@ class Run:
     def let_go(self, pin: bool = False) -> None:
         """Let go of the strand; with a pin it stays there, and the curve is scaled no more to keep its size."""
         self.drag = None
+        self.time_left.restart()
         self._worker.tell("release", pin)
 
     def take_back(self) -> None:
@@ -170,8 +162,8 @@ class Run:
         if self.last is None:
             self.cancel(Message("Stopped before anything had moved"))
             return
+        self.looked_at = self.drag = None
         self._show()
-        self.drag = None
         if self._session.outcome is None:
             reason = reason or Message("stopped after {count} iterations", count=self.last.index)
             self._session.outcome = Outcome(Status.INTERRUPTED, (reason,))
@@ -199,6 +191,7 @@ class Run:
     def tick(self) -> None:
         """Do a little: take in some iterates, or write some keys. Nothing moves while Blender renders."""
         if not (self.state.over or self.waits):
+            self.look()
             self._advance()
 
     def complete(self) -> None:
@@ -237,6 +230,7 @@ class Run:
                 return
             self._session.take(arrived)
             self.last = arrived
+            self.time_left.add(arrived)
             self.energies[arrived.index :] = [arrived.energy]
             if self._refresh.ends_batch(arrived.index):
                 break
@@ -256,7 +250,7 @@ class Run:
             return None
 
     def _show(self) -> None:
-        if self.last is not None and self.last is not self.shown:
+        if self.last is not None and self.last is not self.shown and self.looked_at is None:
             self._session.show()
             self.shown = self.last
             self._refresh.shown()

@@ -10,7 +10,7 @@ from ..curves import surroundings
 from ..curves.exchange import length
 from ..curves.moving import unsteady
 from ..engine.quality import QUALITIES
-from ..engine.words import named
+from ..engine.words import named, time_left
 from ..live import registry
 from ..live.checks import RELAXABLE
 from ..live.requirements import avoided, selected_curves
@@ -67,6 +67,9 @@ def _warning(layout: bpy.types.UILayout, context: bpy.types.Context, objects: Se
 def _state(run: Run) -> Message:
     if run.waits:
         return Message("Waiting for the render")
+    seconds = run.time_left.seconds if run.state is State.RUNNING and run.drag is None else None
+    if seconds is not None:
+        return Message("{state}, {time}", state=run.state.value, time=time_left(seconds))
     return Message("Failed") if run.failed and run.state is State.CANCELLED else run.state.value
 
 
@@ -81,7 +84,8 @@ def _progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         value(box, "Energy", f"{run.last.energy:.4f}")
         if run.target is not None:
             value(box, "At least", run.target.label)
-        value(box, "Iteration", f"{run.last.index}")
+        back = run.looked_at
+        value(box, "Iteration", f"{run.last.index}" if back is None else f"{back:.0f} / {run.last.index}")
         proved = run.last.certified if run.report is None else run.report.certified
         whom = Message("with itself") if len(run.group.names) == 1 else Message("among themselves")
         value(box, "Free of contact", whom if proved else Message("not proved"))

@@ -5,6 +5,7 @@ from .loop import Relaxation, WithOutcome
 from .options import RelaxOptions
 from .outcome import Outcome, Status
 from .relax import Result, finish, minimize, relax
+from .time_left import TimeLeft
 from .trajectory import Iterate, Trajectory
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "Relaxation",
     "Result",
     "Status",
+    "TimeLeft",
     "Trajectory",
     "WithOutcome",
     "finish",

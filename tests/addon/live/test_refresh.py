@@ -4,7 +4,7 @@ import pytest
 
 pytest.importorskip("bpy")
 
-from mobius_flow.addon.live.run import Refresh
+from mobius_flow.addon.live.viewing import Refresh
 
 
 class Window:
@@ -51,3 +51,12 @@ def test_every_so_many():
     assert [index for index in range(10) if refresh.due(index)] == [0, 3, 6, 9]
     assert [index for index in range(10) if refresh.ends_batch(index)] == [0, 3, 6, 9]
     assert not any(Refresh().ends_batch(index) for index in range(10))
+
+
+def test_after_a_pause_the_very_next_one():
+    refresh = Refresh(clock=lambda: -1.0)
+    refresh.wait()
+    assert refresh.ends_batch(7)
+    assert refresh.due(7)
+    refresh.shown()
+    assert not refresh.ends_batch(8)
