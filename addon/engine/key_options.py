@@ -20,6 +20,7 @@ _BY_LENGTH = Message("Start Frame or Length")
 # shares of an even motion: of distance, of what the energy has fallen by, so that drift takes few frames, and of the
 # iterates, so that the last, small steps get some
 _EVEN = 0.55, 0.3, 0.15
+_DRIFT = 0.1  # what a way is worth along which the energy stays within a hundredth of the least
 _RAMP = 0.12  # of the time, in which an even motion sets off, and in which it comes to rest
 _CREEP = 0.1  # of its speed, with which it begins and ends
 
@@ -40,17 +41,22 @@ class Course:
     iterates: FloatArray  # number of iterates passed
     distance: FloatArray  # way of the fastest vertex, in sizes of the curve, summed up
     flow_time: FloatArray  # sum of the step sizes
-    fall: FloatArray  # of the logarithm of the energy above where it ends
+    fall: FloatArray  # of the logarithm of the energy above where it ends and a bit, see `Motion`
 
     def share(self, pace: Pace) -> FloatArray:
         """Share of the time passed at each frame, from 0 to 1."""
         if pace is Pace.ITERATE:
             return _share(self.iterates, self.iterates)
-        passed = _share(self.flow_time if pace is Pace.FLOW_TIME else self.distance, self.iterates)
         if pace is Pace.EVEN:
-            parts = passed, _share(self.fall, self.iterates), _share(self.iterates, self.iterates)
-            return _eased(np.average(parts, axis=0, weights=_EVEN))
-        return passed
+            parts = self._worth(self.distance), self.fall, self._worth(self.iterates)
+            return _eased(np.average([_share(part, self.iterates) for part in parts], axis=0, weights=_EVEN))
+        return _share(self.flow_time if pace is Pace.FLOW_TIME else self.distance, self.iterates)
+
+    def _worth(self, passed: FloatArray) -> FloatArray:
+        """Something that passes, summed up with less weight where the energy hardly falls any more: drift."""
+        above = np.expm1(np.minimum(self.fall[-1] - self.fall, 50.0))  # bits of energy above the end
+        worth = (above + _DRIFT) / (above + 1.0)
+        return np.concatenate([[0.0], np.cumsum(0.5 * (worth[1:] + worth[:-1]) * np.diff(passed))])
 
 
 def _eased(share: FloatArray) -> FloatArray:

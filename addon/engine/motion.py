@@ -23,6 +23,7 @@ from .size import Measure, Size
 Proof = Callable[[Mesh, FloatArray, FloatArray], bool]
 
 _HALVINGS = 5  # of one leg; its keys are then still further apart in time than what Blender tells apart
+_MANY, _CUTS = 120, 8  # keys with which a rounded motion looks smooth, and at most so many for each that there is
 _BIT = 0.01  # of the least energy: falls far below that are not seen
 _TINY = 1e-300
 
@@ -152,16 +153,37 @@ class Motion:
 
         ``free``: ``free(mesh, start, end)`` proves a straight motion free of contact; ``limit``: wanted number of keys,
         at least 2, spread evenly over the frames; None keys every iterate. Keys are added beyond it where the straight
-        motion from one to the next cannot be proved; ``pace``: what passes evenly from frame to frame.
+        motion from one to the next cannot be proved; ``pace``: what passes evenly from frame to frame; with
+        `Pace.EVEN` corners are rounded where that can be proved too.
         """
         chosen = self._spread(limit, pace)
         keys = [self._key(chosen[0])]
         unproved = int(not self._rounds_freely(self.start, keys[0], free))
-        for a, b in pairwise(chosen):
-            for key, proved in self._way(a, b, free):
+        legs = self._rounded(chosen, free, limit is None) if pace is Pace.EVEN else {}
+        for k, (a, b) in enumerate(pairwise(chosen)):
+            for key, proved in ((key, True) for key in legs[k]) if k in legs else self._way(a, b, free):
                 keys.append(key)
                 unproved += not proved
         return Keys(tuple(keys), unproved)
+
+    def _rounded(self, chosen: Sequence[int], free: Proof, more: bool) -> dict[int, list[Key]]:
+        """The legs of a motion whose corners are rounded, by number, with the keys in which each goes on and ends.
+
+        Those left out cannot be proved like that, and begin and end as they were recorded. Few are cut, if ``more``.
+        """
+        ends = [self._key(position) for position in chosen]
+        cuts = min(_CUTS, -(-_MANY // len(ends))) if more else 1
+        shown, left = _means(ends, cuts), list(range(len(ends) - 1))
+        legs = {k: shown[k * cuts : (k + 1) * cuts + 1] for k in left}
+        while left:
+            k = left.pop()
+            if k in legs and not all(self._proved(a, b, free) for a, b in pairwise(legs[k])):
+                del legs[k]
+                for beside, end, place in ((k - 1, -1, k), (k + 1, 0, k + 1)):
+                    if beside in legs:
+                        legs[beside][end] = ends[place]
+                        left.append(beside)
+        return {k: leg[1:] for k, leg in legs.items()}
 
     def result(self, free: Proof) -> Keys:
         """Return the last iterate alone; it counts as proved if the way there and its rounding were."""
@@ -281,6 +303,21 @@ class Motion:
     def _common(self, points: Frame | FloatArray) -> FloatArray:
         """Stored points where motions are proved; shape (n, 3)."""
         return self._link.to_common(self._mesh, points)
+
+
+def _means(keys: Sequence[Key], cuts: int) -> list[Key]:
+    """Cut legs between keys into so many pieces; of all but the first and the last key, means over the nearest legs.
+
+    A motion along straight ways turns in many small corners then, instead of a few sharp ones; points that rest do.
+    """
+    places = np.linspace(0.0, len(keys) - 1.0, (len(keys) - 1) * cuts + 1)
+    times = interpolated(np.array([key.time for key in keys]), places)
+    points = interpolated(np.stack([key.points for key in keys]).astype(np.float64), places)
+    for _ in range(2 * cuts**2):  # binomial means, as wide as a leg
+        for values in (times, points):
+            values[1:-1] = 0.25 * values[:-2] + 0.5 * values[1:-1] + 0.25 * values[2:]
+    inner = [Key(float(time), shape.astype(np.float32)) for time, shape in zip(times, points, strict=True)]
+    return [keys[0], *inner[1:-1], keys[-1]] if len(keys) > 1 else list(keys)
 
 
 def _leg_times(index: int, ways: Sequence[float]) -> list[float]:
