@@ -134,19 +134,23 @@ class Relaxation:
         require(BAKED.of(self.objects))
         return BakedKeys(self.objects).curves
 
-    def set_up_stage(self, use_camera: bool = True, use_world: bool = True) -> bpy.types.Collection:
+    def set_up_stage(
+        self, use_camera: bool = True, use_world: bool = True, look: str = "SCENE"
+    ) -> bpy.types.Collection:
         """Put a camera, lights and a floor around the curves for as long as they move; see `staging.set_up`.
 
-        The scene is the open one. Raises MobiusFlowError if splines cannot be read.
+        The scene is the open one; the look is one of those of `film`. Raises MobiusFlowError if splines cannot be read.
         """
         _update()
         require(idle() or READABLE.of(self.objects))
-        return staging.set_up(bpy.context.scene, self.objects, use_camera, use_world)
+        return staging.set_up(bpy.context.scene, self.objects, use_camera, use_world, look)
 
     def film(self, path: str | os.PathLike[str], look: str = "SCENE", overwrite: bool = False) -> Path:
         """Render the frames that the open scene plays to an MP4, and return where it is.
 
-        Raises MobiusFlowError if it cannot be made, or is there already and may not be overwritten.
+        The look is ``"SCENE"`` for the scene's own settings, ``"QUICK"``, ``"STUDIO"``, ``"PAPER"``, ``"NEON"``,
+        ``"ROPE"`` or ``"GLASS"``. Raises MobiusFlowError if it cannot be made, or is there already and may not be
+        overwritten.
         """
         require(idle())
         filming = Filming(bpy.context.scene, os.fspath(path), look, overwrite)

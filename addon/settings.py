@@ -8,8 +8,8 @@ from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringPropert
 from .engine.knot_list import GROUPS, group, labels
 from .engine.quality import QUALITIES, quality_of
 from .live.modal import redraw_views
-from .pictures import icons
-from .pictures.filming import LOOKS
+from .pictures import icons, staging
+from .pictures.filming import CHOICES
 from .properties import MobiusFlowSettings
 
 # since 5.0 Blender marks relative paths as wrong where a property does not say that it knows them
@@ -60,8 +60,9 @@ class MobiusFlowFilmSettings(bpy.types.PropertyGroup):
     )
     look: EnumProperty(
         name="Look",
-        description="How the frames are rendered",
-        items=[(name, look.label, look.description) for name, look in LOOKS.items()],
+        description="What the stage and the curves on it are made of, and how frames are rendered",
+        items=[(name, *words) for name, words in CHOICES.items()],
+        update=lambda film, context: staging.restyle(context.scene, film.look),
     )
 
 

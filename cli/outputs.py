@@ -10,18 +10,18 @@ from ..addon.pictures import export, film
 from ..core import Curve, Iterate, MobiusFlowError, Result
 from ..core.curve import check_closed
 from ..core.curve.io import FORMATS, WRITTEN_FORMATS, Format
-from ..core.errors import wrong_suffix
+from ..core.errors import OptionError, wrong_suffix
 from . import curves
 from .progress import show_frames
 
-Writer = Callable[[str, Result, Sequence[Iterate], bool], object]
+Writer = Callable[[str, Result, Sequence[Iterate], bool, str | None], object]
 
 
 @dataclass(frozen=True)
 class Output:
     """One kind of output."""
 
-    write: Writer  # the last argument is whether progress may be shown
+    write: Writer  # the last arguments are whether progress may be shown, and the look of a scene
     admit: Callable[[Curve], object]  # raises a MobiusFlowError if it cannot hold a curve
     is_scene: bool = False  # which needs Blender's module, and shows the whole run
 
@@ -30,17 +30,17 @@ def _curve_output(form: Format, name: str | None = None) -> Output:
     return Output(lambda path, result, *_: curves.write(path, result.curve, name), form.text)
 
 
-def _scene_output(write: Callable[[str, Sequence[Iterate], bool], object]) -> Output:
+def _scene_output(write: Callable[[str, Sequence[Iterate], bool, str | None], object]) -> Output:
     def admit(curve: Curve) -> None:
         film.check_dimension(curve)
         check_closed(curve, "scenes, films and pictures")
 
-    return Output(lambda path, _, iterates, shown: write(path, iterates, shown), admit, is_scene=True)
+    return Output(lambda path, _, iterates, *how: write(path, iterates, *how), admit, is_scene=True)
 
 
-def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool) -> None:
+def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool, look: str | None) -> None:
     try:
-        export.write_movie(path, iterates, show_frames if shown else None)
+        export.write_movie(path, iterates, show_frames if shown else None, look)
     except KeyboardInterrupt:
         if shown:
             print(file=sys.stderr)  # the line with the progress has no end yet
@@ -50,19 +50,22 @@ def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool) -> None:
 OUTPUTS: Mapping[str, Output] = MappingProxyType(
     {suffix: _curve_output(FORMATS[suffix]) for suffix in WRITTEN_FORMATS}
     | {
-        ".blend": _scene_output(lambda path, iterates, _: export.write_blend(path, iterates)),
+        ".blend": _scene_output(lambda path, iterates, _, look: export.write_blend(path, iterates, look)),
         ".mp4": _scene_output(_write_movie),
-        ".png": _scene_output(lambda path, iterates, _: export.write_still(path, iterates)),
+        ".png": _scene_output(lambda path, iterates, _, look: export.write_still(path, iterates, look)),
     }
 )
 
 
-def output_for(path: str, name: str | None = None) -> Output:
+def output_for(path: str, name: str | None = None, look: str | None = None) -> Output:
     """The kind of output that a path's suffix or ``--format`` asks for.
 
-    Raises MobiusFlowError if the suffix is unknown and no format named, or Blender's module is needed and missing.
+    Raises MobiusFlowError if the suffix is unknown and no format named, or Blender's module is needed and missing;
+    OptionError if it has no look.
     """
     suffix = Path(path).suffix.lower()
+    if look is not None and not (suffix in OUTPUTS and OUTPUTS[suffix].is_scene):
+        raise OptionError(f"--look is for {', '.join(name for name, each in OUTPUTS.items() if each.is_scene)}")
     if suffix not in OUTPUTS:
         if name is None and path != curves.STREAM and suffix not in FORMATS:
             raise MobiusFlowError(f"{path}: {wrong_suffix(path, OUTPUTS, 'outputs')}{curves.or_format(path)}")

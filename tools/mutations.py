@@ -547,10 +547,10 @@ MUTANTS = (
     ),
     Mutant(
         "tubes that shrink at once",
-        "addon/engine/tube.py",
+        "addon/engine/rounded.py",
         "(slice(None), slice(None, None, -1))",
         "(slice(None),)",
-        f"{ENGINE}/test_tube.py::test_tubes_become_thin_before_and_thick_after_a_narrow_place_at_the_same_pace",
+        f"{ENGINE}/test_rounded.py::test_tubes_become_thin_before_and_thick_after_a_narrow_place_at_the_same_pace",
     ),
     Mutant(
         "a bend is two strands",

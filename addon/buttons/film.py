@@ -11,7 +11,7 @@ from ..engine.words import named
 from ..live.checks import READABLE
 from ..live.requirements import Condition, idle, selected_curves
 from ..pictures import staging
-from ..pictures.filming import LOOKS, Filming, is_rendering, target
+from ..pictures.filming import CHOICES, Filming, is_rendering, target
 from ..scripting import Relaxation
 from ..translations import iface_, rpt_
 from .button import Button, button
@@ -40,7 +40,7 @@ Your own lights stay; your camera and your world come back with Remove Stage"""
 
     def act(self, context: bpy.types.Context) -> None:
         objects = selected_curves(context)
-        Relaxation(*objects).set_up_stage(self.use_camera, self.use_world)
+        Relaxation(*objects).set_up_stage(self.use_camera, self.use_world, context.scene.mobius_flow_film.look)
         thin = [obj.name for obj in objects if not obj.hide_render and not drawn_radius(obj)]
         if thin:
             sentence = "Renders do not show {names}, as there is no tube: press Fit Tube"
@@ -61,7 +61,7 @@ class _OfFilm:
         "look": EnumProperty(
             name="Look",
             description="How the frames are rendered",
-            items=[(name, look.label, look.description) for name, look in LOOKS.items()],
+            items=[(name, *words) for name, words in CHOICES.items()],
             options={"SKIP_SAVE", "HIDDEN"},
         ),
     }

@@ -25,7 +25,8 @@ def writing(
     """Write keys in short pieces to a curve object with as many points; the curve itself keeps the last key.
 
     It has no animation, or keys of an earlier call, the last of which is the first of the new ones. ``frames``: scene
-    frame of each key, ascending; ``radii``: relative radius of all points at each; None keeps the points' own; (keys,).
+    frame of each key, ascending; ``radii``: relative radii at each, (keys,) or of each point, (keys, n); None keeps the
+    points' own.
     """
     write_points(obj.data, keys.keys[-1].points)
     if output is Output.SHAPE_KEYS:
@@ -117,7 +118,7 @@ def _shape_keys(
         block.interpolation = "KEY_LINEAR"
         block.data.foreach_set("co", key.points.ravel())
         if radii is not None:
-            block.data.foreach_set("radius", np.full(len(key.points), radii[k], dtype=np.float32))
+            block.data.foreach_set("radius", np.broadcast_to(radii[k], len(key.points)).astype(np.float32))
         yield
     data.shape_keys.use_relative = False
     data.shape_keys.eval_time = 0

@@ -6,18 +6,13 @@ import numpy as np
 
 from ...core import Curve, Obstacle
 from ...core.collision.clearance import clears
-from ...core.curve import Mesh
 from ...core.curve.distances import nearest_strands
-from ...core.types import FloatArray
-from .placement import Frame
 
 _THICKEST = 0.016  # of a component's length: a round circle's tube is then a tenth of its radius
 _DISTINCT = 3.0  # two points lie on different strands if they are this many times further apart along the curve
-_AIR = 0.94  # of half the gap, so that strands do not seem to touch
+AIR = 0.94  # of half the gap, so that strands do not seem to touch
 _FINE = 8.0  # edges this many times shorter than a distance tell it
 _FEWEST = 16  # vertices of a component that is thinned
-_THINNEST = 3e-3  # of a curve's size: a thinner tube is not seen in a film, nor is which strand is in front
-_GROWTH = 0.04  # of the thickest radius, per frame
 
 
 def thickest_radius(curve: Curve) -> float:
@@ -27,14 +22,14 @@ def thickest_radius(curve: Curve) -> float:
 
 def free_radius(curve: Curve, thickest: float) -> float:
     """Half the gap between strands of a curve, at most ``thickest``."""
-    return min(thickest, 0.5 * _AIR * strand_gap(curve, 2 * thickest / _AIR))
+    return min(thickest, 0.5 * AIR * strand_gap(curve, 2 * thickest / AIR))
 
 
 def radius_beside(curve: Curve, radius: float, obstacles: Sequence[Obstacle]) -> float:
     """A radius, or as much less, to 2 %, as obstacles leave room for; at least a thousandth of it."""
 
     def fits(thick: float) -> bool:
-        return clears(_thinned(curve, thick), obstacles, thick / _AIR)
+        return clears(_thinned(curve, thick), obstacles, thick / AIR)
 
     if not obstacles or fits(radius):
         return radius
@@ -69,15 +64,3 @@ def _thinned(curve: Curve, distance: float) -> Curve:
     steps = [max(1, min(stride, len(each) // _FEWEST)) for each in curve.components]
     pieces = [np.concatenate([p[:-1:k], p[-1:]]) for p, k in zip(curve.components, steps, strict=True)]
     return Curve.from_components(pieces, curve.mesh.closed)
-
-
-def animated_radii(mesh: Mesh, points: Sequence[Frame], frames: FloatArray) -> FloatArray:
-    """Radii of the tube at keyed curves, (keys,): free at each unless too thin to see, and changing gently."""
-    curves = [Curve(p.astype(np.float64), mesh) for p in points]
-    thickest = np.array(list(map(thickest_radius, curves)))
-    radii = np.array(list(map(free_radius, curves, thickest)))
-    for order in (slice(None), slice(None, None, -1)):
-        view, steps = radii[order], np.abs(np.diff(frames[order])) * _GROWTH * thickest[order][1:]
-        for k, step in enumerate(steps):
-            view[k + 1] = min(view[k + 1], view[k] + step)
-    return np.maximum(radii, [_THINNEST * np.ptp(p, axis=0).max() for p in points])

@@ -8,18 +8,21 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ...core.types import FloatArray
 from ..curves.fcurves import FCurves
+from ..engine.interpolation import interpolated
 from ..engine.placement import Frame
-from .stage import Stage, add, place
+from .stage import Stage, add
 
 if TYPE_CHECKING:
     import bpy
+    import mathutils
 
-_ELEVATION = np.radians(62.0)
 _LENS = 60.0  # mm
 _SENSOR = 36.0  # mm
 _MARGIN = 1.14
 _CALM = 25  # frames over which the camera's way is smoothed
 _LIFT = 1.02  # of the tube's radius: how far the lowest point stays above the floor
+_ORBIT = np.radians(24.0)  # to either side, once in a film
+_APERTURE = 0.03  # width of the lens in sizes of the stage: what is a size off the focus is softened by so much
 
 
 def follow(
@@ -33,55 +36,65 @@ def follow(
 ) -> "bpy.types.Object":
     """Add a camera that sees the whole tube in every frame, and keep the floor just below it.
 
-    ``size`` is that of its pictures, in any unit; the floor is at the height of the stage's middle; points are the
-    vertices, (n, 3), of every key.
+    It swings around the stage, looks at an empty and is focused there. ``size`` is that of its pictures, in any unit;
+    the floor is at the height of the stage's middle; points are the vertices, (n, 3), of every key.
     """
     import bpy
 
-    axes = _view_axes(stage)
     data = bpy.data.cameras.new("Camera")
     data.lens, data.sensor_width = _LENS, _SENSOR
-    camera = add(collection, "Camera", data)
-    place(camera, stage.middle + axes[2], stage.middle, stage.axes[2])
+    camera, focus = add(collection, "Camera", data), add(collection, "Focus", None)
     every = np.arange(np.floor(frames[0]), np.ceil(frames[-1]) + 1)
-    seen = [(p - stage.middle) @ axes.T for p in points]
     slopes = 0.5 * _SENSOR / _LENS * np.array(size) / max(size)  # tangents of half the angles of view
-    eyes = _eyes(seen, radii, slopes / _MARGIN, frames, every)
+    stacked, places = np.stack(points), np.interp(every, frames, np.arange(len(frames)))
+    shapes = [(interpolated(stacked, at[None])[0] - stage.middle) @ stage.axes.T for at in places]
+    views = [_view(stage.elevation, turn) for turn in _ORBIT * np.sin(np.linspace(0.0, 2.0 * np.pi, len(every)))]
+    targets, distances = _targets(shapes, np.interp(every, frames, radii), slopes / _MARGIN, views)
     heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - _LIFT * radii
     lows = -_calm(-np.interp(every, frames, heights))
-    _move(camera, stage.middle + eyes @ axes, every)
+    _move(focus, stage.middle + targets @ stage.axes, every)
+    _move(camera, stage.middle + (targets + distances[:, None] * np.array(views)[:, 2]) @ stage.axes, every)
     _move(floor, stage.middle + lows[:, None] * stage.axes[2], every)
-    distances = eyes[:, 2]
+    focus.rotation_euler, focus.empty_display_size = _euler(stage.axes), 0.1 * stage.size
+    look = camera.constraints.new("TRACK_TO")
+    look.target, look.track_axis, look.up_axis, look.use_target_z = focus, "TRACK_NEGATIVE_Z", "UP_Y", True
     data.clip_start, data.clip_end = 1e-2 * distances.min(), 1e2 * distances.max()
+    data.dof.use_dof, data.dof.focus_object = True, focus
+    data.dof.aperture_fstop = 1e-3 * _LENS / (_APERTURE * stage.size)  # a lens is measured in millimetres
     return camera
 
 
-def _view_axes(stage: Stage) -> FloatArray:
-    """Right, up and backward of the camera, which looks down on the stage; rows."""
-    backward = np.array([0.0, -np.cos(_ELEVATION), np.sin(_ELEVATION)]) @ stage.axes
-    return np.array([stage.axes[0], np.cross(backward, stage.axes[0]), backward])
+def _view(elevation: float, turn: float) -> FloatArray:
+    """Right, up and backward, in a stage's axes, of a camera that looks down on it; rows."""
+    right = np.array([np.cos(turn), np.sin(turn), 0.0])
+    backward = np.array([np.cos(elevation) * np.sin(turn), -np.cos(elevation) * np.cos(turn), np.sin(elevation)])
+    return np.array([right, np.cross(backward, right), backward])
 
 
-def _eyes(
-    seen: Sequence[FloatArray], radii: FloatArray, slopes: FloatArray, frames: FloatArray, every: FloatArray
-) -> FloatArray:
-    """Places of a camera that looks along −z in every frame, all in its own directions; shape (frames, 3).
+def _targets(
+    shapes: Sequence[FloatArray], radii: FloatArray, slopes: FloatArray, views: Sequence[FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Where cameras look in every frame, (frames, 3), and their distances from there, (frames,); in the shapes' axes.
 
-    Seen from depth d, a point is inside the picture if |x − c| ≤ s (d − z). The outermost points give the best
-    centre c; then follows the depth that a calmly moving c needs. Both are right between keys too, where points
-    move straight: what a point needs is a convex function of where it is.
+    Seen from distance d, a point is inside the picture if |x − c| ≤ s (d − z). The outermost points give the best
+    centre c, and then the distance that a calmly moving c needs.
     """
-    reaches = [p[:, 2:] * slopes + r * np.sqrt(1 + slopes**2) for p, r in zip(seen, radii, strict=True)]
-    sides = [((p[:, :2] + a).max(axis=0), (p[:, :2] - a).min(axis=0)) for p, a in zip(seen, reaches, strict=True)]
-    high, low = (np.array(side) for side in zip(*sides, strict=True))
-    centres = _each(0.5 * (high + low), frames, every)
-    centres = uniform_filter1d(centres, _CALM, axis=0, mode="nearest")
-    needed = np.maximum(_each(high, frames, every) - centres, centres - _each(low, frames, every)) / slopes
-    return np.column_stack([centres, _calm(needed.max(axis=1))])
+    reaches = radii[:, None] * np.sqrt(1 + slopes**2)
+    seen = [shape @ view.T for shape, view in zip(shapes, views, strict=True)]
+    high = [(p[:, :2] + p[:, 2:] * slopes + r).max(axis=0) for p, r in zip(seen, reaches, strict=True)]
+    low = [(p[:, :2] - p[:, 2:] * slopes - r).min(axis=0) for p, r in zip(seen, reaches, strict=True)]
+    centres = [0.5 * (a + b) @ view[:2] for a, b, view in zip(high, low, views, strict=True)]
+    targets = uniform_filter1d(np.array(centres), _CALM, axis=0, mode="nearest")
+    looked = np.array([view @ target for view, target in zip(views, targets, strict=True)])
+    needed = np.maximum(high - looked[:, :2], looked[:, :2] - low) / slopes - looked[:, 2:]
+    return targets, _calm(needed.max(axis=1))
 
 
-def _each(values: FloatArray, frames: FloatArray, every: FloatArray) -> FloatArray:
-    return np.column_stack([np.interp(every, frames, column) for column in values.T])
+def _euler(axes: FloatArray) -> "mathutils.Euler":
+    """The rotation that turns the world's axes into others, rows."""
+    from mathutils import Matrix
+
+    return Matrix(axes.T.tolist()).to_euler()
 
 
 def _calm(values: FloatArray) -> FloatArray:

@@ -19,8 +19,10 @@ from ...core.deadline import termination_raises
 from ...core.errors import OutputError
 from ...core.files import atomic_write
 from ..engine.motion import Key, Keys
+from ..engine.rounded import rounded
 from ..engine.size import Measure
 from . import film, rendering
+from .looks import DEFAULT, LOOKS
 from .movie import Progress, render_movie
 
 if TYPE_CHECKING:
@@ -28,8 +30,9 @@ if TYPE_CHECKING:
 
 Target = str | os.PathLike[str]
 
-_PICTURE = (800, 450, 8)  # width, height, samples
+_PICTURE = (800, 450)  # width, height
 _FILM = (640, 360)
+_FILM_SAMPLES = 12
 _FILM_WITHOUT_DRIVER = (384, 216, 3)
 _TERMINATED = 143  # the status that a shell gives to a process ended by SIGTERM
 
@@ -47,71 +50,83 @@ def require_blender() -> None:
         raise MobiusFlowError(f"Blender's Python module, which is installed, cannot be loaded: {error}") from error
 
 
-def write_blend(path: Target, iterates: Sequence[Iterate]) -> bool:
+def write_blend(path: Target, iterates: Sequence[Iterate], look: str | None = None) -> bool:
     """Write a .blend in which the relaxation plays, ready to render, where the extension is not installed too.
 
-    ``iterates`` are those of a run, from the start to the last. Raises MobiusFlowError if Blender's module is missing
-    or the file cannot be written.
+    ``iterates`` are those of a run, from the start to the last; ``look`` is one of `LOOKS`. Raises MobiusFlowError if
+    Blender's module is missing or the file cannot be written.
     """
-    _, certified = _played(iterates, lambda scene: rendering.use_cycles(scene, *_PICTURE), in_place=True)
+    style = LOOKS[look or DEFAULT]
+    _, certified = _played(iterates, lambda scene: rendering.use_cycles(scene, style, *_PICTURE), look, in_place=True)
     _make(path, _save)
     return certified
 
 
-def write_movie(path: Target, iterates: Sequence[Iterate], progress: Progress | None = None) -> bool:
+def write_movie(
+    path: Target, iterates: Sequence[Iterate], progress: Progress | None = None, look: str | None = None
+) -> bool:
     """Render the relaxation to an .mp4 of a few seconds, or half a minute where strands are moved one after the other.
 
-    ``progress`` gets the number of frames done and of all frames. Otherwise as `write_blend`.
+    ``progress`` gets the number of frames done and of all frames; without a ``look`` it is drawn plainly, in little
+    time. Otherwise as `write_blend`.
     """
 
     def set_up(scene: "bpy.types.Scene") -> None:
-        if rendering.workbench_works():
+        if look is not None:
+            rendering.use_cycles(scene, LOOKS[look], *_FILM, _FILM_SAMPLES)
+        elif rendering.workbench_works():
             rendering.use_workbench(scene, *_FILM)
         else:
-            rendering.use_cycles(scene, *_FILM_WITHOUT_DRIVER, draft=True)
+            rendering.use_cycles(scene, LOOKS[DEFAULT], *_FILM_WITHOUT_DRIVER)
             rendering.skip_frames(scene)
 
-    scene, certified = _played(iterates, set_up)
+    scene, certified = _played(iterates, set_up, look)
     _make(path, lambda temporary: render_movie(scene, temporary, progress))
     return certified
 
 
 def _played(
-    iterates: Sequence[Iterate], set_up: Callable[["bpy.types.Scene"], None], in_place: bool = False
+    iterates: Sequence[Iterate], set_up: Callable[["bpy.types.Scene"], None], look: str | None, in_place: bool = False
 ) -> tuple["bpy.types.Scene", bool]:
-    """A scene that plays a relaxation, and whether all it shows is proved; ``in_place``: as large and where it is."""
+    """A scene that plays a relaxation, and whether all it shows is proved.
+
+    ``in_place``: as large and where it is, with its corners; otherwise these are rounded.
+    """
     motion, origin = film.recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
     timing = film.timing(motion)
-    keys = motion.keys(is_free, timing.length, timing.pace)
+    keys, mesh = motion.keys(is_free, timing.length, timing.pace), motion.start.mesh
     frames = timing.frames(motion.course(keys))
+    if not in_place:
+        mesh, keys = rounded(mesh, keys, is_free)
     scene = _empty_scene()
     set_up(scene)
-    film.compose(scene, keys, frames, motion.start.mesh, origin if in_place else None)
+    film.compose(scene, keys, frames, mesh, look or DEFAULT, origin if in_place else None)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     return scene, keys.certified
 
 
-def write_still(path: Target, iterates: Sequence[Iterate]) -> bool:
+def write_still(path: Target, iterates: Sequence[Iterate], look: str | None = None) -> bool:
     """Render the relaxed curve, the last iterate, to a .png; otherwise as `write_blend`."""
     motion, _ = film.recorded(iterates)
     keys = motion.result(is_free)
-    _render(path, keys, motion.start.mesh, *_PICTURE)
-    return keys.certified
+    return _render(path, keys, motion.start.mesh, _PICTURE, look)
 
 
-def write_picture(path: Target, curve: Curve, width: int, height: int) -> None:
+def write_picture(path: Target, curve: Curve, width: int, height: int, look: str | None = None) -> None:
     """Render a curve to a .png of so many pixels; raises as `write_blend` does."""
     film.check_dimension(curve)
     link = film.Origin.of(film.spatial(curve.vertices)).link(curve.mesh)
     points = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
-    _render(path, Keys((Key(0.0, points),), 0), curve.mesh, width, height, _PICTURE[2])
+    _render(path, Keys((Key(0.0, points),), 0), curve.mesh, (width, height), look)
 
 
-def _render(path: Target, keys: Keys, mesh: Mesh, width: int, height: int, samples: int) -> None:
+def _render(path: Target, keys: Keys, mesh: Mesh, size: tuple[int, int], look: str | None) -> bool:
+    mesh, keys = rounded(mesh, keys, is_free)
     scene = _empty_scene()
-    rendering.use_cycles(scene, width, height, samples)
-    film.compose(scene, keys, np.ones(1), mesh)
+    rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size)
+    film.compose(scene, keys, np.ones(1), mesh, look or DEFAULT)
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
+    return keys.certified
 
 
 def _empty_scene() -> "bpy.types.Scene":

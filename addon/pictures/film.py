@@ -11,18 +11,19 @@ from ...core.curve import Mesh
 from ...core.types import FloatArray
 from ..curves import keyframes
 from ..curves.exchange import new_curve_data
-from ..engine import tube
 from ..engine.key_options import Output, Timing
 from ..engine.motion import Keys, Motion
-from ..engine.placement import Link, Placement
+from ..engine.placement import Frame, Link, Placement
+from ..engine.rounded import tube_radii
 from ..engine.size import Measure
 from . import camera, stage
+from .looks import LOOKS
 from .materials import colour_components
 
 if TYPE_CHECKING:
     import bpy
 
-_BEVEL_RESOLUTION = 7
+_BEVEL_RESOLUTION = 5
 _FRAMES_PER_SIZE = 20  # in which the fastest vertex goes as far as the curve is wide
 _FILM = (72, 720)  # frames in motion, at least and at most
 _PAUSE = 6  # frames at rest before the motion begins
@@ -77,12 +78,14 @@ def recorded(iterates: Sequence[Iterate], measure: Measure = Measure.LENGTH) -> 
     return motion, origin
 
 
-def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh, origin: Origin | None = None) -> None:
-    """Put a keyed curve on a stage, by default near the scene's origin, and fit the scene's frames to it."""
+def compose(
+    scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh, look: str, origin: Origin | None = None
+) -> None:
+    """Put a keyed curve on a look's stage, by default near the scene's origin, and fit the scene's frames to it."""
     import bpy
 
     points = [key.points for key in keys.keys]
-    radii = tube.animated_radii(mesh, points, frames)
+    radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
     data = new_curve_data("Curve", mesh)
     data.bevel_depth, data.bevel_resolution = float(radii.max()), _BEVEL_RESOLUTION
     data.use_fill_caps = True  # at the ends of arcs
@@ -92,18 +95,26 @@ def compose(scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh
     output = Output.SHAPE_KEYS if len(points) > 1 else Output.RESULT
     for _ in keyframes.writing(obj, keys, frames, output, radii / radii.max()):
         pass
-    colour_components(data)
-    ground = stage.Stage.around(points, stage.flat_axes(points[-1].astype(np.float64)))
+    alone = len(mesh.component_sizes) == 1
+    colour_components(data, look=look, along=_mean_shares(mesh, points) if alone else None)
+    ground = stage.Stage.around(points, stage.flat_up(points[-1].astype(np.float64)))
     size = scene.render.resolution_x, scene.render.resolution_y
-    floor = stage.build(scene.collection, ground)
-    scene.camera = camera.follow(scene.collection, size, ground, floor, points, radii, frames)
+    floor = stage.build(scene.collection, ground, LOOKS[look])
+    scene.camera = camera.follow(scene.collection, size, ground, floor, points, radii.max(axis=1), frames)
     scene.world = scene.world or bpy.data.worlds.new("World")
-    stage.add_sky(scene.world)
-    stage.light_workbench(scene, stage.towards_key(ground))
+    stage.add_sky(scene.world, LOOKS[look])
+    stage.light_workbench(scene, stage.towards_key(ground, LOOKS[look]))
     if origin is not None:
         _put(scene, origin)
     scene.frame_start, scene.frame_end = round(frames[0]), int(np.ceil(frames[-1]))
     scene.frame_set(scene.frame_start)
+
+
+def _mean_shares(mesh: Mesh, points: Sequence[Frame]) -> FloatArray:
+    """The share of the length at each vertex of a closed or open component, and at its end; the mean of all keys."""
+    lengths = np.array([Curve(each.astype(np.float64), mesh).edge_lengths for each in points])
+    passed = np.cumsum((lengths / lengths.sum(axis=1, keepdims=True)).mean(axis=0))
+    return np.concatenate([[0.0], passed / passed[-1]])
 
 
 def _put(scene: "bpy.types.Scene", origin: Origin) -> None:
@@ -120,6 +131,7 @@ def _put(scene: "bpy.types.Scene", origin: Origin) -> None:
         elif obj.type == "CAMERA":
             obj.data.clip_start *= origin.scale
             obj.data.clip_end *= origin.scale
+            obj.data.dof.aperture_fstop /= origin.scale
 
 
 def timing(motion: Motion) -> Timing:

@@ -1,8 +1,6 @@
-"""Films of what an artist's scene plays, as it is rendered or in one of two looks that need no settings."""
+"""Films of what an artist's scene plays, as it is rendered, plainly, or in a look."""
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
@@ -11,37 +9,26 @@ from ...core import MobiusFlowError
 from ...core.errors import OutputError, choice
 from ...core.messages import Message
 from . import rendering, stage, staging
+from .looks import LOOKS
 from .movie import Reel, copied, sweep
 from .rendering import is_rendering
 
 SUFFIX = ".mp4"
-_SAMPLES = 32
-
-
-def _quick(scene: bpy.types.Scene) -> None:
-    rendering.look_plain(scene)
-    if direction := staging.key_direction(scene):
-        stage.light_workbench(scene, direction)
-
-
-@dataclass(frozen=True)
-class Look:
-    """What the frames of a film look like: its name and description, and what sets a scene up for it."""
-
-    label: str
-    description: str
-    set_up: Callable[[bpy.types.Scene], None]
-
-
-LOOKS = {
-    "SCENE": Look("As the Scene", "With the render engine and the settings that the scene has", lambda _scene: None),
-    "QUICK": Look("Quick", "Plain shading by Workbench: many frames in little time", _quick),
-    "FINE": Look(
-        "Fine",
-        "Soft light and shadows by Cycles: seconds or minutes for each frame",
-        lambda scene: rendering.look_fine(scene, _SAMPLES),
-    ),
+# how films are rendered: their labels and descriptions
+CHOICES = {
+    "SCENE": ("As the Scene", "With the render engine, the settings and the stage that the scene has"),
+    "QUICK": ("Quick", "Plain shading by Workbench: many frames in little time"),
+    **{name: (look.label, look.description) for name, look in LOOKS.items()},
 }
+
+
+def _set_up(scene: bpy.types.Scene, look: str) -> None:
+    if look in LOOKS:
+        rendering.look_fine(scene, LOOKS[look])
+    elif look == "QUICK":
+        rendering.look_plain(scene)
+        if direction := staging.key_direction(scene):
+            stage.light_workbench(scene, direction)
 
 
 class Filming(Reel):
@@ -52,13 +39,13 @@ class Filming(Reel):
     """
 
     def __init__(self, scene: bpy.types.Scene, path: str, look: str = "SCENE", overwrite: bool = False) -> None:
-        if look not in LOOKS:
-            raise MobiusFlowError(f"{look!r} is not a look for films; {choice(look, LOOKS)}")
+        if look not in CHOICES:
+            raise MobiusFlowError(f"{look!r} is not a look for films; {choice(look, CHOICES)}")
         place = target(path)
         _check(scene, place, overwrite)
         sweep()
         copy = copied(scene)
-        LOOKS[look].set_up(copy)
+        _set_up(copy, look)
         super().__init__(copy, place)
 
     def render(self) -> None:

@@ -9,17 +9,17 @@ import numpy.typing as npt
 
 from ...core.types import FloatArray
 from ..engine.placement import Frame
+from .looks import TINT, Light, Look
 from .materials import material
 
 if TYPE_CHECKING:
     import bpy
 
-KEY_LIGHT = "Key"
-_FLOOR_COLOUR = (0.88, 0.83, 0.74)
-_SKY_COLOUR = (0.80, 0.88, 1.0)
-_SKY_STRENGTH = 0.4
-_KEY = np.array([-1.3, 0.5, 2.7])
 _WIDTH = 60.0  # of the floor: the camera sees no end of it
+_ELEVATIONS = np.arange(36.0, 69.0, 4.0)  # degrees: over the horizon, and not so steep that shadows hide
+_STEP = 10.0  # degrees, from one direction that is tried to the next
+_ACROSS = 0.2  # what it is worth that a motion is wide in the picture
+_TINY = 1e-300
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,38 +29,54 @@ class Stage:
     axes: FloatArray  # rows: to the right of the picture, away from it, and up
     middle: FloatArray
     size: float  # largest distance of what is shown from the middle
+    elevation: float  # of the camera over the floor, in radians
 
     @classmethod
-    def around(cls, shown: Sequence[Frame | FloatArray], axes: FloatArray) -> "Stage":
-        """Take in everything shown, arrays of shape (n, 3), along the given axes."""
+    def around(cls, shown: Sequence[Frame | FloatArray], up: FloatArray) -> "Stage":
+        """Take in everything shown, arrays of shape (n, 3), to be seen well; ``up``: a direction, (3,)."""
+        axes, elevation = facing(shown, up)
         along = [points @ axes.T for points in shown]
         low = np.min([each.min(axis=0) for each in along], axis=0)
         middle = 0.5 * (low + np.max([each.max(axis=0) for each in along], axis=0))
         size = max(float(np.linalg.norm(each - middle, axis=1).max()) for each in along)
-        return cls(axes, middle @ axes, size)
+        return cls(axes, middle @ axes, size, elevation)
 
 
-def flat_axes(points: FloatArray) -> FloatArray:
-    """Principal axes of points, the thinnest as the third and rather up than down; rows, right-handed."""
+def flat_up(points: FloatArray) -> FloatArray:
+    """The direction, (3,), in which points extend least, rather up than down."""
     _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    for k in (0, 2):
-        axes[k] *= np.sign(axes[k][np.abs(axes[k]).argmax()])
-    axes[1] = np.cross(axes[2], axes[0])
-    return np.asarray(axes)
+    return np.asarray(axes[2] * np.sign(axes[2][np.abs(axes[2]).argmax()]))
 
 
-def level_axes(points: FloatArray) -> FloatArray:
-    """Axes of which the third is the world's up, and the first where points reach furthest sideways; rows."""
-    _, _, across = np.linalg.svd((points - points.mean(axis=0))[:, :2], full_matrices=False)
-    x, y = across[0] * np.sign(across[0][np.abs(across[0]).argmax()])
-    return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
+def facing(shapes: Sequence[Frame | FloatArray], up: FloatArray) -> tuple[FloatArray, float]:
+    """Axes of a stage, rows, and the camera's elevation over it, from where most of a motion is seen; ``up``: (3,).
+
+    Points with covariance C spread over an area √(dᵀ adj(C) d), seen from direction d. The ends of the motion count as
+    much as all in between. Where areas are about equal, the motion lies across the picture.
+    """
+    weights = np.full(len(shapes), 1.0 / len(shapes))
+    weights[[0, -1]] += 0.5
+    sides = np.cross(up, np.eye(3)[np.abs(up).argmin()])
+    level = np.array([sides, np.cross(up, sides), up]) / [[np.linalg.norm(sides)], [np.linalg.norm(sides)], [1.0]]
+    turns, heights = (each.ravel() for each in np.meshgrid(np.arange(0.0, 360.0, _STEP), _ELEVATIONS))
+    turns, heights = np.radians(turns), np.radians(heights)
+    rights = np.column_stack([-np.sin(turns), np.cos(turns)]) @ level[:2]
+    views = np.column_stack([np.cos(turns) * np.cos(heights), np.sin(turns) * np.cos(heights), np.sin(heights)]) @ level
+    seen = np.zeros(len(views))
+    for shape, weight in zip(shapes, weights, strict=True):
+        covariance = np.cov(shape.T.astype(np.float64))
+        (a, b, c), axes = np.linalg.eigh(covariance / max(np.trace(covariance), _TINY))
+        areas = np.sqrt((views @ axes) ** 2 @ np.array([b * c, a * c, a * b]).clip(0.0))
+        seen += weight * (areas + _ACROSS * np.sqrt((rights @ axes) ** 2 @ np.array([a, b, c]).clip(0.0)))
+    best = int(seen.argmax())
+    return np.array([rights[best], np.cross(up, rights[best]), up]), float(heights[best])
 
 
-def build(collection: "bpy.types.Collection", stage: Stage) -> "bpy.types.Object":
+def build(collection: "bpy.types.Collection", stage: Stage, look: Look) -> "bpy.types.Object":
     """Add lights and a floor to a collection; return the floor, which is at the height of the middle."""
-    _add_light(collection, stage, KEY_LIGHT, _KEY, 1.5, 60.0, (1.0, 0.93, 0.84))
-    _add_light(collection, stage, "Rim", (1.9, 1.9, 1.5), 0.8, 16.0, (0.80, 0.90, 1.0))
-    return _add_floor(collection, stage)
+    for k, light in enumerate(look.lights):
+        _add_light(collection, stage, "Light" if k else "Key", light)
+    return _add_floor(collection, stage, look)
 
 
 def light_workbench(scene: "bpy.types.Scene", direction: npt.ArrayLike) -> None:
@@ -69,8 +85,8 @@ def light_workbench(scene: "bpy.types.Scene", direction: npt.ArrayLike) -> None:
     scene.display.light_direction = (x, z, -y)  # its second axis is the world's up
 
 
-def towards_key(stage: Stage) -> FloatArray:
-    return np.asarray(_KEY @ stage.axes)
+def towards_key(stage: Stage, look: Look) -> FloatArray:
+    return np.asarray(np.array(look.lights[0].at) @ stage.axes)
 
 
 def add(collection: "bpy.types.Collection", name: str, data: "bpy.types.ID") -> "bpy.types.Object":
@@ -92,42 +108,34 @@ def place(obj: "bpy.types.Object", at: FloatArray, towards: FloatArray, up: Floa
     obj.matrix_world = Matrix(np.block([[rotation, at[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]).tolist())
 
 
-def _add_light(
-    collection: "bpy.types.Collection",
-    stage: Stage,
-    name: str,
-    at: npt.ArrayLike,
-    width: float,
-    strength: float,
-    tint: tuple[float, float, float],
-) -> None:
-    """Add a square light; place, width and strength are in units of the stage's size."""
+def _add_light(collection: "bpy.types.Collection", stage: Stage, name: str, light: Light) -> None:
+    """Add a square light."""
     import bpy
 
     data = bpy.data.lights.new(name, "AREA")
-    data.size = width * stage.size
-    data.energy = strength * stage.size**2
-    data.color = tint
-    at = stage.middle + stage.size * (np.asarray(at) @ stage.axes)
+    data.size = light.width * stage.size
+    data.energy = light.power * stage.size**2
+    data.color = light.tint
+    at = stage.middle + stage.size * (np.array(light.at) @ stage.axes)
     place(add(collection, name, data), at, stage.middle, stage.axes[2])
 
 
-def _add_floor(collection: "bpy.types.Collection", stage: Stage) -> "bpy.types.Object":
+def _add_floor(collection: "bpy.types.Collection", stage: Stage, look: Look) -> "bpy.types.Object":
     import bpy
 
     x, y = _WIDTH * stage.size * stage.axes[:2]
     data = bpy.data.meshes.new("Floor")
     data.from_pydata([p.tolist() for p in (-x - y, x - y, x + y, y - x)], [], [(0, 1, 2, 3)])
-    data.materials.append(material("Paper", _FLOOR_COLOUR, {"Roughness": 0.9, "Specular IOR Level": 0.2}))
+    data.materials.append(material("Floor", look.floor, {"Base Color": TINT, "Roughness": look.floor_roughness}))
     floor = add(collection, "Floor", data)
     floor.location = stage.middle
     return floor
 
 
-def add_sky(world: "bpy.types.World") -> None:
-    """Light the world as an overcast sky does."""
+def add_sky(world: "bpy.types.World", look: Look) -> None:
+    """Light the world evenly."""
     if world.node_tree is None:  # from Blender 5.0 on there is one from the start, and the switch is deprecated
         world.use_nodes = True
     background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
-    background.inputs["Color"].default_value = (*_SKY_COLOUR, 1.0)
-    background.inputs["Strength"].default_value = _SKY_STRENGTH
+    background.inputs["Color"].default_value = (*look.sky, 1.0)
+    background.inputs["Strength"].default_value = 1.0

@@ -5,6 +5,7 @@ collection holds on to them, and gives them back.
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 import bpy
 import numpy as np
@@ -13,9 +14,12 @@ from ...core import CurveError
 from ..curves.recorded import WorldMotion
 from ..curves.surroundings import STAGE
 from . import camera, stage
+from .looks import DEFAULT, LOOKS
+from .materials import colour_components
 
 _NAME = "Stage"
-_CAMERA, _WORLD = "mobius_flow_camera", "mobius_flow_world"  # of its collection: what the scene had before
+# of its collection: what the scene had before, and what it was set up around
+_CAMERA, _WORLD, _SHOWN = "mobius_flow_camera", "mobius_flow_world", "mobius_flow_shown_"
 
 
 def set_up(
@@ -23,32 +27,39 @@ def set_up(
     objects: Sequence[bpy.types.Object],
     use_camera: bool = True,
     use_world: bool = True,
+    look: str = DEFAULT,
 ) -> bpy.types.Collection:
     """Put a camera, lights and a floor around curve objects for as long as they move; a stage there was is replaced.
 
     The objects' transforms are evaluated. ``use_camera`` and ``use_world`` say whether the scene is rendered by the
-    stage's camera and under its sky, instead of its own. Raises CurveError if splines cannot be read, or are a single
-    point; nothing has changed then.
+    stage's camera and under its sky, instead of its own. Curves without materials of their own get those of the
+    ``look`` until the stage is struck, if it is one of `LOOKS`. Raises CurveError if splines cannot be read, or are a
+    single point; nothing has changed then.
     """
     motion = WorldMotion.of(scene, objects)
-    ground = stage.Stage.around(motion.points, stage.level_axes(motion.points[-1]))
+    ground = stage.Stage.around(motion.points, np.array([0.0, 0.0, 1.0]))
     if not ground.size:
         raise CurveError("All points of the curves are the same; move them apart")
     strike(scene)
     collection = bpy.data.collections.new(_NAME)
     scene.collection.children.link(collection)
+    style = LOOKS.get(look, LOOKS[DEFAULT])
     collection[STAGE] = _aspect(scene)
-    floor = stage.build(collection, ground)
+    floor = stage.build(collection, ground, style)
     floor.hide_select = True  # it is in the way of every click
     eye = camera.follow(collection, _shape(scene), ground, floor, motion.points, motion.radii, motion.frames)
     for obj in collection.objects:
         obj[STAGE] = True
+    if look in LOOKS:
+        _paint(objects, look)
+    for k, obj in enumerate(objects):
+        collection[f"{_SHOWN}{k}"] = obj
     if use_camera:
         collection[_CAMERA], scene.camera = scene.camera, eye
     if use_world:
         collection[_WORLD], scene.world = scene.world, bpy.data.worlds.new(_NAME)
         scene.world[STAGE] = True
-        stage.add_sky(scene.world)
+        stage.add_sky(scene.world, style)
     return collection
 
 
@@ -64,10 +75,51 @@ def strike(scene: bpy.types.Scene) -> None:
         _remove(sky)
     for obj in [each for each in collection.objects if STAGE in each]:
         _remove_object(obj)
-    for name in (STAGE, _CAMERA, _WORLD):
-        collection.pop(name, None)
+    _strip(_shown(collection))
+    for name in [each for each in collection.keys() if each.startswith("mobius_flow")]:  # noqa: SIM118
+        del collection[name]
     if not collection.all_objects:
         _remove(collection)
+
+
+def restyle(scene: bpy.types.Scene, look: str) -> None:
+    """Give a scene's stage, if it has one, another look; curves that are gone, or are no curves any more, stay out."""
+    collection = own_stage(scene)
+    if collection is None or look not in LOOKS:
+        return
+    objects = [obj for obj in _shown(collection) if obj.name in scene.objects]
+    uses = [block is not None and STAGE in block for block in (scene.camera, scene.world)]
+    with suppress(CurveError):
+        set_up(scene, objects, *uses, look)
+
+
+def _shown(collection: bpy.types.Collection) -> list[bpy.types.Object]:
+    """The curves that a stage was set up around, but for those that were deleted."""
+    found = [value for name, value in collection.items() if name.startswith(_SHOWN)]
+    return [obj for obj in found if obj is not None]
+
+
+def _paint(objects: Sequence[bpy.types.Object], look: str) -> None:
+    """Give curves that have no materials those of a look; components are numbered through all of them."""
+    first = 0
+    alone = sum(len(obj.data.splines) for obj in objects) == 1
+    for obj in objects:
+        if not any(obj.data.materials):
+            colour_components(obj.data, first, look, np.linspace(0.0, 1.0, 2) if alone else None)
+            for made in obj.data.materials:
+                made[STAGE] = True
+        first += len(obj.data.splines)
+
+
+def _strip(objects: Sequence[bpy.types.Object]) -> None:
+    """Take a stage's materials from curves, and those that nothing else uses out of the file, with their images."""
+    for obj in objects:
+        materials = [each for each in obj.data.materials if each is not None and STAGE in each]
+        if materials and len(materials) == len(obj.data.materials):
+            obj.data.materials.clear()
+        for made in [each for each in materials if not each.users]:
+            images = [node.image for node in made.node_tree.nodes if node.type == "TEX_IMAGE"]
+            bpy.data.batch_remove([made, *images])
 
 
 def own_stage(scene: bpy.types.Scene) -> bpy.types.Collection | None:

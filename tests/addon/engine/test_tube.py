@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mobius_flow.addon.engine.tube import animated_radii, free_radius, radius_beside, strand_gap, thickest_radius
+from mobius_flow.addon.engine.tube import free_radius, radius_beside, strand_gap, thickest_radius
 from mobius_flow.core import Curve, Obstacle
 from mobius_flow.core.curve.distances import nearest_strands
 from mobius_flow.core.knots import smooth_knot
@@ -62,23 +62,3 @@ def test_open_ends_count_however_few_vertices_do():
     crossing = np.stack([1.0 + 0 * x, x - 0.5, 0 * x + 0.01], axis=1)
     gap = strand_gap(Curve.from_components([strand, crossing], (False, False)), 0.4)
     assert gap == pytest.approx(0.01, rel=0.01)
-
-
-def test_tubes_become_thin_before_and_thick_after_a_narrow_place_at_the_same_pace():
-    ring = regular_polygon(60).vertices
-    curves = [
-        Curve.from_components([ring, ring + np.array([0.0, 0.0, d])]) for d in (1.0, 1.0, 1.0, 0.02, 1.0, 1.0, 1.0)
-    ]
-    points = [curve.vertices.astype(np.float32) for curve in curves]
-    radii = animated_radii(curves[0].mesh, points, np.arange(7.0) * 2.0)
-    assert 0.0 < radii.min() == radii[3] < 0.011
-    np.testing.assert_allclose(radii, radii[::-1], rtol=1e-6)
-    assert (np.abs(np.diff(radii)) > 0).all()
-    assert np.abs(np.diff(radii)).max() <= 2.0 * 0.04 * thickest_radius(curves[0]) + 1e-9
-
-
-def test_tubes_are_never_too_thin_to_see():
-    ring = regular_polygon(60).vertices
-    curve = Curve.from_components([ring, ring + np.array([0.0, 0.0, 1e-6])])
-    radii = animated_radii(curve.mesh, [curve.vertices.astype(np.float32)], np.zeros(1))
-    assert radii == pytest.approx(3e-3 * np.ptp(ring, axis=0).max(), rel=1e-5)

@@ -10,6 +10,7 @@ from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
 from mathutils import Vector  # noqa: E402
 from mobius_flow.addon.engine.motion import Key, Keys  # noqa: E402
 from mobius_flow.addon.pictures import film, rendering  # noqa: E402
+from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
 from mobius_flow.core.curve import Mesh  # noqa: E402
 
 SIZES = [(640, 360), (360, 640)]
@@ -29,8 +30,8 @@ def tumbling(keys):
 
 def composed(keys, size, origin=None):
     scene = bpy.context.scene
-    rendering.use_cycles(scene, *size, 1)
-    film.compose(scene, keys, 1.0 + 10 * np.arange(len(keys.keys)), Mesh((40,)), origin)
+    rendering.use_cycles(scene, LOOKS["PAPER"], *size, 1)
+    film.compose(scene, keys, 1.0 + 10 * np.arange(len(keys.keys)), Mesh((40,)), "PAPER", origin)
     return scene
 
 
@@ -63,10 +64,15 @@ def _sides(floor):
     return [side / np.linalg.norm(side) for side in sides]
 
 
-def test_a_curve_at_rest_has_a_camera_at_rest():
+def test_around_a_curve_at_rest_the_camera_swings_and_comes_back():
     keys = tumbling(1)
     scene = composed(Keys((keys.keys[0], Key(1.0, keys.keys[0].points)), 0), SIZES[0])
-    assert scene.camera.animation_data is None
+    places = []
+    for frame in (1, 3, 11):
+        scene.frame_set(frame)
+        places.append(np.array(scene.camera.matrix_world.translation))
+    np.testing.assert_allclose(places[0], places[2], atol=1e-5)
+    assert np.linalg.norm(places[1] - places[0]) > 0.1 * np.linalg.norm(places[0])
     assert bpy.data.objects["Floor"].animation_data is None
 
 

@@ -16,7 +16,7 @@ from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax  # noqa
 from processes import finished  # noqa: E402
 from shapes import hopf_link, regular_polygon, torus_trefoil  # noqa: E402
 
-TINY = (64, 36, 1)
+TINY = (64, 36)
 WRITERS = [export.write_blend, export.write_still, export.write_movie]
 
 
@@ -24,7 +24,9 @@ WRITERS = [export.write_blend, export.write_still, export.write_movie]
 def tiny(monkeypatch):
     """Small and short pictures and films."""
     monkeypatch.setattr(export, "_PICTURE", TINY)
-    monkeypatch.setattr(export, "_FILM_WITHOUT_DRIVER", TINY)
+    monkeypatch.setattr(export, "_FILM_WITHOUT_DRIVER", (*TINY, 1))
+    monkeypatch.setattr(export, "_FILM_SAMPLES", 1)
+    monkeypatch.setattr(export, "_FILM", TINY)
     monkeypatch.setattr(export.rendering, "workbench_works", lambda: False)
     for name, value in (("_FILM", (4, 4)), ("_PAUSE", 1), ("_END", 1)):
         monkeypatch.setattr(film, name, value)
@@ -101,7 +103,7 @@ def test_a_link_has_a_colour_for_each_component(tmp_path):
 def test_a_picture(tmp_path, tiny, iterates, capfd):
     assert export.write_still(tmp_path / "a.png", iterates)
     image = bpy.data.images.load(str(tmp_path / "a.png"))
-    assert tuple(image.size) == TINY[:2]
+    assert tuple(image.size) == TINY
     assert np.ptp(np.array(image.pixels[:])[::4]) > 0.1
     assert capfd.readouterr().out == ""
     assert os.listdir(tmp_path) == ["a.png"]
@@ -114,7 +116,7 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
     count = (scene.frame_end - scene.frame_start) // scene.frame_step + 1
     assert seen == [(k + 1, count) for k in range(count)]
     clip = bpy.data.movieclips.load(str(tmp_path / "a.mp4"))
-    assert (tuple(clip.size), clip.frame_duration) == (TINY[:2], count)
+    assert (tuple(clip.size), clip.frame_duration) == (TINY, count)
     assert os.listdir(tmp_path) == ["a.mp4"]
     assert capfd.readouterr().out == ""
 
@@ -125,7 +127,7 @@ def test_a_film_rests_before_and_after(iterates):
     timing = film.timing(motion)
     frames = timing.frames(motion.course(keys))
     scene = bpy.context.scene
-    film.compose(scene, keys, frames, motion.start.mesh)
+    film.compose(scene, keys, frames, motion.start.mesh, "PAPER")
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (film._PAUSE, film._END)
 

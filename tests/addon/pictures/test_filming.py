@@ -5,7 +5,8 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from mobius_flow.addon.pictures import filming, movie, rendering  # noqa: E402
-from mobius_flow.addon.pictures.filming import LOOKS, Filming  # noqa: E402
+from mobius_flow.addon.pictures.filming import CHOICES, Filming  # noqa: E402
+from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
 from mobius_flow.addon.pictures.movie import length_of  # noqa: E402
 from mobius_flow.core import MobiusFlowError  # noqa: E402
 
@@ -50,14 +51,14 @@ def test_steps_of_frames_count(scene, tmp_path):
     assert film.frames == length_of(film.path) == 2
 
 
-@pytest.mark.parametrize("look", LOOKS)
+@pytest.mark.parametrize("look", CHOICES)
 def test_looks_are_of_the_copy(scene, tmp_path, look):
     before = settings(scene)
     film = Filming(scene, str(tmp_path / "film.mp4"), look)
     (copy,) = [each for each in bpy.data.scenes if each != scene]
-    wanted = {"SCENE": "CYCLES", "QUICK": "BLENDER_WORKBENCH", "FINE": "CYCLES"}
-    assert copy.render.engine == wanted[look]
-    assert copy.cycles.samples == (1 if look != "FINE" else 32)
+    wanted = {"QUICK": "BLENDER_WORKBENCH"}
+    assert copy.render.engine == wanted.get(look, "CYCLES")
+    assert copy.cycles.samples == (LOOKS[look].samples if look in LOOKS else 1)
     assert settings(scene) == before
     assert not film.finish()
     assert list(bpy.data.scenes) == [scene]

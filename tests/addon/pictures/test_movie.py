@@ -11,6 +11,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from mobius_flow.addon.pictures import movie, rendering  # noqa: E402
+from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
 from processes import finished  # noqa: E402
 
 FRAMES, MOVING = 8, 5  # the last frames are like the fifth
@@ -20,7 +21,7 @@ FRAMES, MOVING = 8, 5  # the last frames are like the fifth
 def scene():
     """A grey sky that becomes brighter until it stays as it is."""
     scene = bpy.context.scene
-    rendering.use_cycles(scene, 128, 64, 1)
+    rendering.use_cycles(scene, LOOKS["PAPER"], 128, 64, 1)
     scene.cycles.use_denoising = False
     scene.view_settings.view_transform, scene.view_settings.look = "Standard", "None"
     scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))

@@ -9,7 +9,9 @@ from blender_scenes import add_curve, add_trefoil, drawn, relax  # noqa: E402
 from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
 from mathutils import Vector  # noqa: E402
 from mobius_flow.addon.curves import surroundings  # noqa: E402
+from mobius_flow.addon.curves.recorded import WorldMotion  # noqa: E402
 from mobius_flow.addon.pictures import stage, staging  # noqa: E402
+from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
 from mobius_flow.core import CurveError  # noqa: E402
 from shapes import lattice_knot  # noqa: E402
 
@@ -92,7 +94,8 @@ def test_a_curve_without_keys_has_a_camera_at_rest():
 
 def test_the_floor_is_level_and_the_curve_lies_across_the_picture():
     points = np.random.default_rng(3).normal(size=(40, 3)) * [1, 9, 3]
-    axes = stage.level_axes(points)
+    axes, elevation = stage.facing([points], np.array([0.0, 0.0, 1.0]))
+    assert 0.6 < elevation < 1.2
     np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(axes) > 0
     np.testing.assert_allclose(axes[2], [0, 0, 1])
@@ -177,8 +180,9 @@ def test_workbench_has_its_light_from_where_the_key_light_is():
     obj, scene = baked(), bpy.context.scene
     assert staging.key_direction(scene) is None
     staging.set_up(scene, [obj])
-    ground = stage.Stage(stage.level_axes(drawn(obj)), np.zeros(3), 1.0)
-    wanted = stage.towards_key(ground) / np.linalg.norm(stage.towards_key(ground))
+    ground = stage.Stage.around(WorldMotion.of(scene, [obj]).points, np.array([0.0, 0.0, 1.0]))
+    wanted = stage.towards_key(ground, LOOKS["PAPER"])
+    wanted /= np.linalg.norm(wanted)
     assert np.dot(staging.key_direction(scene), wanted) > 0.98
 
 
