@@ -60,7 +60,7 @@ class _OfFilm:
         "filepath": StringProperty(name="File", description="Where the film goes", options={"SKIP_SAVE", "HIDDEN"}),
         "look": EnumProperty(
             name="Look",
-            description="How the frames are rendered",
+            description="What the stage and the curves on it are made of, and how frames are rendered",
             items=[(name, *words) for name, words in CHOICES.items()],
             options={"SKIP_SAVE", "HIDDEN"},
         ),
