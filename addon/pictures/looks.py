@@ -12,8 +12,8 @@ Nodes = Mapping[str, tuple[str, Mapping[Any, Any], Mapping[str, Any]]]
 
 SHADER = "Principled BSDF"
 # what stands, as a value, for a component's colour, for the shares of the ways along and around the tube, and for the
-# turns of a rope's strands
-TINT, ALONG, TURNS = "tint", "along", "turns"
+# turns of a rope's strands and how far they and their yarns stand out
+TINT, ALONG, TURNS, STRAND, YARN = "tint", "along", "turns", "strand", "yarn"
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,9 @@ _ROPE: Nodes = {
     "strands": ("ShaderNodeTexWave", {"Vector": "lay.Vector", "Scale": 1.0}, {"bands_direction": "DIAGONAL"}),
     "yarn": ("ShaderNodeVectorMath", {0: "lay.Vector", 1: (-2.0, 9.0, 0.0)}, {"operation": "MULTIPLY"}),
     "yarns": ("ShaderNodeTexWave", {"Vector": "yarn.Vector", "Scale": 1.0}, {"bands_direction": "DIAGONAL"}),
-    "fine": ("ShaderNodeBump", {"Height": "yarns.Fac", "Strength": 0.35}, {}),
-    "bump": ("ShaderNodeBump", {"Height": "strands.Fac", "Normal": "fine.Normal", "Strength": 1.0}, {}),
-    "grooves": ("ShaderNodeMapRange", {"Value": "strands.Fac", "From Max": 0.6, "To Min": 0.12, "To Max": 1.0}, {}),
+    "fine": ("ShaderNodeBump", {"Height": "yarns.Fac", "Strength": 0.5, "Distance": YARN}, {}),
+    "bump": ("ShaderNodeBump", {"Height": "strands.Fac", "Normal": "fine.Normal", "Distance": STRAND}, {}),
+    "grooves": ("ShaderNodeMapRange", {"Value": "strands.Fac", "From Max": 0.3, "To Min": 0.3, "To Max": 1.0}, {}),
     "shade": ("ShaderNodeVectorMath", {0: TINT, "Scale": "grooves.Result"}, {"operation": "SCALE"}),
 }
 
@@ -100,12 +100,12 @@ LOOKS = {
         shader={"Base Color": TINT, "Roughness": 0.4, "Emission Color": TINT, "Emission Strength": "glow.Result"},
         nodes={
             "facing": ("ShaderNodeLayerWeight", {"Blend": 0.5}, {}),
-            "glow": ("ShaderNodeMapRange", {"Value": "facing.Facing", "To Min": 1.3, "To Max": 0.04}, {}),
+            "glow": ("ShaderNodeMapRange", {"Value": "facing.Facing", "To Min": 1.5, "To Max": 0.05}, {}),
         },
-        floor=(0.012, 0.012, 0.016),
-        floor_roughness=0.3,
+        floor=(0.07, 0.07, 0.09),
+        floor_roughness=0.32,
         sky=(0.006, 0.007, 0.012),
-        lights=(Light((-1.4, 1.2, 2.4), 2.0, 6.0, (0.6, 0.7, 1.0)),),
+        lights=(Light((-1.4, 1.2, 2.4), 2.0, 4.0, (0.6, 0.7, 1.0)),),
     ),
     "ROPE": Look(
         "Rope",
@@ -125,12 +125,22 @@ LOOKS = {
     "GLASS": Look(
         "Glass",
         "Tinted glass, which shows what is behind it",
-        palette=((0.30, 0.75, 0.95), (1.0, 0.42, 0.34), (1.0, 0.80, 0.35), (0.45, 0.90, 0.55), (0.75, 0.50, 0.95)),
-        gradient=((0.25, 0.62, 0.95), (0.35, 0.88, 0.80), (1.0, 0.80, 0.40), (1.0, 0.45, 0.38), (0.70, 0.45, 0.92)),
-        shader={"Base Color": TINT, "Roughness": 0.02, "Transmission Weight": 1.0, "IOR": 1.45},
-        floor=(0.60, 0.64, 0.68),
+        palette=((0.10, 0.55, 0.95), (1.0, 0.20, 0.14), (1.0, 0.68, 0.12), (0.20, 0.85, 0.40), (0.60, 0.28, 0.95)),
+        gradient=((0.08, 0.45, 0.95), (0.12, 0.85, 0.72), (1.0, 0.70, 0.16), (1.0, 0.25, 0.18), (0.56, 0.24, 0.92)),
+        shader={
+            "Base Color": TINT,
+            "Roughness": 0.02,
+            "Transmission Weight": 1.0,
+            "IOR": 1.4,
+            "Alpha": "clear.Result",
+        },
+        nodes={  # shadows of glass are not black
+            "path": ("ShaderNodeLightPath", {}, {}),
+            "clear": ("ShaderNodeMapRange", {"Value": "path.Is Shadow Ray", "To Min": 1.0, "To Max": 0.3}, {}),
+        },
+        floor=(0.80, 0.82, 0.84),
         floor_roughness=0.6,
-        sky=(0.30, 0.34, 0.40),
+        sky=(0.62, 0.66, 0.72),
         lights=(
             Light((-1.5, 1.0, 2.4), 1.0, 55.0, (1.0, 0.96, 0.9)),
             Light((1.8, 1.8, 1.2), 0.7, 26.0, (0.85, 0.93, 1.0)),

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core.types import FloatArray
 from ..engine.colours import flatly_lit
-from .looks import ALONG, DEFAULT, LOOKS, SHADER, TINT, TURNS, Nodes, Tint
+from .looks import ALONG, DEFAULT, LOOKS, SHADER, STRAND, TINT, TURNS, YARN, Nodes, Tint
 
 if TYPE_CHECKING:
     import bpy
@@ -31,11 +31,11 @@ def colour_components(
     for component, spline in enumerate(data.splines, first):
         hue = hues if along is not None and made_of.gradient else component % hues
         if hue not in slots:
-            slots[hue] = _slot(data, glaze(look, hue, _turns(data), along))
+            slots[hue] = _slot(data, _glaze(data, look, hue, along))
         spline.material_index = slots[hue]
 
 
-def glaze(look: str, hue: int, turns: int = 40, along: FloatArray | None = None) -> "bpy.types.Material":
+def _glaze(data: "bpy.types.Curve", look: str, hue: int, along: FloatArray | None) -> "bpy.types.Material":
     """What a component is made of; the material that is there already if there is one, as other objects may have it.
 
     After the palette's hues comes the gradient.
@@ -48,7 +48,11 @@ def glaze(look: str, hue: int, turns: int = 40, along: FloatArray | None = None)
         return bpy.data.materials[name]
     share = np.linspace(0.0, 1.0, 2) if along is None else along
     places = np.interp(np.arange(_PIXELS) / _PIXELS, np.linspace(0.0, 1.0, len(share)), share)
-    nodes, words = dict(made_of.nodes), {TURNS: (0.2 * np.pi * turns, 0.6 * np.pi, 0.0), ALONG: "place.Vector"}
+    length = sum(spline.calc_length() for spline in data.splines) / len(data.splines)
+    radius = data.bevel_depth or length / 60.0
+    turns = 0.2 * np.pi * max(round(length / (_PITCH * radius)), 3)
+    nodes, words = dict(made_of.nodes), {ALONG: "place.Vector", TURNS: (turns, 0.6 * np.pi, 0.0)}
+    words |= {STRAND: 0.5 * radius, YARN: 0.08 * radius}
     if hue == len(made_of.palette):
         stops = np.array((*made_of.gradient, made_of.gradient[0]))
         colours = [np.interp(places * (len(stops) - 1), np.arange(len(stops)), channel) for channel in stops.T]
@@ -126,14 +130,6 @@ def _table(name: str, rows: FloatArray) -> "bpy.types.Image":
     image.pixels.foreach_set(pixels.ravel())
     image.pack()
     return image
-
-
-def _turns(data: "bpy.types.Curve") -> int:
-    """How many strands cross a line along a rope, as long as a component is."""
-    if not data.bevel_depth:
-        return 40
-    length = sum(spline.calc_length() for spline in data.splines) / len(data.splines)
-    return max(round(length / (_PITCH * data.bevel_depth)), 3)
 
 
 def _slot(data: "bpy.types.Curve", wanted: "bpy.types.Material") -> int:
