@@ -211,7 +211,7 @@ class Session:
         return self._motion.unsized(point)
 
     def show(self, there: Key | None = None) -> None:
-        """Show a shape, by default the last iterate with the pins that a hand has left, its tube as thick as at a key."""
+        """Show a shape, by default the last iterate with the pins that a hand left, its tube as thick as at a key."""
         frame, fits = self.frame if there is None else there.points, self.group.fits(self._key_options)
         self.group.show(self.start, frame, self._key_options, self._radius(frame) if fits else None)
         if there is None:
