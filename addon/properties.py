@@ -23,6 +23,7 @@ _OUTPUTS = {
     Output.FCURVES: "An F-curve for every coordinate of every point, for exporters that know no shape keys",
     Output.RESULT: "Move the points to the relaxed curves, without animation",
 }
+_TIMES = ("start_frame", "length", "frames_per_iterate", "hold_start", "hold_end", "loop")
 _MEASURES = {
     Measure.LENGTH: "The length of the curves, which is what the relaxation itself keeps",
     Measure.BOX: "The longest side of the box around the curves",
@@ -133,10 +134,16 @@ def settings(options: set[str]) -> dict[str, Any]:
         ),
         "hold_start": frames("Hold at Start", "Frames at rest before the curves move", 0, 0),
         "hold_end": frames("Hold at End", "Frames at rest after the curves have moved", 0, 0),
+        "loop": declare(
+            BoolProperty,
+            "Loop",
+            "Let the curves go back to where they began, so that films can be repeated; Length counts both ways",
+            timing.loop,
+        ),
         "max_keys": declare(
             IntProperty,
             "Max Keys",
-            "Thin the animation out to this many keys, 0 for one key for every iterate; "
+            "Thin the animation out to this many keys, 0 for one key for every iterate, or more of few; "
             "where the straight motion between keys is not proved free of contact, more are kept",
             default=0,
             min=0,
@@ -147,6 +154,12 @@ def settings(options: set[str]) -> dict[str, Any]:
             "Fit tubes again that were fitted before, at every key. A bevel of your own is not changed; "
             "in a script, giving this fits it too",
             default=True,
+        ),
+        "constant_radius": declare(
+            BoolProperty,
+            "Constant Thickness",
+            "Draw fitted tubes as thick at all frames as at the one where there is least room",
+            keys.constant_radius,
         ),
         "keep_size": declare(
             EnumProperty,
@@ -184,13 +197,14 @@ def key_options(values: Mapping[str, Any]) -> KeyOptions:
     """The animation's options from the values of the settings; raises OptionError."""
     timing = Timing(
         pace=Pace[values["timing"]],
-        **{name: values[name] for name in ("start_frame", "length", "frames_per_iterate", "hold_start", "hold_end")},
+        **{name: values[name] for name in _TIMES},
     )
     return KeyOptions(
         output=Output[values["keyframes"]],
         timing=timing,
         max_keys=values["max_keys"] or None,
         fit_bevel=values["fit_bevel"],
+        constant_radius=values["constant_radius"],
         any_bevel=values["fit_bevel"] and values.get("any_bevel", False),
         keep_size=None if values["keep_size"] == _AUTOMATIC else Measure[values["keep_size"]],
     )

@@ -74,7 +74,7 @@ def read_pair(options: argparse.Namespace, wanted: RelaxOptions) -> tuple[tuple[
 
 def _run(options: argparse.Namespace) -> int:
     """Find the motion, write every requested output, and return the exit status."""
-    output = output_for(options.output, options.format, options.look)
+    output = output_for(options.output, options.format, options.look, options.loop or options.constant_radius)
     wanted = relax_options.from_arguments(options)
     check_places(inputs(options), places(options))
     (file, task), (other, goal) = read_pair(options, wanted)

@@ -5,8 +5,10 @@ import json
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
+from pathlib import Path
 from typing import NamedTuple
 
+from ..addon.pictures.film import Playing
 from ..addon.pictures.looks import DEFAULT, LOOKS
 from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
 from ..core.driver import Relaxation, finish
@@ -19,6 +21,10 @@ from .progress import progress
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 NAMED = 4  # meshes of a run that are listed individually
+_PLAYED = {
+    "--loop": "play the relaxation there and back",
+    "--constant-radius": "draw the tube as thick throughout as where there is least room",
+}
 _EPILOG = """\
 examples:
   mobius-flow relax knot.txt relaxed.obj --report report.json --trajectory path.npz
@@ -62,6 +68,8 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
         ("--trajectory", "T.npz", "write the certified path, for mobius-flow verify; - is standard output"),
     ):
         parser.add_argument(name, type=lambda path: as_device.get(path, path), metavar=metavar, help=text)
+    for name, text in _PLAYED.items():
+        parser.add_argument(name, action="store_true", help=f"{text} (.mp4 and .blend)")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     text = (
         f"stage and material of a scene, film or picture: {', '.join(name.lower() for name in LOOKS)} (default: "
@@ -80,7 +88,7 @@ def _look(word: str) -> str:
 
 def _run(options: argparse.Namespace) -> int:
     """Relax, write every requested output, and return the exit status."""
-    output = output_for(options.output, options.format, options.look)
+    output = output_for(options.output, options.format, options.look, options.loop or options.constant_radius)
     wanted = relax_options.from_arguments(options)
     check_places(relax_options.inputs(options), places(options))
     file = curves.read(options.input, options.format)
@@ -181,12 +189,13 @@ def _jobs(
     yield from (_Job(path, save, slow=not is_file(path)) for path, save in extras if path is not None)
 
     def write(path: str) -> None:
-        output.write(path, result, iterates, _shown(options), options.look)
+        playing = Playing(options.look, options.loop, options.constant_radius)
+        output.write(path, result, iterates, _shown(options), playing)
 
     job = _Job(options.output, write)
     if output.is_scene:  # a film takes a minute
         plain = partial(write_curve, curve=result.curve)
-        yield job._replace(rescue=plain, name=f"{options.output}.obj", slow=True)
+        yield job._replace(rescue=plain, name=f"{Path(options.output).stem}.obj", slow=True)
     else:
         name = f"curve.{options.format or 'txt'}" if options.output == curves.STREAM else None
         yield job._replace(name=name, slow=not is_file(options.output))

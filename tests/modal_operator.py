@@ -28,7 +28,7 @@ class Operator:
 
     def __init__(self, continues=False, **values):
         self.loop, self.reports, self.continues = None, [], continues
-        self.given = {"view_every": 1, "avoid": ()} | values
+        self.given = {"view_every": 1, "avoid": (), "timing": "DISTANCE"} | values  # iterates are keys
 
     def report(self, kind, message):
         self.reports.append((kind, message))

@@ -6,12 +6,14 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..curves.recorded import drawn_radius
-from ..engine.words import named
+from ..engine.words import named, time_left
 from ..live.checks import READABLE
+from ..live.modal import clear_status
 from ..live.requirements import Condition, idle, selected_curves
 from ..pictures import staging
-from ..pictures.filming import CHOICES, Filming, is_rendering, target
+from ..pictures.filming import CHOICES, Filming, is_rendering, play, target
 from ..scripting import Relaxation
 from ..translations import iface_, rpt_
 from .button import Button, button
@@ -112,6 +114,7 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for the end of the render."""
         if event.type != "TIMER" or is_rendering():
+            self._show_progress(context)
             return {"PASS_THROUGH"}
         if not self._end(context):
             self.report({"WARNING"}, rpt_("The film was not finished; no file was written"))
@@ -125,11 +128,33 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
 
     def _end(self, context: bpy.types.Context) -> bool:
         context.window_manager.event_timer_remove(self.timer)
+        clear_status()
         return self.filming.finish()
+
+    def _show_progress(self, context: bpy.types.Context) -> None:
+        made = self.filming
+        progress = Message("Rendering the film: {done} of {count} frames", done=made.done, count=made.frames)
+        if (seconds := made.seconds_left) is not None:
+            progress = Message("{state}, {time}", state=progress, time=time_left(seconds))
+        if context.workspace is not None:
+            context.workspace.status_text_set(iface_(progress))
 
     def _report_film(self) -> None:
         made = self.filming
         self.report({"INFO"}, rpt_("A film of {count} frames: {path}", count=made.frames, path=made.path))
+
+
+def _no_film(context: bpy.types.Context) -> bool:
+    try:
+        return not target(context.scene.mobius_flow_film.filepath).is_file()
+    except MobiusFlowError:
+        return True
+
+
+@button("Play Film", Condition("There is no film at this place; press Render Film first", _no_film), bl_options=set())
+def play_film(_operator: Button, context: bpy.types.Context) -> None:
+    """Play the film that was rendered"""
+    play(target(context.scene.mobius_flow_film.filepath))
 
 
 class CURVE_OT_mobius_flow_replace_film(_OfFilm, Button, bpy.types.Operator):

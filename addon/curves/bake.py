@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...core import MobiusFlowError
+from ...core.messages import Message
 from ..engine.key_options import KeyOptions, Output, Timing
 from . import keyframes
 from .exchange import key_points
@@ -24,7 +26,7 @@ _BEVEL = ("bevel_depth", "bevel_resolution", "use_fill_caps")
 def remember(data: "bpy.types.Curve", before: "bpy.types.Curve", timing: Timing) -> None:
     """Note on curve data that has just been keyed how it was before; nothing is noted on data without keys."""
     if animated(data):
-        data[_RECORD] = {"original": before, "holds": [timing.hold_start, timing.hold_end]}
+        data[_RECORD] = {"original": before, "holds": [timing.hold_start, 0], "loop": timing.loop}
         update(data, timing)
 
 
@@ -37,7 +39,9 @@ def update(data: "bpy.types.Curve", timing: Timing | None = None) -> None:
     record = data[_RECORD]
     record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
     if timing is not None:  # the rest before the first key of all is the one that was baked
-        record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], timing.hold_end]
+        # the frame where a loop begins again is the first one
+        after = timing.hold_start - 1 if timing.loop else timing.hold_end
+        record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], after]
 
 
 def scale_bevel(data: "bpy.types.Curve", factor: float) -> None:
@@ -46,6 +50,11 @@ def scale_bevel(data: "bpy.types.Curve", factor: float) -> None:
     data.bevel_depth *= factor
     if ours:
         record["bevel_depth"] = data.bevel_depth
+
+
+def loops(data: "bpy.types.Curve") -> bool:
+    """Whether a baked curve goes back to where it began."""
+    return bool(data[_RECORD].get("loop", False))
 
 
 def is_baked(data: "bpy.types.Curve") -> bool:
@@ -79,8 +88,12 @@ def continued(objects: Sequence["bpy.types.Object"], options: KeyOptions) -> Key
     """The options that let an animation go on where the last of some baked objects comes to rest."""
     played = scene_range(objects)
     assert played is not None, "they are baked"
+    if looping := next((obj.name for obj in objects if loops(obj.data)), None):
+        raise MobiusFlowError(
+            Message("'{name}' ends where it begins; switch Loop off, and Relax it anew", name=looping)
+        )
     # the first of the new frames is the last of the old ones
-    timing = replace(options.timing, start_frame=float(played[1]), length=options.timing.length + 1)
+    timing = replace(options.timing, start_frame=float(played[1]), length=options.timing.length + 1, loop=False)
     return replace(options, output=Output.SHAPE_KEYS if not options.animated else options.output, timing=timing)
 
 

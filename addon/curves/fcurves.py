@@ -85,6 +85,14 @@ def _own_collections(block: "bpy.types.ID") -> Iterator[Any]:
         yield from _collections(animation.action, [animation.action_slot])
 
 
+def mirror(curve: "bpy.types.FCurve", middle: float) -> None:
+    """Let an F-curve that runs straight go back from a frame on as it came."""
+    for frame, value in [tuple(point.co) for point in curve.keyframe_points][::-1]:
+        if frame < middle:
+            curve.keyframe_points.insert(2 * middle - frame, value, options={"FAST"}).interpolation = "LINEAR"
+    curve.update()
+
+
 class FCurves:
     """The F-curves of the action on a datablock, which gets a new one if it has none."""
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core.types import FloatArray
-from ..engine.key_options import Output
+from ..engine.key_options import Output, Timing
 from ..engine.motion import Keys
 from ..engine.placement import Frame
 from .exchange import key_points, key_radii, write_points
@@ -18,19 +18,26 @@ from .fcurves import FCurves, drop_actions, fcurves_of
 if TYPE_CHECKING:
     import bpy
 
+_ONCE = Timing()
+
 
 def writing(
-    obj: "bpy.types.Object", keys: Keys, frames: FloatArray, output: Output, radii: FloatArray | None = None
+    obj: "bpy.types.Object",
+    keys: Keys,
+    frames: FloatArray,
+    output: Output,
+    radii: FloatArray | None = None,
+    timing: Timing = _ONCE,
 ) -> Iterator[None]:
     """Write keys in short pieces to a curve object with as many points; the curve itself keeps the last key.
 
     It has no animation, or keys of an earlier call, the last of which is the first of the new ones. ``frames``: scene
     frame of each key, ascending; ``radii``: relative radii at each, (keys,) or of each point, (keys, n); None keeps the
-    points' own.
+    points' own; ``timing``: whether keys are passed again on the way back.
     """
     write_points(obj.data, keys.keys[-1].points)
     if output is Output.SHAPE_KEYS:
-        yield from _shape_keys(obj, keys, frames, radii)
+        yield from _shape_keys(obj, keys, frames, radii, timing)
     elif output is Output.FCURVES:
         yield from _fcurves(obj, keys, frames)
 
@@ -101,7 +108,7 @@ def scale_radii(data: "bpy.types.Curve", factors: float | FloatArray) -> None:
 
 
 def _shape_keys(
-    obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None
+    obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None, timing: Timing = _ONCE
 ) -> Iterator[None]:
     """Absolute shape keys, and an F-curve that runs through them."""
     data = obj.data
@@ -123,7 +130,9 @@ def _shape_keys(
     data.shape_keys.use_relative = False
     data.shape_keys.eval_time = 0
     curves = FCurves(data.shape_keys, f"{obj.name} Relaxation")
-    curves.add("eval_time", 0, frames, there - skipped + np.arange(len(frames), dtype=np.float64))
+    places, back = there - skipped + np.arange(len(frames), dtype=np.float64), timing.way_back(frames)
+    values = np.concatenate([places, places[::-1][len(places) - len(back) :]])
+    curves.add("eval_time", 0, np.concatenate([frames, back]), values)
 
 
 def _fcurves(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> Iterator[None]:

@@ -132,7 +132,8 @@ class Member:
             bevel.fit(obj.data, float(radii[-1]))
             keyframes.scale_radii(obj.data, depth / obj.data.bevel_depth)  # which are relative to it
             relative = radii / radii[-1]
-        yield from keyframes.writing(obj, keys, frames, keyframes.output_of(obj.data) or options.output, relative)
+        output = keyframes.output_of(obj.data) or options.output
+        yield from keyframes.writing(obj, keys, frames, output, relative, options.timing)
 
     def keep(self, options: KeyOptions) -> None:
         """Make what was written final: the stand-in takes over the names and the users of the original.

@@ -231,7 +231,8 @@ class Session:
 
     def prepare(self, proof: Proof) -> Prepared:
         """Choose and prove the keys; this touches nothing of Blender's and may be done in any thread."""
-        timing, motion = self._key_options.timing, self._motion
+        motion = self._motion
+        timing = self._key_options.timing.shortened(motion.way) if self.group.continues else self._key_options.timing
         animated, limit = self._key_options.animated, self._key_options.max_keys
         keys = motion.keys(proof, limit, timing.pace) if animated else motion.result(proof)
         radii = self._radii(keys) if self.group.fits(self._key_options) else None
@@ -242,7 +243,8 @@ class Session:
         # an animation that goes on may have shape keys whatever is asked for, see `Member.writing`
         shape_keys = self._key_options.output is Output.SHAPE_KEYS or self.group.continues
         shown = keys.keys if shape_keys else keys.keys[-1:]
-        return np.array([self._radius(key.points) for key in shown])
+        radii = np.array([self._radius(key.points) for key in shown])
+        return np.full_like(radii, radii.min()) if self._key_options.constant_radius else radii
 
     def _radius(self, frame: Frame) -> float:
         """Radius of the tube, as thick as free of contact allows, in the common space."""

@@ -3,7 +3,7 @@
 Chords between keys are proved whatever their times: a key's frame says when it is passed, not where the curve goes.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import numpy as np
@@ -20,7 +20,8 @@ _BY_LENGTH = Message("Start Frame or Length")
 # shares of an even motion: of distance, of what the energy has fallen by, so that drift takes few frames, and of the
 # iterates, so that the last, small steps get some
 _EVEN = 0.55, 0.3, 0.15
-_DRIFT = 0.1  # what a way is worth along which the energy stays within a hundredth of the least
+_DRIFT, _NEAR = 0.1, 0.03  # what a way is worth along which the energy stays near the end, and that in bits of it
+_SLOWEST = 1000  # frames for a way as long as the curve is wide: what is slower seems to rest
 _RAMP = 0.12  # of the time, in which an even motion sets off, and in which it comes to rest
 _CREEP = 0.1  # of its speed, with which it begins and ends
 
@@ -55,7 +56,7 @@ class Course:
     def _worth(self, passed: FloatArray) -> FloatArray:
         """Something that passes, summed up with less weight where the energy hardly falls any more: drift."""
         above = np.expm1(np.minimum(self.fall[-1] - self.fall, 50.0))  # bits of energy above the end
-        worth = (above + _DRIFT) / (above + 1.0)
+        worth = (above + _DRIFT * _NEAR) / (above + _NEAR)
         return np.concatenate([[0.0], np.cumsum(0.5 * (worth[1:] + worth[:-1]) * np.diff(passed))])
 
 
@@ -89,6 +90,7 @@ class Timing:
     frames_per_iterate: float = 1.0  # frames from one iterate to the next, for `Pace.ITERATE`
     hold_start: int = 0  # frames at rest before and after the motion
     hold_end: int = 0
+    loop: bool = False  # whether it goes back to where it began, in as many frames: `length` is that of both ways
 
     def __post_init__(self) -> None:
         if not abs(self.start_frame) <= LAST_FRAME:  # not a number is refused too
@@ -100,23 +102,28 @@ class Timing:
             raise OptionError(Message(sentence, value=self.frames_per_iterate, low=low, high=high))
         if min(self.hold_start, self.hold_end) < 0:
             raise OptionError(Message("Hold at Start and Hold at End must be 0 frames or more"))
-        if self.pace is not Pace.ITERATE and self.length < 2 + self.hold_start + self.hold_end:
+        least = (1 + self.loop) * (1 + self.hold_start + self.hold_end) + (not self.loop)
+        if self.pace is not Pace.ITERATE and self.length < least:
             sentence = (
                 "Length is {length} frames, which leaves none to move in; it must be at least {least}, or the holds "
                 "shorter"
             )
-            raise OptionError(Message(sentence, length=self.length, least=2 + self.hold_start + self.hold_end))
+            raise OptionError(Message(sentence, length=self.length, least=least))
 
     def check_room(self, iterations: int) -> None:
         """Raise an OptionError if so many iterations would take frames beyond the last one that a scene may have."""
-        _, end = self._motion(iterations)
-        last = end + self.hold_end
+        _, last = self.scene_range(np.array(self._motion(iterations)))
         if last > LAST_FRAME:
             sentence = (
                 "The animation would go on to frame {frame:.0f}, but Blender's last is {last}; give a smaller {what}"
             )
             what = _BY_ITERATE if self.pace is Pace.ITERATE else _BY_LENGTH
             raise OptionError(Message(sentence, frame=last, last=LAST_FRAME, what=what))
+
+    def shortened(self, way: float) -> "Timing":
+        """The same for a way of so many sizes of the curve, which may not be worth the whole length."""
+        least = 2 + self.hold_start + self.hold_end + int(np.ceil(_SLOWEST * way))
+        return self if self.pace is Pace.ITERATE else replace(self, length=min(self.length, least))
 
     def frames(self, course: Course) -> FloatArray:
         """Frame of each key as Blender stores it, a 32-bit number, each later than the one before; (keys,)."""
@@ -129,13 +136,19 @@ class Timing:
 
     def scene_range(self, frames: FloatArray) -> tuple[int, int]:
         """First and last frame of an animation with its rests, as whole frames."""
-        return int(np.floor(frames[0] - self.hold_start)), int(np.ceil(frames[-1] + self.hold_end))
+        way = frames[-1] + self.hold_end - (first := frames[0] - self.hold_start)
+        return int(np.floor(first)), int(np.ceil(first + (2 * way - 1 if self.loop else way)))
+
+    def way_back(self, frames: FloatArray) -> FloatArray:
+        """Frames at which keys are passed again, from the last one on; the last is left out if nothing rests there."""
+        back = 2 * (frames[-1] + self.hold_end) - frames[::-1]
+        return back[back > frames[-1]] if self.loop else frames[:0]
 
     def _motion(self, iterations: float) -> tuple[float, float]:
         begin = self.start_frame + self.hold_start
         if self.pace is Pace.ITERATE:
             return begin, begin + self.frames_per_iterate * iterations
-        return begin, self.start_frame + self.length - 1 - self.hold_end
+        return begin, self.start_frame + (self.length / 2 if self.loop else self.length - 1) - self.hold_end
 
 
 def _apart(frames: FloatArray) -> FloatArray:
@@ -169,9 +182,14 @@ class KeyOptions:
     fit_bevel: bool = False
     # do so with every curve that is drawn as a line or a plain round tube, also where its depth is the artist's own
     any_bevel: bool = False
+    constant_radius: bool = False  # draw such tubes as thick at all keys as at the one where they are thinnest
     # what stays as it is at the first key; where it is not the length, which the flow keeps, keys are scaled; None: the
     # radius, or the length where something is pinned or avoided, or grows
     keep_size: Measure | None = None
+
+    def __post_init__(self) -> None:
+        if self.timing.loop and self.output is Output.FCURVES:
+            raise OptionError(Message("Loop goes with keyframes='SHAPE_KEYS' only; give that, or switch Loop off"))
 
     @property
     def animated(self) -> bool:
@@ -186,5 +204,7 @@ class KeyOptions:
     def check_place(self) -> None:
         """Raise an OptionError if keys are scaled: that moves pins, and proofs beside others hold at one size only."""
         if self.keep_size not in (None, Measure.LENGTH):
-            sentence = "Only the length can be kept where something is pinned or avoided; set Keep to Length"
+            sentence = (
+                "Only the length can be kept where something is pinned or avoided; give keep_size='LENGTH', or none"
+            )
             raise OptionError(Message(sentence))

@@ -173,7 +173,8 @@ class Motion:
         """
         ends = [self._key(position) for position in chosen]
         cuts = min(_CUTS, -(-_MANY // len(ends))) if more else 1
-        shown, left = _means(ends, cuts), list(range(len(ends) - 1))
+        shown = [ends[0], *map(self._sized, _means(ends, cuts)[1:-1]), ends[-1]]
+        left = list(range(len(ends) - 1))
         legs = {k: shown[k * cuts : (k + 1) * cuts + 1] for k in left}
         while left:
             k = left.pop()
@@ -184,6 +185,15 @@ class Motion:
                         legs[beside][end] = ends[place]
                         left.append(beside)
         return {k: leg[1:] for k, leg in legs.items()}
+
+    def _sized(self, mean: Key) -> Key:
+        """A mean of keys in the size that these have."""
+        if self._size is None or self._size.like is not None:
+            return mean
+        pieces = zip(self._link.placements, self._link.slices(self._mesh), strict=True)
+        world = [place.to_world(mean.points[piece].astype(np.float64)) for place, piece in pieces]
+        sized = self._size.given_to(Curve(np.concatenate(world), self._mesh)).vertices
+        return Key(mean.time, self._link.to_stored(self._mesh, sized).astype(np.float32))
 
     def result(self, free: Proof) -> Keys:
         """Return the last iterate alone; it counts as proved if the way there and its rounding were."""

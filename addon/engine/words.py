@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from ...core.driver.outcome import AT_REST
+from ...core.driver.rises import RAISED
 from ...core.messages import COMPONENT, EDGE, OBSTACLE, VERTEX, VERTEX_COUNT, Message
 
 _MAX_NAMES = 3
@@ -10,6 +11,7 @@ _WORDS = {
     AT_REST: Message("converged"),
     EDGE: Message("segment {number}"),
     OBSTACLE: Message("'{name}'"),
+    RAISED: Message("with more points the energy turned out higher: {rises}"),
     VERTEX: Message("point {number}"),
     VERTEX_COUNT: Message("{count} points"),
 }

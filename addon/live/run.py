@@ -120,7 +120,7 @@ class Run:
 
     def look(self) -> None:
         """Show the shape that the scene's frame would have if the run ended here, while the timeline is used."""
-        if self.last is None or self.state.over or self.waits:
+        if self.last is None or self.state.over or self.waits or self._session.lost():
             return
         there = self._session.at(bpy.context.scene.frame_current_final) if self.endures and looks_back() else None
         before, self.looked_at = self.looked_at, None if there is None else there.time

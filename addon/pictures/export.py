@@ -22,12 +22,14 @@ from ..engine.motion import Key, Keys
 from ..engine.rounded import rounded
 from ..engine.size import Measure
 from . import film, rendering
+from .film import Playing
 from .looks import DEFAULT, LOOKS
 from .movie import Progress, render_movie
 
 if TYPE_CHECKING:
     import bpy
 
+ONCE = Playing()
 Target = str | os.PathLike[str]
 
 _PICTURE = (800, 450)  # width, height
@@ -50,57 +52,58 @@ def require_blender() -> None:
         raise MobiusFlowError(f"Blender's Python module, which is installed, cannot be loaded: {error}") from error
 
 
-def write_blend(path: Target, iterates: Sequence[Iterate], look: str | None = None) -> bool:
+def write_blend(path: Target, iterates: Sequence[Iterate], playing: Playing = ONCE) -> bool:
     """Write a .blend in which the relaxation plays, ready to render, where the extension is not installed too.
 
-    ``iterates`` are those of a run, from the start to the last; ``look`` is one of `LOOKS`. Raises MobiusFlowError if
+    ``iterates`` are those of a run, from the start to the last. Raises MobiusFlowError if
     Blender's module is missing or the file cannot be written.
     """
-    style = LOOKS[look or DEFAULT]
-    _, certified = _played(iterates, lambda scene: rendering.use_cycles(scene, style, *_PICTURE), look, in_place=True)
+    style = LOOKS[playing.look or DEFAULT]
+    _, certified = _played(iterates, lambda scene: rendering.use_cycles(scene, style, *_PICTURE), playing, True)
     _make(path, _save)
     return certified
 
 
 def write_movie(
-    path: Target, iterates: Sequence[Iterate], progress: Progress | None = None, look: str | None = None
+    path: Target, iterates: Sequence[Iterate], progress: Progress | None = None, playing: Playing = ONCE
 ) -> bool:
     """Render the relaxation to an .mp4 of a few seconds, or half a minute where strands are moved one after the other.
 
-    ``progress`` gets the number of frames done and of all frames; without a ``look`` it is drawn plainly, in little
+    ``progress`` gets the number of frames done and of all frames; without a look it is drawn plainly, in little
     time. Otherwise as `write_blend`.
     """
 
     def set_up(scene: "bpy.types.Scene") -> None:
-        if look is not None:
-            rendering.use_cycles(scene, LOOKS[look], *_FILM, _FILM_SAMPLES)
+        if playing.look is not None:
+            rendering.use_cycles(scene, LOOKS[playing.look], *_FILM, _FILM_SAMPLES)
         elif rendering.workbench_works():
             rendering.use_workbench(scene, *_FILM)
         else:
             rendering.use_cycles(scene, LOOKS[DEFAULT], *_FILM_WITHOUT_DRIVER)
             rendering.skip_frames(scene)
 
-    scene, certified = _played(iterates, set_up, look)
+    scene, certified = _played(iterates, set_up, playing)
     _make(path, lambda temporary: render_movie(scene, temporary, progress))
     return certified
 
 
 def _played(
-    iterates: Sequence[Iterate], set_up: Callable[["bpy.types.Scene"], None], look: str | None, in_place: bool = False
+    iterates: Sequence[Iterate], set_up: Callable[["bpy.types.Scene"], None], playing: Playing, in_place: bool = False
 ) -> tuple["bpy.types.Scene", bool]:
     """A scene that plays a relaxation, and whether all it shows is proved.
 
     ``in_place``: as large and where it is, with its corners; otherwise these are rounded.
     """
     motion, origin = film.recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
-    timing = film.timing(motion)
+    playing = playing.timed(motion)
+    timing = playing.timing
     keys, mesh = motion.keys(is_free, timing.length, timing.pace), motion.start.mesh
     frames = timing.frames(motion.course(keys))
     if not in_place:
         mesh, keys = rounded(mesh, keys, is_free)
     scene = _empty_scene()
     set_up(scene)
-    film.compose(scene, keys, frames, mesh, look or DEFAULT, origin if in_place else None)
+    film.compose(scene, keys, frames, mesh, playing, origin if in_place else None)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     return scene, keys.certified
 
@@ -124,7 +127,7 @@ def _render(path: Target, keys: Keys, mesh: Mesh, size: tuple[int, int], look: s
     mesh, keys = rounded(mesh, keys, is_free)
     scene = _empty_scene()
     rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size)
-    film.compose(scene, keys, np.ones(1), mesh, look or DEFAULT)
+    film.compose(scene, keys, np.ones(1), mesh, Playing(look))
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
     return keys.certified
 

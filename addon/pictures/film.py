@@ -1,7 +1,7 @@
 """An empty scene filled with a relaxation: the keyed curve as a tube, and a stage around it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +11,14 @@ from ...core.curve import Mesh
 from ...core.types import FloatArray
 from ..curves import keyframes
 from ..curves.exchange import new_curve_data
+from ..curves.fcurves import all_fcurves, mirror
 from ..engine.key_options import Output, Timing
 from ..engine.motion import Keys, Motion
 from ..engine.placement import Frame, Link, Placement
 from ..engine.rounded import tube_radii
 from ..engine.size import Measure
 from . import camera, stage
-from .looks import LOOKS
+from .looks import DEFAULT, LOOKS
 from .materials import colour_components
 
 if TYPE_CHECKING:
@@ -30,6 +31,23 @@ _PAUSE = 6  # frames at rest before the motion begins
 _END = 12  # frames at rest after it
 _FAR = 8.0  # a curve further from the origin, in its own sizes, gets its own origin: 32 bits are few
 _SIZES = (1e-3, 1e3)  # between these Blender works well
+
+
+@dataclass(frozen=True)
+class Playing:
+    """How a relaxation is played in a scene or a film."""
+
+    look: str | None = None  # one of `LOOKS`; None: the default one, and films drawn plainly
+    loop: bool = False  # there and back
+    constant_radius: bool = False  # the tube is as thick at all keys as at the one where it is thinnest
+    timing: Timing = field(default_factory=Timing)  # that of the keys
+
+    def timed(self, motion: Motion) -> "Playing":
+        """Let a curve move about evenly, no faster than can be followed, and rest for a moment before and after."""
+        low, high = _FILM
+        moving = round(min(max(_FRAMES_PER_SIZE * motion.way, low), high))
+        length = (_PAUSE + moving + _END) * (1 + self.loop) + (not self.loop)
+        return replace(self, timing=Timing(length=length, hold_start=_PAUSE, hold_end=_END, loop=self.loop))
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,13 +97,14 @@ def recorded(iterates: Sequence[Iterate], measure: Measure = Measure.LENGTH) -> 
 
 
 def compose(
-    scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh, look: str, origin: Origin | None = None
+    scene: "bpy.types.Scene", keys: Keys, frames: FloatArray, mesh: Mesh, playing: Playing, origin: Origin | None = None
 ) -> None:
     """Put a keyed curve on a look's stage, by default near the scene's origin, and fit the scene's frames to it."""
     import bpy
 
-    points = [key.points for key in keys.keys]
+    points, look = [key.points for key in keys.keys], playing.look or DEFAULT
     radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
+    radii = np.full_like(radii, radii.min()) if playing.constant_radius else radii
     data = new_curve_data("Curve", mesh)
     data.bevel_depth, data.bevel_resolution = float(radii.max()), _BEVEL_RESOLUTION
     data.use_fill_caps = True  # at the ends of arcs
@@ -101,6 +120,9 @@ def compose(
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])
     scene.camera = camera.follow(scene.collection, size, ground, floor, points, radii.max(axis=1), frames)
+    if playing.timing.loop:
+        for curve in all_fcurves():
+            mirror(curve, frames[-1] + playing.timing.hold_end)
     scene.world = scene.world or bpy.data.worlds.new("World")
     stage.add_sky(scene.world, LOOKS[look])
     stage.light_workbench(scene, stage.towards_key(ground, LOOKS[look]))
@@ -132,10 +154,3 @@ def _put(scene: "bpy.types.Scene", origin: Origin) -> None:
             obj.data.clip_start *= origin.scale
             obj.data.clip_end *= origin.scale
             obj.data.dof.aperture_fstop /= origin.scale
-
-
-def timing(motion: Motion) -> Timing:
-    """Let a curve move about evenly, no faster than can be followed, and rest for a moment before and after."""
-    low, high = _FILM
-    moving = round(min(max(_FRAMES_PER_SIZE * motion.way, low), high))
-    return Timing(length=1 + _PAUSE + moving + _END, hold_start=_PAUSE, hold_end=_END)

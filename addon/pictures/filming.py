@@ -1,6 +1,7 @@
 """Films of what an artist's scene plays, as it is rendered, plainly, or in a look."""
 
 import os
+import subprocess
 from pathlib import Path
 
 import bpy
@@ -64,6 +65,17 @@ class Filming(Reel):
             super().start()
         except RuntimeError as error:
             raise OutputError(self.path, error) from error
+
+
+def play(path: Path) -> None:
+    """Play a film in Blender's own player, or in the system's where Blender is no program; raises OutputError."""
+    try:
+        if bpy.app.binary_path:
+            subprocess.Popen([bpy.app.binary_path, "-a", str(path)], stdout=subprocess.DEVNULL)
+        else:
+            bpy.ops.wm.path_open(filepath=str(path))
+    except (OSError, RuntimeError) as error:
+        raise OutputError(path, error) from error
 
 
 def target(path: str) -> Path:

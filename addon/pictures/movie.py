@@ -6,6 +6,7 @@ picture is a file, and then they are put together.
 
 import secrets
 import tempfile
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -28,6 +29,7 @@ class Reel:
     def __init__(self, scene: "bpy.types.Scene", path: Path) -> None:
         self.path = path
         self.frames = len(frames_of(scene))
+        self.done, self._began = 0, 0.0  # frames that are written, and when that began
         self._part = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
         self._scene = str(scene.name)
         _use_h264(scene)
@@ -49,14 +51,28 @@ class Reel:
         """Begin to render in Blender's own window, and return at once; `finish` is to be called when that is over."""
         import bpy
 
+        self._began = time.monotonic()
+        bpy.app.handlers.render_write.append(self._count)
         try:
             bpy.ops.render.render("INVOKE_DEFAULT", animation=True, scene=self._scene)
         except RuntimeError:
             self.finish()
             raise
 
+    @property
+    def seconds_left(self) -> float | None:
+        """How long the frames that are missing take, if they take as long as those before; None before the first."""
+        return (time.monotonic() - self._began) / self.done * (self.frames - self.done) if self.done else None
+
+    def _count(self, scene: "bpy.types.Scene", *_: object) -> None:
+        self.done += scene.name == self._scene
+
     def finish(self) -> bool:
         """Put the film in its place if it is whole, and return whether it is; leave nothing else behind."""
+        import bpy
+
+        with suppress(ValueError):  # it was not started in a window
+            bpy.app.handlers.render_write.remove(self._count)
         try:
             whole = self._part.exists() and length_of(self._part) == self.frames
             if whole:
@@ -75,7 +91,7 @@ def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None
     ``progress`` gets the number of frames done and of all frames. The film has the scene's resolution at 100 %; at more
     its pixels are rendered more finely. Stopped by an exception, such as a KeyboardInterrupt, it ends after the frame
     at hand, or after the seconds in which the frames are put together, and leaves nothing behind. A frame in which
-    nothing has moved is the frame before again. Raises OSError or RuntimeError if the film cannot be written.
+    all is where it was in another is that one again. Raises OSError or RuntimeError if the film cannot be written.
     """
     try:
         with tempfile.TemporaryDirectory(dir=path.absolute().parent) as room:
@@ -119,15 +135,14 @@ def length_of(path: Path) -> int:
 
 def _pictures(scene: "bpy.types.Scene", room: Path, progress: Progress) -> Iterator[Path]:
     frames = frames_of(scene)
-    curves = list(all_fcurves())
-    shown, picture = None, room
+    curves, pictures = list(all_fcurves()), dict[tuple[str, ...], Path]()
     for k, frame in enumerate(frames, 1):
-        pose = [curve.evaluate(frame) for curve in curves]
-        if pose != shown:
-            shown, picture = pose, room / f"{frame:06}.jpg"
+        pose = tuple(f"{curve.evaluate(frame):.6g}" for curve in curves)  # on the way back the last bits differ
+        if pose not in pictures:
+            pictures[pose] = room / f"{frame:06}.jpg"
             scene.frame_set(frame)
-            rendering.render_still(scene, picture)
-        yield picture
+            rendering.render_still(scene, pictures[pose])
+        yield pictures[pose]
         progress(k, len(frames))
 
 

@@ -74,13 +74,12 @@ class VIEW3D_PT_mobius_flow_shape(SubPanel, bpy.types.Panel):
     bl_label = "Shape"
     rows = (
         column(button("fit_tube", "MESH_CYLINDER"), button("color_components", "COLOR")),
-        settings("fit_bevel"),
+        settings("fit_bevel", "constant_radius"),
         column(button("tube_mesh", "OUTLINER_OB_MESH"), button("smooth_curve", "CURVE_BEZCURVE")),
         column(
             button("keep_size", "FULLSCREEN_EXIT"),
             row(button("lay_flat", "AXIS_TOP"), button("face_camera", "CAMERA_DATA")),
         ),
-        settings("keep_size"),
         column(button("balance", "MOD_CURVE"), row(button("check", "VIEWZOOM"), button("leave_saddle", "SORT_ASC"))),
         button("close", "CURVE_BEZCIRCLE"),
         _radius,
@@ -109,12 +108,12 @@ class VIEW3D_PT_mobius_flow_film(SubPanel, bpy.types.Panel):
     bl_label = "Film"
     bl_options = set()
     rows = (
-        settings("keyframes", "length", "hold_end"),
+        settings("length", "hold_end", "loop"),
         column(row(button("continue", "FF"), button("clear", "TRASH")), button("scene_range", "PREVIEW_RANGE")),
         _stage,
         _size,
         settings("look", "filepath", of="mobius_flow_film"),
-        button("render_film", "RENDER_ANIMATION"),
+        row(button("render_film", "RENDER_ANIMATION"), button("play_film", "PLAY")),
         _unseen_frames,
     )
 

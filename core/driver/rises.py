@@ -8,6 +8,7 @@ from .outcome import Outcome
 from .trajectory import Iterate
 
 RISE = 1e-9  # relative to the energy's scale, the least increase reported; less is rounding
+RAISED = "changes of mesh or shape raised the energy: {rises}"
 NAMED = 3  # changes of mesh whose energies are listed individually
 
 
@@ -45,7 +46,7 @@ class Rises:
             if len(rest) == 1:
                 more = "{rises}, and in another change by {total:.3g}"
             told = Message(more, rises=told, count=len(rest), total=sum(map(_total, rest)))
-        return outcome.adding("changes of mesh or shape raised the energy: {rises}", rises=told)
+        return outcome.adding(RAISED, rises=told)
 
 
 def _rise(before: Iterate, after: Iterate) -> float:

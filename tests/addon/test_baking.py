@@ -10,7 +10,8 @@ from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_fram
 from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored  # noqa: E402
 from families import crossed  # noqa: E402
 from mathutils import Vector  # noqa: E402
-from mobius_flow.addon.curves import keyframes  # noqa: E402
+from mobius_flow.addon.curves import bake, keyframes  # noqa: E402
+from mobius_flow.core.knots import knot  # noqa: E402
 from shapes import torus_trefoil  # noqa: E402
 
 
@@ -108,3 +109,30 @@ def test_frames_per_iterate_alone_means_by_iterate():
     assert [point.co[0] for point in curve_of(obj).keyframe_points] == [1, 3.5, 6, 8.5, 11]
     bpy.ops.curve.mobius_flow_relax(max_iterations=4)
     assert curve_of(obj).keyframe_points[-1].co[0] == 250
+
+
+def test_there_and_back():
+    obj = add_trefoil()
+    relax(max_iterations=5, timing="EVEN", length=60, hold_end=4, hold_start=3, loop=True)
+    assert bake.scene_range([obj]) == (1, 60)
+    assert (
+        obj.data.eval_time == pytest.approx(obj.data.shape_keys.eval_time) if hasattr(obj.data, "eval_time") else True
+    )
+    shapes = [evaluated(obj, frame) for frame in range(1, 62)]
+    for k in range(31):
+        np.testing.assert_allclose(shapes[k], shapes[60 - k], atol=1e-5)
+    np.testing.assert_array_equal(shapes[0], shapes[60])
+    np.testing.assert_array_equal(shapes[26], shapes[34])
+    assert not np.array_equal(shapes[0], shapes[30])
+    with pytest.raises(RuntimeError, match="Loop goes with keyframes='SHAPE_KEYS' only"):
+        relax(max_iterations=5, keyframes="FCURVES", loop=True)
+
+
+def test_constant_thickness_is_the_least():
+    obj = add_curve([knot("5_2", 60).vertices])
+    relax(max_iterations=8, fit_bevel=True)
+    radii = [block.data[0].radius * obj.data.bevel_depth for block in obj.data.shape_keys.key_blocks]
+    relax(max_iterations=8, fit_bevel=True, constant_radius=True)
+    constant = [block.data[0].radius * obj.data.bevel_depth for block in obj.data.shape_keys.key_blocks]
+    assert max(radii) > 1.05 * min(radii)
+    assert constant == pytest.approx([min(radii)] * len(radii), rel=1e-5)

@@ -11,6 +11,7 @@ bpy = pytest.importorskip("bpy")
 from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings  # noqa: E402
 from blender_scenes import add_trefoil, evaluated, relax, stored  # noqa: E402
 from mobius_flow.addon.curves import bake, keyframes  # noqa: E402
+from mobius_flow.addon.engine import key_options  # noqa: E402
 from mobius_flow.core.collision import is_free  # noqa: E402
 from mobius_flow.core.curve import Mesh  # noqa: E402
 
@@ -38,10 +39,11 @@ def test_continuing_adds_proved_keys_after_the_old_ones(tmp_path, capfd, keyfram
     assert blocks() == names
 
 
-def test_continuing_by_length_goes_on_after_the_rest():
+def test_continuing_by_length_goes_on_after_the_rest(monkeypatch):
+    monkeypatch.setattr(key_options, "_SLOWEST", 1e9)
     obj = add_trefoil()
-    relax(max_iterations=3, timing="EVEN", length=50, hold_end=10)
-    go_on(length=100, hold_start=5, hold_end=2)
+    relax(max_iterations=3, timing="DISTANCE", length=50, hold_end=10)
+    go_on(timing="DISTANCE", length=100, hold_start=5, hold_end=2)
     curve = curve_of(obj)
     frames = [point.co[0] for point in curve.keyframe_points]
     assert frames[3] == 40
@@ -51,18 +53,35 @@ def test_continuing_by_length_goes_on_after_the_rest():
     assert len(obj.data.splines[0].points) == 30
 
 
-def test_the_rest_at_the_beginning_is_still_played_after_continuing():
+def test_the_rest_at_the_beginning_is_still_played_after_continuing(monkeypatch):
+    monkeypatch.setattr(key_options, "_SLOWEST", 1e9)
     obj = add_trefoil()
-    relax(max_iterations=3, timing="EVEN", length=50, hold_start=10, hold_end=5)
-    go_on(length=100, hold_start=3, hold_end=2)
+    relax(max_iterations=3, timing="DISTANCE", length=50, hold_start=10, hold_end=5)
+    go_on(timing="DISTANCE", length=100, hold_start=3, hold_end=2)
     assert bake.scene_range([obj]) == (1, 150)
+
+
+def test_no_motion_takes_no_length():
+    obj = add_trefoil()
+    relax(max_iterations=400, timing="EVEN", length=50)
+    go_on(timing="EVEN", length=100, tolerance=1e-3)
+    first, last = bake.scene_range([obj])
+    assert first == 1
+    assert 50 <= last <= 60
+
+
+def test_what_ends_where_it_begins_is_not_continued():
+    add_trefoil()
+    relax(max_iterations=3, timing="EVEN", length=50, loop=True)
+    with pytest.raises(RuntimeError, match="'Knot' ends where it begins; switch Loop off, and Relax it anew"):
+        go_on(max_iterations=1)
 
 
 def test_one_new_key_is_not_called_keys(capfd):
     add_trefoil()
     relax(max_iterations=3)
-    go_on(max_iterations=1)
-    assert "; 1 new key up to frame 254, proved" in capfd.readouterr().out
+    go_on(max_iterations=1, timing="ITERATE")
+    assert "; 1 new key up to frame 5, proved" in capfd.readouterr().out
 
 
 def test_continuing_gets_where_a_longer_run_gets():

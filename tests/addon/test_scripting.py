@@ -14,7 +14,7 @@ from mobius_flow.addon.properties import SETTINGS  # noqa: E402
 from mobius_flow.addon.scripting import complete  # noqa: E402
 from mobius_flow.core import MobiusFlowError, OptionError  # noqa: E402
 
-SHORT = {"max_iterations": 5, "vertices": 100, "length": 10}
+SHORT = {"max_iterations": 5, "vertices": 100, "length": 10, "timing": "DISTANCE"}
 
 
 def nothing_selected():
@@ -30,7 +30,7 @@ def test_a_script_and_the_button_do_the_same():
     assert report.keys == 6
     assert not bpy.context.selected_objects
     by_button = add_trefoil()
-    relax(**{"timing": "EVEN", "keep_size": "AUTO"} | SHORT)
+    relax(**{"keep_size": "AUTO"} | SHORT)
     np.testing.assert_array_equal(stored(by_script.data), stored(by_button.data))
     assert bake.scene_range([by_script]) == bake.scene_range([by_button]) == (1, 10)
 
@@ -39,7 +39,7 @@ def test_the_scenes_settings_are_not_looked_at():
     bpy.context.scene.mobius_flow.max_iterations = 1
     bpy.context.scene.mobius_flow.length = 77
     obj = add_trefoil()
-    Relaxation(obj).relax(max_iterations=3)
+    Relaxation(obj).relax(max_iterations=3, timing="DISTANCE")
     assert len(obj.data.shape_keys.key_blocks) == 4
     assert bake.scene_range([obj]) == (1, 250)
 

@@ -252,8 +252,21 @@ def test_of_a_film_that_fails_the_curve_is_kept(
     monkeypatch.setattr(outputs.export, "write_movie", failing)
     assert main(["relax", trefoil, "film.mp4", *SHORT]) == 2
     (curve,) = kept_as(capsys.readouterr().err)
-    assert curve.endswith("film.mp4.obj")
+    assert curve.endswith("film.obj")
     assert len(read_curve(curve)) == 60
+
+
+def test_how_films_are_played_reaches_them_and_nothing_else(
+    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    played = []
+    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
+    monkeypatch.setattr(outputs.export, "write_movie", lambda *arguments: played.append(arguments[-1]))
+    assert main(["relax", trefoil, "film.mp4", "--loop", "--quiet", *SHORT]) == 0
+    assert (played[0].loop, played[0].constant_radius) == (True, False)
+    for out in ("o.obj", "o.png"):
+        assert main(["relax", trefoil, out, "--constant-radius", *SHORT]) == 2
+        assert capsys.readouterr().err == "mobius-flow: --loop and --constant-radius are for .blend, .mp4\n"
 
 
 def test_what_cannot_be_kept_leaves_nothing(trefoil: str) -> None:

@@ -11,6 +11,7 @@ from hands import addon, here, open_sidebar, window
 def knot(name: str = "5_2", vertices: int = 300) -> None:
     """Add a knot and look at it."""
     window().scene.mobius_flow.vertices = vertices
+    window().scene.mobius_flow.timing = "DISTANCE"  # its keys are the iterates
     with here():
         bpy.ops.curve.mobius_flow_add_knot(knot=name)
         bpy.ops.ed.undo_push(message="Knot added")

@@ -1,5 +1,6 @@
 """Buttons of the panel Film."""
 
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -91,11 +92,16 @@ class Waiting:
     cancel = CURVE_OT_mobius_flow_render_film.cancel
     _end = CURVE_OT_mobius_flow_render_film._end
     _report_film = CURVE_OT_mobius_flow_render_film._report_film
+    _show_progress = CURVE_OT_mobius_flow_render_film._show_progress
 
     def __init__(self, scene, path):
         self.filming, self.timer, self.reports = Filming(scene, str(path)), object(), []
         self.removed = []
-        self.context = SimpleNamespace(window_manager=SimpleNamespace(event_timer_remove=self.removed.append))
+        self.said = []
+        self.context = SimpleNamespace(
+            window_manager=SimpleNamespace(event_timer_remove=self.removed.append),
+            workspace=SimpleNamespace(status_text_set=self.said.append),
+        )
 
     def report(self, kind, message):
         self.reports.append((kind, message))
@@ -114,13 +120,30 @@ def test_in_a_window_it_waits_for_the_end(scene, tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(buttons, "is_rendering", lambda: True)
         assert waiting.event() == waiting.event("MOUSEMOVE") == {"PASS_THROUGH"}
+        assert waiting.said[-1] == "Rendering the film: 0 of 2 frames"
+        waiting.filming._began, waiting.filming.done = time.monotonic() - 20, 1
+        assert waiting.event() == {"PASS_THROUGH"}
+        assert waiting.said[-1] == "Rendering the film: 1 of 2 frames, about 20 s left"
+    waiting.filming.done = 0
+    bpy.app.handlers.render_write.append(waiting.filming._count)
     waiting.render()
+    assert waiting.filming.done == 2
     assert waiting.event("MOUSEMOVE") == {"PASS_THROUGH"}
     assert waiting.event() == {"FINISHED"}
     assert waiting.reports == [({"INFO"}, f"A film of 2 frames: {tmp_path / 'film.mp4'}")]
     assert waiting.removed == [waiting.timer]
     assert length_of(tmp_path / "film.mp4") == 2
     assert list(bpy.data.scenes) == [scene]
+
+
+def test_play_film_needs_one(scene, tmp_path, monkeypatch):
+    scene.mobius_flow_film.filepath = str(tmp_path / "film.mp4")
+    assert not OPS.mobius_flow_play_film.poll()
+    (tmp_path / "film.mp4").touch()
+    played = []
+    monkeypatch.setattr(buttons, "play", played.append)
+    assert OPS.mobius_flow_play_film() == {"FINISHED"}
+    assert played == [tmp_path / "film.mp4"]
 
 
 @pytest.mark.parametrize("how", ["event", "cancel"])

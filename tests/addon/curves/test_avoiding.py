@@ -119,11 +119,11 @@ def test_scripts_give_objects_and_operators_the_name_of_a_collection():
     assert report.avoided == ("Torus",)
     by_name, collection = add_curve([ring()], "Again"), avoid(tube)
     bpy.context.scene.mobius_flow_surroundings.avoid = None
-    relax(avoid=collection.name, **{"timing": "EVEN"} | SHORT)
+    relax(avoid=collection.name, **{"timing": "DISTANCE"} | SHORT)
     by_scene = add_curve([ring()], "Once More")
     by_name.select_set(False)
     bpy.context.scene.mobius_flow_surroundings.avoid = collection
-    relax(**{"timing": "EVEN"} | SHORT)
+    relax(**{"timing": "DISTANCE"} | SHORT)
     for other in (by_name, by_scene):
         np.testing.assert_array_equal(keys(other)[-1], keys(by_script)[-1])
 
@@ -181,7 +181,7 @@ def test_there_is_no_such_collection():
 def test_sizes_cannot_be_kept():
     add_curve([ring()], "Ring")
     avoid(torus())
-    said = "Only the length can be kept where something is pinned or avoided; set Keep to Length"
+    said = "Only the length can be kept where something is pinned or avoided; give keep_size='LENGTH', or none"
     assert refused(keep_size="BOX") == said
 
 

@@ -398,3 +398,55 @@ def test_a_drag_that_is_taken_back_takes_its_meshes_along():
     assert len(found.keys) == len(expected.keys)
     for a, b in zip(found.keys, expected.keys, strict=True):
         np.testing.assert_array_equal(a.points, b.points)
+
+
+def turns(keys):
+    """Angles by which a motion turns at its keys, in degrees."""
+    ways = np.diff([key.points.astype(float).ravel() for key in keys.keys], axis=0)
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    return np.degrees(np.arccos(np.clip((ways[1:] * ways[:-1]).sum(axis=1), -1.0, 1.0)))
+
+
+@pytest.mark.parametrize("limit", [None, 250])
+def test_an_even_motion_has_round_corners_that_are_proved(limit):
+    ring = regular_polygon(30)
+    zigzag = [ring.with_vertices(ring.vertices + np.array([0.1 * k, 0.1 * (k % 2), 0.0])) for k in range(20)]
+    motion = collected(zigzag)
+    sharp, round_ = motion.keys(is_free, limit), motion.keys(is_free, limit, Pace.EVEN)
+    assert_proved(round_, ring.mesh)
+    assert turns(sharp).min() > 85
+    assert turns(round_)[2:-2].max() < 30
+    for end in (0, -1):
+        np.testing.assert_array_equal(round_.keys[end].points, sharp.keys[end].points)
+    assert len(round_.keys) == (20 if limit else 19 * 6 + 1)
+
+
+def test_corners_that_cannot_be_rounded_stay():
+    curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
+    motion = collected(curves)
+    sharp = motion.keys(is_free, 250)
+    recorded = {key.points.tobytes() for key in sharp.keys}
+
+    def recorded_only(_mesh, start, end):
+        return {start.astype(np.float32).tobytes(), end.astype(np.float32).tobytes()} <= recorded
+
+    same = motion.keys(recorded_only, 250, Pace.EVEN)
+    assert [key.time for key in same.keys] == [key.time for key in sharp.keys]
+    refused = curves[10].vertices.astype(np.float32)
+
+    def here_too(mesh, start, end):
+        near = min(np.abs(end - refused).max(), np.abs(start - refused).max())
+        return near < 1e-6 or (near > 0.3 and is_free(mesh, start, end))
+
+    some = motion.keys(here_too, 250, Pace.EVEN)
+    assert any(np.array_equal(key.points, refused) for key in some.keys)
+    assert sum(key.points.tobytes() in recorded for key in some.keys) < 8
+
+
+def test_points_at_rest_stay_exactly_where_they_are():
+    ring = regular_polygon(30)
+    moved = [
+        ring.with_vertices(ring.vertices + np.where(np.arange(30) < 15, 0.0, 0.1 * (k % 2))[:, None]) for k in range(9)
+    ]
+    keys = collected(moved).keys(is_free, None, Pace.EVEN)
+    assert len({key.points[:15].tobytes() for key in keys.keys}) == 1

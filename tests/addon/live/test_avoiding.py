@@ -35,7 +35,7 @@ def test_a_live_run_is_the_headless_job(operator, ring, torus):
     copy = bpy.context.object
     collection = bpy.data.collections.new("Avoid")
     collection.objects.link(torus)
-    relax(avoid="Avoid", vertices=120, timing="EVEN")
+    relax(avoid="Avoid", vertices=120, timing="DISTANCE")
     copy.select_set(False)
     ring.select_set(True)
     operator.start()

@@ -26,7 +26,7 @@ def test_the_same_curve_as_the_headless_job(operator):
     live.select_set(False)
     headless = add_trefoil()
     bpy.ops.curve.mobius_flow_fit_tube()
-    bpy.ops.curve.mobius_flow_relax(vertices=120)
+    bpy.ops.curve.mobius_flow_relax(vertices=120, timing="DISTANCE")
     headless.select_set(False)
     live.select_set(True)
     assert operator.start() == {"RUNNING_MODAL"}

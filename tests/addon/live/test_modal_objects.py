@@ -32,7 +32,7 @@ def test_two_objects_are_the_headless_job_too(operator, rings):
     copies = bpy.context.selected_objects
     for obj in copies:
         obj.data = obj.data.copy()
-    bpy.ops.curve.mobius_flow_relax(vertices=120)
+    bpy.ops.curve.mobius_flow_relax(vertices=120, timing="DISTANCE")
     for obj in copies:
         obj.select_set(False)
     for obj in rings:

@@ -31,7 +31,7 @@ def tumbling(keys):
 def composed(keys, size, origin=None):
     scene = bpy.context.scene
     rendering.use_cycles(scene, LOOKS["PAPER"], *size, 1)
-    film.compose(scene, keys, 1.0 + 10 * np.arange(len(keys.keys)), Mesh((40,)), "PAPER", origin)
+    film.compose(scene, keys, 1.0 + 10 * np.arange(len(keys.keys)), Mesh((40,)), film.Playing(), origin)
     return scene
 
 

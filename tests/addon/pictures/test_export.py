@@ -124,10 +124,10 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
 def test_a_film_rests_before_and_after(iterates):
     motion, _ = film.recorded(iterates)
     keys = motion.keys(lambda *_: True)
-    timing = film.timing(motion)
+    timing = film.Playing().timed(motion).timing
     frames = timing.frames(motion.course(keys))
     scene = bpy.context.scene
-    film.compose(scene, keys, frames, motion.start.mesh, "PAPER")
+    film.compose(scene, keys, frames, motion.start.mesh, film.Playing())
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
     assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (film._PAUSE, film._END)
 
@@ -142,7 +142,10 @@ def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
     moves = (replace(start, index=k, curve=ring.with_vertices(p), path=(p,)) for k, p in enumerate(places[1:], 1))
     motion, _ = film.recorded([replace(start, curve=ring), *moves])
     assert motion.way == pytest.approx(12 * 0.5 + 0.5 * 49 / 50, rel=0.1)
-    assert film.timing(motion).length == 1 + film._PAUSE + round(film._FRAMES_PER_SIZE * motion.way) + film._END
+    assert (
+        film.Playing().timed(motion).timing.length
+        == 1 + film._PAUSE + round(film._FRAMES_PER_SIZE * motion.way) + film._END
+    )
 
 
 def test_workbench_is_set_up():
@@ -238,3 +241,22 @@ def test_a_missing_module_and_a_missing_library_of_it(monkeypatch, error, said):
     monkeypatch.setattr(builtins, "__import__", importing)
     with pytest.raises(MobiusFlowError, match=said):
         export.require_blender()
+
+
+def test_a_film_that_loops_ends_where_it_begins(iterates, tmp_path, monkeypatch):
+    monkeypatch.setattr(rendering, "workbench_works", lambda: True)
+    monkeypatch.setattr(film, "_FILM", (6, 6))
+    monkeypatch.setattr(export, "render_movie", lambda _scene, path, _progress: path.touch())
+    export.write_movie(tmp_path / "a.mp4", iterates, None, film.Playing(loop=True, constant_radius=True))
+    scene, (curve,) = bpy.context.scene, [obj for obj in bpy.data.objects if obj.type == "CURVE"]
+    half = film._PAUSE + 6 + film._END
+    assert (scene.frame_start, scene.frame_end) == (1, 2 * half)
+    assert len({point.radius for block in curve.data.shape_keys.key_blocks for point in block.data}) == 1
+    for k in (0, 7, 9, half):
+        times, places = [], []
+        for frame in (1 + k, 1 + 2 * half - k):
+            scene.frame_set(frame)
+            times.append(curve.data.shape_keys.eval_time)
+            places.append(tuple(scene.camera.matrix_world.translation))
+        assert times[0] == pytest.approx(times[1], abs=1e-4)
+        assert places[0] == pytest.approx(places[1], abs=1e-4)
