@@ -9,8 +9,9 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 from ...core import Curve
 from ...core.collision import check_embedded
 from ...core.messages import Message
-from ..curves import bevel, outputs
+from ..curves import bevel, frame_values, outputs
 from ..curves.exchange import length, stretch
+from ..curves.frame_values import CLOSED, RING
 from ..curves.outputs import put_beside, smooth_objects
 from ..curves.recorded import Recorded, in_world
 from ..engine.smooth_fit import FEWEST, SmoothFit
@@ -81,6 +82,11 @@ FBX does with NLA Strips and All Actions off, one frame later"""
         "sides": IntProperty(
             name="Sides", description="Number of vertices round the tube", default=16, min=3, soft_max=64, max=256
         ),
+        "every_frame": BoolProperty(
+            name="Attributes at Every Frame",
+            description="Work out arc_length, curvature and strand_distance at every frame, in a modifier of nodes",
+            default=False,
+        ),
         **_Output.__annotations__,
     }
 
@@ -101,6 +107,10 @@ FBX does with NLA Strips and All Actions off, one frame later"""
             tube = outputs.tube_object(obj, each, own, self.sides)
             part = slice(first, first := first + each.mesh.size)
             outputs.write_values(tube.data, {name: array[part] for name, array in values.items()})
+            if self.every_frame:
+                closed = np.array(each.mesh.closed, dtype=np.float64)[each.mesh.component]
+                outputs.write_values(tube.data, {RING: np.arange(each.mesh.size, dtype=np.float64), CLOSED: closed})
+                frame_values.add(tube)
             if colours is not None:
                 outputs.write_colours(tube.data, colours[part], vertex_colours(outputs.COLOUR))
             made.append(tube)

@@ -8,7 +8,7 @@ from case import Steps, until
 from hands import addon, here, open_sidebar, window
 
 
-def knot(name: str = "5_2", vertices: int = 300) -> None:
+def knot(name: str = "5_2", vertices: int = 400) -> None:
     """Add a knot and look at it."""
     window().scene.mobius_flow.vertices = vertices
     window().scene.mobius_flow.timing = "DISTANCE"  # its keys are the iterates
@@ -23,7 +23,7 @@ def clear() -> None:
         bpy.data.objects.remove(obj)
 
 
-def ready(name: str = "5_2", vertices: int = 300) -> Steps:
+def ready(name: str = "5_2", vertices: int = 400) -> Steps:
     """A knot, selected, and the sidebar open."""
     clear()
     knot(name, vertices)
