@@ -1,5 +1,7 @@
 """Strokes of the toolbar's tool, which become knots; a click on a crossing swaps over and under there."""
 
+import contextlib
+import threading
 from collections.abc import Sequence
 
 import bpy
@@ -18,7 +20,7 @@ from ..curves.exchange import read_splines
 from ..engine.turning import DrawingPlane
 from ..live import overlay
 from ..live.requirements import Condition
-from ..translations import rpt_
+from ..translations import iface_, rpt_
 from .adding import OBJECT_MODE
 from .drawing import DrawsKnot, described
 
@@ -26,6 +28,8 @@ _PLANE = "mobius_flow_plane"  # custom property of drawn curves: origin and axes
 _NEAR = 15.0  # pixels, at the usual scale, from a crossing to a click that means it
 _STEP = 4.0  # pixels from one point of a stroke to the next
 _SHORTEST = 60.0  # pixels
+_LOOK = 0.1  # seconds between looks at what the stroke is so far
+_NAMED = 16  # crossings of the largest knots that are named meanwhile
 _PASSES = 6  # of averages that take the hand's trembling out of a stroke
 _VIEW = Condition("Draw in a 3D view", lambda context: getattr(context, "region_data", None) is None)
 
@@ -47,7 +51,8 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
                 return {"FINISHED"}
         except MobiusFlowError as error:
             return self.fail(error)
-        self._stroke = [mouse]
+        self._stroke, self._name = [mouse], _Name()
+        self._timer = context.window_manager.event_timer_add(_LOOK, window=context.window)
         self._handle = bpy.types.SpaceView3D.draw_handler_add(self._trace, (), "WINDOW", "POST_PIXEL")
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -58,6 +63,9 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
             if np.linalg.norm(mouse - self._stroke[-1]) >= _STEP:
                 self._stroke.append(mouse)
                 context.area.tag_redraw()
+        elif event.type == "TIMER":
+            self._name.look(self._stroke)
+            context.area.tag_redraw()
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self.cancel(context)
             if _length(self._stroke) < _SHORTEST:
@@ -71,7 +79,8 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Take the trace of the stroke away, also when Blender ends it."""
+        """Take the trace of the stroke and its name away, also when Blender ends it."""
+        context.window_manager.event_timer_remove(self._timer)
         bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
         if context.area is not None:
             context.area.tag_redraw()
@@ -100,6 +109,34 @@ class CURVE_OT_mobius_flow_stroke(DrawsKnot, bpy.types.Operator):
 
     def _trace(self) -> None:
         overlay.line(np.array([*self._stroke, self._stroke[0]]), overlay.GOLD, 2.0)
+        if self._name.said:
+            overlay.label(iface_(self._name.said), self._stroke[-1])
+
+
+class _Name:
+    """What a stroke would be if it ended now; a thread finds that out, and drawing waits for nothing."""
+
+    def __init__(self) -> None:
+        self.said = ""
+        self._seen = 0  # points of the stroke that it is about
+        self._thread: threading.Thread | None = None
+
+    def look(self, stroke: Sequence[FloatArray]) -> None:
+        """Take up what has been drawn since, if the last name is found."""
+        if self._seen != len(stroke) and not (self._thread is not None and self._thread.is_alive()):
+            self._seen = len(stroke)
+            self._thread = threading.Thread(target=self._find, args=(list(stroke),), daemon=True)
+            self._thread.start()
+
+    def _find(self, stroke: Sequence[FloatArray]) -> None:
+        said = ""
+        if _length(stroke) >= _SHORTEST:
+            with contextlib.suppress(MobiusFlowError):  # it touches itself for a moment
+                drawing = Drawing.of(Curve(_even(stroke)))
+                count = len(drawing.crossings)
+                named = described(drawing.lifted(), count)[1] if count <= _NAMED else None
+                said = named or Message("{count} crossings", count=count)
+        self.said = said
 
 
 class Drawn:

@@ -82,6 +82,16 @@ class _Style:
         return cls(scale, font, ground, words, legible(theme.view_3d.object_active, ground))
 
 
+def label(words: str, place: FloatArray) -> None:
+    """Write words right of a place in the region, on the ground that tooltips have."""
+    style = _Style.of(bpy.context.preferences)
+    blf.size(_FONT, style.font)
+    gap, size = style.scale * _PADDING, np.array(blf.dimensions(_FONT, words))
+    low = place + gap
+    area(tuple(low), tuple(low + size + 2 * gap), (*style.ground[:3], _OPACITY))
+    text(words, tuple(low + gap), style.words, style.font)
+
+
 def _plot(context: bpy.types.Context, run: Run) -> None:
     """Draw the plot in the lower right corner, unless the view is too small for anything else."""
     style = _Style.of(context.preferences)

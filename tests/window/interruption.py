@@ -19,7 +19,7 @@ def relax() -> Steps:
         bpy.ops.ed.undo_push(message="Before")
         assert bpy.ops.curve.mobius_flow_relax("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
     yield from reaches(MOVED)
-    assert len(workers()) == 1, state()
+    assert len(workers()) == 1, (state(), workers())
 
 
 def over(what: str, wanted: str = "cancelled") -> Steps:

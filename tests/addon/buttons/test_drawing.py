@@ -1,5 +1,7 @@
 """Drawings lifted into knots."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ bpy = pytest.importorskip("bpy")
 
 from blender_scenes import add_curve, contents, sentence, stored  # noqa: E402
 from knot_type import UNKNOT, knot_invariants  # noqa: E402
+from mobius_flow.addon.buttons import stroke  # noqa: E402
 from mobius_flow.core import Curve  # noqa: E402
 from mobius_flow.core.collision import check_embedded  # noqa: E402
 from mobius_flow.core.knots import torus_knot  # noqa: E402
@@ -44,6 +47,20 @@ def test_an_open_stroke_is_closed_by_its_chord():
     obj, points = lifted()
     assert obj.name == "Drawn m3_1"
     assert knot_invariants(points).genus == 1
+
+
+def test_a_stroke_is_named_as_it_stands():
+    """In a thread; one with many crossings is only counted, and one that touches itself has no name for a moment."""
+    path, name = [120.0 * place[:2] for place in scribble()], stroke._Name()
+    wanted = {len(path): "3 crossings: m3_1, proved", len(path) // 3: "0 crossings: it is not knotted", 2: ""}
+    for length, said in wanted.items():
+        name.look(path[:length])
+        name._thread.join()
+        assert name.said == said
+    turns = np.linspace(0.0, 34.0 * np.pi, 2000)
+    name.look([*(100.0 * np.stack([turns / 20 + np.sin(turns), np.cos(turns)], axis=1))])
+    name._thread.join()
+    assert re.fullmatch(r"\d+ crossings", name.said)
 
 
 def test_strokes_want_a_view():

@@ -53,6 +53,9 @@ def stroke() -> Steps:
     for x, y in places:
         send(type="MOUSEMOVE", value="NOTHING", x=x, y=y)
         yield
+    for _ in range(20):  # time to find its name
+        yield
+    yield from picture("tool-1-named", differs_from="tool-1-chosen")
     send(type="LEFTMOUSE", value="RELEASE", x=places[-1][0], y=places[-1][1])
     yield
 
