@@ -12,7 +12,7 @@ from ..addon.pictures.film import Playing
 from ..addon.pictures.looks import DEFAULT, LOOKS
 from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
 from ..core.driver import Relaxation, finish
-from ..core.errors import OptionError, choice, counted
+from ..core.errors import choice, counted
 from . import curves, signals
 from . import options as relax_options
 from .outputs import OUTPUTS, Output, admit, output_for
@@ -79,10 +79,10 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
 
 
 def _look(word: str) -> str:
-    """The name of a look; raises OptionError."""
+    """The name of a look."""
     names = [name.lower() for name in LOOKS]
     if word not in names:
-        raise OptionError(f"--look: {word!r:.40} is unknown; {choice(word, names)}")
+        raise argparse.ArgumentTypeError(f"{word!r:.40} is unknown; {choice(word, names)}")
     return word.upper()
 
 

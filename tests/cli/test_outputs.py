@@ -300,3 +300,17 @@ def test_formats_that_are_only_read_are_no_outputs(
     for words in (["o.dt"], ["-", "--format", "dt"]):
         assert refused([command, trefoil if command == "relax" else "3_1", *words], capsys, monkeypatch)
     assert not Path("o.dt").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["o.png", "--look", "neno"], "did you mean neon"),
+        (["o.obj", "--look", "neon"], "--look is for .blend, .mp4, .png"),
+    ],
+)
+def test_looks_are_known_ones_and_of_scenes(
+    trefoil: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, words: list[str], said: str
+) -> None:
+    monkeypatch.setattr(outputs.export, "require_blender", lambda: None)
+    assert said in refused(["relax", trefoil, *words], capsys, monkeypatch)

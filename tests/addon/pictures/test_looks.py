@@ -1,0 +1,106 @@
+"""Every look can be built, shows what is what, and burns nothing."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents  # noqa: E402
+from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
+from mathutils import Vector  # noqa: E402
+from mobius_flow.addon.engine.motion import Key, Keys  # noqa: E402
+from mobius_flow.addon.pictures import export, film, rendering, staging  # noqa: E402
+from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
+from mobius_flow.core import Curve  # noqa: E402
+from shapes import hopf_link, regular_polygon, torus_trefoil  # noqa: E402
+
+SIZE = (96, 54)
+
+
+def composed(curve, look):
+    """A scene of one key, and its points."""
+    scene = export._empty_scene()
+    rendering.use_cycles(scene, LOOKS[look], *SIZE, 4)
+    points = curve.vertices.astype(np.float32)
+    film.compose(scene, Keys((Key(0.0, points),), 0), np.ones(1), curve.mesh, look)
+    return scene, points
+
+
+def rendered(scene, path):
+    """The picture as it is seen, from the bottom; (height, width, 3)."""
+    rendering.render_still(scene, path)
+    image = bpy.data.images.load(str(path))
+    return np.array(image.pixels[:]).reshape(image.size[1], image.size[0], -1)[..., :3]
+
+
+@pytest.mark.parametrize("look", LOOKS)
+def test_components_and_the_ground_are_told_apart_and_nothing_is_burnt(look, tmp_path):
+    curve = hopf_link(120)
+    scene, points = composed(curve, look)
+    picture = rendered(scene, tmp_path / "a.png")
+    seen = np.array([world_to_camera_view(scene, scene.camera, Vector(p))[:2] for p in points])
+    rows, columns = (seen[:, ::-1] * picture.shape[:2]).astype(int).T
+    one, other = (np.median(picture[rows[piece], columns[piece]], axis=0) for piece in curve.mesh.slices)
+    ground = np.median(picture[[0, -1]].reshape(-1, 3), axis=0)
+    for a, b in ((one, other), (one, ground), (other, ground)):
+        assert np.abs(a - b).max() > 0.15
+    assert (picture.min(axis=2) > 0.97).mean() < 0.005
+
+
+@pytest.mark.parametrize("look", LOOKS)
+def test_nodes_are_linked_and_a_single_component_has_its_gradient(look):
+    scene, _ = composed(torus_trefoil(60), look)
+    (material,) = bpy.data.objects["Curve"].data.materials
+    tree = material.node_tree
+    assert all(link.is_valid for link in tree.links)
+    assert len(tree.links) > sum(isinstance(value, str) for value in LOOKS[look].shader.values())
+    assert bool(LOOKS[look].gradient) == (tree.nodes.active.name == "gradient")
+    assert scene.camera.data.dof.use_dof
+
+
+def test_colours_run_along_a_component_by_its_length_not_by_its_points():
+    crowded = regular_polygon(400).vertices[np.r_[0:200, 200:400:20]]
+    composed(Curve(crowded), "PAPER")
+    (image,) = [each for each in bpy.data.images if each.name.endswith("Colors")]
+    row = np.array(image.pixels[:]).reshape(-1, 4)[:, :3]
+    stops = np.array(LOOKS["PAPER"].gradient)
+    half = row[round(200 / 210 * len(row))]  # after 200 of 210 points, but half of the way
+    np.testing.assert_allclose(half, 0.5 * (stops[2] + stops[3]), atol=0.05)
+
+
+def test_another_look_replaces_stage_and_materials_and_leaves_no_trace():
+    add_trefoil().data.bevel_depth = 0.1
+    scene, obj = bpy.context.scene, bpy.context.object
+    before = contents()
+    scene.mobius_flow_film.look = "NEON"
+    bpy.ops.curve.mobius_flow_set_up_stage()
+    assert [each.name for each in obj.data.materials] == ["Neon 6"]
+    scene.mobius_flow_film.look = "ROPE"
+    assert [each.name for each in obj.data.materials] == ["Rope 1"]
+    assert len([each for each in scene.objects if each.type == "LIGHT"]) == len(LOOKS["ROPE"].lights)
+    scene.mobius_flow_film.look = "QUICK"
+    assert staging.own_stage(scene)
+    bpy.ops.curve.mobius_flow_remove_stage()
+    assert contents() == before
+    assert not obj.data.materials
+    assert not bpy.data.images
+
+
+def test_materials_of_your_own_stay():
+    obj = add_hopf_link()
+    mine = bpy.data.materials.new("Mine")
+    obj.data.materials.append(mine)
+    staging.set_up(bpy.context.scene, [obj], look="GLASS")
+    assert list(obj.data.materials) == [mine]
+    staging.strike(bpy.context.scene)
+    assert list(obj.data.materials) == [mine]
+
+
+def test_a_shape_that_stands_upright_is_not_seen_from_its_edge():
+    t = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    obj = add_curve([np.stack([np.cos(t), 0 * t, np.sin(t)], axis=1)])
+    scene = bpy.context.scene
+    staging.set_up(scene, [obj])
+    bpy.context.view_layer.update()
+    backward = np.array(scene.camera.matrix_world.col[2][:3])
+    assert abs(backward[1]) > 0.7
