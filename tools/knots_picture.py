@@ -7,6 +7,7 @@ from pathlib import Path
 import bpy
 import mobius_flow
 import numpy as np
+from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.addon.pictures.materials import colour_components
 from mobius_flow.addon.pictures.rendering import use_cycles
 from mobius_flow.addon.pictures.stage import Stage, add_sky, build, place
@@ -20,6 +21,7 @@ COLUMNS, WIDTH, HEIGHT = 8, 1000, 268
 STEP = 2.3  # from one knot to the next; each is 2 wide
 THICKNESS = 0.11
 COLORS = 256
+LOOK = "PAPER"
 
 
 def main() -> int:
@@ -29,16 +31,16 @@ def main() -> int:
     for k, name in enumerate(KNOTS + LINKS):
         at = (STEP * (k % COLUMNS), -STEP * (k // COLUMNS), 0.0)
         bpy.ops.curve.mobius_flow_pick_knot(knot=name, thickness=THICKNESS, location=at, color_components=False)
-        colour_components(bpy.context.object.data)
+        colour_components(bpy.context.object.data, look=LOOK)
     scene = bpy.context.scene
     width, height = STEP * COLUMNS, STEP * (len(KNOTS + LINKS) // COLUMNS)
     middle = np.array([0.5 * (width - STEP), -0.5 * (height - STEP), 0.0])
-    floor = build(scene.collection, Stage(np.eye(3), middle, 0.6 * width))
+    floor = build(scene.collection, Stage(np.eye(3), middle, 0.6 * width, 0.5 * np.pi), LOOKS[LOOK])
     floor.location = middle - [0.0, 0.0, 1.0]
     scene.world = bpy.data.worlds.new("World")
-    add_sky(scene.world)
+    add_sky(scene.world, LOOKS[LOOK])
     add_camera(scene, middle, width)
-    use_cycles(scene, WIDTH, HEIGHT, samples=24)
+    use_cycles(scene, LOOKS[LOOK], WIDTH, HEIGHT)
     scene.render.image_settings.color_mode = "RGB"
     scene.render.filepath = str(TARGET)
     bpy.ops.render.render(write_still=True)

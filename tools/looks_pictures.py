@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""Render docs/pictures/unknot.png, a tangle on its way to the circle, and looks.png, a knot in each look.
+
+Each part is rendered in a few seconds of processor time: `looks_pictures.py NAME` renders one of the pictures only.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+from mobius_flow.addon.pictures.export import write_picture
+from mobius_flow.addon.pictures.looks import LOOKS
+from mobius_flow.core import RelaxOptions, minimize, read_curve, relax
+from mobius_flow.core.curve import Curve
+from mobius_flow.core.knots import knot
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[1]
+TANGLE = ROOT / "examples" / "tangle.obj"
+STAGES = (0, 40, 70, -1)  # iterates of the tangle
+COLORS = 256
+
+
+def tangle() -> list[tuple[Curve, str]]:
+    """Stages of an unknot."""
+    iterates = list(relax(read_curve(TANGLE), RelaxOptions()))
+    return [(iterates[k].curve, "STUDIO") for k in STAGES]
+
+
+def looks() -> list[tuple[Curve, str]]:
+    """The same knot again and again."""
+    curve = minimize(knot("5_1")).curve
+    return [(curve, look) for look in LOOKS]
+
+
+PICTURES = {"unknot": (tangle, 330, 330), "looks": (looks, 300, 300)}
+
+
+def strip(name: str) -> None:
+    """Put the parts of a picture side by side, with few colours, in a third of the space."""
+    make, width, height = PICTURES[name]
+    parts = make()
+    whole = Image.new("RGB", (width * len(parts), height))
+    with tempfile.TemporaryDirectory() as room:
+        for k, (curve, look) in enumerate(parts):
+            write_picture(Path(room, "part.png"), curve, width, height, look)
+            whole.paste(Image.open(Path(room, "part.png")).convert("RGB"), (k * width, 0))
+    palette = whole.quantize(COLORS, Image.Quantize.MAXCOVERAGE, kmeans=30)
+    small = whole.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
+    small.save(ROOT / "docs" / "pictures" / f"{name}.png", optimize=True)
+
+
+if __name__ == "__main__":
+    for wanted in sys.argv[1:] or PICTURES:
+        strip(wanted)
