@@ -76,7 +76,7 @@ def _split(mesh: Mesh, keys: Sequence[FloatArray]) -> tuple[Mesh, list[FloatArra
     """Split edges at all keys so that none is long at any of them."""
     lengths = np.max([Curve(points, mesh).edge_lengths for points in keys], axis=0)
     parts = np.ceil(lengths / lengths.sum() * _POINTS).astype(np.intp)
-    sizes, found = [], [[] for _ in keys]
+    sizes, found = list[int](), [list[FloatArray]() for _ in keys]
     for piece, edges, closed in zip(mesh.slices, mesh.edge_slices, mesh.closed, strict=True):
         counts = parts[edges]
         places = np.concatenate([k + np.arange(count) / count for k, count in enumerate(counts)])
@@ -107,7 +107,7 @@ def _free_radii(curve: Curve, thickest: float) -> FloatArray:
     gaps = strand_gaps(curve, 2 * thickest / AIR + float(spacing.max()))
     # edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side
     gaps = np.sqrt(np.maximum(gaps**2 - 0.25 * spacing**2, 0.25 * gaps**2))
-    radii = np.minimum(thickest, 0.5 * AIR * gaps)
+    radii: FloatArray = np.minimum(thickest, 0.5 * AIR * gaps)
     for piece, edges, closed in zip(curve.mesh.slices, curve.mesh.edge_slices, curve.mesh.closed, strict=True):
         both_ways = (_rising(radii[piece], curve.edge_lengths[edges], closed, way) for way in (1, -1))
         radii[piece] = np.minimum(*both_ways)

@@ -46,7 +46,7 @@ def follow(
     camera, focus = add(collection, "Camera", data), add(collection, "Focus", None)
     every = np.arange(np.floor(frames[0]), np.ceil(frames[-1]) + 1)
     slopes = 0.5 * _SENSOR / _LENS * np.array(size) / max(size)  # tangents of half the angles of view
-    stacked, places = np.stack(points), np.interp(every, frames, np.arange(len(frames)))
+    stacked, places = np.stack(points).astype(np.float64), np.interp(every, frames, np.arange(len(frames)))
     shapes = [(interpolated(stacked, at[None])[0] - stage.middle) @ stage.axes.T for at in places]
     views = [_view(stage.elevation, turn) for turn in _ORBIT * np.sin(np.linspace(0.0, 2.0 * np.pi, len(every)))]
     targets, distances = _targets(shapes, np.interp(every, frames, radii), slopes / _MARGIN, views)

@@ -88,9 +88,9 @@ def restyle(scene: bpy.types.Scene, look: str) -> None:
     if collection is None or look not in LOOKS:
         return
     objects = [obj for obj in _shown(collection) if obj.name in scene.objects]
-    uses = [block is not None and STAGE in block for block in (scene.camera, scene.world)]
+    camera_used, world_used = (block is not None and STAGE in block for block in (scene.camera, scene.world))
     with suppress(CurveError):
-        set_up(scene, objects, *uses, look)
+        set_up(scene, objects, camera_used, world_used, look)
 
 
 def _shown(collection: bpy.types.Collection) -> list[bpy.types.Object]:
