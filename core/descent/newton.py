@@ -57,7 +57,7 @@ class Newton:
 
     factor: float = number(8.0, above=1)  # by which σ grows until the Hessian is positive definite
     steps: int = number(8)
-    short: float = number(0.3, most=1)  # part of a step that shows that the model is outdated
+    short: float = number(0.3, most=1)  # part of a step that shows that the model is not to be trusted so far
     # full steps gain half of what their slope promises, and so must not be asked for that
     search: Armijo = field(default_factory=lambda: Armijo(decrease=0.1))
 
@@ -75,14 +75,20 @@ class Newton:
             inverse = curvature.shifted(shift)
         return inverse, index, shift
 
-    def along(self, point: Point, inverse: FactorisedHessian, most: int, least: float) -> Iterator[Step]:
-        """At most so many steps from a point on, until one is short, or gains less than ``least``, or none is found."""
-        rule, state = LineSearch(LimitedMemoryBFGS(inverse=inverse.solve), self.search, self.steps), State()
+    def along(
+        self, curvature: Curvature, inverse: FactorisedHessian, shift: float, most: int, least: float
+    ) -> Iterator[Step]:
+        """At most so many steps, until one gains less than ``least`` or none is found; where one is short σ grows."""
+        point, state = curvature.point, State()
         for _ in range(min(most, self.steps)):
+            rule = LineSearch(LimitedMemoryBFGS(inverse=inverse.solve), self.search, self.steps)
             step, state = rule.step(point, state)
             if not isinstance(step, Step):
                 return
             yield step
-            if step.size < self.short or point.energy - step.point.energy < least:
+            if point.energy - step.point.energy < least:
                 return
             point = step.point
+            if step.size < self.short:
+                inverse, _, shift = self.definite(curvature, self.factor * shift)
+                state = State()

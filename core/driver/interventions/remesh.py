@@ -112,7 +112,8 @@ class FinerMesh(Intervention):
     # that are left: it takes two or three to get back what corners cost when their edges are split
     min_iterations: int = number(5)
     share: float = number(0.1, most=1)  # of the error, up to which a gain is small
-    accuracy: float = number(1e-3)  # relative error of an energy at rest from which on more vertices are taken
+    # relative error of an energy at rest from which on more vertices are taken: estimates of it are a few per cent off
+    accuracy: float = number(9.5e-4)
     aim: float = number(0.9, most=1)  # part of that error that they are to leave
     affordable: int = number(1000)  # vertices for that: what second derivatives are factorised for
     recent: float = number(0.8, most=1)  # part of the steps on this mesh after which gains count
@@ -124,7 +125,7 @@ class FinerMesh(Intervention):
         self.started()
 
     def started(self) -> None:
-        self._energies, self._looked = [self.run.point.energy], 0
+        self._energies, self._looked, self._measured = [self.run.point.energy], 0, False
 
     def stepped(self, step: Step) -> Change | None:
         self._energies.append(self.run.point.energy)
@@ -171,8 +172,9 @@ class FinerMesh(Intervention):
         """
         problem, point, curve = self.run.problem, self.run.point, self.run.iterate.curve
         usual = self.run.options.ends_finer and problem.unconfined and is_moebius_invariant(problem.objective.energy)
-        if not usual:
+        if not usual or self._measured:
             return None
+        self._measured = True
         error = (point.energy - problem.objective.value(halved(point.curve))) / 0.75
         bound = self.accuracy * energy_scale(problem.mesh, point.energy)
         if not bound < error < np.inf:

@@ -46,13 +46,12 @@ class Rest(Intervention):
             return None
         self._below = 0.5 * relative  # unless it helps
         try:
-            inverse, _, shift = self.newton.definite(Curvature(point), unresolved(point.curve))
+            curvature = Curvature(point)
+            inverse, _, shift = self.newton.definite(curvature, unresolved(point.curve))
+            steps = self._steps(curvature, inverse, shift) if shift <= self.trusted else ()
         except np.linalg.LinAlgError:
             return None
-        if shift > self.trusted:
-            return None
-        steps = self._steps(inverse)
-        if steps and steps[0].size >= self.newton.short:
+        if any(step.size >= self.newton.short for step in steps):
             self._below = self.gradient
         return Change(steps) if steps else None
 
@@ -67,9 +66,9 @@ class Rest(Intervention):
         if self._applies:
             point, least = self.run.point, self._least(self.run.point)
             curvature = Curvature(point)
-            inverse, index, _ = self.newton.definite(curvature, unresolved(point.curve))
+            inverse, index, shift = self.newton.definite(curvature, unresolved(point.curve))
             if curvature.gain(inverse) > least:
-                steps = self._steps(inverse)
+                steps = self._steps(curvature, inverse, shift)
                 if steps and steps[-1].point.energy < point.energy - least:
                     return Change(steps)
         elif self.run.options.stability or self.run.options.escape_saddles:
@@ -78,9 +77,9 @@ class Rest(Intervention):
             return None
         return self._told(replace(outcome, negative_eigenvalues=index))
 
-    def _steps(self, inverse: FactorisedHessian) -> tuple[Step, ...]:
-        point, most = self.run.point, self.run.iterations_left
-        return tuple(self.newton.along(point, inverse, most, self._least(point)))
+    def _steps(self, curvature: Curvature, inverse: FactorisedHessian, shift: float) -> tuple[Step, ...]:
+        most, least = self.run.iterations_left, self._least(curvature.point)
+        return tuple(self.newton.along(curvature, inverse, shift, most, least))
 
     def _least(self, point: Point) -> float:
         return self.exact * energy_scale(point.problem.mesh, point.energy)
