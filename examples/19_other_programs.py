@@ -37,4 +37,5 @@ for ax, (name, curve) in zip(axes, shown.items(), strict=True):
     ax.set_title(name)
     ax.set_aspect("equal")
     ax.axis("off")
+    ax.view_init(90, -90)
 plt.show()

@@ -10,7 +10,12 @@ from processes import finished
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 SCRIPTS = sorted(EXAMPLES.glob("[0-9]*.py"))
-NEEDED = {"17_table": "distributed", "18_film_in_blender": "bpy"}
+NEEDED = {
+    "17_table": "distributed",
+    "18_film_in_blender": "bpy",
+    "19_other_programs": "spherogram",
+    "20_wire": "trimesh",
+}
 
 
 @pytest.mark.slow

@@ -18,14 +18,13 @@ import struct
 import sys
 import zipfile
 import zlib
-from bisect import bisect_left, bisect_right
 from itertools import chain, combinations, pairwise, product
 from math import gcd, isfinite, prod
 from operator import index, mul
 
 DECISIONS, PER_LEG = 3000, 200  # exact ones, of a file and for each of its legs: files made to take days need more
 ROUNDING_UNITS = 16  # distance from its edge, in units of the last place, of a vertex that is inserted or removed
-FINER = 64  # bits by which places on edges are finer than coordinates
+FINER = 64  # bits of a place on an edge, by which the unit is finer than coordinates
 DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, RuntimeError, ValueError, OverflowError)
 CODES = {"f8": "d", "b1": "?", "i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "i8": "q", "u8": "Q"}
 WHOLE = "bBhHiIqQ"
@@ -245,8 +244,8 @@ class Mesh:
                 self.corners += [((v[0],) * 2, (v[1], v[:3][-1])), ((v[-1],) * 2, (v[-2], v[-3:][0]))]
 
     def straightened(self, points, kept):
-        """The points, in finer units, those that are not kept being moved onto the edges between those that are."""
-        moved = finer(points)
+        """The points, those that are not kept being moved onto the edges between those that are."""
+        moved = list(points)
         for part, closed, indices in zip(self.parts, self.closed, kept, strict=True):
             own = [points[k] for k in part]
             for i, j in pairwise([*indices, indices[0] + len(own)] if closed else indices):
@@ -254,16 +253,12 @@ class Mesh:
                 edge = minus(v, u)
                 for k in (k % len(own) for k in range(i + 1, j)):
                     at = (dot(minus(own[k], u), edge) << FINER) // max(dot(edge, edge), 1)
-                    place = tuple((c << FINER) + at * d for c, d in zip(u, edge, strict=True))
-                    bits = max(map(abs, chain(u, v, own[k]))).bit_length() - 53 + FINER
-                    near = max(map(abs, minus(place, moved[part[k]]))) <= ROUNDING_UNITS << bits
+                    place = tuple(c + (at * d >> FINER) for c, d in zip(u, edge, strict=True))  # exactly
+                    bits = max(map(abs, chain(u, v, own[k]))).bit_length() - 53
+                    near = max(map(abs, minus(place, moved[part[k]]))) <= ROUNDING_UNITS << max(bits, 0)
                     need(near and last < at < 1 << FINER, f"vertex {part[k] + 1} is not on the edge it must be on")
                     moved[part[k]], last = place, at
         return moved
-
-
-def finer(points):
-    return [tuple(c << FINER for c in p) for p in points]
 
 
 def kept_vertices(first, second, closed):
@@ -285,17 +280,14 @@ def boxes(groups):
 
 def overlapping(first, second):
     """Indices of boxes, one of each list, that overlap; each pair once if both are the same list."""
-    spans = [max(high[k] for _, high in first) - min(low[k] for low, _ in first) for k in range(3)]
-    x = spans.index(max(spans))
-    order = sorted(range(len(second)), key=lambda k: second[k][0][x])
-    lows = [second[k][0][x] for k in order]
-    width = max((high[x] - low[x] for low, high in second), default=0)
-    for place, i in enumerate(order if first is second else range(len(first))):
-        (a, b, c), (d, e, f) = low, high = first[i]
-        begin = place + 1 if first is second else bisect_left(lows, low[x] - width)
-        for j in order[begin : bisect_right(lows, high[x])]:
-            least, most = second[j]
-            if a <= most[0] and least[0] <= d and b <= most[1] and least[1] <= e and c <= most[2] and least[2] <= f:
+    same, order = first is second, sorted(range(len(second)), key=lambda k: second[k][0])
+    for place, i in enumerate(order if same else range(len(first))):
+        (a, b, c), (d, e, f) = first[i]
+        for j in order[place + 1 if same else 0 :]:
+            (u, v, w), (x, y, z) = second[j]
+            if u > d:
+                break
+            if a <= x and b <= y and v <= e and c <= z and w <= f:
                 yield i, j
 
 
@@ -365,17 +357,16 @@ class Check:
     def run(self):
         """Check it; raises RejectedError."""
         triangles = [each for name in self.numbered("obstacle", "_faces", "_vertices") for each in self.obstacle(name)]
-        pins = (
-            rows(*(lambda shape, values: (values, shape[1]))(*self.array("pins", "d", 2)))
-            if "pins.npy" in self.names
-            else []
-        )
+        (_, size), values = self.array("pins", "d", 2) if "pins.npy" in self.names else ((0, 0), ())
+        pins = rows(values, size)
         stages = [self.stage(name) for name in self.numbered("stage", "")]
         need(stages, "there is no stage_000")
         points = [*chain(*triangles), *chain(*(frame for _, frames in stages for frame in frames))]
         need(len({*map(len, points)}) == 1, "stages, or obstacles, are of different dimensions")
-        self.bits = max(x.as_integer_ratio()[1] for x in chain(*points)).bit_length()  # the unit is 2^(1 - bits)
+        largest = max(x.as_integer_ratio()[1] for x in chain(*points))
+        self.bits = largest.bit_length() + FINER  # the unit is 2^(1 - bits)
         self.triangles, before = [self.whole(corners) for corners in triangles], None
+        self.around = boxes(self.triangles)
         for number, (mesh, frames) in enumerate(stages):
             self.place, last = f"stage {number}: ", self.whole(frames[0])
             if before:
@@ -385,7 +376,7 @@ class Check:
             for k, frame in enumerate(frames[1:] or frames):
                 self.place, here = f"stage {number}, frame {k}: ", self.whole(frame)
                 need(all(frame[vertex] == pin for pin, vertex in held), "a vertex leaves its pin")
-                self.leg(last, here, mesh, self.triangles)
+                self.leg(last, here, mesh)
                 last, self.legs = here, self.legs + (len(frames) > 1)
             before = last, mesh
 
@@ -401,10 +392,10 @@ class Check:
         kept = [kept_vertices([old[k] for k in a], [new[k] for k in b], closed) for a, b, closed in pairs]
         for points, edges, side in ((old, mesh, 0), (new, next_mesh, 1)):
             moved = edges.straightened(points, [both[side] for both in kept])
-            if moved != finer(points):
-                self.leg(finer(points), moved, edges, [*map(finer, self.triangles)])
+            if moved != points:
+                self.leg(points, moved, edges)
 
-    def leg(self, start, end, mesh, triangles):
+    def leg(self, start, end, mesh):
         """Raise if edges meet, or an edge an obstacle, while vertices go from start to end."""
         ways, edges = [*zip(start, end, strict=True)], mesh.edges
         around = boxes([(*ways[a], *ways[b]) for a, b in edges])
@@ -412,8 +403,9 @@ class Check:
         for first, second in chain(mesh.corners, (pair for pair in pairs if set(pair[0]).isdisjoint(pair[1]))):
             free = self.free(meet, [ways[k] for k in first], [ways[k] for k in second])
             need(free, f"the edges at vertices {first[0] + 1} and {second[0] + 1} (counted from 1) meet")
-        for i, j in overlapping(around, boxes(triangles)):
-            free = self.free(meet_triangle, [ways[k] for k in edges[i]], [(corner, corner) for corner in triangles[j]])
+        for i, j in overlapping(around, self.around):
+            still = [(corner, corner) for corner in self.triangles[j]]
+            free = self.free(meet_triangle, [ways[k] for k in edges[i]], still)
             need(free, f"the edge at vertex {edges[i][0] + 1} (counted from 1) meets an obstacle")
 
     def free(self, decide, first, second):
