@@ -26,11 +26,10 @@ _THICKEST, _THINNEST = 0.012, 0.002  # radius of tubes in lengths of the curve
 
 @dataclass(frozen=True)
 class Motion:
-    """Curves on one mesh that follow each other, in space, and their energies or those of a whole run."""
+    """Curves on one mesh that follow each other, in space, with their energies; or one, with those of a whole run."""
 
     curves: tuple[Curve, ...]
     energies: tuple[float, ...] = ()
-    label: str = "Möbius energy"
 
     @property
     def radius(self) -> float:
@@ -94,12 +93,12 @@ def _evenly(part: FloatArray, closed: bool, count: int) -> FloatArray:
 
 
 @checked
-def still(curve: Curve, energies: Sequence[float] = (), label: str = "objective") -> Motion:
-    """A curve that does not move, and the energies of a run that led to it; a CurveError if it cannot be shown."""
+def still(curve: Curve, energies: Sequence[float] = ()) -> Motion:
+    """A curve that does not move, and the objective of a run that led to it; a CurveError if it cannot be shown."""
     if curve.dimension > 3 or len(curve) > _LARGEST:
         what = f"{len(curve)} vertices in dimension {curve.dimension}"
         raise CurveError(f"the curve has {what}; shown are curves in the plane or in space with at most {_LARGEST}")
-    return Motion((curve,), tuple(energies), label)
+    return Motion((curve,), tuple(energies))
 
 
 @checked
@@ -110,48 +109,30 @@ def figure(shown: Motion, radius: float | None = None, title: str = "") -> Any:
     """
     try:
         from plotly import graph_objects as go
-        from plotly.subplots import make_subplots
     except ImportError as error:
         raise MobiusFlowError('pictures need Plotly: pip install plotly (the extra "view")') from error
     radius = shown.radius if radius is None else radius
     energies, moves = shown.energies, len(shown.curves) > 1
-    made = make_subplots(1, 2, specs=[[{"type": "scene"}, {"type": "xy"}]], column_widths=[0.74, 0.26])
-    if not energies:
-        made = go.Figure()
-
-    def surfaces(curve: Curve, whole: bool) -> list[Any]:
-        traces = []
-        for k, tube in enumerate(tubes(curve, radius)):
-            x, y, z = tube.points.T.astype(np.float32)
-            rest = _surface(k, tube.faces.T) if whole else {}
-            traces.append(go.Mesh3d(x=x, y=y, z=z, **rest))
-        return traces
-
-    def marker(k: int) -> Any:
-        return go.Scatter(x=[k], y=[energies[k]], mode="markers", marker={"size": 11, "color": COLOURS[1]})
-
-    first = surfaces(shown.curves[0], whole=True)
-    for trace in first:
-        made.add_trace(trace, **({"row": 1, "col": 1} if energies else {}))
-    if energies:
-        line = go.Scatter(x=list(range(len(energies))), y=list(energies), mode="lines", line={"color": COLOURS[0]})
-        made.add_trace(line, row=1, col=2)
-        made.update_xaxes(title_text="frame" if moves else "iterate")
-        spread = max(energies) > 3.0 * min(energies) > 0.0
-        made.update_yaxes(title_text=shown.label, type="log" if spread else "linear")
-    if moves:
-        made.add_trace(marker(0), row=1, col=2)
-        numbers = [*range(len(first)), len(first) + 1]  # of the traces that change
-        made.frames = [
-            go.Frame(data=[*surfaces(curve, whole=False), marker(k)], traces=numbers, name=str(k))
-            for k, curve in enumerate(shown.curves)
-        ]
-    made.update_layout(
-        **_layout(shown.curves, radius, title), **(_controls(len(shown.curves)) if moves else {}), showlegend=False
+    line = (
+        [{"type": "scatter", "y": list(energies), "mode": "lines", "line": {"color": COLOURS[0]}}] if energies else []
     )
-    return made
+
+    def changing(k: int) -> list[dict[str, Any]]:
+        """Traces of a frame: tubes, and a mark on the line of energies."""
+        mark = {"type": "scatter", "x": [k], "y": [energies[k]], "marker": {"size": 11, "color": COLOURS[1]}}
+        corners = (tube.points.T.astype(np.float32) for tube in tubes(shown.curves[k], radius))
+        return [*({"type": "mesh3d", **dict(zip("xyz", xyz, strict=True))} for xyz in corners), *[mark] * moves]
+
+    first = tubes(shown.curves[0], radius)
+    surfaces = [
+        trace | _surface(k, tube.faces.T) for k, (trace, tube) in enumerate(zip(changing(0), first, strict=False))
+    ]
+    frames = [{"data": changing(k), "name": str(k)} for k in range(len(shown.curves))] if moves else []
+    traces = [*surfaces, *changing(0)[len(first) :], *line]
+    return go.Figure({"data": traces, "frames": frames, "layout": _layout(shown, radius, title)})
 
 
+@checked
 def page(shown: Motion, radius: float | None = None, title: str = "") -> str:
     """The figure as one HTML file that needs no network."""
     made = figure(shown, radius, title)
@@ -160,44 +141,42 @@ def page(shown: Motion, radius: float | None = None, title: str = "") -> str:
 
 def _surface(k: int, corners: IntArray) -> dict[str, Any]:
     """What does not change of the surface of a component."""
-    i, j, last = corners.astype(np.int32)
     light = {"ambient": 0.55, "diffuse": 0.8, "specular": 0.3, "roughness": 0.4}
-    return {
-        "i": i, "j": j, "k": last, "color": COLOURS[k % len(COLOURS)], "lighting": light,
-        "lightposition": {"x": 1e4, "y": 2e4, "z": 3e4}, "hoverinfo": "name", "name": f"component {k + 1}",
-    }  # fmt: skip
+    look = {"color": COLOURS[k % len(COLOURS)], "lighting": light, "lightposition": {"x": 1e4, "y": 2e4, "z": 3e4}}
+    faces = dict(zip("ijk", corners.astype(np.int32), strict=True))
+    return {**faces, **look, "hoverinfo": "name", "name": f"component {k + 1}"}
 
 
-def _layout(curves: Sequence[Curve], radius: float, title: str) -> dict[str, Any]:
-    """No axes, and room for every frame."""
-    points = np.concatenate([np.pad(curve.vertices, ((0, 0), (0, 3 - curve.dimension))) for curve in curves])
+def _layout(shown: Motion, radius: float, title: str) -> dict[str, Any]:
+    """No axes, and room for every frame; beside it the energies, if there are some."""
+    points = np.concatenate([np.pad(each.vertices, ((0, 0), (0, 3 - each.dimension))) for each in shown.curves])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     half = 0.5 * float(np.ptp(points, axis=0).max()) + 2.0 * radius
-    axes = {
+    scene: dict[str, Any] = {
         f"{name}axis": {"visible": False, "range": [float(c) - half, float(c) + half]}
         for name, c in zip("xyz", middle, strict=True)
     }
     camera = {"eye": {"x": 0.25, "y": -0.4, "z": 1.2}, "up": {"x": 0, "y": 1, "z": 0}}
-    scene = {**axes, "aspectmode": "cube", "camera": camera}
-    margin = {"l": 10, "r": 20, "t": 50 if title else 20, "b": 10}
-    return {"scene": scene, "title": {"text": title}, "template": "plotly_white", "margin": margin}
+    scene |= {"aspectmode": "cube", "camera": camera, "domain": {"x": [0.0, 0.74 if shown.energies else 1.0]}}
+    layout = {"scene": scene, "title": {"text": title}, "template": "plotly_white", "showlegend": False}
+    if not shown.energies:
+        return layout
+    moves, log = len(shown.curves) > 1, max(shown.energies) > 3.0 * min(shown.energies) > 0.0
+    layout["xaxis"] = {"domain": [0.8, 1.0], "title": {"text": "frame" if moves else "iterate"}}
+    name = "Möbius energy" if moves else "objective"
+    layout["yaxis"] = {"title": {"text": name}, "type": "log" if log else "linear"}
+    return layout | (_controls(len(shown.curves)) if moves else {})
 
 
 def _controls(frames: int) -> dict[str, Any]:
-    """A button that plays the frames, and a slider through them."""
+    """Buttons that play the frames and stop, and a slider through them."""
 
-    def shows(names: Any, duration: int) -> list[Any]:
+    def step(label: str, names: list[str | None] | None, duration: int) -> dict[str, Any]:
         timing = {"frame": {"duration": duration, "redraw": True}, "transition": {"duration": 0}, "mode": "immediate"}
-        return [names, timing | ({"fromcurrent": True} if duration else {})]
+        return {"method": "animate", "label": label, "args": [names, timing | {"fromcurrent": True}]}
 
-    steps = [{"method": "animate", "label": str(k), "args": shows([str(k)], 0)} for k in range(frames)]
-    buttons = [
-        {"method": "animate", "label": "▶", "args": shows(None, 80)},
-        {"method": "animate", "label": "❚❚", "args": shows([None], 0)},
-    ]
-    menu = {"type": "buttons", "direction": "left", "buttons": buttons, "x": 0.0, "y": 0.0, "xanchor": "left"}
-    place = {"x": 0.12, "len": 0.58, "y": 0.02}
-    return {
-        "updatemenus": [menu | {"yanchor": "bottom", "showactive": False}],
-        "sliders": [{"steps": steps, "currentvalue": {"prefix": "frame "}, **place}],
-    }
+    buttons = [step("▶", None, 80), step("❚❚", [None], 0)]
+    menu = {"type": "buttons", "direction": "left", "x": 0.0, "y": 0.0, "xanchor": "left", "yanchor": "bottom"}
+    steps = [step(str(k), [str(k)], 0) for k in range(frames)]
+    slider = {"steps": steps, "currentvalue": {"prefix": "frame "}, "x": 0.12, "len": 0.58, "y": 0.02}
+    return {"updatemenus": [menu | {"buttons": buttons, "showactive": False}], "sliders": [slider]}
