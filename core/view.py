@@ -118,10 +118,12 @@ def figure(shown: Motion, radius: float | None = None, title: str = "") -> Any:
     )
 
     def changing(k: int) -> list[dict[str, Any]]:
-        """Traces of a frame: tubes, and a mark on the line of energies."""
-        mark = {"type": "scatter", "x": [k], "y": [energies[k]], "marker": {"size": 11, "color": COLOURS[1]}}
+        """Traces of a frame: tubes, and of a motion a mark on the line of energies."""
         corners = (tube.points.T.astype(np.float32) for tube in tubes(shown.curves[k], radius))
-        return [*({"type": "mesh3d", **dict(zip("xyz", xyz, strict=True))} for xyz in corners), *[mark] * moves]
+        marked = energies[k : k + moves]
+        mark = {"type": "scatter", "x": [k], "y": list(marked), "marker": {"size": 11, "color": COLOURS[1]}}
+        surfaces = [{"type": "mesh3d", **dict(zip("xyz", xyz, strict=True))} for xyz in corners]
+        return [*surfaces, mark] if marked else surfaces
 
     first = tubes(shown.curves[0], radius)
     surfaces = [

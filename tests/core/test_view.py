@@ -113,6 +113,8 @@ def test_figures_have_a_slider_and_the_energy(recorded):
     made = figure(motion(recorded, 6))
     assert [trace.type for trace in made.data] == ["mesh3d", "mesh3d", "scatter", "scatter"]
     assert len(made.frames) == len(made.layout.sliders[0].steps) == 6
+    alone = figure(still(Curve([[0.0, 0], [1, 0], [1, 1]])))
+    assert [trace.type for trace in alone.data] == ["mesh3d"]
     result = minimize(knot("3_1", 40), RelaxOptions(max_iterations=3))
     shown = result.show()
     assert [trace.type for trace in shown.data] == ["mesh3d", "scatter"]
