@@ -51,7 +51,7 @@ def add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(WRITERS)}")
     text = "width of the tubes, in the curve's units (default: what is well seen; for solids nine tenths of the widest)"
     parser.add_argument("--width", type=float, metavar="W", help=text)
-    text = f"frames of a trajectory that are shown, evenly chosen, at most 1000 (default: {FRAMES})"
+    text = f"frames of a trajectory that are shown, about as far apart, 2 to 1000 (default: {FRAMES})"
     parser.add_argument("--frames", type=int, default=FRAMES, metavar="N", help=text)
     parser.set_defaults(run=_run)
 

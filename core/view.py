@@ -1,21 +1,22 @@
 """Curves and motions as pictures that turn in a browser or a notebook, by Plotly."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
 from .arguments import checked
 from .collision import check_embedded, minimal_gap
-from .curve import Curve
+from .curve import Curve, Mesh
 from .errors import CurveError, MobiusFlowError
 from .hierarchy import moebius_energy
 from .tube import tubes
 from .types import FloatArray, IntArray
 from .units import centred
-from .verify.trajectory import TrajectoryError, count_legs, stages
+from .verify.trajectory import TrajectoryError, stages
 
 COLOURS = ("#3b6fb6", "#d1663f", "#4b9b6e", "#9b5fb0", "#c9a227", "#5aa7b8", "#b8436d", "#7a7a7a")
 FRAMES = 60  # of a motion
@@ -41,28 +42,40 @@ class Motion:
 
 @checked
 def motion(path: str | os.PathLike[str], frames: int = FRAMES) -> Motion:
-    """Frames of a trajectory file, evenly chosen, with the first and the last; all with as many vertices.
+    """Frames of a trajectory file, at most so many and about as far apart, with the first and the last.
 
-    Raises MobiusFlowError if there is none.  That it is free of contact is for `verify` to say.
+    All have as many vertices.  Raises MobiusFlowError if there is no trajectory, or a frame touches itself; that the
+    motion is free of contact is for `verify` to say.
     """
     path = os.fspath(path)
-    chosen = set(np.linspace(0, count_legs(path), frames).round().astype(int).tolist())
-    curves, energies, number = [], [], 0
     try:
-        for stage in stages(path):
-            sizes, closed = zip(*((each.size, each.closed) for each in stage.components), strict=True)
-            for k, frame in enumerate(stage.frames):
-                number += k > 0  # the first frame of a stage is the last of the one before
-                if number in chosen:
-                    chosen.remove(number)
-                    parts = np.split(frame, np.cumsum(sizes)[:-1])
-                    curve = Curve.from_components(parts, closed)
-                    check_embedded(curve)
-                    curves.append(curve)
-                    energies.append(moebius_energy(centred(curve))[0])
+        chosen = _evenly_apart(path, frames)
+        curves = [curve for number, curve in enumerate(_curves(path)) if number in chosen]
+        for curve in curves:
+            check_embedded(curve)
     except (TrajectoryError, CurveError) as error:
         raise MobiusFlowError(f"{path}: {error}") from error
-    return Motion(tuple(_on_one_mesh(curves)), tuple(energies))
+    energies = tuple(moebius_energy(centred(curve))[0] for curve in curves)
+    return Motion(tuple(_on_one_mesh(curves)), energies)
+
+
+def _curves(path: str) -> Iterator[Curve]:
+    """All frames but the first ones of later stages, which are the last of those before on another mesh."""
+    for number, stage in enumerate(stages(path)):
+        mesh = Mesh(*zip(*((each.size, each.closed) for each in stage.components), strict=True))
+        yield from (Curve(frame, mesh) for frame in islice(stage.frames, number > 0, None))
+
+
+def _evenly_apart(path: str, count: int) -> set[int]:
+    """Numbers of frames between which vertices move about as far."""
+    moved, last = [0.0], None
+    for curve in _curves(path):
+        if last is not None:
+            step = curve.vertices - last.vertices if curve.mesh == last.mesh else np.zeros((1, 1))
+            moved.append(moved[-1] + float(np.sqrt(np.square(step).sum(axis=1).mean())))
+        last = curve
+    numbers = np.searchsorted(moved, np.linspace(0.0, moved[-1], count))
+    return {*numbers[:-1].tolist(), len(moved) - 1}
 
 
 def _on_one_mesh(curves: Sequence[Curve]) -> list[Curve]:
@@ -158,9 +171,10 @@ def _layout(shown: Motion, radius: float, title: str) -> dict[str, Any]:
         f"{name}axis": {"visible": False, "range": [float(c) - half, float(c) + half]}
         for name, c in zip("xyz", middle, strict=True)
     }
-    camera = {"eye": {"x": 0.25, "y": -0.4, "z": 1.2}, "up": {"x": 0, "y": 1, "z": 0}}
+    camera = {"eye": {"x": 0.3, "y": -0.5, "z": 1.6}, "up": {"x": 0, "y": 1, "z": 0}}
     scene |= {"aspectmode": "cube", "camera": camera, "domain": {"x": [0.0, 0.74 if shown.energies else 1.0]}}
     layout = {"scene": scene, "title": {"text": title}, "template": "plotly_white", "showlegend": False}
+    layout["margin"] = {"l": 10, "r": 20, "t": 40, "b": 10}
     if not shown.energies:
         return layout
     moves, log = len(shown.curves) > 1, max(shown.energies) > 3.0 * min(shown.energies) > 0.0
