@@ -52,6 +52,15 @@ def press(operator, place, **keys):
     return operator.event("LEFTMOUSE", pixel(place), **keys)
 
 
+def taken(operator):
+    """Where a trefoil is taken hold of."""
+    add_curve([torus_trefoil(40).vertices])
+    begin(operator)
+    place = on_curve(operator)
+    assert press(operator, place) == {"RUNNING_MODAL"}
+    return place
+
+
 def move(operator, place):
     return operator.event("MOUSEMOVE", pixel(place), value="NOTHING")
 
@@ -78,10 +87,7 @@ def gap(operator, target):
 
 
 def test_a_strand_follows_the_mouse_and_all_is_proved(operator):
-    add_curve([torus_trefoil(40).vertices])
-    begin(operator)
-    place = on_curve(operator)
-    assert press(operator, place) == {"RUNNING_MODAL"}
+    place = taken(operator)
     target = moved(place, 1.0, 0.5, 0.0)
     assert move(operator, target) == {"RUNNING_MODAL"}
     operator.until(lambda: gap(operator, target) < 0.2)
@@ -94,10 +100,7 @@ def test_a_strand_follows_the_mouse_and_all_is_proved(operator):
 
 @pytest.mark.parametrize("operator", ["process"], indirect=True)
 def test_the_worker_takes_in_where_the_mouse_goes(operator):
-    add_curve([torus_trefoil(40).vertices])
-    begin(operator)
-    place = on_curve(operator)
-    press(operator, place)
+    place = taken(operator)
     for k in range(1, 11):
         target = moved(place, 0.1 * k, 0.0, 0.0)
         move(operator, target)
@@ -111,10 +114,7 @@ def test_the_worker_takes_in_where_the_mouse_goes(operator):
 
 @pytest.mark.parametrize("operator", ["process"], indirect=True)
 def test_a_worker_that_dies_in_mid_drag_loses_nothing(operator):
-    add_curve([torus_trefoil(40).vertices])
-    begin(operator)
-    place = on_curve(operator)
-    press(operator, place)
+    place = taken(operator)
     operator.run._worker.process.kill()
     operator.run._worker.process.wait()
     for k in range(50):
@@ -229,10 +229,7 @@ def test_an_object_that_is_deleted_in_mid_drag_ends_the_run(operator):
 
 
 def test_targets_that_are_nowhere_are_left_out(operator):
-    add_curve([torus_trefoil(40).vertices])
-    begin(operator)
-    place = on_curve(operator)
-    press(operator, place)
+    place = taken(operator)
     operator.run.pull(np.array([np.nan, 0.0, np.inf]))
     operator.run.pull(np.array([1e300, 0.0, 0.0]))
     release(operator, place)
