@@ -3,6 +3,7 @@
 import tempfile
 
 import pytest
+from mobius_flow.cli.main import main
 
 
 @pytest.fixture(autouse=True)
@@ -11,3 +12,15 @@ def scratch(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.Monkey
     place = str(tmp_path_factory.mktemp("scratch"))
     monkeypatch.setattr(tempfile, "tempdir", place)
     monkeypatch.setenv("TMPDIR", place)
+
+
+@pytest.fixture
+def run(capsys):
+    """Run a command; its exit status and both outputs."""
+
+    def runner(*arguments):
+        status = main([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return runner

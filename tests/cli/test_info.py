@@ -3,7 +3,6 @@
 import json
 
 import pytest
-from mobius_flow.cli.main import main
 from mobius_flow.core.knots import smooth_knot
 
 KEYS = {
@@ -14,18 +13,6 @@ TYPE_KEYS = {
     "name", "names", "proved", "evidence", "crossings", "linking_numbers", "alexander", "determinant", "jones",
     "genus", "fibered",
 }  # fmt: skip
-
-
-@pytest.fixture
-def run(capsys):
-    """Run a command; its exit status and both outputs."""
-
-    def runner(*arguments):
-        status = main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return status, captured.out, captured.err
-
-    return runner
 
 
 @pytest.fixture

@@ -3,23 +3,10 @@
 import json
 
 import pytest
-from mobius_flow.cli.main import main
 from mobius_flow.core import read_curve
 from mobius_flow.core.verify import verify
 
 QUICK = ("--tolerance", "1e-3", "--untangle", "never", "--vertices", "70")
-
-
-@pytest.fixture
-def run(capsys):
-    """Run a command; its exit status and both outputs."""
-
-    def runner(*arguments):
-        status = main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return status, captured.out, captured.err
-
-    return runner
 
 
 @pytest.fixture
