@@ -238,10 +238,18 @@ class Motion:
 
     @property
     def _fall(self) -> FloatArray:
-        """By how much the logarithm of the energy above its least, and a bit, has fallen at each iterate."""
-        energies = np.minimum.accumulate(self._energies)
-        above = np.log(energies - energies[-1] + _BIT * max(abs(energies[-1]), _TINY))
-        return np.asarray(above[0] - above)
+        """By how much the logarithm of the energy above its least, and a bit, has fallen or risen up to each iterate.
+
+        It rises on the way from one curve to another; that a finer mesh has more does not count.
+        """
+        energies = np.array(self._energies)
+        least = int(energies.argmin())
+        falling = np.minimum.accumulate(energies[: least + 1])
+        rising = np.minimum.accumulate(energies[:least:-1])[::-1]
+        above = np.log(np.concatenate([falling, rising]) - energies[least] + _BIT * max(abs(energies[least]), _TINY))
+        changes = np.abs(np.diff(above))
+        changes[least : least + 1] = 0.0
+        return np.concatenate([[0.0], np.cumsum(changes)])
 
     @property
     def start(self) -> Curve:

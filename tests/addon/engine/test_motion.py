@@ -450,3 +450,19 @@ def test_points_at_rest_stay_exactly_where_they_are():
     ]
     keys = collected(moved).keys(is_free, None, Pace.EVEN)
     assert len({key.points[:15].tobytes() for key in keys.keys}) == 1
+
+
+def energies_passed(*energies):
+    start = regular_polygon(5)
+    motion = Motion(at_rest(1))
+    for k, energy in enumerate(energies):
+        motion.add(iterate(k, start.vertices + 0.1 * k, start, energy=energy))
+    return motion.course(motion.keys(is_free)).fall
+
+
+def test_falls_of_the_energy_count_and_rises_on_the_way_to_another_curve():
+    there_and_back = energies_passed(90.0, 40.0, 7.0, 4.0, 4.0, 7.0, 40.0, 90.0)
+    np.testing.assert_allclose(np.diff(there_and_back), np.diff(there_and_back)[::-1], atol=1e-12)
+    assert there_and_back[3] > 5.0
+    finer_mesh = energies_passed(90.0, 40.0, 4.0, 5.0, 4.5)
+    assert finer_mesh[2] == finer_mesh[-1] > 5.0
