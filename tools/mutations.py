@@ -12,6 +12,7 @@ WINDOWS = "tests/core/collision/test_windows.py"
 MOTIONS, HOPS = "tests/core/test_hop_motions.py", "tests/core/test_hops.py"
 KNOT_TYPE, PASSES = "tests/core/knots/test_knot_type.py", "tests/core/passes"
 HIERARCHY, ENGINE = "tests/core/hierarchy", "tests/addon/engine"
+MORPHING = "tests/core/morphing"
 UNTANGLING = "tests/core/test_untangling.py"
 CERTIFICATE, VERIFY, GROW = "tests/core/test_certificate.py", "tests/core/verify", "tests/core/test_grow.py"
 
@@ -888,5 +889,33 @@ MUTANTS = (
         "*stalled(Message(reason, **facts)).clauses, *self.clauses[1:])",
         "*stalled(Message(reason, **facts)).clauses,)",
         f"{UNTANGLING}::test_what_stalls_instead_keeps_what_else_was_said",
+    ),
+    Mutant(
+        "shapes are laid upon their mirror images",
+        "core/morphing/alignment.py",
+        "            u[:, :, 2] *= np.linalg.det(u @ v)[:, None]\n",
+        "",
+        f"{MORPHING}/test_alignment.py::test_no_reflection_is_an_alignment",
+    ),
+    Mutant(
+        "the way back leaves out the ends of inner legs",
+        "core/morphing/ways.py",
+        "(*here.path[-2::-1], there.curve.vertices)",
+        "(there.curve.vertices,)",
+        f"{MORPHING}/test_morph.py::test_every_leg_is_run_back",
+    ),
+    Mutant(
+        "ends of arcs move a little where these are turned",
+        "core/morphing/meeting.py",
+        "        moved[ends] = curve.vertices[ends]\n",
+        "",
+        f"{MORPHING}/test_morph.py::test_arcs_are_held_at_their_ends",
+    ),
+    Mutant(
+        "a morph may avoid nothing on the way of its goal",
+        "core/morphing/morph.py",
+        "if task.obstacles and {each.key",
+        "if False and {each.key",
+        f"{MORPHING}/test_morph.py::test_pins_and_ends_elsewhere_are_refused",
     ),
 )

@@ -17,9 +17,11 @@ from mobius_flow.core import (
     Task,
     Trajectory,
     morph,
+    relax,
 )
 from mobius_flow.core.knots import knot, overhand, smooth_knot
 from mobius_flow.core.morphing import morphing
+from mobius_flow.core.morphing.ways import back
 from mobius_flow.core.verify import verify
 
 QUICK = RelaxOptions(tolerance=1e-3, mesh="fixed", untangle="never")
@@ -122,6 +124,15 @@ def test_hops_from_one_end_and_then_from_the_other(misses, tmp_path, monkeypatch
     assert verdict.accepted
     assert len(asked) == misses + 1
     assert np.array_equal(result.curve.vertices, knot("4_1", 80).vertices)
+
+
+def test_every_leg_is_run_back():
+    start = next(relax(Curve(RECTANGLE), QUICK))
+    legs = tuple(start.curve.vertices + 0.1 * k for k in range(1, 4))
+    way = [start, replace(start, curve=start.curve.with_vertices(legs[-1]), path=legs)]
+    (there,) = back(way)
+    assert [leg.tolist() for leg in there.path] == [each.tolist() for each in (legs[1], legs[0], start.curve.vertices)]
+    assert there.curve is start.curve
 
 
 def test_both_avoid_the_obstacles_of_the_first(tmp_path):
