@@ -57,10 +57,10 @@ def meeting(x: Shape, y: Shape) -> tuple[Alignment, list[Iterate]] | None:
     None if no way was found that is free of contact.
     """
     pairs = [
-        (alignment, *ways)
-        for ways in product(x.ways, y.ways)
+        (alignment, way, other)
+        for way, other in product(x.ways, y.ways)
         for freedom in _freedoms(x.task)
-        for alignment in alignments(*(way[-1].curve for way in ways), freedom)[:TRIES]
+        for alignment in alignments(way[-1].curve, other[-1].curve, freedom)[:TRIES]
     ]
     pairs.sort(key=lambda each: each[0].cost + LEG * (len(each[1]) + len(each[2])))
     for alignment, way, other in pairs[:TRIES]:

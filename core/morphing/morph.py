@@ -170,8 +170,8 @@ def _kind(curve: Curve) -> str:
 
 def _apart(x: Shape, y: Shape) -> Message:
     """Say that shapes do not meet, how much they differ, and what to try."""
-    curves = ([way[-1].curve for way in each.ways] for each in (x, y))
-    apart = min(alignments(*each, Freedom())[0].distance for each in product(*curves))
+    ends = product(x.ways, y.ways)
+    apart = min(alignments(a[-1].curve, b[-1].curve, Freedom())[0].distance for a, b in ends)
     facts = {"a": f"{x.end.energy:.6g}", "b": f"{y.end.energy:.6g}", "distance": f"{apart:.2g}"}
     return Message(
         "no motion was found, though no invariant tells A and B apart: they come to rest at energies {a} and {b}, in "
