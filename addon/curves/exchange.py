@@ -59,7 +59,8 @@ def stretch(obj: "bpy.types.Object") -> float:
 def box(obj: "bpy.types.Object") -> tuple[FloatArray, FloatArray]:
     """The least and the greatest coordinates of the corners of an object's box in the world."""
     matrix = np.array(obj.matrix_world)
-    corners = np.array(obj.bound_box) @ matrix[:3, :3].T + matrix[:3, 3]
+    with np.errstate(invalid="ignore"):  # where points are not finite
+        corners = np.array(obj.bound_box) @ matrix[:3, :3].T + matrix[:3, 3]
     return corners.min(axis=0), corners.max(axis=0)
 
 

@@ -153,8 +153,8 @@ def avoided(context: bpy.types.Context, name: str | None = None) -> list[bpy.typ
 
 def container(context: bpy.types.Context) -> bpy.types.Object | None:
     """The mesh that was picked as a container, if the boxes of all selected curves lie in its own."""
-    outer, boxes = context.scene.mobius_flow_surroundings.container, list(map(box, selected_curves(context)))
-    if outer is None or not boxes:
+    outer, curves = context.scene.mobius_flow_surroundings.container, selected_curves(context)
+    if outer is None or not curves:
         return None
-    low, high = box(outer)
+    (low, high), boxes = box(outer), map(box, curves)
     return outer if all((low <= least).all() and (most <= high).all() for least, most in boxes) else None
