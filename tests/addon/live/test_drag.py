@@ -189,7 +189,7 @@ def test_a_drag_is_taken_back(operator, let_go, pressed):
         pytest.skip("that ends the run")
     obj = add_curve([torus_trefoil(40).vertices])
     bpy.ops.ed.undo_push(message="Before")
-    begin(operator)
+    begin(operator, timing="ITERATE")
     operator.until(lambda: at_rest(operator))
     before, index = stored(obj.data), operator.run.last.index
     place = on_curve(operator)
