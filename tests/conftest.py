@@ -1,6 +1,8 @@
 """What every test needs before it starts."""
 
+import re
 import signal
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -27,6 +29,14 @@ settings.load_profile("same")
 # curves of other people's, which are tested too where somebody has put them beside the project
 collect_ignore = [] if Path(__file__).parents[2].joinpath("shared").is_dir() else ["core/knots/test_shared_inputs.py"]
 collect_ignore.append("plugins")  # modules for a copy of the package, see test_plugins.py
+
+
+def pytest_ignore_collect(collection_path: Path) -> bool | None:
+    """Leave out what needs Blender's module where there is none."""
+    if collection_path.suffix != ".py" or find_spec("bpy"):
+        return None
+    needed = re.search(r"^(import bpy|from blender_scenes)", collection_path.read_text(encoding="utf-8"), re.MULTILINE)
+    return None if needed is None else True
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -1,18 +1,15 @@
 """Baked curves are baked again and cleared, at once and in a file that was saved and opened again."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-
-from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings  # noqa: E402
-from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored  # noqa: E402
-from families import crossed  # noqa: E402
-from mathutils import Vector  # noqa: E402
-from mobius_flow.addon.curves import bake, keyframes  # noqa: E402
-from mobius_flow.core.knots import knot  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings
+from blender_scenes import add_curve, add_trefoil, contents, evaluated, relax, stored
+from families import crossed
+from mathutils import Vector
+from mobius_flow.addon.curves import bake, keyframes
+from mobius_flow.core.knots import knot
+from shapes import torus_trefoil
 
 
 def link_of_kind(kind):

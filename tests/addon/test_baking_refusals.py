@@ -1,14 +1,11 @@
 """What was baked stays as it is where something fails, is refused, or is not the program's own."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-
-from baked_curves import KEYED, SHORT, again, blocks, clear, go_on  # noqa: E402
-from blender_scenes import add_trefoil, contents, evaluated, linked, relax, show  # noqa: E402
-from mobius_flow.addon.curves import keyframes  # noqa: E402
+from baked_curves import KEYED, SHORT, again, blocks, clear, go_on
+from blender_scenes import add_trefoil, contents, evaluated, linked, relax, show
+from mobius_flow.addon.curves import keyframes
 
 
 @pytest.mark.parametrize("call", [bpy.ops.curve.mobius_flow_bake_again, bpy.ops.curve.mobius_flow_continue])

@@ -1,12 +1,10 @@
 """Curves whose mesh changes on the way, as by strand moves, are shown and keyed like all others."""
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, relax, stored  # noqa: E402
-from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
-from mobius_flow.core.knots import knot  # noqa: E402
+from blender_scenes import add_curve, relax, stored
+from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.core.knots import knot
 
 MOVES = {"untangle": "always", "max_iterations": 3}
 

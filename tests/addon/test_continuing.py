@@ -2,18 +2,15 @@
 
 from itertools import pairwise
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-
-from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings  # noqa: E402
-from blender_scenes import add_trefoil, evaluated, relax, stored  # noqa: E402
-from mobius_flow.addon.curves import bake, keyframes  # noqa: E402
-from mobius_flow.addon.engine import key_options  # noqa: E402
-from mobius_flow.core.collision import is_free  # noqa: E402
-from mobius_flow.core.curve import Mesh  # noqa: E402
+from baked_curves import KEYED, again, blocks, clear, curve_of, go_on, last_frame, reopen, two_rings
+from blender_scenes import add_trefoil, evaluated, relax, stored
+from mobius_flow.addon.curves import bake, keyframes
+from mobius_flow.addon.engine import key_options
+from mobius_flow.core.collision import is_free
+from mobius_flow.core.curve import Mesh
 
 
 @pytest.mark.parametrize("reopened", [False, True])

@@ -13,8 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-bpy = pytest.importorskip("bpy")
-
 ROOT = Path(__file__).resolve().parents[2]
 PLATFORM = "linux-x64"
 

@@ -1,17 +1,15 @@
 """Curves that grow are keyed: where edges are split on the way, those of earlier keys are split too."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, relax  # noqa: E402
-from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
-from mobius_flow.addon.curves.exchange import box  # noqa: E402
-from mobius_flow.addon.curves.surroundings import Surroundings  # noqa: E402
-from mobius_flow.addon.live.requirements import avoided  # noqa: E402
-from mobius_flow.core.collision.clearance import clears  # noqa: E402
-from shapes import regular_polygon  # noqa: E402
+from blender_scenes import add_curve, relax
+from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.addon.curves.exchange import box
+from mobius_flow.addon.curves.surroundings import Surroundings
+from mobius_flow.addon.live.requirements import avoided
+from mobius_flow.core.collision.clearance import clears
+from shapes import regular_polygon
 
 SHORT = {"grow": 1.2, "max_iterations": 8}
 

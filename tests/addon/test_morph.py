@@ -1,17 +1,15 @@
 """Morph to Active: the selected curve becomes the active one, keyed and proved as a relaxation is."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, stored  # noqa: E402
-from mobius_flow import Relaxation  # noqa: E402
-from mobius_flow.addon.curves import bake  # noqa: E402
-from mobius_flow.addon.engine import wire  # noqa: E402
-from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
-from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Task  # noqa: E402
-from mobius_flow.core.knots import knot  # noqa: E402
+from blender_scenes import add_curve, stored
+from mobius_flow import Relaxation
+from mobius_flow.addon.curves import bake
+from mobius_flow.addon.engine import wire
+from mobius_flow.addon.engine.placement import Link, Placement
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, Task
+from mobius_flow.core.knots import knot
 
 SHORT = {"vertices": 12, "length": 30, "untangle": "never"}
 RECTANGLE = [(0.0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)]

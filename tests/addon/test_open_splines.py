@@ -1,17 +1,15 @@
 """Splines that are not cyclic are relaxed as open components, and stay open whatever becomes of them."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from baked_curves import KEYED, SHORT, again, clear, go_on, reopen  # noqa: E402
-from blender_scenes import add_curve, evaluated, place, relax, stored  # noqa: E402
-from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
-from mobius_flow.addon.live.checks import RELAXABLE  # noqa: E402
-from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize  # noqa: E402
-from mobius_flow.core.knots import overhand  # noqa: E402
-from shapes import regular_polygon  # noqa: E402
+from baked_curves import KEYED, SHORT, again, clear, go_on, reopen
+from blender_scenes import add_curve, evaluated, place, relax, stored
+from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.addon.live.checks import RELAXABLE
+from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
+from mobius_flow.core.knots import overhand
+from shapes import regular_polygon
 
 ARC = overhand(60).vertices
 RING = regular_polygon(30).vertices + np.array([0.0, 0.0, 20.0])

@@ -1,10 +1,8 @@
 """Quality is what the options amount to, whoever sets them."""
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from mobius_flow.addon.engine.quality import QUALITIES  # noqa: E402
+from mobius_flow.addon.engine.quality import QUALITIES
 
 
 def panel():

@@ -1,17 +1,15 @@
 """Pinned points stay exactly where they are, whatever becomes of their curve."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from baked_curves import KEYED, SHORT, again, clear, go_on, reopen  # noqa: E402
-from blender_scenes import add_curve, add_trefoil, contents, place, relax, stored  # noqa: E402
-from mobius_flow import Relaxation  # noqa: E402
-from mobius_flow.addon.curves import pins  # noqa: E402
-from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
-from mobius_flow.core import MobiusFlowError  # noqa: E402
-from mobius_flow.core.knots import overhand  # noqa: E402
+from baked_curves import KEYED, SHORT, again, clear, go_on, reopen
+from blender_scenes import add_curve, add_trefoil, contents, place, relax, stored
+from mobius_flow import Relaxation
+from mobius_flow.addon.curves import pins
+from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.core import MobiusFlowError
+from mobius_flow.core.knots import overhand
 
 ARC = overhand(60).vertices.astype(np.float32)
 PIN, ENDS, UNPIN = bpy.ops.curve.mobius_flow_pin, bpy.ops.curve.mobius_flow_pin_ends, bpy.ops.curve.mobius_flow_unpin

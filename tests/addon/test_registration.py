@@ -1,8 +1,7 @@
 """Registering and unregistering leave Blender as it was."""
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
 
 
 def traces():

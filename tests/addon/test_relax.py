@@ -1,15 +1,13 @@
 """The operator does in Blender what the library does outside."""
 
+import bpy
 import numpy as np
 import pytest
 import threadpoolctl
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, in_world, relax, stored, values  # noqa: E402
-from mathutils import Euler, Matrix, Vector  # noqa: E402
-from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize  # noqa: E402
-from shapes import regular_polygon  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, in_world, relax, stored, values
+from mathutils import Euler, Matrix, Vector
+from mobius_flow.core import Curve, MoebiusEnergy, RelaxOptions, minimize
+from shapes import regular_polygon
 
 BOTTOM = {"max_iterations": 25}
 

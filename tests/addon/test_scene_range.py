@@ -1,11 +1,7 @@
 """Which frames a scene plays, and what it says where they are not those of the animation."""
 
-import pytest
-
-bpy = pytest.importorskip("bpy")
-
-
-from blender_scenes import add_trefoil, relax  # noqa: E402
+import bpy
+from blender_scenes import add_trefoil, relax
 
 
 def test_the_scene_plays_what_is_asked_for(capfd):

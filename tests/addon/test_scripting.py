@@ -1,18 +1,16 @@
 """Relaxations from scripts: no selection, no scene's settings, errors in place of reports."""
 
+import bpy
+import mobius_flow
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-import mobius_flow  # noqa: E402
-from blender_scenes import add_curve, add_trefoil, contents, relax, stored  # noqa: E402
-from mobius_flow import Relaxation  # noqa: E402
-from mobius_flow.addon.curves import bake  # noqa: E402
-from mobius_flow.addon.pictures import staging  # noqa: E402
-from mobius_flow.addon.properties import SETTINGS  # noqa: E402
-from mobius_flow.addon.scripting import complete  # noqa: E402
-from mobius_flow.core import MobiusFlowError, OptionError  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, contents, relax, stored
+from mobius_flow import Relaxation
+from mobius_flow.addon.curves import bake
+from mobius_flow.addon.pictures import staging
+from mobius_flow.addon.properties import SETTINGS
+from mobius_flow.addon.scripting import complete
+from mobius_flow.core import MobiusFlowError, OptionError
 
 SHORT = {"max_iterations": 5, "vertices": 100, "length": 10, "timing": "DISTANCE"}
 

@@ -4,21 +4,19 @@ from dataclasses import asdict, dataclass
 from io import BytesIO
 from types import SimpleNamespace
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil, relax, sentence, stored  # noqa: E402
-from mobius_flow.addon import properties  # noqa: E402
-from mobius_flow.addon.engine import wire  # noqa: E402
-from mobius_flow.addon.engine.placement import Link, Placement  # noqa: E402
-from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow_expert  # noqa: E402
-from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow  # noqa: E402
-from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Task, minimize  # noqa: E402
-from mobius_flow.core.option import declared, option  # noqa: E402
-from option_values import unlike_default  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from blender_scenes import add_trefoil, relax, sentence, stored
+from mobius_flow.addon import properties
+from mobius_flow.addon.engine import wire
+from mobius_flow.addon.engine.placement import Link, Placement
+from mobius_flow.addon.sidebar.panels import VIEW3D_PT_mobius_flow_expert
+from mobius_flow.addon.sidebar.relax import VIEW3D_PT_mobius_flow
+from mobius_flow.core import METHODS, Curve, OptionError, RelaxOptions, Task, minimize
+from mobius_flow.core.option import declared, option
+from option_values import unlike_default
+from shapes import torus_trefoil
 
 SHOWN = {each.name: each for each in declared(RelaxOptions) if each.is_setting}
 GIVEN = {name: unlike_default(each) for name, each in SHOWN.items()}

@@ -7,18 +7,16 @@ from pathlib import Path
 from string import Formatter
 from types import SimpleNamespace
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-import shown_texts  # noqa: E402
-from mobius_flow.addon import registration, translations  # noqa: E402
-from mobius_flow.addon.curves.turned import lay_flat  # noqa: E402
-from mobius_flow.addon.engine.words import named  # noqa: E402
-from mobius_flow.addon.pictures.filming import target  # noqa: E402
-from mobius_flow.addon.translations.po import ANY, read_po  # noqa: E402
-from mobius_flow.core import MobiusFlowError  # noqa: E402
-from mobius_flow.core.messages import Message  # noqa: E402
+import shown_texts
+from mobius_flow.addon import registration, translations
+from mobius_flow.addon.curves.turned import lay_flat
+from mobius_flow.addon.engine.words import named
+from mobius_flow.addon.pictures.filming import target
+from mobius_flow.addon.translations.po import ANY, read_po
+from mobius_flow.core import MobiusFlowError
+from mobius_flow.core.messages import Message
 
 FOLDER = Path(translations.__file__).parent
 TABLES = translations.tables(FOLDER)

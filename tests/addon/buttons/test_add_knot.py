@@ -1,15 +1,13 @@
 """Knots from the Add menu."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import contents, sentence, stored  # noqa: E402
-from mobius_flow.core import Curve  # noqa: E402
-from mobius_flow.core.collision import check_embedded  # noqa: E402
-from mobius_flow.core.curve import distances  # noqa: E402
-from mobius_flow.core.knots import knot, rounded  # noqa: E402
+from blender_scenes import contents, sentence, stored
+from mobius_flow.core import Curve
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.curve import distances
+from mobius_flow.core.knots import knot, rounded
 
 
 @pytest.mark.parametrize(

@@ -2,14 +2,12 @@
 
 from types import SimpleNamespace
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, linked, sentence  # noqa: E402
-from mobius_flow.addon.curves.surroundings import warning  # noqa: E402
-from mobius_flow.addon.live.requirements import avoided  # noqa: E402
-from shapes import regular_polygon  # noqa: E402
+from blender_scenes import add_curve, linked, sentence
+from mobius_flow.addon.curves.surroundings import warning
+from mobius_flow.addon.live.requirements import avoided
+from shapes import regular_polygon
 
 
 def cube(name, place):

@@ -1,12 +1,10 @@
 """Open splines are closed where nothing depends on their being open."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, contents, relax, stored  # noqa: E402
-from mended_curves import SHAPE, two  # noqa: E402
+from blender_scenes import add_curve, contents, relax, stored
+from mended_curves import SHAPE, two
 
 CLOSE = bpy.ops.curve.mobius_flow_close
 

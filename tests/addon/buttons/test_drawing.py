@@ -2,17 +2,15 @@
 
 import re
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, contents, sentence, stored  # noqa: E402
-from knot_type import UNKNOT, knot_invariants  # noqa: E402
-from mobius_flow.addon.buttons import stroke  # noqa: E402
-from mobius_flow.core import Curve  # noqa: E402
-from mobius_flow.core.collision import check_embedded  # noqa: E402
-from mobius_flow.core.knots import torus_knot  # noqa: E402
+from blender_scenes import add_curve, contents, sentence, stored
+from knot_type import UNKNOT, knot_invariants
+from mobius_flow.addon.buttons import stroke
+from mobius_flow.core import Curve
+from mobius_flow.core.collision import check_embedded
+from mobius_flow.core.knots import torus_knot
 
 
 def scribble(p=2, q=3, n=60):

@@ -1,13 +1,12 @@
 """What exporters make of the outputs, read back by Blender's importers: as the buttons' tooltips say."""
 
+import bpy
 import numpy as np
 import pytest
+from blender_scenes import add_trefoil, evaluated, in_world, relax
+from scipy.spatial import cKDTree
 
-bpy = pytest.importorskip("bpy")
 pytestmark = pytest.mark.filterwarnings("ignore:Setting the shape:DeprecationWarning")  # Blender's own FBX
-
-from blender_scenes import add_trefoil, evaluated, in_world, relax  # noqa: E402
-from scipy.spatial import cKDTree  # noqa: E402
 
 FRAMES = (1, 4, 8, 20)
 LATER = {"fbx": 1}  # frames by which Blender's FBX files come late

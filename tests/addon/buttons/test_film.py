@@ -3,16 +3,14 @@
 import time
 from types import SimpleNamespace
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil, contents, sentence  # noqa: E402
-from mobius_flow.addon.buttons import film as buttons  # noqa: E402
-from mobius_flow.addon.buttons.film import CURVE_OT_mobius_flow_render_film, CURVE_OT_mobius_flow_set_up_stage  # noqa: E402
-from mobius_flow.addon.pictures import staging  # noqa: E402
-from mobius_flow.addon.pictures.filming import Filming  # noqa: E402
-from mobius_flow.addon.pictures.movie import length_of  # noqa: E402
+from blender_scenes import add_trefoil, contents, sentence
+from mobius_flow.addon.buttons import film as buttons
+from mobius_flow.addon.buttons.film import CURVE_OT_mobius_flow_render_film, CURVE_OT_mobius_flow_set_up_stage
+from mobius_flow.addon.pictures import staging
+from mobius_flow.addon.pictures.filming import Filming
+from mobius_flow.addon.pictures.movie import length_of
 
 OPS = bpy.ops.curve
 

@@ -1,18 +1,16 @@
 """What is refused is mended by the button that the refusal names: in one step, on all that need it, losing nothing."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_trefoil, contents, evaluated, linked, show, stored  # noqa: E402
-from mended_curves import SHAPE, call, may_be_relaxed, mend, relax_once, two, with_material  # noqa: E402
-from mobius_flow.addon import registration  # noqa: E402
-from mobius_flow.addon.buttons import mending  # noqa: E402
-from mobius_flow.addon.live import registry  # noqa: E402
-from mobius_flow.addon.live.checks import POLYGONS, RELAXABLE  # noqa: E402
-from mobius_flow.addon.live.requirements import Remedy  # noqa: E402
-from modal_operator import keys  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, contents, evaluated, linked, show, stored
+from mended_curves import SHAPE, call, may_be_relaxed, mend, relax_once, two, with_material
+from mobius_flow.addon import registration
+from mobius_flow.addon.buttons import mending
+from mobius_flow.addon.live import registry
+from mobius_flow.addon.live.checks import POLYGONS, RELAXABLE
+from mobius_flow.addon.live.requirements import Remedy
+from modal_operator import keys
 
 
 def test_every_remedy_has_its_button():

@@ -1,11 +1,9 @@
 """Tube Mesh and Smooth Curve: what is made, where it is, and what is said of it."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import (  # noqa: E402
+from blender_scenes import (
     add_curve,
     add_hopf_link,
     add_trefoil,
@@ -15,13 +13,13 @@ from blender_scenes import (  # noqa: E402
     relax,
     stored,
 )
-from mobius_flow.addon.curves import bevel, sampling  # noqa: E402
-from mobius_flow.addon.curves.keyframes import end_of  # noqa: E402
-from mobius_flow.addon.engine.colours import PALETTE, ramp  # noqa: E402
-from mobius_flow.addon.engine.vertex_values import strand_distances  # noqa: E402
-from mobius_flow.core import Curve  # noqa: E402
-from mobius_flow.core.energies.moebius import moebius_by_length  # noqa: E402
-from shapes import hopf_link, torus_trefoil  # noqa: E402
+from mobius_flow.addon.curves import bevel, sampling
+from mobius_flow.addon.curves.keyframes import end_of
+from mobius_flow.addon.engine.colours import PALETTE, ramp
+from mobius_flow.addon.engine.vertex_values import strand_distances
+from mobius_flow.core import Curve
+from mobius_flow.core.energies.moebius import moebius_by_length
+from shapes import hopf_link, torus_trefoil
 
 
 def tube(**options):

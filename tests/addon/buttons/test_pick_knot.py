@@ -1,15 +1,13 @@
 """Knots picked from the table, in the gallery and by search."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import contents, sentence, stored  # noqa: E402
-from mobius_flow.addon import settings as gallery  # noqa: E402
-from mobius_flow.addon.engine.knot_list import GROUPS, labels  # noqa: E402
-from mobius_flow.addon.pictures import icons  # noqa: E402
-from mobius_flow.core.knots import KNOTS, smooth_knot  # noqa: E402
+from blender_scenes import contents, sentence, stored
+from mobius_flow.addon import settings as gallery
+from mobius_flow.addon.engine.knot_list import GROUPS, labels
+from mobius_flow.addon.pictures import icons
+from mobius_flow.core.knots import KNOTS, smooth_knot
 
 
 def picked(**options):

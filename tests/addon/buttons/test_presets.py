@@ -2,14 +2,12 @@
 
 from pathlib import Path
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from mobius_flow.addon.buttons import presets  # noqa: E402
-from mobius_flow.addon.buttons.presets import VIEW3D_PT_mobius_flow_presets  # noqa: E402
-from mobius_flow.addon.properties import SETTINGS, key_options, relax_options  # noqa: E402
-from mobius_flow.core import METHODS  # noqa: E402
+from mobius_flow.addon.buttons import presets
+from mobius_flow.addon.buttons.presets import VIEW3D_PT_mobius_flow_presets
+from mobius_flow.addon.properties import SETTINGS, key_options, relax_options
+from mobius_flow.core import METHODS
 
 SHIPPED = {bpy.path.display_name(path.name, title_case=False): path for path in sorted(presets.SHIPPED.glob("*.py"))}
 

@@ -1,15 +1,13 @@
 """Balance, Check and Leave Saddle."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_trefoil, contents, relax  # noqa: E402
-from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
-from mobius_flow.core import RelaxOptions, minimize  # noqa: E402
-from mobius_flow.core.curve.measures import bending  # noqa: E402
-from mobius_flow.core.knots import torus_knot  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, contents, relax
+from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.core import RelaxOptions, minimize
+from mobius_flow.core.curve.measures import bending
+from mobius_flow.core.knots import torus_knot
 
 OPS = bpy.ops.curve
 

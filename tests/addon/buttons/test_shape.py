@@ -1,10 +1,8 @@
 """Buttons of the panel Shape, where there is no curve."""
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import show  # noqa: E402
+from blender_scenes import show
 
 
 @pytest.mark.parametrize("name", ["keep_size", "lay_flat", "face_camera", "balance", "check", "leave_saddle"])

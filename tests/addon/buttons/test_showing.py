@@ -2,15 +2,13 @@
 
 from dataclasses import replace
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_trefoil  # noqa: E402
-from mobius_flow.addon.curves.splines import control_points  # noqa: E402
-from mobius_flow.core.errors import Place  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_trefoil
+from mobius_flow.addon.curves.splines import control_points
+from mobius_flow.core.errors import Place
+from shapes import torus_trefoil
 
 CROSSED = np.array([[0.0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]])
 AWAY = np.array([[9.0, 0, 0], [9, 2, 0], [9, 0, 2]])

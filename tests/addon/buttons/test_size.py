@@ -2,12 +2,10 @@
 
 from itertools import pairwise
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import (  # noqa: E402
+from blender_scenes import (
     add_curve,
     add_hopf_link,
     add_trefoil,
@@ -20,13 +18,13 @@ from blender_scenes import (  # noqa: E402
     sentence,
     stored,
 )
-from mobius_flow.addon.buttons import shape  # noqa: E402
-from mobius_flow.addon.curves import bake, baked_keys  # noqa: E402
-from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
-from mobius_flow.addon.engine.size import Measure  # noqa: E402
-from mobius_flow.core import Curve  # noqa: E402
-from mobius_flow.core.collision import is_free  # noqa: E402
-from shapes import lattice_knot  # noqa: E402
+from mobius_flow.addon.buttons import shape
+from mobius_flow.addon.curves import bake, baked_keys
+from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.addon.engine.size import Measure
+from mobius_flow.core import Curve
+from mobius_flow.core.collision import is_free
+from shapes import lattice_knot
 
 OPS = bpy.ops.curve
 KEYED = ["SHAPE_KEYS", "FCURVES"]

@@ -1,14 +1,12 @@
 """A still copy has the shape that is shown, and nothing that moves it; the original keeps everything."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil, contents, evaluated, stored  # noqa: E402
-from mended_curves import may_be_relaxed, mend, relax_once, two, with_material  # noqa: E402
-from mobius_flow.addon.live.checks import RELAXABLE, UNEDITED  # noqa: E402
-from mobius_flow.addon.live.requirements import Remedy  # noqa: E402
+from blender_scenes import add_trefoil, contents, evaluated, stored
+from mended_curves import may_be_relaxed, mend, relax_once, two, with_material
+from mobius_flow.addon.live.checks import RELAXABLE, UNEDITED
+from mobius_flow.addon.live.requirements import Remedy
 
 
 def copied():

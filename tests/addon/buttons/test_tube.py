@@ -1,13 +1,11 @@
 """Fit Tube and Color Components; what is fitted is in test_bevel."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, relax, sentence  # noqa: E402
-from mobius_flow.addon.engine.colours import PALETTE  # noqa: E402
-from shapes import hopf_link  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, relax, sentence
+from mobius_flow.addon.engine.colours import PALETTE
+from shapes import hopf_link
 
 BUTTONS = ("fit_tube", "color_components", "tube_mesh", "smooth_curve")
 

@@ -1,11 +1,9 @@
 """Lay Flat and Face Camera."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import (  # noqa: E402
+from blender_scenes import (
     add_curve,
     add_hopf_link,
     add_trefoil,
@@ -18,10 +16,10 @@ from blender_scenes import (  # noqa: E402
     show,
     stored,
 )
-from mobius_flow.addon.curves import bake  # noqa: E402
-from mobius_flow.addon.curves.baked_keys import BakedKeys  # noqa: E402
-from mobius_flow.core import Curve  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from mobius_flow.addon.curves import bake
+from mobius_flow.addon.curves.baked_keys import BakedKeys
+from mobius_flow.core import Curve
+from shapes import torus_trefoil
 
 OPS = bpy.ops.curve
 KEYED = ["SHAPE_KEYS", "FCURVES"]

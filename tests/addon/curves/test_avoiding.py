@@ -2,21 +2,19 @@
 
 from itertools import pairwise
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, contents, in_world, relax, sentence, stored  # noqa: E402
-from knot_diagrams import linking_number  # noqa: E402
-from mathutils import Euler, Matrix, Vector  # noqa: E402
-from mobius_flow import Relaxation  # noqa: E402
-from mobius_flow.addon.curves.exchange import key_points  # noqa: E402
-from mobius_flow.addon.curves.surroundings import Surroundings  # noqa: E402
-from mobius_flow.core import MobiusFlowError  # noqa: E402
-from mobius_flow.core.collision import is_free  # noqa: E402
-from mobius_flow.core.curve import Mesh  # noqa: E402
-from shapes import hopf_link  # noqa: E402
+from blender_scenes import add_curve, contents, in_world, relax, sentence, stored
+from knot_diagrams import linking_number
+from mathutils import Euler, Matrix, Vector
+from mobius_flow import Relaxation
+from mobius_flow.addon.curves.exchange import key_points
+from mobius_flow.addon.curves.surroundings import Surroundings
+from mobius_flow.core import MobiusFlowError
+from mobius_flow.core.collision import is_free
+from mobius_flow.core.curve import Mesh
+from shapes import hopf_link
 
 TURNED = Matrix.LocRotScale(Vector((3, -1, 2)), Euler((0.3, 0.2, 0.7)), Vector((2, -0.5, 1)))
 SHORT = {"max_iterations": 12, "vertices": 60}

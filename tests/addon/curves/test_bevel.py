@@ -1,15 +1,13 @@
 """An artist's bevel is changed only if somebody asks for that; a fitted one is kept fitting."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, in_world, stored  # noqa: E402
-from mobius_flow.addon.curves import bevel  # noqa: E402
-from mobius_flow.addon.engine.tube import free_radius, thickest_radius  # noqa: E402
-from mobius_flow.core import Curve  # noqa: E402
-from shapes import hopf_link, torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, in_world, stored
+from mobius_flow.addon.curves import bevel
+from mobius_flow.addon.engine.tube import free_radius, thickest_radius
+from mobius_flow.core import Curve
+from shapes import hopf_link, torus_trefoil
 
 SHORT = {"max_iterations": 4, "timing": "ITERATE"}
 

@@ -1,19 +1,17 @@
 """Modifiers that move points: what is proved of the points is not what is shown, so such curves are refused."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil, contents, evaluated, sentence, stored  # noqa: E402
-from mobius_flow.addon.curves import member  # noqa: E402
-from mobius_flow.addon.curves.moving import deforms, what_deforms  # noqa: E402
-from mobius_flow.addon.curves.session import Session  # noqa: E402
-from mobius_flow.addon.engine.key_options import KeyOptions  # noqa: E402
-from mobius_flow.addon.live.checks import RELAXABLE  # noqa: E402
-from mobius_flow.addon.live.requirements import Remedy  # noqa: E402
-from mobius_flow.core import Curve, CurveError, RelaxOptions  # noqa: E402
-from mobius_flow.core.collision import check_embedded  # noqa: E402
+from blender_scenes import add_trefoil, contents, evaluated, sentence, stored
+from mobius_flow.addon.curves import member
+from mobius_flow.addon.curves.moving import deforms, what_deforms
+from mobius_flow.addon.curves.session import Session
+from mobius_flow.addon.engine.key_options import KeyOptions
+from mobius_flow.addon.live.checks import RELAXABLE
+from mobius_flow.addon.live.requirements import Remedy
+from mobius_flow.core import Curve, CurveError, RelaxOptions
+from mobius_flow.core.collision import check_embedded
 
 ADDING = {
     "ARRAY",

@@ -1,15 +1,13 @@
 """Attributes of a tube, worked out by Blender's nodes at every frame, against the library's numbers of its curve."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_trefoil, evaluated, relax  # noqa: E402
-from mobius_flow.addon.engine.vertex_values import strand_distances  # noqa: E402
-from mobius_flow.core import Curve  # noqa: E402
-from mobius_flow.core.curve.distances import vertex_positions  # noqa: E402
-from shapes import hopf_link, regular_polygon, torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, evaluated, relax
+from mobius_flow.addon.engine.vertex_values import strand_distances
+from mobius_flow.core import Curve
+from mobius_flow.core.curve.distances import vertex_positions
+from shapes import hopf_link, regular_polygon, torus_trefoil
 
 SIDES = 6
 # Blender computes in 32 bits, and curvature is a second difference; the nearest edge need not be at the nearest vertex,

@@ -2,17 +2,15 @@
 
 from itertools import pairwise
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored  # noqa: E402
-from mobius_flow.addon.curves.keyframes import writing  # noqa: E402
-from mobius_flow.addon.engine.key_options import Output  # noqa: E402
-from mobius_flow.addon.engine.motion import Key, Keys  # noqa: E402
-from mobius_flow.core import Curve, RelaxOptions  # noqa: E402
-from mobius_flow.core import relax as iterates_of  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax, stored
+from mobius_flow.addon.curves.keyframes import writing
+from mobius_flow.addon.engine.key_options import Output
+from mobius_flow.addon.engine.motion import Key, Keys
+from mobius_flow.core import Curve, RelaxOptions
+from mobius_flow.core import relax as iterates_of
 
 
 def library_frames(obj, **options):

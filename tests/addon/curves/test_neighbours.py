@@ -1,14 +1,12 @@
 """What is not relaxed stays as it is, and is named: other objects, animation that is there already, other files."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, fcurves, relax, show, stored  # noqa: E402
-from mathutils import Euler  # noqa: E402
-from mobius_flow.addon.curves.surroundings import warning  # noqa: E402
-from shapes import hopf_link, regular_polygon  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, fcurves, relax, show, stored
+from mathutils import Euler
+from mobius_flow.addon.curves.surroundings import warning
+from shapes import hopf_link, regular_polygon
 
 
 def keyed(block):

@@ -2,12 +2,9 @@
 
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax  # noqa: E402
-from mobius_flow.addon.curves.recorded import Recorded  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, evaluated, fcurves, relax
+from mobius_flow.addon.curves.recorded import Recorded
+from shapes import torus_trefoil
 
 
 def animated(obj):

@@ -1,13 +1,11 @@
 """Bézier and NURBS splines become the polygons that are drawn for them, at any preview resolution."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, contents, relax, stored, values  # noqa: E402
-from mobius_flow.addon.curves import sampling  # noqa: E402
-from shapes import hopf_link  # noqa: E402
+from blender_scenes import add_curve, contents, relax, stored, values
+from mobius_flow.addon.curves import sampling
+from shapes import hopf_link
 
 SAMPLED = {"sample_splines": True, "max_iterations": 0, "keyframes": "RESULT"}
 

@@ -1,13 +1,11 @@
 """Since 4.4 Blender puts keys of an object into the action of its curve: either is left alone when the other goes."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil, relax, stored  # noqa: E402
-from mobius_flow.addon.curves import bake  # noqa: E402
-from mobius_flow.addon.curves.moving import what_moves  # noqa: E402
+from blender_scenes import add_trefoil, relax, stored
+from mobius_flow.addon.curves import bake
+from mobius_flow.addon.curves.moving import what_moves
 
 
 @pytest.fixture(params=["SHAPE_KEYS", "FCURVES"])

@@ -1,12 +1,10 @@
 """What is avoided stands still: whatever moves it, or changes its shape, is found and named."""
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, show  # noqa: E402
-from mobius_flow.addon.curves.moving import unsteady, what_changes  # noqa: E402
-from shapes import regular_polygon  # noqa: E402
+from blender_scenes import add_curve, show
+from mobius_flow.addon.curves.moving import unsteady, what_changes
+from shapes import regular_polygon
 
 
 @pytest.fixture

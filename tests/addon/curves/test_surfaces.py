@@ -1,14 +1,12 @@
 """Objects of all kinds are avoided as the 3D view shows them; what cannot be is named."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, drawn, show  # noqa: E402
-from mobius_flow.addon.curves.surroundings import Surroundings  # noqa: E402
-from mobius_flow.core import MobiusFlowError  # noqa: E402
-from shapes import hopf_link, regular_polygon  # noqa: E402
+from blender_scenes import add_curve, drawn, show
+from mobius_flow.addon.curves.surroundings import Surroundings
+from mobius_flow.core import MobiusFlowError
+from shapes import hopf_link, regular_polygon
 
 
 def obstacles(*objects, relaxed=()):

@@ -2,17 +2,15 @@
 
 import re
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, relax  # noqa: E402
-from mobius_flow.addon.curves.splines import Splines  # noqa: E402
-from mobius_flow.addon.engine import worker  # noqa: E402
-from mobius_flow.addon.live.run import State  # noqa: E402
-from modal_operator import keys, restored  # noqa: E402
-from shapes import hopf_link  # noqa: E402
+from blender_scenes import add_curve, relax
+from mobius_flow.addon.curves.splines import Splines
+from mobius_flow.addon.engine import worker
+from mobius_flow.addon.live.run import State
+from modal_operator import keys, restored
+from shapes import hopf_link
 
 
 @pytest.fixture

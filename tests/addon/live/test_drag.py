@@ -2,20 +2,18 @@
 
 from types import SimpleNamespace
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored  # noqa: E402
-from mathutils import Matrix  # noqa: E402
-from mobius_flow import Relaxation  # noqa: E402
-from mobius_flow.addon.curves import pins  # noqa: E402
-from mobius_flow.addon.live.drag import Drag, projected  # noqa: E402
-from mobius_flow.addon.live.run import State  # noqa: E402
-from mobius_flow.core import MobiusFlowError  # noqa: E402
-from modal_operator import keys  # noqa: E402
-from shapes import regular_polygon, torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored
+from mathutils import Matrix
+from mobius_flow import Relaxation
+from mobius_flow.addon.curves import pins
+from mobius_flow.addon.live.drag import Drag, projected
+from mobius_flow.addon.live.run import State
+from mobius_flow.core import MobiusFlowError
+from modal_operator import keys
+from shapes import regular_polygon, torus_trefoil
 
 SIZE = 600.0
 WIDE = 12.0  # of the view, in the world

@@ -2,13 +2,11 @@
 
 import time
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil, stored  # noqa: E402
-from mobius_flow.addon.live import handlers, run  # noqa: E402
+from blender_scenes import add_trefoil, stored
+from mobius_flow.addon.live import handlers, run
 
 _WHILE = 0.4  # seconds, in which a worker does many iterates
 

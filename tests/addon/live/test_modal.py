@@ -5,18 +5,16 @@ Without a window Blender runs ``execute`` instead of ``invoke``; ``tests/window`
 
 from types import SimpleNamespace
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored  # noqa: E402
-from mobius_flow.addon.curves.splines import Splines  # noqa: E402
-from mobius_flow.addon.live import key_writer  # noqa: E402
-from mobius_flow.addon.live.run import State  # noqa: E402
-from mobius_flow.core import Curve, minimize  # noqa: E402
-from modal_operator import Operator, keys, restored  # noqa: E402
-from shapes import lattice_knot, torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored
+from mobius_flow.addon.curves.splines import Splines
+from mobius_flow.addon.live import key_writer
+from mobius_flow.addon.live.run import State
+from mobius_flow.core import Curve, minimize
+from modal_operator import Operator, keys, restored
+from shapes import lattice_knot, torus_trefoil
 
 
 @pytest.mark.parametrize("operator", ["process"], indirect=True)

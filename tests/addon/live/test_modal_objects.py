@@ -1,18 +1,16 @@
 """The event loop of the Relax operator on several objects at once: all of them are relaxed, or none is touched."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_trefoil, stored  # noqa: E402
-from mobius_flow.addon.curves import keyframes  # noqa: E402
-from mobius_flow.addon.curves.splines import Splines  # noqa: E402
-from mobius_flow.addon.engine import worker  # noqa: E402
-from mobius_flow.addon.live import key_writer  # noqa: E402
-from mobius_flow.addon.live.run import State  # noqa: E402
-from modal_operator import keys, restored  # noqa: E402
-from shapes import hopf_link  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, stored
+from mobius_flow.addon.curves import keyframes
+from mobius_flow.addon.curves.splines import Splines
+from mobius_flow.addon.engine import worker
+from mobius_flow.addon.live import key_writer
+from mobius_flow.addon.live.run import State
+from modal_operator import keys, restored
+from shapes import hopf_link
 
 
 @pytest.fixture

@@ -2,17 +2,15 @@
 
 from types import SimpleNamespace
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_trefoil  # noqa: E402
-from mobius_flow.addon.curves import pins  # noqa: E402
-from mobius_flow.addon.engine.colours import contrast  # noqa: E402
-from mobius_flow.addon.live import overlay, registry  # noqa: E402
-from mobius_flow.core.knots import knot  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_trefoil
+from mobius_flow.addon.curves import pins
+from mobius_flow.addon.engine.colours import contrast
+from mobius_flow.addon.live import overlay, registry
+from mobius_flow.core.knots import knot
+from shapes import torus_trefoil
 
 
 @pytest.fixture

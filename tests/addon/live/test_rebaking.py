@@ -2,15 +2,13 @@
 
 import gc
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil, contents, evaluated, relax, stored  # noqa: E402
-from mobius_flow.addon.curves.splines import Splines  # noqa: E402
-from mobius_flow.addon.live import handlers, registry, run  # noqa: E402
-from modal_operator import restored  # noqa: E402
+from blender_scenes import add_trefoil, contents, evaluated, relax, stored
+from mobius_flow.addon.curves.splines import Splines
+from mobius_flow.addon.live import handlers, registry, run
+from modal_operator import restored
 
 
 @pytest.fixture(params=["SHAPE_KEYS", pytest.param("FCURVES", marks=pytest.mark.slow)])

@@ -1,13 +1,11 @@
 """What cannot be relaxed is refused in one sentence, and nothing changes."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, linked, relax, sentence, show  # noqa: E402
-from mobius_flow.addon.curves import sampling  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents, linked, relax, sentence, show
+from mobius_flow.addon.curves import sampling
+from shapes import torus_trefoil
 
 
 def refused(**options):

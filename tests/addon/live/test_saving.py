@@ -1,16 +1,14 @@
 """A file that is saved during a run has the curves as they were, or with all their keys: never with half of them."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from baked_curves import two_rings  # noqa: E402
-from blender_scenes import add_trefoil, evaluated, relax, stored  # noqa: E402
-from mobius_flow.addon.curves import bake, keyframes  # noqa: E402
-from mobius_flow.addon.live import key_writer  # noqa: E402
-from mobius_flow.addon.live.run import State  # noqa: E402
-from modal_operator import keys  # noqa: E402
+from baked_curves import two_rings
+from blender_scenes import add_trefoil, evaluated, relax, stored
+from mobius_flow.addon.curves import bake, keyframes
+from mobius_flow.addon.live import key_writer
+from mobius_flow.addon.live.run import State
+from modal_operator import keys
 
 
 @pytest.fixture(autouse=True)

@@ -1,12 +1,10 @@
 """The panel shows a run that is about the active object as it is now, in the open file, and no other."""
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil  # noqa: E402
-from mobius_flow.addon.live import registry  # noqa: E402
-from shapes import torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil
+from mobius_flow.addon.live import registry
+from shapes import torus_trefoil
 
 
 def shown():

@@ -1,13 +1,11 @@
 """A tube that was fitted stays so while its curve moves; one of the artist's own stays as it is."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil  # noqa: E402
-from mobius_flow.addon.curves.bevel import fitting_radius, is_fitted  # noqa: E402
-from mobius_flow.addon.curves.recorded import Recorded  # noqa: E402
+from blender_scenes import add_trefoil
+from mobius_flow.addon.curves.bevel import fitting_radius, is_fitted
+from mobius_flow.addon.curves.recorded import Recorded
 
 COARSE = 1e-6  # of a radius: Blender keeps 32 bits
 

@@ -1,17 +1,15 @@
 """The camera sees the whole tube in every frame, and the floor stays below it."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import drawn  # noqa: E402
-from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
-from mathutils import Vector  # noqa: E402
-from mobius_flow.addon.engine.motion import Key, Keys  # noqa: E402
-from mobius_flow.addon.pictures import film, rendering  # noqa: E402
-from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
-from mobius_flow.core.curve import Mesh  # noqa: E402
+from blender_scenes import drawn
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
+from mobius_flow.addon.engine.motion import Key, Keys
+from mobius_flow.addon.pictures import film, rendering
+from mobius_flow.addon.pictures.looks import LOOKS
+from mobius_flow.core.curve import Mesh
 
 SIZES = [(640, 360), (360, 640)]
 

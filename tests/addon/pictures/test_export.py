@@ -5,16 +5,14 @@ import os
 import sys
 from dataclasses import replace
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import evaluated, in_world  # noqa: E402
-from mobius_flow.addon.pictures import export, film, rendering  # noqa: E402
-from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax  # noqa: E402
-from processes import finished  # noqa: E402
-from shapes import hopf_link, regular_polygon, torus_trefoil  # noqa: E402
+from blender_scenes import evaluated, in_world
+from mobius_flow.addon.pictures import export, film, rendering
+from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
+from processes import finished
+from shapes import hopf_link, regular_polygon, torus_trefoil
 
 TINY = (64, 36)
 WRITERS = [export.write_blend, export.write_still, export.write_movie]

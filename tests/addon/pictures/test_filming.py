@@ -1,14 +1,12 @@
 """Films of a scene: whole or not at all, and the scene is not touched."""
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from mobius_flow.addon.pictures import filming, movie, rendering  # noqa: E402
-from mobius_flow.addon.pictures.filming import CHOICES, Filming  # noqa: E402
-from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
-from mobius_flow.addon.pictures.movie import length_of  # noqa: E402
-from mobius_flow.core import MobiusFlowError  # noqa: E402
+from mobius_flow.addon.pictures import filming, movie, rendering
+from mobius_flow.addon.pictures.filming import CHOICES, Filming
+from mobius_flow.addon.pictures.looks import LOOKS
+from mobius_flow.addon.pictures.movie import length_of
+from mobius_flow.core import MobiusFlowError
 
 
 @pytest.fixture

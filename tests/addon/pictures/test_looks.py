@@ -1,18 +1,16 @@
 """Every look can be built, shows what is what, and burns nothing."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents  # noqa: E402
-from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
-from mathutils import Vector  # noqa: E402
-from mobius_flow.addon.engine.motion import Key, Keys  # noqa: E402
-from mobius_flow.addon.pictures import export, film, rendering, staging  # noqa: E402
-from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
-from mobius_flow.core import Curve  # noqa: E402
-from shapes import hopf_link, regular_polygon, torus_trefoil  # noqa: E402
+from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
+from mobius_flow.addon.engine.motion import Key, Keys
+from mobius_flow.addon.pictures import export, film, rendering, staging
+from mobius_flow.addon.pictures.looks import LOOKS
+from mobius_flow.core import Curve
+from shapes import hopf_link, regular_polygon, torus_trefoil
 
 SIZE = (96, 54)
 

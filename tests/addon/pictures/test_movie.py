@@ -5,14 +5,12 @@ import signal
 import sys
 from contextlib import contextmanager
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from mobius_flow.addon.pictures import movie, rendering  # noqa: E402
-from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
-from processes import finished  # noqa: E402
+from mobius_flow.addon.pictures import movie, rendering
+from mobius_flow.addon.pictures.looks import LOOKS
+from processes import finished
 
 FRAMES, MOVING = 8, 5  # the last frames are like the fifth
 

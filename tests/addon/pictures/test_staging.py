@@ -1,19 +1,17 @@
 """A stage in an artist's scene: all is in sight, what was there comes back, and nothing piles up."""
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_curve, add_trefoil, drawn, relax  # noqa: E402
-from bpy_extras.object_utils import world_to_camera_view  # noqa: E402
-from mathutils import Vector  # noqa: E402
-from mobius_flow.addon.curves import surroundings  # noqa: E402
-from mobius_flow.addon.curves.recorded import WorldMotion  # noqa: E402
-from mobius_flow.addon.pictures import stage, staging  # noqa: E402
-from mobius_flow.addon.pictures.looks import LOOKS  # noqa: E402
-from mobius_flow.core import CurveError  # noqa: E402
-from shapes import lattice_knot  # noqa: E402
+from blender_scenes import add_curve, add_trefoil, drawn, relax
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
+from mobius_flow.addon.curves import surroundings
+from mobius_flow.addon.curves.recorded import WorldMotion
+from mobius_flow.addon.pictures import stage, staging
+from mobius_flow.addon.pictures.looks import LOOKS
+from mobius_flow.core import CurveError
+from shapes import lattice_knot
 
 KINDS = ("objects", "cameras", "lights", "meshes", "materials", "worlds", "collections", "actions")
 

@@ -3,15 +3,13 @@
 import itertools
 from types import SimpleNamespace
 
+import bpy
 import pytest
-
-bpy = pytest.importorskip("bpy")
-
-from blender_scenes import add_trefoil  # noqa: E402
-from mobius_flow.addon import registration  # noqa: E402
-from mobius_flow.addon.curves.exchange import length  # noqa: E402
-from mobius_flow.addon.sidebar import menus, panels, relax  # noqa: E402
-from mobius_flow.addon.sidebar.layout import wrapped  # noqa: E402
+from blender_scenes import add_trefoil
+from mobius_flow.addon import registration
+from mobius_flow.addon.curves.exchange import length
+from mobius_flow.addon.sidebar import menus, panels, relax
+from mobius_flow.addon.sidebar.layout import wrapped
 
 
 class Layout:
