@@ -143,7 +143,7 @@ def test_seconds_of_all_moves_are_counted(monkeypatch: pytest.MonkeyPatch, tmp_p
 
 def test_interrupted_runs_say_where_they_stand() -> None:
     def interrupt(iterate: Iterate) -> None:
-        if iterate.strand_moves and iterate.strand_moves.moves == 2:
+        if iterate.strand_moves and iterate.strand_moves.moves > 0:
             raise KeyboardInterrupt
 
     result = minimize(knot("tuzun-sikora"), RelaxOptions(untangle="always"), interrupt)
