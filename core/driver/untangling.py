@@ -33,6 +33,7 @@ MOST = (
 FAR = 10.0  # lengths of the curve from its middle, where ends are joined in different
 WAYS = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
 NO_ITERATIONS = Message("none, as there are to be no iterations")
+PACKED = Message("none, as what grows between pins or among obstacles is left to the flow")
 KNOTTED = Message("others would undo a knot between pinned ends")
 STRETCHED = Message("others would stretch the curve between pins")
 IN_VAIN = "strands were being moved, but with {left} of {before} crossings left nothing is kept of that"
@@ -54,6 +55,8 @@ class Untangling:
         run, wanted = self.run, self.run.options.untangle
         if run.max_iterations == 0:
             self._reasons += [NO_ITERATIONS] if wanted == "always" else []
+        elif run.options.grow != 1.0 and not run.problem.unconfined:
+            self._reasons += [PACKED] if wanted == "always" else []
         elif wanted == "always" or (not run.iterate.pins and self._eligible and self._saves(MANY)):
             yield from self._untangled()
 

@@ -189,6 +189,14 @@ def test_curves_grow_after_strand_moves(tmp_path) -> None:
     assert result.curve.length == pytest.approx(1.5 * curve.length)
 
 
+def test_what_grows_in_confinement_is_left_to_the_flow() -> None:
+    options = RelaxOptions(untangle="always", grow=1.2, max_iterations=1)
+    result = minimize(squeezed(knot("goeritz"), 0.5), options)
+    assert result.message.endswith(
+        "strand moves: none, as what grows between pins or among obstacles is left to the flow"
+    )
+
+
 def test_a_knot_between_pinned_ends_stays(tmp_path) -> None:
     arc = knot("overhand", 60)
     task = Task(curve=arc, pins=(0, 59))
