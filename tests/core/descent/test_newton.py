@@ -9,6 +9,8 @@ from dense_stability import POINTS, dense_modes, lagrangian_hessian_matrix, tang
 from mobius_flow.core import RelaxOptions, Status, Task, minimize
 from mobius_flow.core.descent.hessian import lagrangian_matrix
 from mobius_flow.core.descent.newton import Curvature, Newton
+from mobius_flow.core.descent.searches import Armijo
+from mobius_flow.core.descent.searches.trials import FirstTrial
 from mobius_flow.core.driver.interventions.rest import Rest
 from mobius_flow.core.knots import torus_knot
 from mobius_flow.core.saddle.indefinite import FactorisedHessian
@@ -50,6 +52,23 @@ def test_the_shift_is_what_makes_a_saddle_definite() -> None:
     assert index == np.count_nonzero(values < -1e-4) > 0
     assert not inverse.negative
     assert -lowest < shift < newton.factor * -lowest
+
+
+def test_the_shift_grows_where_steps_are_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here steps are, as no vertex may move by more than a millionth; the Hessian is not assembled again."""
+    curvature, shifts, shifted = Curvature(POINTS["saddle"]()), [], Curvature.shifted
+
+    def noted(self: Curvature, shift: float) -> FactorisedHessian:
+        shifts.append(shift)
+        return shifted(self, shift)
+
+    newton = Newton(search=Armijo(decrease=0.1, first=FirstTrial(max_displacement=1e-6)))
+    inverse, _, shift = newton.definite(curvature, 1e-4)
+    monkeypatch.setattr(Curvature, "shifted", noted)
+    steps = list(newton.along(curvature, inverse, shift, 4, 0.0))
+    assert len(steps) == 4
+    assert all(step.size < newton.short for step in steps)
+    np.testing.assert_allclose(shifts, shift * newton.factor ** np.arange(1, 5))
 
 
 @pytest.mark.parametrize("pins", [(), (0, 1, 17)])
