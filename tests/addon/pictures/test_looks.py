@@ -20,7 +20,7 @@ def composed(curve, look):
     scene = export._empty_scene()
     rendering.use_cycles(scene, LOOKS[look], *SIZE, 4)
     points = curve.vertices.astype(np.float32)
-    film.compose(scene, Keys((Key(0.0, points),), 0), np.ones(1), curve.mesh, look)
+    film.compose(scene, Keys((Key(0.0, points),), 0), np.ones(1), curve.mesh, film.Playing(look))
     return scene, points
 
 
