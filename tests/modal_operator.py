@@ -27,7 +27,7 @@ class Operator:
     in_process = False  # the worker
 
     def __init__(self, continues=False, **values):
-        self.loop, self.reports, self.continues = None, [], continues
+        self.events, self.reports, self.continues = None, [], continues
         self.given = {"view_every": 1, "avoid": (), "timing": "DISTANCE"} | values  # iterates are keys
 
     def report(self, kind, message):
@@ -64,7 +64,7 @@ class Operator:
 
     @property
     def run(self):
-        return self.loop.run
+        return self.events.run
 
     def until(self, condition):
         end = time.monotonic() + PATIENCE

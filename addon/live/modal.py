@@ -136,24 +136,24 @@ def _is_meant(context: bpy.types.Context, event: bpy.types.Event) -> bool:
 class Listening:
     """An operator that runs the event loop of a run."""
 
-    loop: Loop | None = None
+    events: Loop | None = None  # `loop` is a setting
 
     def listen(self, context: bpy.types.Context, run: Run) -> set[str]:
-        self.loop = Loop(run, context)
+        self.events = Loop(run, context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        assert self.loop is not None, "invoke makes it"
-        result = self.loop.handle(context, event)
-        if self.loop.run.state.over:
-            report_end(self, context.scene, self.loop.run)
+        assert self.events is not None, "invoke makes it"
+        result = self.events.handle(context, event)
+        if self.events.run.state.over:
+            report_end(self, context.scene, self.events.run)
         return result
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Called when Blender closes the operator's window or file."""
-        if self.loop is not None:
-            self.loop.abandon()
+        if self.events is not None:
+            self.events.abandon()
 
 
 def report_end(operator: Any, scene: bpy.types.Scene, run: Run) -> None:

@@ -44,7 +44,7 @@ def operator(request):
     double = Operator(vertices=120)
     double.in_process = getattr(request, "param", None) == "process"
     yield double
-    if double.loop is not None:
+    if double.events is not None:
         double.run.cancel()
         thread = double.run._worker._thread
         if not double.in_process:

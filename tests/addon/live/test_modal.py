@@ -11,7 +11,9 @@ import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, stored
 from mobius_flow.addon.curves.splines import Splines
 from mobius_flow.addon.live import key_writer
+from mobius_flow.addon.live.modal import Listening
 from mobius_flow.addon.live.run import State
+from mobius_flow.addon.properties import SETTINGS
 from mobius_flow.core import Curve, minimize
 from modal_operator import Operator, keys, restored
 from shapes import lattice_knot, torus_trefoil
@@ -310,3 +312,9 @@ def test_esc_while_keys_are_written(operator, monkeypatch):
     restored(obj, before)
     assert obj.data.shape_keys is None
     assert len(bpy.data.actions) == actions
+
+
+def test_operators_can_keep_what_they_need_in_a_window():
+    """Blender makes attributes of what is annotated: a setting of the same name would take the place of another."""
+    for name in dir(Listening):
+        assert name not in SETTINGS, name
