@@ -212,7 +212,7 @@ def test_no_size_but_the_length_can_be_kept():
     obj = add_arc()
     ENDS()
     before = contents()
-    with pytest.raises(RuntimeError, match="where something is pinned or avoided; set Keep to Length"):
+    with pytest.raises(RuntimeError, match="where something is pinned or avoided; give keep_size='LENGTH'"):
         relax(keep_size="BOX")
     assert contents() == before
     relax(**SHORT)

@@ -188,7 +188,7 @@ def test_nothing_moves_while_the_mesh_changes(untangled):
 
 
 def test_an_adaptive_mesh_is_keyed():
-    uneven = subdivide(torus_trefoil(60), np.where(np.arange(60) < 12, 12, 2))
+    uneven = subdivide(torus_trefoil(60), np.where(np.arange(60) < 12, 20, 2))
     iterates = list(relax(uneven, RelaxOptions(mesh="adaptive", max_iterations=8)))
     assert len(iterates[-1].curve) < len(iterates[0].curve)
     motion = Motion(at_rest(1))
