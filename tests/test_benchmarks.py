@@ -12,6 +12,7 @@ BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 ARGUMENTS = {
     "batch": ["many", "2"],
     "collision": ["60"],
+    "drags": ["10"],
     "hierarchy": ["60"],
     "hops": ["T34", "--hops", "1"],
     "knots": ["knots", "--only", "3_1,L2a1,unknot-rope", "--tolerance", "1e-2"],

@@ -163,7 +163,7 @@ def test_a_stream_that_is_no_trajectory(monkeypatch: pytest.MonkeyPatch, capsys:
 def test_verify_tells_how_far_it_is(
     trajectory: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    tqdm = pytest.importorskip("tqdm")
+    tqdm = pytest.importorskip("tqdm.auto")
     monkeypatch.setattr(tqdm, "tqdm", partial(tqdm.tqdm, mininterval=0))
     seen: list[tuple[int, int]] = []
     assert verify(trajectory, lambda *counts: seen.append(counts)).accepted

@@ -114,7 +114,7 @@ def test_an_arc_leaves_a_ring_that_it_is_not_linked_with(tmp_path: Path) -> None
     result = relaxed(tmp_path, curve, vertices=120)
     assert result.energies[0] > 25
     assert result.status is Status.CONVERGED
-    assert result.final_energy < 6
+    assert result.final_energy < 7
     assert "unlinked parts" in result.message
 
 

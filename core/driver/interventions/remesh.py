@@ -172,7 +172,7 @@ class FinerMesh(Intervention):
         """
         problem, point, curve = self.run.problem, self.run.point, self.run.iterate.curve
         usual = self.run.options.ends_finer and problem.unconfined and is_moebius_invariant(problem.objective.energy)
-        if not usual or self._measured:
+        if not usual or self._measured or problem.objective.pull is not None:
             return None
         self._measured = True
         error = (point.energy - problem.objective.value(halved(point.curve))) / 0.75
