@@ -243,8 +243,11 @@ class Mesh:
             elif not is_closed:
                 self.corners += [((v[0],) * 2, (v[1], v[:3][-1])), ((v[-1],) * 2, (v[-2], v[-3:][0]))]
 
-    def straightened(self, points, kept):
-        """The points, those that are not kept being moved onto the edges between those that are."""
+    def straightened(self, points, kept, least):
+        """The points, those that are not kept being moved onto the edges between those that are.
+
+        ``least``: bits of the last place of the smallest doubles, which have fewer digits.
+        """
         moved = list(points)
         for part, closed, indices in zip(self.parts, self.closed, kept, strict=True):
             own = [points[k] for k in part]
@@ -255,7 +258,7 @@ class Mesh:
                     at = (dot(minus(own[k], u), edge) << FINER) // max(dot(edge, edge), 1)
                     place = tuple(c + (at * d >> FINER) for c, d in zip(u, edge, strict=True))  # exactly
                     bits = max(map(abs, chain(u, v, own[k]))).bit_length() - 53
-                    near = max(map(abs, minus(place, moved[part[k]]))) <= ROUNDING_UNITS << max(bits, 0)
+                    near = max(map(abs, minus(place, moved[part[k]]))) <= ROUNDING_UNITS << max(bits, least)
                     need(near and last < at < 1 << FINER, f"vertex {part[k] + 1} is not on the edge it must be on")
                     moved[part[k]], last = place, at
         return moved
@@ -391,7 +394,7 @@ class Check:
         pairs = zip(mesh.parts, next_mesh.parts, mesh.closed, strict=True)
         kept = [kept_vertices([old[k] for k in a], [new[k] for k in b], closed) for a, b, closed in pairs]
         for points, edges, side in ((old, mesh, 0), (new, next_mesh, 1)):
-            moved = edges.straightened(points, [both[side] for both in kept])
+            moved = edges.straightened(points, [both[side] for both in kept], max(self.bits - 1075, 0))
             if moved != points:
                 self.leg(points, moved, edges)
 

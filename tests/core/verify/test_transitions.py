@@ -36,6 +36,12 @@ def test_a_change_too_small_for_doubles_is_checked(tmp_path: Path) -> None:
     assert "meet" in verdict.reason
 
 
+def test_the_smallest_doubles_have_last_places_that_are_as_large(tmp_path: Path) -> None:
+    bent = DENORMAL * np.array([[-1000.0, 0, 0], [0, 3, 0], [1000, 0, 0], [0, 1000, 0]])
+    strand = DENORMAL * np.array([[5000.0, 0, 0], [6000, 0, 0], [5000, 1000, 0]])
+    assert verify(write(tmp_path / "T.npz", bent, np.delete(bent, 1, axis=0), strand)).accepted
+
+
 def crosses(bent: FloatArray, strand: FloatArray) -> bool:
     """Whether putting vertex 1 onto the edge between its neighbours meets anything, by all pairs of edges."""
     moved, _ = straightened(bent, [0, *range(2, len(bent))])
