@@ -95,7 +95,7 @@ def _arcs(source: Source, atoms: Iterable[_Atom], models: int) -> list[Polygon]:
     for a, b in (pair for each in every for pair in pairwise(each)):
         if dist(a.point, b.point) > _APART:
             what = "residues may be missing from %s to %s; joined straight"
-            _log.warning(f"%s: {what}", source.path, a.residue, b.residue)
+            _log.warning(f"%s: {what}", source.path, *(" ".join(each.residue.split()) for each in (a, b)))
     return [
         Polygon([atom.point for atom in each], [atom.line for atom in each].__getitem__, closed=False) for each in every
     ]

@@ -134,7 +134,7 @@ def test_missing_residues_are_noted(tmp_path: Path, caplog: pytest.LogCaptureFix
     text = CHAIN[0] + _atom(7, 7, [9, 0, 0])
     with caplog.at_level(logging.WARNING):
         assert len(read_curve(_write(tmp_path, "gap.pdb", text))) == 2
-    assert "residues may be missing from GLY A   1  to GLY A   7" in caplog.text
+    assert "residues may be missing from GLY A 1 to GLY A 7; joined straight" in caplog.text
 
 
 CIF = """data_KNOT
