@@ -60,7 +60,7 @@ def add_knot(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    if Path(options.name).suffix.lower() in LISTS and os.path.isfile(options.name):
+    if Path(options.name).suffix.lower() in LISTS:
         return _write_list(options)
     curves.format_for(options.output, options.format)
     check_place(options.output)
@@ -79,15 +79,18 @@ def _write_list(options: argparse.Namespace) -> int:
     """A file for each knot of a list; those that cannot be drawn are left out, and named in the end."""
     if not os.path.isdir(options.output):
         raise MobiusFlowError(f"{options.output}: is no directory; a list of knots makes a file for each in one")
-    suffix, refused = options.format or "txt", []
+    suffix, refused, written = options.format or "txt", [], set[str]()
     listed = knot_list(options.name)
-    for name, code in listed.items():
+    for number, (name, code) in enumerate(listed.items(), start=1):
         try:
             curve = knot(code, options.vertices)
         except MobiusFlowError as error:
             refused.append(f"{name}: {error}")
             continue
-        curves.write(os.path.join(options.output, f"{re.sub(r'[^0-9A-Za-z_+#-]', '_', name)}.{suffix}"), curve)
+        stem = re.sub(r"[^0-9A-Za-z_+#-]", "_", name)
+        stem = f"{stem}-{number}" if stem.lower() in written else stem  # other names may be the same but for a sign
+        written.add(stem.lower())
+        curves.write(os.path.join(options.output, f"{stem}.{suffix}"), curve)
     if refused:
         raise MobiusFlowError(f"{len(refused)} of {counted(len(listed), 'knot')} cannot be made: {refused[0]}")
     return 0

@@ -35,9 +35,12 @@ def knot_list(path: str | os.PathLike[str]) -> dict[str, str]:
     """
     source = Source.load(Path(path), _MAX_BYTES)
     found: dict[str, str] = {}
-    for number, (name, code) in enumerate(_rows(source.lines), start=1):
-        if code:
-            found[name if name and name not in found else f"{name or 'knot'}-{number}"] = code
+    try:
+        for number, (name, code) in enumerate(_rows(source.lines), start=1):
+            if code:
+                found[name if name and name not in found else f"{name or 'knot'}-{number}"] = code
+    except csv.Error as error:
+        raise source.error(f"{error}; perhaps a quotation mark is not closed") from error
     if not found:
         columns = ", ".join(CODES)
         raise source.error(f"no list of knots: there is no code in any line, and no column named {columns}")

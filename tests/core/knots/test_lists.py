@@ -46,6 +46,20 @@ def test_what_is_no_list(text, tmp_path):
         knot_list(tmp_path / "list.csv")
 
 
+def test_a_quotation_mark_that_is_not_closed(tmp_path):
+    (tmp_path / "list.csv").write_text('name,pd_notation\n3_1,"' + "1" * 200_000)
+    with pytest.raises(CurveFileError, match=r"list\.csv: field larger .* quotation mark is not closed"):
+        knot_list(tmp_path / "list.csv")
+
+
+def test_names_that_differ_by_a_sign_have_files_of_their_own(tmp_path, capsys):
+    (tmp_path / "list.csv").write_text("".join(f"{name}, DT: [4 6 2]\n" for name in ("a!", "a?", "A!")))
+    assert main(["knot", str(tmp_path / "list.csv"), str(tmp_path)]) == 0
+    assert sorted(path.name for path in tmp_path.glob("*.txt")) == ["A_-3.txt", "a_-2.txt", "a_.txt"]
+    assert main(["knot", str(tmp_path / "none.csv"), str(tmp_path)]) == 2
+    assert "none.csv: cannot be read" in capsys.readouterr().err
+
+
 def test_a_list_becomes_files(tmp_path, capsys):
     (tmp_path / "list.csv").write_text(KNOTINFO + "odd|1|[[1,2,3,4]]|[2]|[0]\n")
     assert main(["knot", str(tmp_path / "list.csv"), str(tmp_path / "none")]) == 2
