@@ -176,7 +176,7 @@ def begin(
     options = key_options(values)
     options = bake.continued(objects, options) if continues else options
     surroundings = Surroundings.of(_objects(values["avoid"]), [*objects, *goals])
-    shapes = [read_link([each])[0] for each in goals]
+    shapes = {each.name: read_link([each])[0] for each in goals}
     return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values), shapes)
 
 

@@ -14,6 +14,7 @@ from .relax import EXIT_STATUS, add_outputs, places, run_to_end, write_results
 from .streams import one_line
 
 NOT_FOUND = 1
+NAMES = ("A", "B")  # of the curves, on the command line and in sentences
 _ONE_CURVE = ("balance", "grow", "mesh", "edge_lengths", "stability", "escape_saddles")  # what is not for two
 _EPILOG = """\
 examples:
@@ -46,7 +47,7 @@ def add_morph(parser: argparse.ArgumentParser) -> None:
 
 def add_pair(parser: argparse.ArgumentParser) -> None:
     """Add two curves, and how they are relaxed."""
-    for name in ("A", "B"):
+    for name in NAMES:
         parser.add_argument(name.lower(), metavar=name, help=f"polygons, closed or open: {', '.join(FORMATS)}")
     curves.add_format(parser)
     relax_options.add_to(parser, without=_ONE_CURVE)
@@ -83,7 +84,7 @@ def _run(options: argparse.Namespace) -> int:
     origin = relax_options.provenance(settings, str(file.source.path), file.source.sha256)
     origin["to"] = {"name": str(other.source.path), "sha256": other.source.sha256}
     try:
-        result, iterates = run_to_end(morphing((task, goal), wanted), task, wanted, output, options)
+        result, iterates = run_to_end(morphing((task, goal), wanted, NAMES), task, wanted, output, options)
     except NoMotionError as error:
         print(one_line(f"mobius-flow: {error}"), file=sys.stderr)
         return NOT_FOUND

@@ -4,9 +4,10 @@ A plain class: a blocking operator runs it, a modal one hands it the iterates of
 What it knows lives here and never in the file.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -102,7 +103,7 @@ class Prepared:
 class Session:
     """A relaxation of curve objects as one link; ``objects`` and ``continues`` as for `Group`.
 
-    ``goals``: curves in the world that it is to become, one after the other; by default it is relaxed alone.
+    ``goals``: curves in the world that it is to become, one after the other, by name; by default it is relaxed alone.
     ``outcome``: how the relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or
     there is no room for their keys.
     """
@@ -115,7 +116,7 @@ class Session:
         continues: bool = False,
         surroundings: Surroundings = NOTHING,
         held: Held = FREE,
-        goals: Sequence[Curve] = (),
+        goals: Mapping[str, Curve] = MappingProxyType({}),
     ) -> None:
         key_options.check_room(options.max_iterations)
         self.surroundings, self.goals = surroundings, goals

@@ -3,8 +3,9 @@
 import hashlib
 import json
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
+from types import MappingProxyType
 from typing import IO, Any
 
 import numpy as np
@@ -59,18 +60,24 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
     return data
 
 
-def pack_job(task: Task, options: RelaxOptions, link: Link, stays: bool = False, goals: Sequence[Curve] = ()) -> Packet:
+def pack_job(
+    task: Task,
+    options: RelaxOptions,
+    link: Link,
+    stays: bool = False,
+    goals: Mapping[str, Curve] = MappingProxyType({}),
+) -> Packet:
     header = {**_pack_mesh(task.curve.mesh), "options": asdict(options), "counts": link.counts, "stays": stays}
     header |= {
         "pins": task.pins,
         "pin_tangents": task.pin_tangents,
         "obstacles": [each.name for each in task.obstacles],
-        "goals": [_pack_mesh(each.mesh) for each in goals],
+        "goals": {name: _pack_mesh(each.mesh) for name, each in goals.items()},
     }
     linear = np.stack([placement.linear for placement in link.placements])
     origins = np.stack([placement.origin for placement in link.placements])
     obstacles = [array for each in task.obstacles for array in (each.vertices, each.faces.astype(np.float64))]
-    return header, [task.curve.vertices, linear, origins, *obstacles, *(each.vertices for each in goals)]
+    return header, [task.curve.vertices, linear, origins, *obstacles, *(each.vertices for each in goals.values())]
 
 
 def unpack_job(message: Packet) -> tuple[Task, RelaxOptions, Link]:
@@ -87,11 +94,12 @@ def unpack_job(message: Packet) -> tuple[Task, RelaxOptions, Link]:
     return task, RelaxOptions(**header["options"]), link
 
 
-def unpack_goals(message: Packet) -> list[Curve]:
-    """The curves of a job that the first one is to become, one after the other."""
+def unpack_goals(message: Packet) -> dict[str, Curve]:
+    """The curves of a job that the first one is to become, one after the other, by name."""
     header, arrays = message
-    meshes = header["goals"]
-    return [Curve(*each) for each in zip(arrays[len(arrays) - len(meshes) :], map(_unpack_mesh, meshes), strict=True)]
+    meshes = header["goals"].items()
+    last = arrays[len(arrays) - len(meshes) :]
+    return {name: Curve(each, _unpack_mesh(mesh)) for each, (name, mesh) in zip(last, meshes, strict=True)}
 
 
 def pack_deed(deed: str, *facts: Any) -> Packet:

@@ -11,9 +11,10 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
 from typing import IO, Any
 
 import numpy as np
@@ -81,9 +82,13 @@ def _proved(iterate: Iterate, link: Link, frames: list[Frame], obstacles: tuple[
     return [wire.digest(a, b) for a, b in pairwise(common) if is_free(mesh, a, b, obstacles)]
 
 
-def begun(task: Task, options: RelaxOptions, goals: Sequence[Curve], hand: Hand) -> Relaxation:
+def begun(task: Task, options: RelaxOptions, goals: Mapping[str, Curve], hand: Hand) -> Relaxation:
     """The relaxation of a task, which a hand may drag, or, if there are goals, its motion to one after the other."""
-    return morphing((task, *map(Task.of, goals)), options) if goals else relax(task, options, hand)
+    if not goals:
+        return relax(task, options, hand)
+    return morphing(
+        (task, *map(Task.of, goals.values())), options, (Message("the curve that moves"), *map("'{}'".format, goals))
+    )
 
 
 class WorkerError(MobiusFlowError):
@@ -98,7 +103,12 @@ class Worker:
     """
 
     def __init__(
-        self, task: Task, options: RelaxOptions, link: Link, stays: bool = False, goals: Sequence[Curve] = ()
+        self,
+        task: Task,
+        options: RelaxOptions,
+        link: Link,
+        stays: bool = False,
+        goals: Mapping[str, Curve] = MappingProxyType({}),
     ) -> None:
         self._inbox: Inbox = queue.SimpleQueue()
         self._inbox.put(wire.pack_job(task, options, link, stays, goals))

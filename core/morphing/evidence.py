@@ -1,6 +1,6 @@
 """What is known of two curves without any motion: that there is none, by invariants, or that they are the same."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from ..curve import Curve
 from ..diagrams import Diagram, alexander, jones, signature
@@ -39,15 +39,19 @@ def agreement(a: KnotType, b: KnotType) -> Message | None:
     return Message("both are {type}, by {evidence}", type=str(a), evidence=evidence)
 
 
-def difference(a: KnotType, b: KnotType) -> Message | None:
-    """Say what the types of two curves are, and which invariant tells them apart; None if nothing does."""
+def difference(a: KnotType, b: KnotType, names: Sequence[str]) -> Message | None:
+    """Say what the types of two curves, by their names, are, and which invariant tells them apart, if one does."""
     told = a.diagram and b.diagram and _told_apart(a.diagram, b.diagram)
     if not told and not (a.proved and b.proved and not set(a.names) & set(b.names)):
         return None
     one, other = str(a), str(b)
     mirrored = other == (one[1:] if one.startswith("m") else f"m{one}")
-    what = "A is {a}, B its mirror image {b}" if mirrored else "A is {a}, B is {b}"
-    types = Message(what, a=one, b=other) if a.names and b.names else Message("A and B are of different types")
+    facts = {"one": names[0], "other": names[1]}
+    if a.names and b.names:
+        what = "{one} is {a}, {other} its mirror image {b}" if mirrored else "{one} is {a}, {other} is {b}"
+        types = Message(what, **facts, a=one, b=other)
+    else:
+        types = Message("{one} and {other} are of different types", **facts)
     none = Message("{types}: no motion leads from one to the other", types=types)
     return Message("{none} ({told})", none=none, told=told) if told else none
 

@@ -21,6 +21,7 @@ from .meeting import Shape, meeting
 from .ways import back, on_mesh, renamed
 
 MET = "the shapes that they relax to met, {distance:.2g} radii of gyration apart"
+NAMES = ("the first curve", "the second curve")
 RENAMED = "in the end components have another order or direction than they were given in"
 
 
@@ -48,17 +49,17 @@ def morph(
     or do not go together.
     """
     task, wanted = Task.of(a), options or RelaxOptions()
-    return finish(morphing((task, Task.of(b)), wanted), task, wanted, callback)
+    return finish(morphing((task, Task.of(b)), wanted, NAMES), task, wanted, callback)
 
 
-def morphing(tasks: Sequence[Task], options: RelaxOptions) -> Relaxation:
+def morphing(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -> Relaxation:
     """Yield the iterates from the first curve over all others to the last one; return how it ended.
 
-    Obstacles are those of the first task.  Raises as `morph` does.
+    Obstacles are those of the first task; names of the curves are for sentences.  Raises as `morph` does.
     """
-    for a, b in pairwise(tasks):
-        check_alike(a.curve, b.curve)
-    ways = [_Way(each, tasks[0]) for each in tasks]
+    for pair, called in zip(pairwise(tasks), pairwise(names), strict=True):
+        check_alike([each.curve for each in pair], called)
+    ways = [_Way(*each, tasks[0]) for each in zip(names, tasks, strict=True)]
     work = BLAS.bounding(_numbered(_chain(ways, options)))
     return work if options.time_limit is None else _limited(work, options.time_limit)
 
@@ -72,8 +73,8 @@ def _limited(work: Relaxation, seconds: float) -> Relaxation:
 
 def _chain(ways: "Sequence[_Way]", options: RelaxOptions) -> Relaxation:
     kinds = [type_of(each.task.curve) for each in ways]
-    for a, b in pairwise(kinds):
-        if a and b and (reason := difference(a, b)):
+    for (a, b), called in zip(pairwise(kinds), pairwise(each.name for each in ways), strict=True):
+        if a and b and (reason := difference(a, b, called)):
             raise NoMotionError(reason)
     alone = replace(options, time_limit=None, balance=False, hops=0)
     found: list[Alignment] = []
@@ -89,7 +90,7 @@ def _chain(ways: "Sequence[_Way]", options: RelaxOptions) -> Relaxation:
                 deque(hops, maxlen=0)
                 met = meeting(here.shape, there.shape)
         if met is None:
-            raise NoMotionError(_apart(here.shape, there.shape))
+            raise NoMotionError(_apart(here, there))
         alignment, joint = met
         there.iterates = [renamed(each, alignment) for each in there.iterates]
         yield from joint
@@ -113,13 +114,13 @@ def _numbered(work: Relaxation) -> Relaxation:
 class _Way:
     """The way of a curve to where it comes to rest: its iterates, the given curve first."""
 
-    def __init__(self, task: Task, first: Task) -> None:
+    def __init__(self, name: str, task: Task, first: Task) -> None:
         if task.pins:
             raise OptionError("a morph holds the ends of open components, and no other vertices; leave pins out")
         if task.obstacles and {each.key for each in task.obstacles} != {each.key for each in first.obstacles}:
-            raise OptionError("A and B have different obstacles; a motion between them avoids the same ones all along")
+            raise OptionError(f"{name} has obstacles of its own; a motion avoids the same ones all along")
         ends = tuple(task.curve.mesh.ends.ravel().tolist())
-        self.task = Task(curve=task.curve, obstacles=first.obstacles, pins=ends)
+        self.name, self.task = name, Task(curve=task.curve, obstacles=first.obstacles, pins=ends)
         self.iterates: list[Iterate] = []
 
     @property
@@ -145,21 +146,24 @@ class _Way:
             yield from new
 
 
-def check_alike(a: Curve, b: Curve) -> None:
+def check_alike(curves: Sequence[Curve], names: Sequence[str]) -> None:
     """Raise a CurveError unless two curves are in one space, with the same numbers of closed and of open components.
 
     Open components have the same ends in both.
     """
+    (a, b), (one, other) = curves, names
     if a.dimension != b.dimension or a.dimension > 3:
         where = "motions are proved in the plane and in space, from one curve to another there"
-        raise CurveError(f"A is in dimension {a.dimension}, B in dimension {b.dimension}; {where}")
-    kinds = [_kind(each) for each in (a, b)]
-    if kinds[0] != kinds[1]:
-        raise CurveError(f"A is {kinds[0]}, B {kinds[1]}; motions neither open, close, join nor divide components")
+        raise CurveError(f"{one} is in dimension {a.dimension}, {other} in dimension {b.dimension}; {where}")
+    if (here := _kind(a)) != (there := _kind(b)):
+        kinds = f"{one} is {here}, {other} is {there}"
+        raise CurveError(f"{kinds}; motions neither open, close, join nor divide components")
     if a.mesh.closed != b.mesh.closed:
-        raise CurveError("open and closed components have another order in A than in B; put open ones first in both")
+        order = f"open and closed components have another order in {one} than in {other}"
+        raise CurveError(f"{order}; put open ones first in both")
     if (a.vertices[a.mesh.ends] != b.vertices[b.mesh.ends]).any():
-        raise CurveError("open components begin or end in other places in A than in B; move their ends together")
+        places = f"open components begin or end in other places in {one} than in {other}"
+        raise CurveError(f"{places}; move their ends together")
 
 
 def _kind(curve: Curve) -> str:
@@ -168,13 +172,15 @@ def _kind(curve: Curve) -> str:
     return " and ".join(counted(count, noun) for count, noun in parts if count)
 
 
-def _apart(x: Shape, y: Shape) -> Message:
+def _apart(one: _Way, other: _Way) -> Message:
     """Say that shapes do not meet, how much they differ, and what to try."""
-    ends = product(x.ways, y.ways)
+    ends = product(one.shape.ways, other.shape.ways)
     apart = min(alignments(a[-1].curve, b[-1].curve, Freedom())[0].distance for a, b in ends)
-    facts = {"a": f"{x.end.energy:.6g}", "b": f"{y.end.energy:.6g}", "distance": f"{apart:.2g}"}
+    facts = {"a": f"{one.end.energy:.6g}", "b": f"{other.end.energy:.6g}", "distance": f"{apart:.2g}"}
     return Message(
-        "no motion was found, though no invariant tells A and B apart: they come to rest at energies {a} and {b}, in "
-        "shapes that differ by {distance} radii of gyration; more hops may lead both to the same shape",
+        "no motion was found, though no invariant tells {one} and {other} apart: they come to rest at energies {a} and "
+        "{b}, in shapes that differ by {distance} radii of gyration; more hops may lead both to the same shape",
         **facts,
+        one=one.name,
+        other=other.name,
     )

@@ -68,7 +68,7 @@ def test_bad_input_names_the_file(curves, tmp_path, run):
         assert "touch or cross" in said
     status, _, said = run("same", trefoil, curves("hopf"))
     assert (status, said) == (
-        2, "mobius-flow: A is 1 closed component, B 2 closed components; motions neither open, close, join nor divide "
-        "components\n"
+        2, "mobius-flow: A is 1 closed component, B is 2 closed components; motions neither open, close, join nor "
+        "divide components\n"
     )  # fmt: skip
     assert run("morph", "-", "-", tmp_path / "o.txt")[0] == 2

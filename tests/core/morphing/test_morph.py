@@ -83,7 +83,9 @@ def test_a_component_is_run_through_backwards_only_where_it_must_be(tmp_path):
 
 
 def test_a_mirror_image_is_refused_before_anything_moves():
-    with pytest.raises(NoMotionError, match=r"A is 3_1, B its mirror image m3_1: no motion .* \(signatures −2 and 2\)"):
+    with pytest.raises(
+        NoMotionError, match=r"first curve is 3_1, the second curve its mirror image m3_1: no .* \(signatures"
+    ):
         morph(knot("3_1"), knot("m3_1"), callback=lambda _: pytest.fail("something moved"))
 
 
@@ -158,7 +160,7 @@ def test_arcs_are_held_at_their_ends(tmp_path):
 
 def test_a_chain_leads_over_all_curves(tmp_path):
     curves = [Curve(RECTANGLE), Curve(ZIGZAG), moved(Curve(RECTANGLE))]
-    trajectory, iterates = Trajectory(), list(morphing([Task(curve=each) for each in curves], QUICK))
+    trajectory, iterates = Trajectory(), list(morphing([Task(curve=each) for each in curves], QUICK, "ABC"))
     for each in iterates:
         trajectory.add(each)
     trajectory.save(tmp_path / "t.npz")
@@ -173,9 +175,12 @@ def test_a_chain_leads_over_all_curves(tmp_path):
 @pytest.mark.parametrize(
     ("b", "sentence"),
     [
-        (knot("hopf"), "A is 1 closed component, B 2 closed components; motions neither"),
-        (overhand(), "A is 1 closed component, B 1 open component"),
-        (Curve([[0.0, 0], [1, 0], [0, 1]]), "A is in dimension 3, B in dimension 2"),
+        (
+            knot("hopf"),
+            "the first curve is 1 closed component, the second curve is 2 closed components; motions neither",
+        ),
+        (overhand(), "is 1 closed component, the second curve is 1 open component"),
+        (Curve([[0.0, 0], [1, 0], [0, 1]]), "first curve is in dimension 3, the second curve in dimension 2"),
     ],
 )
 def test_what_no_motion_can_do_is_said(b, sentence):
@@ -187,7 +192,7 @@ def test_pins_and_ends_elsewhere_are_refused():
     with pytest.raises(OptionError, match="leave pins out"):
         morph(Task(curve=Curve(RECTANGLE), pins=(0,)), Curve(ZIGZAG))
     wall = Obstacle([[9.0, 0, 0], [9, 1, 0], [9, 0, 1]], [[0, 1, 2]])
-    with pytest.raises(OptionError, match="different obstacles"):
+    with pytest.raises(OptionError, match="the second curve has obstacles of its own"):
         morph(Curve(RECTANGLE), Task(curve=Curve(ZIGZAG), obstacles=(wall,)))
     with pytest.raises(CurveError, match="move their ends together"):
         morph(overhand(), moved(overhand()))
