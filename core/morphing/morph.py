@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import pairwise, product
 
 from ..arguments import checked
+from ..collision import check_clear, check_embedded
 from ..curve import Curve
 from ..deadline import TimeLimit
 from ..driver import Iterate, Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
@@ -15,6 +16,7 @@ from ..errors import CurveError, MobiusFlowError, OptionError, counted
 from ..messages import Message
 from ..task import Task
 from ..threads import BLAS
+from ..units import check_units
 from .alignment import Alignment, Freedom, alignments
 from .evidence import difference, type_of
 from .meeting import Shape, meeting
@@ -122,6 +124,14 @@ class _Way:
         ends = tuple(task.curve.mesh.ends.ravel().tolist())
         self.name, self.task = name, Task(curve=task.curve, obstacles=first.obstacles, pins=ends)
         self.iterates: list[Iterate] = []
+        try:
+            check_units(task.curve)
+            check_embedded(task.curve)
+            check_clear(task.curve, first.obstacles)
+        except CurveError as error:
+            if task is first:
+                raise
+            raise CurveError(f"{name}: {error}") from error  # whose components and places are not the first one's
 
     @property
     def end(self) -> Iterate:

@@ -198,6 +198,14 @@ def test_pins_and_ends_elsewhere_are_refused():
         morph(overhand(), moved(overhand()))
 
 
+def test_a_curve_that_touches_itself_is_named():
+    crossing = Curve([[0.0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]])
+    with pytest.raises(CurveError, match=r"^edge 1 .* touch"):
+        morph(crossing, Curve(RECTANGLE))
+    with pytest.raises(CurveError, match=r"^the second curve: edge 1 .* touch"):
+        morph(Curve(RECTANGLE), crossing)
+
+
 def test_the_time_may_be_up():
     result = morph(knot("3_1"), knot("3_1", 70), RelaxOptions(time_limit=1e-9))
     assert result.status is Status.TIME_LIMIT
