@@ -97,10 +97,19 @@ LOOKS = {
         "Glowing tubes over a dark, shining floor",
         palette=((0.01, 0.22, 1.0), (1.0, 0.01, 0.16), (1.0, 0.26, 0.01), (0.02, 0.7, 0.14), (0.42, 0.02, 1.0)),
         gradient=((0.01, 0.18, 1.0), (0.36, 0.02, 1.0), (1.0, 0.01, 0.22), (1.0, 0.24, 0.01), (0.01, 0.55, 0.40)),
-        shader={"Base Color": TINT, "Roughness": 0.4, "Emission Color": TINT, "Emission Strength": "glow.Result"},
-        nodes={
+        shader={
+            "Base Color": (0.0, 0.0, 0.0, 1.0),
+            "Roughness": 0.3,
+            "Emission Color": TINT,
+            "Emission Strength": "glow.Result",
+        },
+        nodes={  # dark edges tell which strand is in front
             "facing": ("ShaderNodeLayerWeight", {"Blend": 0.5}, {}),
-            "glow": ("ShaderNodeMapRange", {"Value": "facing.Facing", "To Min": 1.5, "To Max": 0.05}, {}),
+            "glow": (
+                "ShaderNodeMapRange",
+                {"Value": "facing.Facing", "From Max": 0.6, "To Min": 1.2, "To Max": 0.0},
+                {},
+            ),
         },
         floor=(0.07, 0.07, 0.09),
         floor_roughness=0.32,
