@@ -24,6 +24,7 @@ _POINTS = 350  # into which a film's curve is split at least: long edges have no
 _ROUND = 0.8  # of the free radius: the length over which corners are rounded
 _SLOPE = 0.08  # of the radius, at most, along the curve
 _THINNEST = 4e-3  # of a curve's size: a thinner tube is not seen in a film, nor is which strand is in front
+_CROWDED, _EVEN = 0.2, 2.2  # a tube is at most so many times as thick as where the most crowded fifth of it ends
 _GROWTH = 0.04  # of the thickest radius, per frame
 
 
@@ -56,10 +57,12 @@ def tube_radii(mesh: Mesh, points: Sequence[FloatArray], frames: FloatArray) -> 
     """Radii of the tube at all vertices of keyed curves, (keys, n).
 
     Tubes are as thick as looks right, or else as there is room, unless too thin to see then; they change gently along
-    the curve and from frame to frame.
+    the curve and from frame to frame. Where many strands are close they are not much thicker elsewhere, which would
+    hide them.
     """
     thickest = _thickest(mesh, points)
     radii = np.array([_free_radii(Curve(p, mesh), thickest) for p in points])
+    np.minimum(radii, _EVEN * np.quantile(radii, _CROWDED, axis=1, keepdims=True), out=radii)
     for order in (slice(None), slice(None, None, -1)):
         view, steps = radii[order], np.abs(np.diff(frames[order])) * _GROWTH * thickest
         for k, step in enumerate(steps):

@@ -97,3 +97,12 @@ def test_tubes_are_never_too_thin_to_see():
     curve = Curve.from_components([ring, ring + np.array([0.0, 0.0, 1e-6])])
     radii = tube_radii(curve.mesh, [curve.vertices], np.zeros(1))
     assert radii.max() == pytest.approx(4e-3 * np.ptp(ring, axis=0).max(), rel=1e-5)
+
+
+def test_tubes_are_not_much_thicker_elsewhere_where_many_strands_are_close():
+    """A long ring, and a stack of rings inside that are close to each other."""
+    ring = regular_polygon(100).vertices
+    stack = [0.2 * ring + np.array([0.0, 0.0, 0.02 * k]) for k in range(4)]
+    curve = Curve.from_components([3.0 * ring, *stack])
+    radii = tube_radii(curve.mesh, [curve.vertices], np.zeros(1))[0]
+    assert radii[:100].max() <= 2.2 * np.quantile(radii[100:], 0.5) < thickest_radius(curve)
