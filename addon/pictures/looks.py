@@ -107,7 +107,7 @@ LOOKS = {
             "facing": ("ShaderNodeLayerWeight", {"Blend": 0.5}, {}),
             "glow": (
                 "ShaderNodeMapRange",
-                {"Value": "facing.Facing", "From Max": 0.6, "To Min": 1.2, "To Max": 0.0},
+                {"Value": "facing.Facing", "From Min": 0.3, "From Max": 0.85, "To Min": 1.2, "To Max": 0.03},
                 {},
             ),
         },
@@ -139,7 +139,7 @@ LOOKS = {
         shader={
             "Base Color": TINT,
             "Roughness": 0.02,
-            "Transmission Weight": 1.0,
+            "Transmission Weight": 0.8,
             "IOR": 1.4,
             "Alpha": "clear.Result",
         },
