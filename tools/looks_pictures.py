@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Render docs/pictures/unknot.png, a tangle on its way to the circle, and looks.png, a knot in each look.
+"""Render docs/pictures: unknot.png, a tangle on its way to the circle; looks.png, a knot in each look; and morph.png.
 
 Each part is rendered in a few seconds of processor time: `looks_pictures.py NAME` renders one of the pictures only.
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from mobius_flow.addon.pictures.export import write_picture
 from mobius_flow.addon.pictures.looks import LOOKS
-from mobius_flow.core import RelaxOptions, minimize, read_curve, relax
+from mobius_flow.core import Iterate, RelaxOptions, minimize, morph, read_curve, relax
 from mobius_flow.core.curve import Curve
 from mobius_flow.core.knots import knot
 from PIL import Image
@@ -18,6 +18,7 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[1]
 TANGLE = ROOT / "examples" / "tangle.obj"
 STAGES = (0, 40, 70, -1)  # iterates of the tangle
+LEGS = (0, 20, 44, 64, 108, -1)  # of the morph, where tubes are about as thick in the picture
 COLORS = 256
 
 
@@ -33,18 +34,27 @@ def looks() -> list[tuple[Curve, str]]:
     return [(curve, look) for look in LOOKS]
 
 
-PICTURES = {"unknot": (tangle, 330, 330), "looks": (looks, 300, 300)}
+def unknots() -> list[tuple[Curve, str]]:
+    """One famous unknot on its way to another."""
+    iterates: list[Iterate] = []
+    morph(knot("ochiai-1"), knot("thistlethwaite"), callback=iterates.append)
+    return [(iterates[k].curve, "STUDIO") for k in LEGS]
+
+
+PICTURES = {"unknot": (tangle, 330, 4), "looks": (looks, 300, 5), "morph": (unknots, 300, 3)}  # side, columns
 
 
 def strip(name: str) -> None:
-    """Put the parts of a picture side by side, with few colours, in a third of the space."""
-    make, width, height = PICTURES[name]
+    """Put the parts of a picture in rows, with few colours, in a third of the space."""
+    make, side, columns = PICTURES[name]
     parts = make()
-    whole = Image.new("RGB", (width * len(parts), height))
+    whole = Image.new("RGB", (side * columns, side * -(-len(parts) // columns)))
     with tempfile.TemporaryDirectory() as room:
         for k, (curve, look) in enumerate(parts):
-            write_picture(Path(room, "part.png"), curve, width, height, look)
-            whole.paste(Image.open(Path(room, "part.png")).convert("RGB"), (k * width, 0))
+            write_picture(Path(room, "part.png"), curve, side, side, look)
+            whole.paste(
+                Image.open(Path(room, "part.png")).convert("RGB"), (side * (k % columns), side * (k // columns))
+            )
     palette = whole.quantize(COLORS, Image.Quantize.MAXCOVERAGE, kmeans=30)
     small = whole.quantize(palette=palette, dither=Image.Dither.FLOYDSTEINBERG)
     small.save(ROOT / "docs" / "pictures" / f"{name}.png", optimize=True)
