@@ -106,7 +106,6 @@ class MobiusFlowKnots(bpy.types.PropertyGroup):
         update=_show_first,
     )
     knot: EnumProperty(name="Knot", description="Knot to add", items=_knots, default=_TREFOIL)
-    mirror: BoolProperty(name="Mirror", description="Add the mirror image", default=False)
 
 
 GROUPS_OF_SCENE = {

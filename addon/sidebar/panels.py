@@ -21,11 +21,9 @@ def _gallery(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     picked = context.scene.mobius_flow_knots
     layout.prop(picked, "group")
     layout.template_icon_view(picked, "knot", show_labels=True, scale=7.0, scale_popup=4.0)
-    within = layout.row(align=True)
     label = labels().get(picked.knot, "")
-    add = operator(within, "pick_knot", text=iface_("Add {knot}", knot=Message(label)), icon="ADD")
-    add.knot, add.mirror = label, picked.mirror
-    within.prop(picked, "mirror", text="", icon="MOD_MIRROR")
+    add = operator(layout, "pick_knot", text=iface_("Add {knot}", knot=Message(label)), icon="ADD")
+    add.knot, add.mirror = label, False  # as it is pictured, whatever was added last
 
 
 class VIEW3D_PT_mobius_flow_knots(InSidebar, bpy.types.Panel):

@@ -29,6 +29,12 @@ class Layout:
         assert hasattr(owner, name)
         self.settings.append(name)
 
+    def prop_enum(self, owner, name, _value):
+        self.prop(owner, name)
+
+    def template_icon_view(self, owner, name, **_):
+        self.prop(owner, name)
+
     def __getattr__(self, _name):
         return lambda *_, **__: self
 
@@ -52,6 +58,25 @@ def test_every_button_is_an_operator(cls, curve, monkeypatch):
     layout = shown(cls)
     assert layout.buttons or layout.settings
     assert {name.removeprefix("curve.") for name in layout.buttons} <= set(dir(bpy.ops.curve))
+
+
+def test_the_sidebar_has_few_panels_few_settings_and_one_place_for_each(monkeypatch):
+    """Twenty settings at most, Blender's own among them, while the last run is shown; presets are a popover."""
+    add_trefoil()
+    over = SimpleNamespace(value="Done", over=True)
+    run = dict.fromkeys(("recoverable", "waits", "failed", "last", "report", "message", "trouble"))
+    run |= {"state": over, "group": SimpleNamespace(names=["Knot"]), "energies": [1.0]}
+    monkeypatch.setattr(relax.registry, "shown", lambda _obj: SimpleNamespace(**run))
+    monkeypatch.setattr(relax, "refused", lambda *_: None)
+    panels_drawn = [cls for module in (relax, panels) for cls in registration.declared(module)]
+    layouts = [shown(cls) for cls in panels_drawn]
+    settings = [name for layout in layouts for name in set(layout.settings)]  # levels of quality are one setting
+    buttons = [name for layout in layouts for name in layout.buttons]
+    buttons.remove("curve.mobius_flow_pick_knot")  # the gallery's, and the search's
+    assert len(panels_drawn) <= 6
+    assert {"quality", "show_plot", "knot", "method", "resolution_percentage"} <= set(settings)
+    assert len(set(settings)) == len(settings) <= 20
+    assert len(set(buttons)) == len(buttons)
 
 
 @pytest.mark.parametrize(
