@@ -46,8 +46,8 @@ def case() -> Steps:
     way = seen(np.stack([np.interp(np.linspace(0, 4, steps), np.arange(5), column) for column in _WAY.T], axis=1))
     for k, (x, y) in enumerate(way):
         yield from move_to(int(x), int(y))
-        before = run().last.index
-        yield from until(lambda before=before: run().last.index > before + 2, "the arc to follow", 20)
+        before = run().last.index  # where the arc is taut it may be at rest after one
+        yield from until(lambda before=before: run().last.index > before + 2 or resting(), "the arc to follow", 20)
         if k % _BETWEEN == _BETWEEN - 1:
             yield from picture(f"clasp-{2 + k // _BETWEEN:02d}")
     yield from let_go(*map(int, way[-1]))

@@ -8,7 +8,7 @@ from scene import is_, obj, ready, run
 
 def case() -> Steps:
     open_panels("expert")
-    yield from ready(vertices=200)
+    yield from ready()
     yield from picture("expert-1-open")
     settings = bpy.context.scene.mobius_flow
     settings.energy, settings.metric, settings.max_iterations = "edge", "h3-2", 3

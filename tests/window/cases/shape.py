@@ -9,7 +9,7 @@ from scene import clear, is_, knot, look, obj, points
 def case() -> Steps:
     open_panels("shape")
     clear()
-    knot("5_2", vertices=280)
+    knot("5_2", vertices=400)
     window().scene.mobius_flow.length = 100
     yield from open_sidebar()
     yield from look()

@@ -72,7 +72,7 @@ def case() -> Steps:
         print(f"MEASURED {vertices} points: Esc {1e3 * (time.perf_counter() - started):.1f} ms", flush=True)
         yield from until(lambda: run() is None, "Esc")
 
-    yield from ready(vertices=300)
+    yield from ready()
     at_first = 0.0
     for k in range(RUNS):
         relax()

@@ -8,7 +8,7 @@ from scene import is_, look, obj, ready
 
 def case() -> Steps:
     open_panels("shape")
-    yield from ready("L2a1", vertices=120)
+    yield from ready("L2a1", vertices=0)
     obj().data.bevel_depth = 0.0625
     yield from picture("tube-1-ones-own")
     settings = window().scene.mobius_flow
