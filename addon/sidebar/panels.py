@@ -89,15 +89,16 @@ def _stage(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     operator(within, "set_up_stage", icon="OUTLINER_OB_LIGHT")
     if staging.own_stage(context.scene):
         operator(within, "remove_stage", text="", icon="X")
-    if not staging.fits(context.scene):
-        sentence(layout, context, "The picture has another shape than the stage's camera; press Set Up Stage again")
 
 
 def _size(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.prop(context.scene.render, "resolution_percentage", text=iface_("Size of Pictures"))
 
 
-def _unseen_frames(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def _not_in_film(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """What the film would lack, below the buttons, which keep their places."""
+    if not staging.fits(context.scene):
+        sentence(layout, context, "The picture has another shape than the stage's camera; press Set Up Stage again")
     if hidden := unseen(context.scene, bake.scene_range(selected_curves(context))):
         sentence(layout, context, hidden)
 
@@ -112,7 +113,7 @@ class VIEW3D_PT_mobius_flow_film(SubPanel, bpy.types.Panel):
         _size,
         settings("look", "filepath", of="mobius_flow_film"),
         row(button("render_film", "RENDER_ANIMATION"), button("play_film", "PLAY")),
-        _unseen_frames,
+        _not_in_film,
     )
 
 

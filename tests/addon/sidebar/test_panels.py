@@ -79,6 +79,14 @@ def test_the_sidebar_has_few_panels_few_settings_and_one_place_for_each(monkeypa
     assert len(set(buttons)) == len(buttons)
 
 
+def test_what_a_film_would_lack_is_said_below_its_buttons(monkeypatch):
+    add_trefoil()
+    monkeypatch.setattr(panels.staging, "fits", lambda _scene: False)
+    monkeypatch.setattr(panels, "unseen", lambda *_: "Frames are cut off")
+    monkeypatch.setattr(panels, "sentence", lambda layout, *_: layout.buttons.append("said"))
+    assert shown(panels.VIEW3D_PT_mobius_flow_film).buttons[-3:] == ["curve.mobius_flow_play_film", "said", "said"]
+
+
 @pytest.mark.parametrize(
     ("system", "scale", "said"),
     [("NONE", 1.0, "0.125"), ("METRIC", 1.0, "12.5 cm"), ("METRIC", 0.01, "1.25 mm"), ("IMPERIAL", 1.0, '4.921"')],
