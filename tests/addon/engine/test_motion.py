@@ -35,11 +35,16 @@ def around(angle):
     return Curve.from_components([still, moving])
 
 
-def collected(curves, paths=()):
-    motion = Motion(at_rest(len(curves[0].components)))
-    for k, curve in enumerate(curves):
-        motion.add(iterate(k, curve.vertices, curve, dict(paths).get(k)))
+def followed(iterates, link=None):
+    motion = Motion(link or at_rest(1))
+    for each in iterates:
+        motion.add(each)
     return motion
+
+
+def collected(curves, paths=(), link=None):
+    made = (iterate(k, curve.vertices, curve, dict(paths).get(k)) for k, curve in enumerate(curves))
+    return followed(made, link or at_rest(len(curves[0].components)))
 
 
 def assert_proved(keys, mesh):
@@ -89,9 +94,7 @@ def test_thinning_where_nothing_collides(limit):
 @pytest.mark.parametrize("limit", [None, 2, 6])
 def test_a_real_run_is_proved(limit):
     iterates = list(relax(torus_trefoil(48), RelaxOptions(max_iterations=40)))
-    motion = Motion(at_rest(1))
-    for each in iterates:
-        motion.add(each)
+    motion = followed(iterates)
     keys = motion.keys(is_free, limit)
     assert_proved(keys, iterates[0].curve.mesh)
     assert keys.keys[-1].time == iterates[-1].index
@@ -111,9 +114,7 @@ def finer():
 def test_points_that_are_added_are_on_the_edges_of_all_keys(finer, limit):
     turned = Placement(np.array([[0.0, -2.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.array([1.0, 2.0, 3.0]))
     link = Link((turned,), (1,))
-    motion = Motion(link)
-    for each in finer:
-        motion.add(each)
+    motion = followed(finer, link)
     keys = motion.keys(is_free, limit)
     start, end = finer[0].curve, finer[-1].curve
     assert {len(key.points) for key in keys.keys} == {len(end)}
@@ -128,9 +129,7 @@ def test_points_that_are_added_are_on_the_edges_of_all_keys(finer, limit):
 
 
 def test_splits_move_nothing(finer):
-    motion = Motion(at_rest(1))
-    for each in finer:
-        motion.add(each)
+    motion = followed(finer)
     keys = motion.keys(is_free).keys
     change = next(k for k, each in enumerate(finer) if len(each.curve) > 40)
     shift = np.abs(keys[change].points - keys[change - 1].points).max()
@@ -148,9 +147,7 @@ def untangled():
 @pytest.mark.parametrize("limit", [None, 40])
 def test_strand_moves_are_keyed(untangled, limit):
     """Every vertex of every shape is a point of its key, and the others are on its edges."""
-    motion = Motion(at_rest(1))
-    for each in untangled:
-        motion.add(each)
+    motion = followed(untangled)
     keys = motion.keys(is_free, limit)
     assert_proved(keys, motion.start.mesh)
     iterates = {each.index: each.curve for each in untangled}
@@ -177,9 +174,7 @@ def test_the_first_marker_may_come_to_lie_between_new_vertices():
 
 
 def test_nothing_moves_while_the_mesh_changes(untangled):
-    motion = Motion(at_rest(1))
-    for each in untangled:
-        motion.add(each)
+    motion = followed(untangled)
     keys = motion.keys(is_free)
     way = dict(zip([key.time for key in keys.keys], motion.course(keys).distance, strict=True))
     changes = [each.index for each in untangled[1:] if not each.path]
@@ -191,9 +186,7 @@ def test_an_adaptive_mesh_is_keyed():
     uneven = subdivide(torus_trefoil(60), np.where(np.arange(60) < 12, 20, 2))
     iterates = list(relax(uneven, RelaxOptions(mesh="adaptive", max_iterations=8)))
     assert len(iterates[-1].curve) < len(iterates[0].curve)
-    motion = Motion(at_rest(1))
-    for each in iterates:
-        motion.add(each)
+    motion = followed(iterates)
     assert_proved(motion.keys(is_free), motion.start.mesh)
 
 
@@ -293,10 +286,7 @@ def test_chords_of_different_objects_are_proved_against_each_other(placements):
     """Each square by itself may go straight; together the second must go round the first."""
     link = Link(placements, (1, 1))
     curves = [around(angle) for angle in np.linspace(0, np.pi, 21)]
-    motion = Motion(link)
-    for k, curve in enumerate(curves):
-        motion.add(iterate(k, curve.vertices, curve))
-    keys = motion.keys(is_free, limit=2)
+    keys = collected(curves, link=link).keys(is_free, limit=2)
     mesh = curves[0].mesh
     assert keys.certified
     assert 2 < len(keys.keys) < 10
@@ -307,10 +297,7 @@ def test_chords_of_different_objects_are_proved_against_each_other(placements):
         ]
         assert is_free(mesh, *world)
     for k, s in enumerate(mesh.slices):
-        alone = Motion(Link((placements[k],), (1,)))
-        for index, curve in enumerate(curves):
-            part = Curve(curve.vertices[s])
-            alone.add(iterate(index, part.vertices, part))
+        alone = collected([Curve(curve.vertices[s]) for curve in curves], link=Link((placements[k],), (1,)))
         assert len(alone.keys(is_free, limit=2).keys) == 2
 
 
@@ -340,9 +327,7 @@ def test_the_common_space_is_the_first_objects():
 def test_a_hop_is_keyed_like_a_step():
     """It is one iterate of many legs; only those are keyed that its chord needs."""
     iterates = list(relax(torus_knot(3, 4, 90), RelaxOptions(vertices=90, hops=1, seed=1)))
-    motion = Motion(at_rest(1))
-    for each in iterates:
-        motion.add(each)
+    motion = followed(iterates)
     assert max(len(each.path) for each in iterates) > 20
     keys = motion.keys(is_free)
     assert len(keys.keys) < 2 * len(iterates)
@@ -382,11 +367,7 @@ def test_a_drag_that_is_taken_back_takes_its_meshes_along():
     task, options = torus_trefoil(40), RelaxOptions(vertices=40, mesh="adaptive", max_iterations=30)
     run = list(relax(task, options))
     stage = next(k for k, each in enumerate(run) if k and not each.path)
-    plain, detour = Motion(at_rest(1)), Motion(at_rest(1))
-    for each in run:
-        plain.add(each)
-    for each in run[: stage - 1]:
-        detour.add(each)
+    plain, detour = followed(run), followed(run[: stage - 1])
     curve = run[stage - 2].curve
     for k in range(2):
         curve = subdivide(curve, np.full(curve.mesh.edges, 2))
@@ -454,9 +435,7 @@ def test_points_at_rest_stay_exactly_where_they_are():
 
 def energies_passed(*energies):
     start = regular_polygon(5)
-    motion = Motion(at_rest(1))
-    for k, energy in enumerate(energies):
-        motion.add(iterate(k, start.vertices + 0.1 * k, start, energy=energy))
+    motion = followed(iterate(k, start.vertices + 0.1 * k, start, energy=energy) for k, energy in enumerate(energies))
     return motion.course(motion.keys(is_free)).fall
 
 
