@@ -11,10 +11,11 @@ import numpy as np
 from .arguments import checked
 from .collision import check_embedded, minimal_gap
 from .curve import Curve, Mesh
+from .curve.smooth import evenly
 from .errors import CurveError, MobiusFlowError
 from .hierarchy import moebius_energy
 from .tube import tubes
-from .types import FloatArray, IntArray
+from .types import IntArray
 from .units import centred
 from .verify.trajectory import TrajectoryError, stages
 
@@ -86,7 +87,7 @@ def _on_one_mesh(curves: Sequence[Curve]) -> list[Curve]:
     for curve in curves:
         parts = []
         for k, (part, closed, count) in enumerate(zip(curve.components, curve.mesh.closed, counts, strict=True)):
-            points = _evenly(part, closed, count)
+            points = np.pad(evenly(part, closed, count), ((0, 0), (0, 3 - curve.dimension)))
             if made and closed:
                 before = made[-1].components[k]
                 products = np.fft.ifft(np.conj(np.fft.fft(before, axis=0)) * np.fft.fft(points, axis=0), axis=0)
@@ -94,15 +95,6 @@ def _on_one_mesh(curves: Sequence[Curve]) -> list[Curve]:
             parts.append(points)
         made.append(Curve.from_components(parts, curve.mesh.closed))
     return made
-
-
-def _evenly(part: FloatArray, closed: bool, count: int) -> FloatArray:
-    """Points of a polygon at equal distances along it; shape (count, 3)."""
-    part = np.concatenate([part, part[:1]]) if closed else part
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(part, axis=0), axis=1))])
-    at = np.linspace(0.0, along[-1], count, endpoint=not closed)
-    points = np.stack([np.interp(at, along, x) for x in part.T], axis=1)
-    return np.pad(points, ((0, 0), (0, 3 - part.shape[1])))
 
 
 @checked

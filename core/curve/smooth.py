@@ -65,3 +65,15 @@ def sample_parameters(spline: CubicSpline) -> FloatArray:
 def arc_lengths(points: FloatArray) -> FloatArray:
     """Distances along a polyline from its first point; shape (n,)."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+
+
+def at_shares(points: FloatArray, closed: bool, shares: FloatArray) -> FloatArray:
+    """Points of a polygon at shares of its length; shape (k, m)."""
+    points = np.concatenate([points, points[:1]]) if closed else points
+    along = arc_lengths(points)
+    return np.stack([np.interp(shares * along[-1], along, x) for x in points.T], axis=1)
+
+
+def evenly(points: FloatArray, closed: bool, count: int) -> FloatArray:
+    """So many points of a polygon at equal distances along it, the first one included; shape (count, m)."""
+    return at_shares(points, closed, np.linspace(0.0, 1.0, count, endpoint=not closed))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..curve import Curve, Mesh
-from ..curve.smooth import arc_lengths
+from ..curve.smooth import evenly
 from ..errors import CurveError
 from ..types import FloatArray
 from .inscribed import inscribed, strand_gap
@@ -63,9 +63,7 @@ def overhand(vertices: int | None = None) -> Curve:
     t = np.linspace(-_REACH, _REACH, 2000)
     curve = np.stack([t**3 - 3.0 * t, t**4 - 4.0 * t**2, _FLATNESS * (t**5 - 10.0 * t)], axis=1)
     points = np.concatenate([[_end(curve[0], curve[1])], curve, [_end(curve[-1], curve[-2])]])
-    arc = arc_lengths(points)
-    places = np.linspace(0.0, arc[-1], count)
-    return Curve(np.stack([np.interp(places, arc, x) for x in points.T], axis=1), Mesh((count,), (False,)))
+    return Curve(evenly(points, False, count), Mesh((count,), (False,)))
 
 
 def _end(last: FloatArray, before: FloatArray) -> FloatArray:

@@ -13,6 +13,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial.transform import Rotation
 
 from ..curve import Curve
+from ..curve.smooth import evenly
 from ..types import BoolArray, FloatArray, IntArray
 
 SAMPLES = 256  # of a component: half a spacing is some 0.01 radii of gyration
@@ -161,14 +162,5 @@ def _samples(curve: Curve) -> FloatArray:
     """Points evenly along each component, in space; shape (components, samples, 3)."""
     found = np.zeros((len(curve.components), SAMPLES, 3))
     for k, (part, closed) in enumerate(zip(curve.components, curve.mesh.closed, strict=True)):
-        points = np.concatenate([part, part[:1]]) if closed else part
-        shares = np.linspace(0.0, 1.0, SAMPLES, endpoint=not closed)
-        for axis in range(curve.dimension):
-            found[k, :, axis] = np.interp(shares, arc_shares(curve, k), points[:, axis])
+        found[k, :, : curve.dimension] = evenly(part, closed, SAMPLES)
     return found
-
-
-def arc_shares(curve: Curve, component: int) -> FloatArray:
-    """Shares of a component's length at which its vertices are, and 1 at the end of a closed one."""
-    along = np.concatenate([[0.0], np.cumsum(curve.edge_lengths[curve.mesh.edge_slices[component]])])
-    return np.asarray(along / along[-1])

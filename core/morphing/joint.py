@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..curve import Curve, Mesh
+from ..curve.smooth import arc_lengths, at_shares
 from ..types import FloatArray
-from .alignment import arc_shares
 
 TOGETHER = 0.3  # mean edges that vertices of the two may be apart to be one
 
@@ -21,7 +21,7 @@ def refined_alike(x: Curve, y: Curve, begins: tuple[float, ...]) -> tuple[Curve,
 
 def _alike(x: Curve, y: Curve, component: int, begin: float) -> tuple[FloatArray, FloatArray]:
     closed = x.mesh.closed[component]
-    shares = [arc_shares(curve, component)[: -1 if closed else None] for curve in (x, y)]
+    shares = [arc_lengths(each.components[component]) / each.component_lengths[component] for each in (x, y)]
     near = TOGETHER / max(map(len, shares))
     if closed:
         shares[0] = (shares[0] + begin + near) % 1.0 - near  # so that the first of all has whom to be one with
@@ -36,17 +36,9 @@ def _alike(x: Curve, y: Curve, component: int, begin: float) -> tuple[FloatArray
             places.append(share)
     found = []
     for which, (curve, first) in enumerate(((x, begin), (y, 0.0))):
-        points = _points(curve, component, (np.array(places) - first) % 1.0 if closed else np.array(places))
+        part, own = curve.components[component], np.array(places)
+        points = at_shares(part, closed, (own - first) % 1.0 if closed else own)
         has = [node for node, vertices in enumerate(nodes) if which in vertices]
-        points[has] = curve.components[component][[nodes[node][which] for node in has]]
+        points[has] = part[[nodes[node][which] for node in has]]
         found.append(points)
     return found[0], found[1]
-
-
-def _points(curve: Curve, component: int, shares: FloatArray) -> FloatArray:
-    """Points of a component at shares of its length; shape (k, m)."""
-    part, along = curve.components[component], arc_shares(curve, component)
-    tails = np.clip(np.searchsorted(along, shares, side="right") - 1, 0, len(along) - 2)
-    t = (shares - along[tails]) / np.diff(along)[tails]
-    heads = (tails + 1) % len(part)
-    return np.asarray(part[tails] + t[:, None] * (part[heads] - part[tails]))
