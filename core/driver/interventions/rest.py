@@ -29,30 +29,31 @@ class Rest(Intervention):
     loosest: float = number(1e-4)  # tolerance from which on gradients are all that is asked for
     gradient: float = number(1e-3)  # of √E, its norm at which second derivatives take over
     exact: float = number(1e-8)  # of E, what may be left to gain
+    rounds: int = number(6)  # of steps at rest: in a curved valley, where they are short, there is no end to them
     trusted: float = number(0.1)  # largest σ: where more is needed, as on a ridge, L-BFGS goes on
 
     def __post_init__(self) -> None:
         self.started()
 
     def started(self) -> None:
-        self._below = self.gradient
+        self._below, self._rounds = self.gradient, 0
 
     def stepped(self, step: Step) -> Change | None:
         point, mesh = self.run.point, self.run.options.mesh
         relative = point.gradient_norm / energy_scale(point.problem.mesh, point.energy) ** 0.5
+        if relative > 10.0 * self.gradient:  # far from rest, as where a hand has pulled
+            self.started()
         if relative > self._below or not self._applies or mesh == "adaptive":
             return None
         if self.run.options.ends_finer and is_unresolved(self.run.iterate.curve):
             return None
-        self._below = 0.5 * relative  # unless it helps
+        self._below = 0.5 * relative  # in a curved valley these steps, dearer than others, are no better
         try:
             curvature = Curvature(point)
             inverse, _, shift = self.newton.definite(curvature, unresolved(point.curve))
             steps = self._steps(curvature, inverse, shift) if shift <= self.trusted else ()
         except np.linalg.LinAlgError:
             return None
-        if any(step.size >= self.newton.short for step in steps):
-            self._below = self.gradient
         return Change(steps) if steps else None
 
     def converged(self, outcome: Outcome) -> Outcome | Change | None:
@@ -67,7 +68,8 @@ class Rest(Intervention):
             point, least = self.run.point, self._least(self.run.point)
             curvature = Curvature(point)
             inverse, index, shift = self.newton.definite(curvature, unresolved(point.curve))
-            if curvature.gain(inverse) > least:
+            if self._rounds < self.rounds and curvature.gain(inverse) > least:
+                self._rounds += 1
                 steps = self._steps(curvature, inverse, shift)
                 if steps and steps[-1].point.energy < point.energy - least:
                     return Change(steps)

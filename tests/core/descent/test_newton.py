@@ -106,6 +106,23 @@ def test_second_derivatives_take_over_from_gradients(monkeypatch: pytest.MonkeyP
     assert len(few.energies) < 0.7 * len(many.energies)
 
 
+def test_where_steps_gain_little_gradients_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a curved valley; here since vertices may hardly move."""
+    assembled: set[Curvature] = set()
+    definite = Newton.definite
+    short = Newton(search=Armijo(decrease=0.1, first=FirstTrial(max_displacement=3e-5)))
+
+    def noted(self: Newton, curvature: Curvature, shift: float) -> tuple[FactorisedHessian, int, float]:
+        assembled.add(curvature)
+        return definite(self, curvature, shift)
+
+    monkeypatch.setattr(Newton, "definite", noted)
+    change(monkeypatch, Rest, newton=short)
+    result = minimize(lattice_knot("4_1"), FIXED)
+    assert result.status is Status.CONVERGED
+    assert 3 <= len(assembled) < 15
+
+
 def test_loose_tolerances_ask_for_no_more_than_gradients() -> None:
     assert minimize(torus_trefoil(80), replace(FIXED, tolerance=1e-3)).outcome.negative_eigenvalues is None
 
