@@ -18,56 +18,31 @@ def helper():
     return show(bpy.data.objects.new("Helper", None))
 
 
-def located(obj, _helper):
-    obj.keyframe_insert("location", frame=1)
-    return "animation"
-
-
 def carried(obj, helper):
     helper.keyframe_insert("rotation_euler", frame=1)
     obj.parent = helper
-    return "animation of its parent"
 
 
 def shape_keyed(obj, _helper):
     obj.shape_key_add(name="Basis")
     obj.shape_key_add(name="Other").keyframe_insert("value", frame=1)
-    return "animation of its shape"
-
-
-def modifier_keyed(obj, _helper):
-    obj.modifiers.new("Array", "ARRAY").keyframe_insert("count", frame=1)
-    return "animation of its shape"
 
 
 def hooked(obj, helper):
     helper.keyframe_insert("location", frame=1)
     obj.modifiers.new("Hook", "HOOK").object = helper
-    return "the modifier 'Hook'"
-
-
-def waving(obj, _helper):
-    obj.modifiers.new("Wave", "WAVE")
-    return "the modifier 'Wave'"
-
-
-def scattering(obj, _helper):
-    obj.modifiers.new("Dust", "PARTICLE_SYSTEM")
-    return "the modifier 'Dust'"
 
 
 def timed(obj, _helper):
     tree = bpy.data.node_groups.new("Timed", "GeometryNodeTree")
     tree.nodes.new("GeometryNodeInputSceneTime")
     obj.modifiers.new("Nodes", "NODES").node_group = tree
-    return "the modifier 'Nodes'"
 
 
-def falling(obj, _helper):
+def rigid(obj, kind):
     bpy.ops.rigidbody.world_add()
     bpy.context.view_layer.objects.active = obj
-    bpy.ops.rigidbody.object_add(type="ACTIVE")
-    return "physics"
+    bpy.ops.rigidbody.object_add(type=kind)
 
 
 def wave(obj):
@@ -78,7 +53,6 @@ def cut_by_what_waves(obj, _helper):
     bpy.ops.mesh.primitive_cube_add()
     wave(bpy.context.object)
     obj.modifiers.new("Cut", "BOOLEAN").object = bpy.context.object
-    return "the modifier 'Cut'"
 
 
 def cut_by_a_collection(obj, helper):
@@ -87,7 +61,6 @@ def cut_by_a_collection(obj, helper):
     cutters.objects.link(helper)
     cut = obj.modifiers.new("Cut", "BOOLEAN")
     cut.operand_type, cut.collection = "COLLECTION", cutters
-    return "the modifier 'Cut'"
 
 
 def bent_by_a_lattice(obj, _helper):
@@ -95,7 +68,6 @@ def bent_by_a_lattice(obj, _helper):
     lattice.shape_key_add(name="Basis")
     lattice.shape_key_add(name="Other").keyframe_insert("value", frame=1)
     obj.modifiers.new("Bend", "LATTICE").object = lattice
-    return "the modifier 'Bend'"
 
 
 def posed_by_constraints(obj, helper):
@@ -105,14 +77,12 @@ def posed_by_constraints(obj, helper):
     bpy.ops.object.mode_set(mode="OBJECT")
     rig.pose.bones["Bone"].constraints.new("COPY_LOCATION").target = helper
     obj.modifiers.new("Rig", "ARMATURE").object = rig
-    return "the modifier 'Rig'"
 
 
 def textured(obj, _helper):
     texture = bpy.data.textures.new("Clouds", "CLOUDS")
     texture.keyframe_insert("noise_scale", frame=1)
     obj.modifiers.new("Bumps", "DISPLACE").texture = texture
-    return "the modifier 'Bumps'"
 
 
 def nodes(obj, kind):
@@ -125,13 +95,11 @@ def nodes(obj, kind):
 
 def node_keyed(obj, _helper):
     nodes(obj, "GeometryNodeMeshCube").inputs["Size"].keyframe_insert("default_value", frame=1)
-    return "the modifier 'Nodes'"
 
 
 def node_of_an_object(obj, helper):
     helper.keyframe_insert("location", frame=1)
     nodes(obj, "GeometryNodeObjectInfo").inputs["Object"].default_value = helper
-    return "the modifier 'Nodes'"
 
 
 def node_of_a_collection(obj, helper):
@@ -139,7 +107,6 @@ def node_of_a_collection(obj, helper):
     collection = bpy.data.collections.new("Shown")
     collection.objects.link(helper)
     nodes(obj, "GeometryNodeCollectionInfo").inputs["Collection"].default_value = collection
-    return "the modifier 'Nodes'"
 
 
 def input_of_nodes(obj, helper):
@@ -152,26 +119,26 @@ def input_of_nodes(obj, helper):
         getattr(modifier.properties.inputs, socket.identifier).value = helper
     else:
         modifier[socket.identifier] = helper
-    return "the modifier 'Nodes'"
 
 
-@pytest.mark.parametrize(
-    "act",
-    [
-        cut_by_what_waves,
-        cut_by_a_collection,
-        bent_by_a_lattice,
-        posed_by_constraints,
-        textured,
-        node_keyed,
-        node_of_an_object,
-        node_of_a_collection,
-        input_of_nodes,
-    ],
-)
-def test_what_it_is_made_with_stands_still_too(cube, helper, act):
+MADE_WITH = [
+    (cut_by_what_waves, "Cut"),
+    (cut_by_a_collection, "Cut"),
+    (bent_by_a_lattice, "Bend"),
+    (posed_by_constraints, "Rig"),
+    (textured, "Bumps"),
+    (node_keyed, "Nodes"),
+    (node_of_an_object, "Nodes"),
+    (node_of_a_collection, "Nodes"),
+    (input_of_nodes, "Nodes"),
+]
+
+
+@pytest.mark.parametrize(("act", "modifier"), MADE_WITH)
+def test_what_it_is_made_with_stands_still_too(cube, helper, act, modifier):
     assert what_changes(cube) is None
-    assert act(cube, helper) == what_changes(cube)
+    act(cube, helper)
+    assert what_changes(cube) == f"the modifier '{modifier}'"
 
 
 def test_metaballs_are_one_surface():
@@ -194,43 +161,38 @@ def test_objects_that_are_made_with_each_other_stand_still(cube):
     assert what_changes(cube) == "the modifier 'Wrap'"
 
 
-@pytest.mark.parametrize(
-    "act", [located, carried, shape_keyed, modifier_keyed, hooked, waving, scattering, timed, falling]
-)
-def test_what_moves_is_named(cube, helper, act):
-    mover = act(cube, helper)
+MOVED = [
+    (lambda obj, _: obj.keyframe_insert("location", frame=1), "animation"),
+    (carried, "animation of its parent"),
+    (shape_keyed, "animation of its shape"),
+    (lambda obj, _: obj.modifiers.new("Array", "ARRAY").keyframe_insert("count", frame=1), "animation of its shape"),
+    (hooked, "the modifier 'Hook'"),
+    (lambda obj, _: wave(obj), "the modifier 'Wave'"),
+    (lambda obj, _: obj.modifiers.new("Dust", "PARTICLE_SYSTEM"), "the modifier 'Dust'"),
+    (timed, "the modifier 'Nodes'"),
+    (lambda obj, _: rigid(obj, "ACTIVE"), "physics"),
+]
+
+
+@pytest.mark.parametrize(("act", "mover"), MOVED)
+def test_what_moves_is_named(cube, helper, act, mover):
+    act(cube, helper)
     assert what_changes(cube) == mover
     said = f"'Cube' is moved by {mover}, and what is avoided must stand still; "
     assert unsteady([cube], []) == said + "remove that, or leave it out of what is avoided"
 
 
-def still(obj, helper):
-    obj.keyframe_insert("color", frame=1)
+STILL = [
+    lambda obj, _: obj.keyframe_insert("color", frame=1),
+    lambda obj, helper: setattr(obj, "parent", helper),
+    lambda obj, helper: setattr(obj.modifiers.new("Hook", "HOOK"), "object", helper),
+    lambda obj, _: obj.modifiers.new("Array", "ARRAY"),
+    lambda obj, _: setattr(obj.modifiers.new("Wave", "WAVE"), "show_viewport", False),
+    lambda obj, _: rigid(obj, "PASSIVE"),
+]
 
 
-def carried_still(obj, helper):
-    obj.parent = helper
-
-
-def hooked_still(obj, helper):
-    obj.modifiers.new("Hook", "HOOK").object = helper
-
-
-def arrayed(obj, _helper):
-    obj.modifiers.new("Array", "ARRAY")
-
-
-def hidden_wave(obj, _helper):
-    obj.modifiers.new("Wave", "WAVE").show_viewport = False
-
-
-def hit(obj, _helper):
-    bpy.ops.rigidbody.world_add()
-    bpy.context.view_layer.objects.active = obj
-    bpy.ops.rigidbody.object_add(type="PASSIVE")
-
-
-@pytest.mark.parametrize("act", [still, carried_still, hooked_still, arrayed, hidden_wave, hit])
+@pytest.mark.parametrize("act", STILL)
 def test_what_stands_still_does(cube, helper, act):
     act(cube, helper)
     assert what_changes(cube) is None
