@@ -9,9 +9,9 @@ from ...core import MobiusFlowError
 from ...core.messages import Message
 from ..curves.recorded import drawn_radius
 from ..engine.words import named, time_left
-from ..live.checks import READABLE
+from ..live.checks import FILMABLE
 from ..live.modal import clear_status
-from ..live.requirements import Condition, idle, selected_curves
+from ..live.requirements import Condition, idle, shown_curves
 from ..pictures import staging
 from ..pictures.filming import CHOICES, Filming, is_rendering, play, target
 from ..scripting import Relaxation
@@ -31,7 +31,7 @@ class CURVE_OT_mobius_flow_set_up_stage(Button, bpy.types.Operator):
 Your own lights stay; your camera and your world come back with Remove Stage"""
 
     bl_label = "Set Up Stage"
-    needs = (READABLE,)
+    needs = (FILMABLE,)
 
     use_camera: BoolProperty(
         name="Use Camera", description="Render through the stage's camera instead of your own", default=True
@@ -41,7 +41,7 @@ Your own lights stay; your camera and your world come back with Remove Stage"""
     )
 
     def act(self, context: bpy.types.Context) -> None:
-        objects = selected_curves(context)
+        objects = shown_curves(context)
         Relaxation(*objects).set_up_stage(self.use_camera, self.use_world, context.scene.mobius_flow_film.look)
         thin = [obj.name for obj in objects if not obj.hide_render and not drawn_radius(obj)]
         if thin:

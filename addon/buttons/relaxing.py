@@ -18,7 +18,7 @@ from ..engine.words import named
 from ..live import registry
 from ..live.checks import BAKED, CLEARABLE, POLYGONS, RELAXABLE, UNEDITED
 from ..live.modal import Listening, report_result, unseen
-from ..live.requirements import Condition, avoided, container, selected_curves
+from ..live.requirements import Condition, avoided, container, selected_curves, shown_curves
 from ..live.run import Run
 from ..live.viewing import Refresh
 from ..properties import SETTINGS, relax_options, settings
@@ -27,7 +27,7 @@ from ..translations import rpt_
 from .button import Button, button
 
 _ANIMATED = Condition(
-    "Select a curve that was baked first", lambda context: bake.scene_range(selected_curves(context)) is None
+    "Select a curve that was baked first", lambda context: bake.scene_range(shown_curves(context)) is None
 )
 _PICKED = Condition(
     "Pick a mesh as the container first", lambda context: context.scene.mobius_flow_surroundings.container is None
@@ -181,7 +181,7 @@ def clear(_operator: Button, context: bpy.types.Context) -> None:
 @button("Set Scene Range", _ANIMATED)
 def scene_range(operator: Button, context: bpy.types.Context) -> None:
     """Let the scene play all frames of the selected curves' animation, and no others"""
-    scene, animation = context.scene, bake.scene_range(selected_curves(context))
+    scene, animation = context.scene, bake.scene_range(shown_curves(context))
     scene.frame_start, scene.frame_end = animation
     if hidden := unseen(scene, animation):
         operator.report({"WARNING"}, rpt_(hidden))

@@ -15,6 +15,7 @@ from . import bevel
 from .fcurves import FCurves
 from .recorded import Recorded
 from .splines import read
+from .surroundings import TUBE_OF
 
 if TYPE_CHECKING:
     import bpy
@@ -73,6 +74,7 @@ def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, 
     ends = caps(curve, sides)[: None if obj.data.use_fill_caps else 0]
     _fill(mesh, surface[0], [quads(curve, sides), ends])
     made = _object_like(obj, mesh)
+    made[TUBE_OF] = obj
     corners = np.concatenate([curve.tails.repeat(sides), curve.ends.ravel()])  # a curve vertex of each face
     for material in obj.data.materials:
         mesh.materials.append(material)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import bpy
 
 STAGE = "mobius_flow_stage"  # custom property of what only surrounds curves, to be seen with them
+TUBE_OF = "mobius_flow_tube_of"  # custom property of a tube's mesh: the curve object that it was made of
 _MARGIN = 0.1  # of the diagonal of the curves' box
 
 
@@ -139,4 +140,4 @@ def near(
     overlap = (low <= highest + margin).all(axis=1) & (high >= lowest - margin).all(axis=1)
     candidates = (everything[int(k)] for k in np.flatnonzero(overlap & ~mine))
     others = (obj for obj in candidates if obj.type in SOLID and obj not in avoided)
-    return [obj for obj in others if STAGE not in obj and obj.visible_get()]
+    return [obj for obj in others if STAGE not in obj and obj.get(TUBE_OF) not in together and obj.visible_get()]

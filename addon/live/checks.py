@@ -13,7 +13,7 @@ import numpy as np
 
 from ..curves import bake, bevel, sampling
 from ..curves.moving import what_deforms, what_moves
-from .requirements import Check, Curves, Remedy, curves_at_hand
+from .requirements import Check, Curves, Remedy, curves_at_hand, shown_curves
 
 _FLATTEST = 1e-6  # smallest ratio of an object's scales that 32-bit matrices can be inverted with
 
@@ -134,6 +134,7 @@ RELAXABLE = Curves(
     ),
 )
 READABLE = Curves(_OBJECT_MODE, *_SPLINES)
+FILMABLE = Curves(*READABLE.checks, among=shown_curves)
 PAINTABLE = Curves(*READABLE.checks, *_OWN)
 FITTABLE = Curves(
     *PAINTABLE.checks,

@@ -10,7 +10,7 @@ import bpy
 from ...core import MobiusFlowError
 from ...core.messages import Message
 from ..curves.exchange import box
-from ..curves.surroundings import avoidable
+from ..curves.surroundings import TUBE_OF, avoidable
 from . import registry
 
 
@@ -73,6 +73,13 @@ class Condition:
 def selected_curves(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The curve objects that are relaxed together: all that are selected, whichever is active."""
     return [obj for obj in context.selected_objects if obj.type == "CURVE"]
+
+
+def shown_curves(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The curve objects whose motion is seen: those selected, and those that selected tubes' meshes were made of."""
+    made_of = (obj.get(TUBE_OF, obj) for obj in context.selected_objects)
+    there = (obj for obj in made_of if obj is not None and obj.name in context.scene.objects)
+    return [obj for obj in dict.fromkeys(there) if obj.type == "CURVE"]
 
 
 def curves_at_hand(context: bpy.types.Context) -> list[bpy.types.Object]:

@@ -12,7 +12,9 @@ import numpy as np
 
 from ...core import CurveError
 from ..curves.recorded import WorldMotion
-from ..curves.surroundings import STAGE
+from ..curves.splines import read
+from ..curves.surroundings import STAGE, TUBE_OF
+from ..engine.vertex_values import COMPONENT
 from . import camera, stage
 from .looks import DEFAULT, LOOKS
 from .materials import colour_components
@@ -108,12 +110,30 @@ def _paint(objects: Sequence[bpy.types.Object], look: str) -> None:
             colour_components(obj.data, first, look, np.linspace(0.0, 1.0, 2) if alone else None)
             for made in obj.data.materials:
                 made[STAGE] = True
+        for tube in _tubes(obj):
+            if not any(tube.data.materials):
+                _wear(tube.data, obj.data)
         first += len(obj.data.splines)
+
+
+def _tubes(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """The meshes that were made of a curve's tube."""
+    return [each for each in bpy.data.objects if each.type == "MESH" and each.get(TUBE_OF) == obj]
+
+
+def _wear(tube: bpy.types.Mesh, curve: bpy.types.Curve) -> None:
+    """Give a tube's mesh the materials that its curve's splines have."""
+    for material in curve.materials:
+        tube.materials.append(material)
+    component = read(tube.attributes[COMPONENT].data, "value").astype(np.intp)
+    corner = read(tube.loops, "vertex_index", 1, np.int32)[read(tube.polygons, "loop_start", 1, np.int32)]
+    slots = np.array([spline.material_index for spline in curve.splines], dtype=np.int32)
+    tube.polygons.foreach_set("material_index", slots[(component - component.min())[corner]])
 
 
 def _strip(objects: Sequence[bpy.types.Object]) -> None:
     """Take a stage's materials from curves, and those that nothing else uses out of the file, with their images."""
-    for obj in objects:
+    for obj in [*objects, *(tube for each in objects for tube in _tubes(each))]:
         materials = [each for each in obj.data.materials if each is not None and STAGE in each]
         if materials and len(materials) == len(obj.data.materials):
             obj.data.materials.clear()

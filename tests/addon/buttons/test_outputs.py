@@ -15,6 +15,7 @@ from blender_scenes import (
 )
 from mobius_flow.addon.curves import bevel, sampling
 from mobius_flow.addon.curves.keyframes import end_of
+from mobius_flow.addon.curves.surroundings import near
 from mobius_flow.addon.engine.colours import PALETTE, ramp
 from mobius_flow.addon.engine.vertex_values import strand_distances
 from mobius_flow.core import Curve
@@ -289,3 +290,25 @@ def test_stored_points_of_a_static_curve_are_not_moved():
     before = stored(curve.data)
     tube()
     np.testing.assert_array_equal(stored(curve.data), before)
+
+
+def test_a_tubes_mesh_is_filmed_as_its_curve_is():
+    scene, obj = bpy.context.scene, add_hopf_link()
+    relax(keyframes="SHAPE_KEYS", max_iterations=3)
+    made = tube()
+    assert bpy.context.selected_objects == [made]
+    scene.frame_end, scene.mobius_flow_film.look = 1, "NEON"
+    assert bpy.ops.curve.mobius_flow_scene_range() == {"FINISHED"}
+    assert scene.frame_end == 4
+    assert bpy.ops.curve.mobius_flow_set_up_stage() == {"FINISHED"}
+    assert list(made.data.materials) == list(obj.data.materials)
+    slots = np.empty(len(made.data.polygons), dtype=np.int32)
+    made.data.polygons.foreach_get("material_index", slots)
+    assert sorted(np.unique(slots, return_counts=True)[1]) == [len(slots) // 2, len(slots) // 2]
+    obj.hide_set(False)
+    assert made not in near(bpy.context, [obj])
+    bpy.ops.curve.mobius_flow_remove_stage()
+    assert not made.data.materials
+    bpy.data.objects.remove(obj)
+    with pytest.raises(RuntimeError, match="is of type Mesh"):
+        bpy.ops.curve.mobius_flow_set_up_stage()
