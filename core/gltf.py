@@ -21,19 +21,18 @@ _UPRIGHT = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # a quarter turn: our z-axis is up
 @checked
 def animation(shown: Motion, radius: float | None = None) -> bytes:
     """The file: a mesh for each component, and one animation of them all if there are several frames."""
-    frames = [tubes(curve, shown.radius if radius is None else radius) for curve in shown.curves]
-    data = _Data()
-    parts = range(len(frames[0]))
+    surfaces = tubes(shown.curves, shown.radius if radius is None else radius)
+    data, parts = _Data(), range(len(surfaces))
     document: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": "Möbius Flow"},
         "scene": 0,
         "scenes": [{"nodes": list(parts)}],
         "nodes": [{"mesh": k, "name": f"component {k + 1}", "rotation": _UPRIGHT} for k in parts],
-        "meshes": [{"primitives": [_primitive(data, k, [frame[k] for frame in frames])]} for k in parts],
+        "meshes": [{"primitives": [_primitive(data, k, frames)]} for k, frames in enumerate(surfaces)],
         "materials": [_material(colour) for colour in COLOURS],
     }
-    if len(frames) > 1:
-        document["animations"] = [_one_after_the_other(data, len(frames), len(parts))]
+    if len(shown.curves) > 1:
+        document["animations"] = [_one_after_the_other(data, len(shown.curves), len(parts))]
     return data.joined(document)
 
 

@@ -23,7 +23,7 @@ def wire(curve: Curve, width: float | None = None) -> list[Tube]:
     if not 0.0 < width <= widest:
         advice = f"this curve has room for {widest:.4g}; scale it, or relax it further"
         raise CurveError(f"a wire {width:g} wide has no width, or runs into itself: {advice}")
-    return tubes(curve, 0.5 * width, _SIDES)
+    return [tube for (tube,) in tubes([curve], 0.5 * width, _SIDES)]
 
 
 @checked

@@ -1,14 +1,23 @@
-"""Tubes of constant radius around polygons: rings of points, and the triangles between them."""
+"""Tubes around polygons in motion: rings of as many points at every key, in the same order, and faces between them.
 
+Rings neither jump nor twist more than they must. Their normals are carried along the curve by parallel transport;
+carried once round a closed curve they come back turned by the holonomy, and the angle that is missing is spread evenly
+over the length. In a motion that angle may grow beyond half a turn: the self-linking number of the framed curve is a
+whole number, so it cannot change without a jump, and whatever writhe the curve loses its framing gains as twist
+(Călugăreanu, White, Fuller). The last key has the least. Along an arc nothing has to close, and normals do not twist.
+"""
+
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from .curve import Curve
+from .curve import Curve, Mesh
 from .types import FloatArray, IntArray
 
-SIDES = 12
-_SHARPEST = 4.0  # radii by which mitres reach along their edges, at most
+_TINY = float(np.finfo(np.float64).tiny)
+_TURNS = np.array([-1.0, 0.0, 1.0])  # more or less than at the next key
+_LONGEST_MITRE = 2.0  # at corners sharper than 120° rings do not reach as far out as the edges' cylinders meet
 
 
 class Tube(NamedTuple):
@@ -19,54 +28,152 @@ class Tube(NamedTuple):
     faces: IntArray
 
 
-def tubes(curve: Curve, radius: float, sides: int = SIDES) -> list[Tube]:
-    """The tubes around the components of a curve in the plane or in space, with flat ends where they are open.
+def tubes(curves: Sequence[Curve], radius: float, sides: int = 12) -> list[list[Tube]]:
+    """Tubes around curves on one mesh that follow each other, in the plane or in space: by component, then by curve.
 
-    Rings lie in the planes that bisect the angles at vertices, so that every edge is the axis of a cylinder.  From edge
-    to edge the frame is reflected in these planes, which turns it least; round a closed component what is left of
-    turning is spread evenly.
+    Their rings are those of `rings`; the ends of arcs are closed, and flat.
     """
-    parts = (np.pad(part, ((0, 0), (0, 3 - curve.dimension))) for part in curve.components)
-    return [_tube(part, closed, radius, sides) for part, closed in zip(parts, curve.mesh.closed, strict=True)]
+    mesh = curves[0].mesh
+    points = np.array([np.pad(each.vertices, ((0, 0), (0, 3 - each.dimension))) for each in curves])
+    made = []
+    for part, size, closed in zip(mesh.slices, mesh.component_sizes, mesh.closed, strict=True):
+        own, faces = points[:, part], _triangles(Mesh((size,), (closed,)), sides)
+        circle = _circles(own, sides, closed)
+        ring = own[:, :, None] + radius * _mitred(circle, *edges_around(own, closed))
+        made.append([Tube(p.reshape(-1, 3), n.reshape(-1, 3), faces) for p, n in zip(ring, circle, strict=True)])
+    return made
 
 
-def _tube(points: FloatArray, closed: bool, radius: float, sides: int) -> Tube:
-    edges = np.roll(points, -1, axis=0) - points
-    if not closed:
-        edges[-1] = edges[-2]
-    edges /= np.linalg.norm(edges, axis=1, keepdims=True)
-    bisectors = edges + np.roll(edges, 1, axis=0)
-    if not closed:
-        bisectors[0] = edges[0]
-    cosines = np.maximum(np.einsum("nm,nm->n", edges, bisectors), 1e-9)  # at a fold there is no such plane
-    first = np.cross(edges[0], np.eye(3)[np.abs(edges[0]).argmin()])
-    axes = [first / np.linalg.norm(first)]
-    for k in range(1, len(points) + closed):
-        axes.append(_reflected(axes[-1], edges[k - 1], edges[k % len(points)]))
-    u = np.array(axes[: len(points)])
-    v = np.cross(edges, u)
-    turn = np.arctan2(axes[-1] @ v[0], axes[-1] @ u[0]) if closed else 0.0
-    angles = 2 * np.pi * np.arange(sides) / sides - turn * np.arange(len(points))[:, None] / len(points)
-    normals = np.cos(angles)[:, :, None] * u[:, None] + np.sin(angles)[:, :, None] * v[:, None]
-    along = np.einsum("nsm,nm->ns", normals, bisectors) / cosines[:, None]
-    along = np.clip(along, -_SHARPEST, _SHARPEST)
-    rings = points[:, None] + radius * (normals - along[:, :, None] * edges[:, None])
-    return Tube(rings.reshape(-1, 3), normals.reshape(-1, 3), _faces(len(points), sides, closed))
+def rings(points: FloatArray, radii: FloatArray, mesh: Mesh, sides: int) -> FloatArray:
+    """Vertices of the tube, those of a ring one after the other; (keys, n · sides, 3).
+
+    Rings lie in the planes that halve the angle between two edges, and are stretched where these meet at a corner so
+    that the tube is as thick along the edges as it should be. Points: (keys, n, 3); radii: (keys, n).
+    """
+    pieces = []
+    for part, closed in zip(mesh.slices, mesh.closed, strict=True):
+        own = points[:, part]
+        circle = _mitred(_circles(own, sides, closed), *edges_around(own, closed))
+        pieces.append(own[:, :, None] + radii[:, part, None, None] * circle)
+    return np.concatenate(pieces, axis=1).reshape(len(points), -1, 3)
 
 
-def _reflected(axis: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
-    """The image of a vector across an edge in the plane that bisects its angle with the next edge; of length 1."""
-    axis = axis - (axis @ after) / max(1.0 + float(before @ after), 1e-9) * (before + after)
-    axis = axis - (axis @ after) * after
-    return np.asarray(axis / np.linalg.norm(axis))
+def quads(mesh: Mesh, sides: int) -> IntArray:
+    """Faces between rings, edge by edge, seen counterclockwise from outside; (edges · sides, 4)."""
+    j = np.arange(sides)
+    corners = [(mesh.tails, j), (mesh.tails, j + 1), (mesh.heads, j + 1), (mesh.heads, j)]
+    return np.stack([ring[:, None] * sides + side % sides for ring, side in corners], axis=-1).reshape(-1, 4)
 
 
-def _faces(rings: int, sides: int, closed: bool) -> IntArray:
-    ring, side = np.meshgrid(np.arange(rings if closed else rings - 1), np.arange(sides), indexing="ij")
-    a, b = sides * ring + side, sides * ring + (side + 1) % sides
-    c, d = (a + sides) % (rings * sides), (b + sides) % (rings * sides)
-    faces = np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3)
+def caps(mesh: Mesh, sides: int) -> IntArray:
+    """Faces that close the tubes of arcs, two for each, seen counterclockwise from outside; (2 · arcs, sides)."""
+    j = np.arange(sides)
+    both = np.stack([mesh.ends[:, :1] * sides + j[::-1], mesh.ends[:, 1:] * sides + j], axis=1)
+    return np.asarray(both.reshape(-1, sides))
+
+
+def _triangles(mesh: Mesh, sides: int) -> IntArray:
+    """The faces of `quads` and `caps` as triangles, fans with the first corner of each; (faces, 3)."""
+    fans = [
+        np.stack([np.broadcast_to(faces[:, :1], faces[:, 2:].shape), faces[:, 1:-1], faces[:, 2:]], axis=-1)
+        for faces in (quads(mesh, sides), caps(mesh, sides))
+    ]
+    return np.concatenate([fan.reshape(-1, 3) for fan in fans])
+
+
+def _circles(points: FloatArray, sides: int, closed: bool) -> FloatArray:
+    """Unit normals round one component, where its rings are before corners stretch them; (keys, n, sides, 3)."""
+    tau, u = tangents(points, closed), normals(points, closed)
+    theta = 2 * np.pi * np.arange(sides) / sides
+    return turned(u[..., None, :], tau[..., None, :], theta)
+
+
+def _mitred(circle: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
+    """Stretch rings by 1/cos(φ/2) in the plane of a corner where the curve turns by φ; (keys, n, sides, 3)."""
+    cosine = 0.5 * np.linalg.norm(before + after, axis=-1)
+    stretch = np.minimum(1.0 / np.maximum(cosine, 1.0 / _LONGEST_MITRE), _LONGEST_MITRE) - 1.0
+    outward = unit(after - before)
+    return np.asarray(circle + (circle @ outward[..., None]) * (stretch[..., None] * outward)[:, :, None, :])
+
+
+def tangents(points: FloatArray, closed: bool = True) -> FloatArray:
+    """Unit tangents at the vertices of polygons, halfway between those of their edges; (..., n, 3) to same."""
+    before, after = edges_around(points, closed)
+    return unit(before + after)
+
+
+def edges_around(points: FloatArray, closed: bool) -> tuple[FloatArray, FloatArray]:
+    """Unit vectors along the edges before and after each vertex; at an end of an arc twice that of its only edge."""
     if closed:
-        return np.asarray(faces)
-    fan = np.stack([np.zeros(sides - 2, dtype=np.intp), np.arange(1, sides - 1), np.arange(2, sides)], axis=1)
-    return np.asarray(np.concatenate([faces, fan[:, [0, 2, 1]], fan + (rings - 1) * sides]))
+        after = unit(np.roll(points, -1, axis=-2) - points)
+        return np.roll(after, 1, axis=-2), after
+    along = unit(np.diff(points, axis=-2))
+    return np.concatenate([along[..., :1, :], along], axis=-2), np.concatenate([along, along[..., -1:, :]], axis=-2)
+
+
+def normals(points: FloatArray, closed: bool = True) -> FloatArray:
+    """Unit normals at vertices of one polygon in motion, turned as little as possible from key to key; (keys, n, 3)."""
+    tau = tangents(points, closed)
+    bare = _transported(tau)
+    share = _shares_of_length(points) if closed else np.zeros(points.shape[:2])  # of what is missing at the end
+    holonomy = signed_angle(bare[:, 0], carried(bare[:, -1], tau[:, -1], tau[:, 0]), tau[:, 0])
+    angles = -holonomy[:, None] * share
+    normal = np.empty_like(bare)
+    normal[-1] = turned(bare[-1], tau[-1], angles[-1])
+    turns = 0.0
+    for k in range(len(points) - 2, -1, -1):
+        wanted = carried(normal[k + 1], tau[k + 1], tau[k])
+        missing = signed_angle(turned(bare[k], tau[k], angles[k]), wanted, tau[k])
+        turns, offset = _closest(missing, share[k], turns)
+        normal[k] = turned(bare[k], tau[k], angles[k] + 2 * np.pi * turns * share[k] + offset)
+    return normal
+
+
+def carried(normal: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Turn normals by the least rotation that takes unit tangents ``start`` to ``end``; all of shape (..., 3)."""
+    along = _dot(normal, end) / np.maximum(1.0 + _dot(start, end), _TINY)
+    moved = normal - along[..., None] * (start + end)
+    return unit(moved - _dot(moved, end)[..., None] * end)
+
+
+def turned(normal: FloatArray, tau: FloatArray, angle: FloatArray) -> FloatArray:
+    """Turn normals about unit tangents by angles; shapes (..., 3), (..., 3), (...)."""
+    return np.asarray(np.cos(angle)[..., None] * normal + np.sin(angle)[..., None] * np.cross(tau, normal))
+
+
+def signed_angle(start: FloatArray, end: FloatArray, tau: FloatArray) -> FloatArray:
+    """Angles about unit tangents from one normal to the other, in [−π, π]; (..., 3) to (...)."""
+    return np.asarray(np.arctan2(_dot(np.cross(tau, start), end), _dot(start, end)))
+
+
+def unit(vectors: FloatArray) -> FloatArray:
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), _TINY))
+
+
+def _transported(tau: FloatArray) -> FloatArray:
+    """Normals carried along from the first vertex, each by the least rotation from tangent to tangent."""
+    bare = np.empty_like(tau)
+    axis = np.eye(3)[np.abs(tau[:, 0]).argmin(axis=-1)]  # never along the tangent
+    bare[:, 0] = unit(np.cross(tau[:, 0], axis))
+    for i in range(1, tau.shape[1]):
+        bare[:, i] = carried(bare[:, i - 1], tau[:, i - 1], tau[:, i])
+    return bare
+
+
+def _shares_of_length(points: FloatArray) -> FloatArray:
+    """Which part of the length lies before each vertex; (keys, n, 3) to (keys, n)."""
+    lengths = np.linalg.norm(np.roll(points, -1, axis=1) - points, axis=-1)
+    passed = np.cumsum(lengths, axis=1)
+    return np.asarray((passed - lengths) / passed[:, -1:])
+
+
+def _closest(missing: FloatArray, share: FloatArray, turns: float) -> tuple[float, float]:
+    """Whole turns over the length, and an angle for all normals, that leave least of angles that are missing; (n,)."""
+    candidates = turns + _TURNS
+    means = np.exp(1j * (missing - 2 * np.pi * candidates[:, None] * share)).mean(axis=1)
+    best = int(np.abs(means).argmax())
+    return float(candidates[best]), float(np.angle(means[best]))
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("...i,...i->...", a, b))

@@ -122,20 +122,20 @@ def figure(shown: Motion, radius: float | None = None, title: str = "") -> Any:
         [{"type": "scatter", "y": list(energies), "mode": "lines", "line": {"color": COLOURS[0]}}] if energies else []
     )
 
+    made = tubes(shown.curves, radius)
+
     def changing(k: int) -> list[dict[str, Any]]:
         """Traces of a frame: tubes, and of a motion a mark on the line of energies."""
-        corners = (tube.points.T.astype(np.float32) for tube in tubes(shown.curves[k], radius))
+        corners = (frames[k].points.T.astype(np.float32) for frames in made)
         marked = energies[k : k + moves]
         mark = {"type": "scatter", "x": [k], "y": list(marked), "marker": {"size": 11, "color": COLOURS[1]}}
         surfaces = [{"type": "mesh3d", **dict(zip("xyz", xyz, strict=True))} for xyz in corners]
         return [*surfaces, mark] if marked else surfaces
 
-    first = tubes(shown.curves[0], radius)
-    surfaces = [
-        trace | _surface(k, tube.faces.T) for k, (trace, tube) in enumerate(zip(changing(0), first, strict=False))
-    ]
+    first, mark = changing(0)[: len(made)], changing(0)[len(made) :]
+    surfaces = [trace | _surface(k, made[k][0].faces.T) for k, trace in enumerate(first)]
     frames = [{"data": changing(k), "name": str(k)} for k in range(len(shown.curves))] if moves else []
-    traces = [*surfaces, *changing(0)[len(first) :], *line]
+    traces = [*surfaces, *mark, *line]
     return go.Figure({"data": traces, "frames": frames, "layout": _layout(shown, radius, title)})
 
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core import Curve
+from ...core.tube import caps, quads, rings
 from ...core.types import FloatArray, IntArray
 from ..engine.placement import Frame, Placement
 from ..engine.smooth_fit import SmoothFit, bezier_points, fitted
-from ..engine.tube_mesh import caps, quads, rings
 from . import bevel
 from .fcurves import FCurves
 from .recorded import Recorded

@@ -3,7 +3,12 @@
 import numpy as np
 import numpy.typing as npt
 
+from ...core.curve import Mesh
+from ...core.tube import tangents
 from ...core.types import FloatArray
+
+_COSINE = float(np.cos(np.radians(30.0)))  # of the angle from key to key, which costs a tube 3 % of its radius halfway
+_HALVINGS = 5
 
 
 def along(values: npt.NDArray[np.float32], size: int, closed: bool) -> FloatArray:
@@ -30,3 +35,20 @@ def interpolated(values: FloatArray, places: FloatArray) -> FloatArray:
     after = np.minimum(before + 1, len(values) - 1)
     share = (places - before).reshape(-1, *[1] * (values.ndim - 1))
     return np.asarray((1 - share) * values[before] + share * values[after])
+
+
+def places_between(points: FloatArray, mesh: Mesh) -> FloatArray:
+    """Places among keys, 2.5 halfway between the third and the fourth, between which tangents turn by 30° at most.
+
+    Straight lines between two rings make the tube thinner. No gap is halved more than five times: what turns through
+    itself is never smooth. Points: (keys, n, 3).
+    """
+    places = np.arange(len(points), dtype=np.float64)
+    for _ in range(_HALVINGS):
+        shapes, pieces = interpolated(points, places), zip(mesh.slices, mesh.closed, strict=True)
+        tau = np.concatenate([tangents(shapes[:, s], closed) for s, closed in pieces], axis=1)
+        far = np.einsum("kni,kni->kn", tau[:-1], tau[1:]).min(axis=1) < _COSINE
+        if not far.any():
+            break
+        places = np.sort(np.concatenate([places, 0.5 * (places[:-1] + places[1:])[far]]))
+    return places

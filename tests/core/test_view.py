@@ -8,15 +8,12 @@ import subprocess
 
 import numpy as np
 import pytest
-from mobius_flow.core import Curve, CurveError, Mesh, MobiusFlowError, RelaxOptions, Trajectory, minimize, relax
+from mobius_flow.core import Curve, CurveError, MobiusFlowError, RelaxOptions, Trajectory, minimize, relax
 from mobius_flow.core.collision.gap import thickness
 from mobius_flow.core.gltf import animation
 from mobius_flow.core.knots import knot
 from mobius_flow.core.solids import solid, wire
-from mobius_flow.core.tube import tubes
 from mobius_flow.core.view import figure, motion, page, still
-
-ARC = Curve([[0.0, 0, 0], [1, 0, 0], [2, 1, 0], [2, 2, 1]], Mesh((4,), (False,)))
 
 
 @pytest.fixture(scope="module")
@@ -28,20 +25,6 @@ def recorded(tmp_path_factory):
         trajectory.add(iterate)
     trajectory.save(path)
     return path
-
-
-@pytest.mark.parametrize("curve", [knot("3_1"), knot("L6a4"), ARC], ids=["knot", "link", "arc"])
-def test_tubes_are_closed_and_have_their_radius(curve):
-    trimesh = pytest.importorskip("trimesh")
-    radius = 0.2 * thickness(curve)
-    for tube, points, closed in zip(tubes(curve, radius, 24), curve.components, curve.mesh.closed, strict=True):
-        mesh = trimesh.Trimesh(tube.points, tube.faces, process=False)
-        assert mesh.is_watertight
-        assert mesh.is_winding_consistent
-        edges = np.roll(points, -1, axis=0) - points if closed else np.diff(points, axis=0)
-        prism = 0.5 * 24 * np.sin(2 * np.pi / 24) * radius**2  # mitres take as much as they give
-        assert mesh.volume == pytest.approx(prism * np.linalg.norm(edges, axis=1).sum(), rel=1e-2 if closed else 1e-6)
-        assert np.linalg.norm(tube.normals, axis=1) == pytest.approx(1.0)
 
 
 def test_wires_are_as_wide_as_there_is_room():
