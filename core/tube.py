@@ -154,7 +154,7 @@ def _transported(tau: FloatArray) -> FloatArray:
     """Normals carried along from the first vertex, each by the least rotation from tangent to tangent."""
     bare = np.empty_like(tau)
     axis = np.eye(3)[np.abs(tau[:, 0]).argmin(axis=-1)]  # never along the tangent
-    bare[:, 0] = unit(np.cross(tau[:, 0], axis))
+    bare[:, 0] = unit(axis - _dot(axis, tau[:, 0])[..., None] * tau[:, 0])
     for i in range(1, tau.shape[1]):
         bare[:, i] = carried(bare[:, i - 1], tau[:, i - 1], tau[:, i])
     return bare

@@ -10,6 +10,7 @@ from ..arguments import checked
 from ..curve import Curve
 from ..diagrams import linking_numbers
 from ..errors import CurveError
+from ..tube import normals, turned
 from ..types import FloatArray
 from .inscribed import arc_steps, inscribed
 
@@ -100,9 +101,9 @@ class Tube:
         reach = _reach(*_samples(spline, _COARSE))
         count = min(max(_COARSE, math.ceil(curve.length / (_SPACING * reach))), _FINE)
         center, tangent = _samples(spline, count)
-        across = _transported(tangent)
-        turned = Curve.from_components([center, center + 0.3 * reach * across])
-        across = _turned(across, tangent, -2.0 * np.pi * linking_numbers(turned)[0] * np.arange(count) / count)
+        across = normals(center[None])[0]
+        beside = Curve.from_components([center, center + 0.3 * reach * across])
+        across = turned(across, tangent, -2.0 * np.pi * linking_numbers(beside)[0] * np.arange(count) / count)
         length = float(np.linalg.norm(np.diff(center, axis=0, append=center[:1]), axis=1).sum())
         return cls(length, reach, np.stack([center, across, np.cross(tangent, across)], axis=1))
 
@@ -139,21 +140,3 @@ def _reach(points: FloatArray, tangents: FloatArray) -> float:
     height = np.linalg.norm(np.cross(chord, tangents[None]), axis=2)
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.nanmin(squared / (2.0 * height)))
-
-
-def _transported(tangents: FloatArray) -> FloatArray:
-    """Unit normals carried along without turning, then turned at a constant rate so that they close; shape (n, 3)."""
-    normals = np.empty_like(tangents)
-    normal = np.eye(3)[np.abs(tangents[0]).argmin()]
-    for k, tangent in enumerate(np.concatenate([tangents, tangents[:1]])):
-        normal = normal - (normal @ tangent) * tangent
-        normal /= np.linalg.norm(normal)
-        if k < len(tangents):
-            normals[k] = normal
-    first, tangent = normals[0], tangents[0]
-    angle = math.atan2(np.cross(first, normal) @ tangent, first @ normal)
-    return _turned(normals, tangents, -angle * np.arange(len(tangents)) / len(tangents))
-
-
-def _turned(normals: FloatArray, tangents: FloatArray, angles: FloatArray) -> FloatArray:
-    return np.asarray(np.cos(angles)[:, None] * normals + np.sin(angles)[:, None] * np.cross(tangents, normals))
