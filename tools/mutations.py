@@ -535,8 +535,8 @@ MUTANTS = (
     Mutant(
         "tubes of no thickness",
         "addon/engine/tube.py",
-        "max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2)",
-        "max(nearest**2 - 0.25 * spacing**2, 0.0)",
+        " - 0.25 * np.square(lengths), 0.25 * np.square(ends))",
+        " - 0.25 * np.square(lengths), 0.0)",
         f"{ENGINE}/test_tube.py::test_strands_side_by_side_have_a_gap_however_long_their_edges_are",
     ),
     Mutant(

@@ -18,7 +18,7 @@ from ...core.curve.distances import strand_gaps
 from ...core.types import FloatArray
 from .interpolation import interpolated
 from .motion import Keys, Proof
-from .tube import AIR, thickest_radius
+from .tube import AIR, between_edges, thickest_radius
 
 _POINTS = 350  # into which a film's curve is split at least: long edges have nothing to round
 _ROUND = 0.8  # of the free radius: the length over which corners are rounded
@@ -108,9 +108,7 @@ def _free_radii(curve: Curve, thickest: float) -> FloatArray:
     """Half the gap to other strands at every vertex, at most ``thickest``, changing gently along the curve."""
     spacing = np.maximum(curve.edge_lengths[curve.mesh.outgoing], curve.edge_lengths[curve.mesh.incoming])
     gaps = strand_gaps(curve, 2 * thickest / AIR + float(spacing.max()))
-    # edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side
-    gaps = np.sqrt(np.maximum(gaps**2 - 0.25 * spacing**2, 0.25 * gaps**2))
-    radii: FloatArray = np.minimum(thickest, 0.5 * AIR * gaps)
+    radii: FloatArray = np.minimum(thickest, 0.5 * AIR * between_edges(gaps, spacing))
     for piece, edges, closed in zip(curve.mesh.slices, curve.mesh.edge_slices, curve.mesh.closed, strict=True):
         both_ways = (_rising(radii[piece], curve.edge_lengths[edges], closed, way) for way in (1, -1))
         radii[piece] = np.minimum(*both_ways)

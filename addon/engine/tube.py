@@ -7,6 +7,7 @@ import numpy as np
 from ...core import Curve, Obstacle
 from ...core.collision.clearance import clears
 from ...core.curve.distances import nearest_strands
+from ...core.types import FloatArray
 
 _THICKEST = 0.016  # of a component's length: a round circle's tube is then a tenth of its radius
 _DISTINCT = 3.0  # two points lie on different strands if they are this many times further apart along the curve
@@ -51,9 +52,13 @@ def strand_gap(curve: Curve, widest: float) -> float:
         spacing = float(some.edge_lengths.max())
         nearest = nearest_strands(some, _DISTINCT, widest + spacing)
         if some is curve or nearest >= 0.5 * widest:
-            # Edges are nearer than their ends: by no more than this when the ends of the nearest two lie side by side.
-            return float(np.sqrt(max(nearest**2 - 0.25 * spacing**2, 0.25 * nearest**2)))
+            return float(between_edges(nearest, spacing))
         widest = nearest
+
+
+def between_edges(ends: FloatArray | float, lengths: FloatArray | float) -> FloatArray:
+    """How near edges are whose ends are so far apart: by no more nearer than this where the nearest lie side by side."""
+    return np.sqrt(np.maximum(np.square(ends) - 0.25 * np.square(lengths), 0.25 * np.square(ends)))
 
 
 def _thinned(curve: Curve, distance: float) -> Curve:

@@ -90,10 +90,10 @@ def _joint(x: Iterate, y: Iterate, alignment: Alignment, task: Task) -> list[Ite
         moved[ends] = curve.vertices[ends]
         return moved
 
-    turn = followed(curve, turned, TURN / max(alignment.angle, TURN), task.obstacles)
-    if turn is None:
+    turning = followed(curve, turned, TURN / max(alignment.angle, TURN), task.obstacles)
+    if turning is None:
         return None
-    start, goal = refined_alike(curve.with_vertices(turn[-1]), y.curve, alignment.begins)
+    start, goal = refined_alike(curve.with_vertices(turning[-1]), y.curve, alignment.begins)
     if not all(survives_rounding(each, task.obstacles) for each in (start, goal)):
         return None
     a, b = start.vertices, goal.vertices
@@ -101,4 +101,4 @@ def _joint(x: Iterate, y: Iterate, alignment: Alignment, task: Task) -> list[Ite
     if legs is None:
         return None
     begun = on_mesh(y, start, tuple(start.mesh.ends.ravel().tolist()))
-    return [*gone(x, turn), begun, *gone(begun, legs), on_mesh(y, y.curve, y.pins)]
+    return [*gone(x, turning), begun, *gone(begun, legs), on_mesh(y, y.curve, y.pins)]
