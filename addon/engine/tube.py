@@ -57,7 +57,7 @@ def strand_gap(curve: Curve, widest: float) -> float:
 
 
 def between_edges(ends: FloatArray | float, lengths: FloatArray | float) -> FloatArray:
-    """How near edges are whose ends are so far apart: by no more nearer than this where the nearest lie side by side."""
+    """How near edges are whose ends are so far apart; no nearer, where the ends of the nearest two lie side by side."""
     return np.sqrt(np.maximum(np.square(ends) - 0.25 * np.square(lengths), 0.25 * np.square(ends)))
 
 
