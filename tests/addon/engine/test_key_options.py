@@ -38,18 +38,18 @@ def half_way(keys, frames):
 
 @pytest.mark.parametrize("limit", [None, 60])
 @pytest.mark.parametrize("pace", [Pace.EVEN, Pace.DISTANCE])
-def test_half_of_the_motion_takes_half_of_the_frames(motion, pace, limit):
+def test_half_of_the_motion_is_travelled_in_the_middle_of_the_frames(motion, pace, limit):
     keys = motion.keys(is_free, limit, pace)
     assert keys.certified
     frames = Timing(pace=pace).frames(motion.course(keys))
     assert (frames[0], frames[-1]) == (1, 250)
-    assert 0.4 < half_way(keys, frames) < 0.65
+    assert 1 / 3 < half_way(keys, frames) < 2 / 3
 
 
 def test_by_iterate_it_does_not(motion):
     """What even timing is for: the test above notices if nothing is made even."""
     keys = motion.keys(lambda *_: True)
-    assert half_way(keys, Timing(pace=Pace.ITERATE).frames(motion.course(keys))) < 0.35
+    assert half_way(keys, Timing(pace=Pace.ITERATE).frames(motion.course(keys))) < 1 / 4
 
 
 def test_thinned_keys_are_passed_when_they_are_without_thinning(motion):
