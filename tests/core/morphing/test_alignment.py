@@ -5,11 +5,12 @@ import pytest
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import knot, smooth_knot
-from mobius_flow.core.morphing.alignment import Freedom, alignments
+from mobius_flow.core.morphing.alignment import Alignment, Freedom, alignments
 from mobius_flow.core.morphing.joint import refined_alike
 from scipy.spatial.transform import Rotation
 
 TURN = Rotation.from_rotvec([0.3, -1.1, 2.0])
+QUARTER = Rotation.from_euler("z", 90.0, degrees=True).as_matrix()
 
 
 def hidden(curve, begin=17, backwards=False, order=None):
@@ -28,6 +29,14 @@ def test_a_knot_is_laid_upon_itself(name, backwards):
     there = best.moved(curve.vertices, 1.0)
     distances = np.linalg.norm(there[:, None] - hidden(curve).vertices, axis=2).min(axis=1)
     assert distances.max() < 0.02 * np.ptp(there, axis=0).max()
+
+
+def test_halfway_sizes_and_angles_have_gone_half_their_way():
+    square = np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
+    grown = Alignment(QUARTER, 4.0, np.zeros(3), np.array([6.0, 0, 0]), (0,), (False,), (0.0,), 0.0)
+    for share, size, angle in ((0.0, 1.0, 0.0), (0.5, 2.0, 45.0), (1.0, 4.0, 90.0)):
+        there = [6.0 * share, 0, 0] + size * Rotation.from_euler("z", angle, degrees=True).apply(square)
+        np.testing.assert_allclose(grown.moved(square, share), there, atol=1e-12)
 
 
 def test_components_are_matched_in_all_orders():
