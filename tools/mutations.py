@@ -488,14 +488,14 @@ MUTANTS = (
         "addon/engine/markers.py",
         "low, high = part * p // q, (part + 1) * p // q",
         "low, high = part * p / q, (part + 1) * p / q",
-        f"{ENGINE}/test_motion.py::test_strand_moves_are_keyed",
+        f"{ENGINE}/test_markers.py::test_strand_moves_are_keyed",
     ),
     Mutant(
         "markers more than a turn behind",
         "addon/engine/markers.py",
         "after -= size * np.floor(after[0] / size)",
         "pass",
-        f"{ENGINE}/test_motion.py::test_the_first_marker_may_come_to_lie_between_new_vertices",
+        f"{ENGINE}/test_markers.py::test_the_first_marker_may_come_to_lie_between_new_vertices",
     ),
     Mutant(
         "the start is rounded for nothing",

@@ -63,6 +63,9 @@ def test_what_lies_in_the_container_never_touches_it_whatever_is_pressed():
     obj.select_set(True)
     assert avoided(bpy.context) == [ball]
     assert avoided(bpy.context, "") == []
+    obj.select_set(False)
+    assert avoided(bpy.context) == []
+    obj.select_set(True)
     ball.hide_set(True)
     assert avoided(bpy.context) == []
     ball.hide_set(False)
