@@ -5,7 +5,7 @@ import os
 import re
 from pathlib import Path
 
-from ..core import CurveError, MobiusFlowError, knot_list
+from ..core import CurveError, MobiusFlowError, OptionError, knot_list
 from ..core.curve.io import WRITTEN_FORMATS
 from ..core.errors import counted
 from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
@@ -65,7 +65,7 @@ def _run(options: argparse.Namespace) -> int:
     curves.format_for(options.output, options.format)
     check_place(options.output)
     try:
-        curve = (smooth_knot if options.smooth else knot)(options.name, vertices=options.vertices)
+        curve = (smooth_knot if options.smooth else knot)(options.name, options.vertices)
     except UnknownKnotError as error:
         raise UnknownKnotError(f"{error}; see mobius-flow knot --list") from error
     if len(curve) > (most := curves.MAX_VERTICES):
@@ -77,6 +77,8 @@ def _run(options: argparse.Namespace) -> int:
 
 def _write_list(options: argparse.Namespace) -> int:
     """A file for each knot of a list; those that cannot be drawn are left out, and named in the end."""
+    if options.smooth:
+        raise OptionError("--smooth is for names of the table, and lists have codes; leave it out")
     if not os.path.isdir(options.output):
         raise MobiusFlowError(f"{options.output}: is no directory; a list of knots makes a file for each in one")
     suffix, refused, written = options.format or "txt", [], set[str]()

@@ -6,6 +6,7 @@ from typing import Any
 # parts of curves, numbered from 1, and what is around them: facts of other messages, for which Blender has other words
 COMPONENT, OBSTACLE = "component {number}", "obstacle {name}"
 EDGE, VERTEX, VERTEX_COUNT = "edge {number}", "vertex {number}", "{count} vertices"
+OF_GOAL = "{goal}: {reason}"  # what a curve is to become has parts of its own
 
 
 class Message(str):

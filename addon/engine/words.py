@@ -4,9 +4,10 @@ from collections.abc import Sequence
 
 from ...core.driver.outcome import AT_REST
 from ...core.driver.rises import RAISED
-from ...core.messages import COMPONENT, EDGE, OBSTACLE, VERTEX, VERTEX_COUNT, Message
+from ...core.messages import COMPONENT, EDGE, OBSTACLE, OF_GOAL, VERTEX, VERTEX_COUNT, Message
 
 _MAX_NAMES = 3
+_SPLINE = "spline {number} of {name}"
 _WORDS = {
     AT_REST: Message("converged"),
     EDGE: Message("segment {number}"),
@@ -33,7 +34,7 @@ def _quoted(name: str) -> str:
 def spline_names(objects: Sequence[str], counts: Sequence[int]) -> list[Message]:
     """Names of all splines of some objects, of which each has so many."""
     return [
-        Message("spline {number} of '{name}'", number=k, name=name)
+        Message(_SPLINE, number=k, name=_quoted(name))
         for name, count in zip(objects, counts, strict=True)
         for k in range(1, count + 1)
     ]
@@ -45,10 +46,13 @@ def in_blenders_words(message: str, splines: Sequence[Message]) -> str:
     def word(said: Message) -> Message:
         if said.template == COMPONENT:
             number: int = said.facts["number"]
-            return splines[number - 1]
+            return splines[number - 1] if goal is None else Message(_SPLINE, number=number, name=goal)
         return Message(_WORDS[said.template], **said.facts) if said.template in _WORDS else said
 
-    return message.reworded(word) if isinstance(message, Message) else message
+    if not isinstance(message, Message):
+        return message
+    goal = message.facts["goal"] if message.template == OF_GOAL else None
+    return (message if goal is None else message.facts["reason"]).reworded(word)
 
 
 def time_left(seconds: float) -> Message:

@@ -13,7 +13,7 @@ from ..deadline import TimeLimit
 from ..driver import Iterate, Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
 from ..driver.loop import within
 from ..errors import CurveError, MobiusFlowError, OptionError, counted
-from ..messages import Message
+from ..messages import OF_GOAL, Message
 from ..task import Task
 from ..threads import BLAS
 from ..units import check_units
@@ -131,7 +131,7 @@ class _Way:
         except CurveError as error:
             if task is first:
                 raise
-            raise CurveError(f"{name}: {error}") from error  # whose components and places are not the first one's
+            raise CurveError(Message(OF_GOAL, goal=name, reason=str(error))) from error  # its place is not the first's
 
     @property
     def end(self) -> Iterate:

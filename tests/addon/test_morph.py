@@ -55,6 +55,14 @@ def test_what_cannot_be_is_said_and_nothing_changes():
         bpy.ops.curve.mobius_flow_morph()
 
 
+def test_what_is_wrong_with_a_goal_is_said_of_its_splines():
+    moving, goal = add_curve([RECTANGLE]), add_curve([[(0.0, 0, 0), (1, 1, 0), (1, 0, 0), (0, 1, 0)]])
+    name = goal.name
+    told = f"^Segment 1 of spline 1 of '{name}' and segment 3 of spline 1 of '{name}' touch"
+    with pytest.raises(MobiusFlowError, match=told):
+        Relaxation(moving).morph(goal, **SHORT)
+
+
 def test_goals_reach_the_worker(tmp_path):
     link = Link((Placement(np.eye(3), np.zeros(3)),), (1,))
     goals = {"Links": knot("hopf", 40), "Bent": Curve(ZIGZAG)}

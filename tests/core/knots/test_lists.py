@@ -67,6 +67,8 @@ def test_a_list_becomes_files(tmp_path, capsys):
     assert main(["knot", str(tmp_path / "list.csv"), str(tmp_path / "out"), "--format", "obj"]) == 2
     assert "1 of 3 knots cannot be made: odd: " in capsys.readouterr().err
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["3_1.obj", "5_2.obj"]
+    assert main(["knot", str(tmp_path / "list.csv"), str(tmp_path / "out"), "--smooth"]) == 2
+    assert "--smooth is for names of the table" in capsys.readouterr().err
 
 
 def test_links_of_spherogram():
