@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from ..addon.pictures import export, film
+from ..addon.engine.playing import Playing, check_dimension
+from ..addon.pictures import export
 from ..core import Curve, Iterate, MobiusFlowError, Result
 from ..core.curve import check_closed
 from ..core.curve.io import FORMATS, WRITTEN_FORMATS, Format
@@ -14,7 +15,7 @@ from ..core.errors import OptionError, wrong_suffix
 from . import curves
 from .progress import show_frames
 
-Writer = Callable[[str, Result, Sequence[Iterate], bool, film.Playing], object]
+Writer = Callable[[str, Result, Sequence[Iterate], bool, Playing], object]
 
 
 @dataclass(frozen=True)
@@ -31,15 +32,15 @@ def _curve_output(form: Format, name: str | None = None) -> Output:
     return Output(lambda path, result, *_: curves.write(path, result.curve, name), form.text)
 
 
-def _scene_output(write: Callable[[str, Sequence[Iterate], bool, film.Playing], object], is_played: bool) -> Output:
+def _scene_output(write: Callable[[str, Sequence[Iterate], bool, Playing], object], is_played: bool) -> Output:
     def admit(curve: Curve) -> None:
-        film.check_dimension(curve)
+        check_dimension(curve)
         check_closed(curve, "scenes, films and pictures")
 
     return Output(lambda path, _, iterates, *how: write(path, iterates, *how), admit, True, is_played)
 
 
-def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool, playing: film.Playing) -> None:
+def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool, playing: Playing) -> None:
     try:
         export.write_movie(path, iterates, show_frames if shown else None, playing)
     except KeyboardInterrupt:

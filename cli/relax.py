@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from ..addon.pictures.film import Playing
+from ..addon.engine.playing import Playing
 from ..addon.pictures.looks import DEFAULT, LOOKS
 from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
 from ..core.driver import Relaxation, finish

@@ -3,8 +3,8 @@
 import hashlib
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import MobiusFlowError
@@ -15,26 +15,23 @@ from .exchange import key_points
 from .fcurves import animated, count_own
 from .splines import Splines, shape
 
-if TYPE_CHECKING:
-    import bpy
-
 _RECORD = "mobius_flow_bake"  # custom property of curve data
 _DRIVEN = ("splines", "eval_time", "key_blocks")  # beginnings of paths of drivers that move points
 _BEVEL = ("bevel_depth", "bevel_resolution", "use_fill_caps")
 
 
-def remember(data: "bpy.types.Curve", before: "bpy.types.Curve", timing: Timing) -> None:
+def remember(data: bpy.types.Curve, before: bpy.types.Curve, timing: Timing) -> None:
     """Note on curve data that has just been keyed how it was before; nothing is noted on data without keys."""
     if animated(data):
         data[_RECORD] = {"original": before, "holds": [timing.hold_start, 0], "loop": timing.loop}
         update(data, timing)
 
 
-def original(data: "bpy.types.Curve") -> "bpy.types.Curve":
+def original(data: bpy.types.Curve) -> bpy.types.Curve:
     return data[_RECORD]["original"]
 
 
-def update(data: "bpy.types.Curve", timing: Timing | None = None) -> None:
+def update(data: bpy.types.Curve, timing: Timing | None = None) -> None:
     """Note how the keys are after they were changed here, or, with a timing, more of them were written."""
     record = data[_RECORD]
     record["fingerprint"], record["shapes"] = _fingerprint(data), _digest(data)
@@ -44,7 +41,7 @@ def update(data: "bpy.types.Curve", timing: Timing | None = None) -> None:
         record["bevel_depth"], record["holds"] = data.bevel_depth, [record["holds"][0], after]
 
 
-def scale_bevel(data: "bpy.types.Curve", factor: float) -> None:
+def scale_bevel(data: bpy.types.Curve, factor: float) -> None:
     """Scale the bevel; if it is the one that was baked, it still counts as such."""
     record, ours = data[_RECORD], data.bevel_depth == data[_RECORD]["bevel_depth"]
     data.bevel_depth *= factor
@@ -52,28 +49,28 @@ def scale_bevel(data: "bpy.types.Curve", factor: float) -> None:
         record["bevel_depth"] = data.bevel_depth
 
 
-def loops(data: "bpy.types.Curve") -> bool:
+def loops(data: bpy.types.Curve) -> bool:
     """Whether a baked curve goes back to where it began."""
     return bool(data[_RECORD].get("loop", False))
 
 
-def is_baked(data: "bpy.types.Curve") -> bool:
+def is_baked(data: bpy.types.Curve) -> bool:
     """Whether a curve has the keys that were written here, and neither others nor other points."""
     record = data.get(_RECORD)
     return record is not None and record["original"] is not None and list(record["fingerprint"]) == _fingerprint(data)
 
 
-def was_baked(data: "bpy.types.Curve") -> bool:
+def was_baked(data: bpy.types.Curve) -> bool:
     """Whether a curve was baked, whatever has become of its keys and points since."""
     return _RECORD in data
 
 
-def is_edited(data: "bpy.types.Curve") -> bool:
+def is_edited(data: bpy.types.Curve) -> bool:
     """Whether somebody has moved points of a baked curve's shape keys: a look at all of them, not for every redraw."""
     return bool(data[_RECORD]["shapes"] != _digest(data))
 
 
-def scene_range(objects: Sequence["bpy.types.Object"]) -> tuple[int, int] | None:
+def scene_range(objects: Sequence[bpy.types.Object]) -> tuple[int, int] | None:
     """First and last frame of baked objects' animations with their rests, wherever keys have been moved to."""
     firsts, lasts = [], []
     for data in [obj.data for obj in objects if is_baked(obj.data)]:
@@ -84,7 +81,7 @@ def scene_range(objects: Sequence["bpy.types.Object"]) -> tuple[int, int] | None
     return (min(firsts), max(lasts)) if firsts else None
 
 
-def continued(objects: Sequence["bpy.types.Object"], options: KeyOptions) -> KeyOptions:
+def continued(objects: Sequence[bpy.types.Object], options: KeyOptions) -> KeyOptions:
     """The options that let an animation go on where the last of some baked objects comes to rest."""
     played = scene_range(objects)
     assert played is not None, "they are baked"
@@ -97,13 +94,11 @@ def continued(objects: Sequence["bpy.types.Object"], options: KeyOptions) -> Key
     return replace(options, output=Output.SHAPE_KEYS if not options.animated else options.output, timing=timing)
 
 
-def clear(obj: "bpy.types.Object") -> None:
+def clear(obj: bpy.types.Object) -> None:
     """Take a baked curve's keys away and give the curve back that was there before.
 
     A bevel that was changed since the keys were written stays, and so do the materials that splines were given.
     """
-    import bpy
-
     data = obj.data
     before, bevel_depth = original(data), data[_RECORD]["bevel_depth"]
     slots = [spline.material_index for spline in data.splines]
@@ -118,13 +113,13 @@ def clear(obj: "bpy.types.Object") -> None:
         bpy.data.curves.remove(before)
 
 
-def forget(obj: "bpy.types.Object") -> None:
+def forget(obj: bpy.types.Object) -> None:
     """Take a curve's keys away, and what is remembered if it was baked; the curve itself is left as its last key."""
     keyframes.erase(obj)
     obj.data.pop(_RECORD, None)
 
 
-def _fingerprint(data: "bpy.types.Curve") -> list[int]:
+def _fingerprint(data: bpy.types.Curve) -> list[int]:
     """Numbers of keys, of F-curves and of points, and which splines are open; -1 where somebody else's animation is."""
     keys = data.shape_keys
     owner, moved = keys or data, data.animation_data
@@ -138,7 +133,7 @@ def _fingerprint(data: "bpy.types.Curve") -> list[int]:
     return [blocks, -1 if own is None else own, points, *open_ones]
 
 
-def _digest(data: "bpy.types.Curve") -> str:
+def _digest(data: bpy.types.Curve) -> str:
     """A name for where the points are at all shape keys."""
     hashed = hashlib.blake2b(digest_size=16)
     for block in data.shape_keys.key_blocks if data.shape_keys else ():

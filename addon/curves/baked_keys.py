@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import Curve, MobiusFlowError
@@ -19,9 +19,6 @@ from .exchange import closed, key_points, write_points
 from .keyframes import coordinate_curves, scale_radii
 from .splines import read
 
-if TYPE_CHECKING:
-    import bpy
-
 
 class BakedKeys:
     """What baked curve objects, their transforms evaluated, are at each of their keys; ``frames``: as stored, (n, 3).
@@ -29,7 +26,7 @@ class BakedKeys:
     Raises MobiusFlowError if they have not equally many keys, so that they were not baked together.
     """
 
-    def __init__(self, objects: Sequence["bpy.types.Object"]) -> None:
+    def __init__(self, objects: Sequence[bpy.types.Object]) -> None:
         self._objects = objects
         sizes = [[len(spline.points) for spline in obj.data.splines] for obj in objects]
         open_too = tuple(flag for obj in objects for flag in closed(obj.data))
@@ -68,7 +65,7 @@ class BakedKeys:
         return sum(not is_free(self.mesh, a, b) for a, b in pairwise(common))
 
 
-def keep_size(objects: Sequence["bpy.types.Object"], measure: Measure, reference: int) -> BakedKeys:
+def keep_size(objects: Sequence[bpy.types.Object], measure: Measure, reference: int) -> BakedKeys:
     """Scale all keys about their barycenters to the size of one of them, and the tubes drawn around them alike.
 
     `engine.size` says why that makes no contact; what the rounded keys are is to be proved once more. Raises
@@ -83,7 +80,7 @@ def keep_size(objects: Sequence["bpy.types.Object"], measure: Measure, reference
     return keys
 
 
-def keyed_points(data: "bpy.types.Curve") -> list[Frame]:
+def keyed_points(data: bpy.types.Curve) -> list[Frame]:
     """Points of a curve at each of its keys, (n, 3)."""
     if data.shape_keys:
         return [key_points(block) for block in data.shape_keys.key_blocks]
@@ -93,7 +90,7 @@ def keyed_points(data: "bpy.types.Curve") -> list[Frame]:
     return list(np.stack(columns, axis=1).reshape(len(columns[0]), -1, 3))
 
 
-def _move_keys(data: "bpy.types.Curve", frames: Sequence[Frame]) -> None:
+def _move_keys(data: bpy.types.Curve, frames: Sequence[Frame]) -> None:
     """Move the points at each key, (n, 3), and leave its time; the curve itself gets those of the last one."""
     if data.shape_keys:
         for block, frame in zip(data.shape_keys.key_blocks, frames, strict=True):
@@ -108,6 +105,6 @@ def _move_keys(data: "bpy.types.Curve", frames: Sequence[Frame]) -> None:
     write_points(data, frames[-1])
 
 
-def _keys_of(curve: "bpy.types.FCurve") -> Frame:
+def _keys_of(curve: bpy.types.FCurve) -> Frame:
     """Frames and values; shape (keys, 2)."""
     return read(curve.keyframe_points, "co", 2)

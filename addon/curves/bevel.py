@@ -6,8 +6,8 @@ one that has been given another depth since is the artist's.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import Curve, CurveError, Obstacle
@@ -18,20 +18,17 @@ from .exchange import stretch
 from .recorded import Recorded, in_world
 from .splines import radii
 
-if TYPE_CHECKING:
-    import bpy
-
 _FITTED = "mobius_flow_tube"  # custom property of curve data: depths that were fitted
 _RESOLUTION = 6
 
 
-def can_fit(data: "bpy.types.Curve") -> bool:
+def can_fit(data: bpy.types.Curve) -> bool:
     """Whether a curve is drawn as a line or a plain round tube; any other shape is the user's own."""
     plain = data.bevel_mode == "ROUND" and data.taper_object is None and not data.extrude and not data.offset
     return plain and all((radii(spline) == 1).all() for spline in data.splines)
 
 
-def is_fitted(data: "bpy.types.Curve") -> bool:
+def is_fitted(data: bpy.types.Curve) -> bool:
     """Whether a curve is drawn as the tube that was fitted to it."""
     return data.bevel_depth in list(data.get(_FITTED, ()))
 
@@ -41,20 +38,20 @@ def fitting_radius(curve: Curve, obstacles: Sequence[Obstacle] = ()) -> float:
     return radius_beside(curve, free_radius(curve, thickest_radius(curve)), obstacles)
 
 
-def fit(data: "bpy.types.Curve", radius: float) -> None:
+def fit(data: bpy.types.Curve, radius: float) -> None:
     """Draw a curve as the tube that fits, and note that it is one."""
     draw(data, radius)
     data[_FITTED] = sorted({*data.get(_FITTED, ()), data.bevel_depth})
 
 
-def draw(data: "bpy.types.Curve", radius: float) -> None:
+def draw(data: bpy.types.Curve, radius: float) -> None:
     """Draw a curve as a tube of this radius."""
     if not data.bevel_depth:
         data.bevel_resolution, data.use_fill_caps = _RESOLUTION, True  # which closed splines have no use for
     data.bevel_depth = radius
 
 
-def fit_tubes(objects: Sequence["bpy.types.Object"]) -> None:
+def fit_tubes(objects: Sequence[bpy.types.Object]) -> None:
     """Fit the bevels of curve objects that are shown together.
 
     Where all have the same number of shape keys, tubes are fitted at each of them, and otherwise at the end. Raises

@@ -1,8 +1,8 @@
 """Curve objects in, polygons in world space out, and back, whatever the object's transform."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import Curve, CurveError, Mesh
@@ -12,13 +12,10 @@ from ..engine.placement import Frame, Link, Placement
 from . import sampling
 from .splines import coordinates, read
 
-if TYPE_CHECKING:
-    import bpy
-
 _FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
 
 
-def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
+def read_link(objects: Sequence[bpy.types.Object]) -> tuple[Curve, Link]:
     """Read the splines of curve objects in world space, one component each, and where they are stored.
 
     Splines that are not cyclic are open components, smooth ones the polygons drawn for them. Raises CurveError if a
@@ -31,12 +28,12 @@ def read_link(objects: Sequence["bpy.types.Object"]) -> tuple[Curve, Link]:
     return Curve.from_components(world, [flag for obj in objects for flag in closed(obj.data)]), link
 
 
-def closed(data: "bpy.types.Curve") -> tuple[bool, ...]:
+def closed(data: bpy.types.Curve) -> tuple[bool, ...]:
     """Whether each spline is closed; those that are not cyclic are open."""
     return tuple(bool(spline.use_cyclic_u) for spline in data.splines)
 
 
-def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
+def read_splines(obj: bpy.types.Object) -> list[FloatArray]:
     """The polygons of all splines in the object's coordinates, (n, 3) each; raises as `read_link` does."""
     smooth = sampling.smooth_splines(obj.data)
     frames = sampling.sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
@@ -51,12 +48,12 @@ def read_splines(obj: "bpy.types.Object") -> list[FloatArray]:
     return [frame.astype(np.float64) for frame in frames]
 
 
-def stretch(obj: "bpy.types.Object") -> float:
+def stretch(obj: bpy.types.Object) -> float:
     """The most that an object's coordinates are stretched on the way to the world."""
     return float(np.linalg.norm(np.array(obj.matrix_world)[:3, :3], 2))
 
 
-def box(obj: "bpy.types.Object") -> tuple[FloatArray, FloatArray]:
+def box(obj: bpy.types.Object) -> tuple[FloatArray, FloatArray]:
     """The least and the greatest coordinates of the corners of an object's box in the world."""
     matrix = np.array(obj.matrix_world)
     with np.errstate(invalid="ignore"):  # where points are not finite
@@ -64,10 +61,8 @@ def box(obj: "bpy.types.Object") -> tuple[FloatArray, FloatArray]:
     return corners.min(axis=0), corners.max(axis=0)
 
 
-def length(scene: "bpy.types.Scene", value: float) -> str:
+def length(scene: bpy.types.Scene, value: float) -> str:
     """Write a length with its unit, in four digits or so."""
-    import bpy
-
     units = scene.unit_settings
     text = bpy.utils.units.to_string(
         units.system, "LENGTH", value * units.scale_length, precision=4, split_unit=units.use_separate
@@ -75,17 +70,17 @@ def length(scene: "bpy.types.Scene", value: float) -> str:
     return str(text).strip()
 
 
-def key_points(block: "bpy.types.ShapeKey") -> Frame:
+def key_points(block: bpy.types.ShapeKey) -> Frame:
     """Coordinates of all points at a shape key; shape (n, 3)."""
     return read(block.data, "co", 3)
 
 
-def key_radii(block: "bpy.types.ShapeKey") -> Frame:
+def key_radii(block: bpy.types.ShapeKey) -> Frame:
     """Radii of all points at a shape key, relative to the bevel depth; shape (n,)."""
     return read(block.data, "radius")
 
 
-def write_points(data: "bpy.types.Curve", frame: Frame) -> None:
+def write_points(data: bpy.types.Curve, frame: Frame) -> None:
     """Move the points of all splines; shape (n, 3), the object's coordinates."""
     first = 0
     for spline in data.splines:
@@ -97,10 +92,8 @@ def write_points(data: "bpy.types.Curve", frame: Frame) -> None:
     data.update_tag()
 
 
-def new_curve_data(name: str, mesh: Mesh) -> "bpy.types.Curve":
+def new_curve_data(name: str, mesh: Mesh) -> bpy.types.Curve:
     """Make curve data of poly splines, one for each component, with all points still at the origin."""
-    import bpy
-
     data = bpy.data.curves.new(name, "CURVE")
     data.dimensions = "3D"
     for size, is_closed in zip(mesh.component_sizes, mesh.closed, strict=True):

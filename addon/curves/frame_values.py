@@ -3,13 +3,12 @@
 They are about the middles of the rings as these are shown, and so hold between keys too, and need no extension.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import bpy
 
 from ...core.curve.distances import STRAND_RATIO
 from ..engine.vertex_values import COMPONENT, DISTANCE
-
-if TYPE_CHECKING:
-    import bpy
 
 ARC_LENGTH, CURVATURE = "arc_length", "curvature"
 RING, CLOSED = "ring", "closed"  # attributes that the nodes read: which vertex of the curve, and whether that is closed
@@ -17,17 +16,13 @@ _NAME = "Möbius Flow Attributes"
 _FAR = 1e30
 
 
-def add(tube: "bpy.types.Object") -> None:
+def add(tube: bpy.types.Object) -> None:
     """Give a tube's mesh, whose vertices have `RING`, `CLOSED` and `COMPONENT`, the modifier."""
-    import bpy
-
     tree = bpy.data.node_groups.get(_NAME) or _tree()
     tube.modifiers.new(_NAME, "NODES").node_group = tree
 
 
-def _tree() -> "bpy.types.NodeTree":
-    import bpy
-
+def _tree() -> bpy.types.NodeTree:
     tree = bpy.data.node_groups.new(_NAME, "GeometryNodeTree")
     tree.is_modifier = True
     for way in ("INPUT", "OUTPUT"):
@@ -40,13 +35,11 @@ def _tree() -> "bpy.types.NodeTree":
 class _Nodes:
     """Makes nodes; what they are given and give are sockets, in the order in which Blender shows them."""
 
-    def __init__(self, tree: "bpy.types.NodeTree") -> None:
+    def __init__(self, tree: bpy.types.NodeTree) -> None:
         self._tree = tree
 
     def __call__(self, kind: str, *values: Any, out: int = 0, **settings: Any) -> Any:
         """Make a node; None leaves an input as it is."""
-        import bpy
-
         node = self._tree.nodes.new(kind)
         for name, value in settings.items():
             setattr(node, name, value)

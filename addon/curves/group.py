@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import Curve
@@ -20,9 +20,6 @@ from .member import Member
 from .pins import pin, pinned_vertices, unpin
 from .splines import coordinates
 
-if TYPE_CHECKING:
-    import bpy
-
 
 class Group:
     """Curve objects, the link that their splines are, and what is written to them.
@@ -33,7 +30,7 @@ class Group:
     vertices are stored. Raises CurveError if the splines cannot be read.
     """
 
-    def __init__(self, objects: Sequence["bpy.types.Object"], continues: bool = False) -> None:
+    def __init__(self, objects: Sequence[bpy.types.Object], continues: bool = False) -> None:
         self.continues = continues
         self._members = [Member(obj, continues) for obj in objects]
         self._shown: tuple[Curve, Frame, KeyOptions, float | None] | None = None
@@ -55,10 +52,10 @@ class Group:
         return named(self.names)
 
     @property
-    def objects(self) -> list["bpy.types.Object"]:
+    def objects(self) -> list[bpy.types.Object]:
         return [obj for member in self._members if (obj := member.object) is not None]
 
-    def member(self, number: int) -> "bpy.types.Object | None":
+    def member(self, number: int) -> bpy.types.Object | None:
         """One of the objects, by its number among those that there were; None if it is gone."""
         return self._members[number].object
 
@@ -191,10 +188,8 @@ class Group:
 
 
 @contextmanager
-def _outside_edit_mode(objects: Sequence["bpy.types.Object"]) -> Iterator[None]:
+def _outside_edit_mode(objects: Sequence[bpy.types.Object]) -> Iterator[None]:
     """Change curves of which some may just have been opened for editing: close them, and open them again afterwards."""
-    import bpy
-
     mode = next((obj.mode for obj in objects if obj.mode != "OBJECT"), "OBJECT")
     if mode == "OBJECT":
         yield

@@ -4,8 +4,8 @@ Data that has such keys already gets more of them after the last.
 """
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core.types import FloatArray
@@ -15,14 +15,11 @@ from ..engine.placement import Frame
 from .exchange import key_points, key_radii, write_points
 from .fcurves import FCurves, drop_actions, fcurves_of
 
-if TYPE_CHECKING:
-    import bpy
-
 _ONCE = Timing()
 
 
 def writing(
-    obj: "bpy.types.Object",
+    obj: bpy.types.Object,
     keys: Keys,
     frames: FloatArray,
     output: Output,
@@ -42,10 +39,8 @@ def writing(
         yield from _fcurves(obj, keys, frames)
 
 
-def erase(obj: "bpy.types.Object") -> None:
+def erase(obj: bpy.types.Object) -> None:
     """Remove all that `writing` has written but where the points are."""
-    import bpy
-
     drop_actions(obj.data)
     if obj.data.shape_keys:
         uid = obj.data.shape_keys.session_uid
@@ -57,42 +52,40 @@ def erase(obj: "bpy.types.Object") -> None:
         obj.data.animation_data_clear()
 
 
-def remove(data: "bpy.types.Curve") -> None:
+def remove(data: bpy.types.Curve) -> None:
     """Remove curve data that no object has any more, with its keys and the actions that nothing else uses."""
-    import bpy
-
     bare = bpy.data.objects.new(data.name, data)  # Blender removes keys for objects only
     erase(bare)
     bpy.data.objects.remove(bare)
     bpy.data.curves.remove(data)
 
 
-def names(data: "bpy.types.Curve") -> dict[str, str]:
+def names(data: bpy.types.Curve) -> dict[str, str]:
     """The names of curve data, of its shape keys, and of their action or its own."""
     return {kind: block.name for kind, block in _blocks(data).items()}
 
 
-def rename(data: "bpy.types.Curve", wanted: dict[str, str]) -> None:
+def rename(data: bpy.types.Curve, wanted: dict[str, str]) -> None:
     """Give curve data and its keys names that are free now."""
     for kind, block in _blocks(data).items():
         block.name = wanted.get(kind, block.name)
 
 
-def _blocks(data: "bpy.types.Curve") -> "dict[str, bpy.types.ID]":
+def _blocks(data: bpy.types.Curve) -> dict[str, bpy.types.ID]:
     owner = data.shape_keys or data
     action = owner.animation_data.action if owner.animation_data else None
     blocks = {"curve": data, "keys": data.shape_keys, "action": action}
     return {kind: block for kind, block in blocks.items() if block is not None}
 
 
-def output_of(data: "bpy.types.Curve") -> Output | None:
+def output_of(data: bpy.types.Curve) -> Output | None:
     """How the keys that curve data already has are written, or None if it has none."""
     if data.shape_keys:
         return Output.SHAPE_KEYS
     return Output.FCURVES if data.animation_data and data.animation_data.action else None
 
 
-def end_of(data: "bpy.types.Curve") -> Frame:
+def end_of(data: bpy.types.Curve) -> Frame:
     """Points of a curve at the last of its keys, (n, 3); what is stored may be another frame's."""
     if data.shape_keys:
         return key_points(data.shape_keys.key_blocks[-1])
@@ -100,7 +93,7 @@ def end_of(data: "bpy.types.Curve") -> Frame:
     return np.array(last, dtype=np.float32).reshape(-1, 3)
 
 
-def scale_radii(data: "bpy.types.Curve", factors: float | FloatArray) -> None:
+def scale_radii(data: bpy.types.Curve, factors: float | FloatArray) -> None:
     """Multiply the points' radii at all shape keys by one factor, or one for each, (keys,)."""
     blocks = data.shape_keys.key_blocks if data.shape_keys else ()
     for block, factor in zip(blocks, np.broadcast_to(factors, len(blocks)), strict=True):
@@ -108,7 +101,7 @@ def scale_radii(data: "bpy.types.Curve", factors: float | FloatArray) -> None:
 
 
 def _shape_keys(
-    obj: "bpy.types.Object", keys: Keys, frames: FloatArray, radii: FloatArray | None = None, timing: Timing = _ONCE
+    obj: bpy.types.Object, keys: Keys, frames: FloatArray, radii: FloatArray | None = None, timing: Timing = _ONCE
 ) -> Iterator[None]:
     """Absolute shape keys, and an F-curve that runs through them."""
     data = obj.data
@@ -135,7 +128,7 @@ def _shape_keys(
     curves.add("eval_time", 0, np.concatenate([frames, back]), values)
 
 
-def _fcurves(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> Iterator[None]:
+def _fcurves(obj: bpy.types.Object, keys: Keys, frames: FloatArray) -> Iterator[None]:
     """One F-curve for every coordinate of every point, for exporters that know no shape keys."""
     curves = FCurves(obj.data, f"{obj.name} Relaxation")
     values = np.stack([key.points for key in keys.keys], axis=-1).astype(np.float64)
@@ -145,13 +138,13 @@ def _fcurves(obj: "bpy.types.Object", keys: Keys, frames: FloatArray) -> Iterato
         yield
 
 
-def point_paths(data: "bpy.types.Curve") -> Iterator[str]:
+def point_paths(data: bpy.types.Curve) -> Iterator[str]:
     """Where the coordinates of each point are found."""
     for s, spline in enumerate(data.splines):
         yield from (f"splines[{s}].points[{p}].co" for p in range(len(spline.points)))
 
 
-def coordinate_curves(data: "bpy.types.Curve") -> "list[bpy.types.FCurve]":
+def coordinate_curves(data: bpy.types.Curve) -> list[bpy.types.FCurve]:
     """The F-curves of all coordinates of a curve that is keyed by them, point by point."""
     found = {(curve.data_path, curve.array_index): curve for curve in fcurves_of(data)}
     return [found[path, axis] for path in point_paths(data) for axis in range(3)]

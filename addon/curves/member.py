@@ -6,7 +6,8 @@ save. Where such a file is opened or such a step is undone to, `show_originals` 
 """
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+
+import bpy
 
 from ...core import Curve
 from ...core.messages import Message
@@ -21,16 +22,13 @@ from .moving import what_deforms
 from .reference import Reference
 from .splines import Splines, shape
 
-if TYPE_CHECKING:
-    import bpy
-
 _MARK = "mobius_flow_stand_in"  # custom property of stand-ins
 
 
 class Member:
     """A curve object of a run, as for `Group`; nothing of it is touched before `begin`."""
 
-    def __init__(self, obj: "bpy.types.Object", continues: bool = False) -> None:
+    def __init__(self, obj: bpy.types.Object, continues: bool = False) -> None:
         self.name = obj.name
         self.keyed = False  # whether keys are being written, or are written
         self._continues, self._baked = continues, bake.is_baked(obj.data)
@@ -52,19 +50,19 @@ class Member:
         self._splines = Splines.of(obj.data)
         self._plain, self._fitted = bevel.can_fit(obj.data), bevel.is_fitted(obj.data)
 
-    def _show(self, data: "bpy.types.Curve") -> None:
+    def _show(self, data: bpy.types.Curve) -> None:
         original = self._original.get()
         data[_MARK] = {"original": original, "name": data.name}  # copies have the mark too, but another name
         self._stand_in, self._shape = Reference(data), shape(data)
         self._object.get().data = data
 
     @property
-    def object(self) -> "bpy.types.Object | None":
+    def object(self) -> bpy.types.Object | None:
         """The object, whatever its name is now; None if it is gone."""
         return self._object.get()
 
     @property
-    def data(self) -> "bpy.types.Curve | None":
+    def data(self) -> bpy.types.Curve | None:
         """The stand-in, even if the object is gone."""
         return self._stand_in.get() if self._stand_in else None
 
@@ -110,7 +108,7 @@ class Member:
         deformer = what_deforms(obj)
         return Message("{deformer} moves its points", deformer=deformer) if deformer else None
 
-    def _foreign_keys(self, data: "bpy.types.Curve") -> bool:
+    def _foreign_keys(self, data: bpy.types.Curve) -> bool:
         """Whether somebody gave the curve shape keys: they fit the points it has now."""
         return data.shape_keys is not None and not self.keyed
 
@@ -199,13 +197,11 @@ def show_originals() -> None:
             _show_original(data)
 
 
-def _stand_ins() -> "list[bpy.types.Curve]":
-    import bpy
-
+def _stand_ins() -> list[bpy.types.Curve]:
     return [data for data in bpy.data.curves if _MARK in data and data[_MARK]["name"] == data.name]
 
 
-def _show_original(data: "bpy.types.Curve") -> None:
+def _show_original(data: bpy.types.Curve) -> None:
     """Let the original have the users of its stand-in, which goes."""
     _name_original(data)
     original = data.pop(_MARK)["original"]
@@ -214,7 +210,7 @@ def _show_original(data: "bpy.types.Curve") -> None:
         keyframes.remove(data)
 
 
-def _name_original(data: "bpy.types.Curve") -> None:
+def _name_original(data: bpy.types.Curve) -> None:
     """Give the original the name that somebody gave its stand-in."""
     mark, given = data[_MARK], data.name
     if given != mark["name"] and mark["original"] is not None:

@@ -6,13 +6,12 @@ about a curve's points says nothing of what is shown when something moves these 
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import bpy
 
 from ...core.messages import Message
 from .fcurves import fcurves_of
-
-if TYPE_CHECKING:
-    import bpy
 
 _TRANSFORMS = ("location", "rotation", "scale", "delta_", "matrix", "parent")
 _SHAPING = ("modifiers", "pose")  # beginnings of paths of F-curves of an object
@@ -32,12 +31,12 @@ _DEFORMING_NODES = {"GeometryNodeSetPosition", "GeometryNodeSetCurveHandlePositi
 _CHANGING_NODES = {"GeometryNodeInputSceneTime", "GeometryNodeSimulationInput"}
 
 
-def what_moves(obj: "bpy.types.Object") -> Message | None:
+def what_moves(obj: bpy.types.Object) -> Message | None:
     """Say what may move an object or one of its parents by itself, or return None if nothing does."""
     return next(_movers(obj), None)
 
 
-def _movers(obj: "bpy.types.Object") -> Iterator[Message]:
+def _movers(obj: bpy.types.Object) -> Iterator[Message]:
     animation = obj.animation_data
     if animation and animation.nla_tracks:
         yield Message("an NLA track")
@@ -56,11 +55,11 @@ def _movers(obj: "bpy.types.Object") -> Iterator[Message]:
         yield Message("{mover} of its parent", mover=reason) if reason != "its parent" else reason
 
 
-def _any_of(curves: "Iterable[bpy.types.FCurve]", paths: tuple[str, ...] | str) -> bool:
+def _any_of(curves: Iterable[bpy.types.FCurve], paths: tuple[str, ...] | str) -> bool:
     return any(curve.data_path.startswith(paths) for curve in curves)
 
 
-def what_deforms(obj: "bpy.types.Object") -> Message | None:
+def what_deforms(obj: bpy.types.Object) -> Message | None:
     """Say what may move an object's points, of all that is shown, or return None if nothing does."""
     if obj.parent and obj.parent_type in _DEFORMING_PARENTS:
         return Message("The parent of '{name}'", name=obj.name)
@@ -69,7 +68,7 @@ def what_deforms(obj: "bpy.types.Object") -> Message | None:
     return Message("The modifier '{modifier}' of '{name}'", modifier=first.name, name=obj.name) if first else None
 
 
-def deforms(modifier: "bpy.types.Modifier") -> bool:
+def deforms(modifier: bpy.types.Modifier) -> bool:
     """Whether a modifier may move points of a curve.
 
     Others add to what is drawn, as a bevel does; of geometry nodes those do that have no node for positions.
@@ -77,13 +76,13 @@ def deforms(modifier: "bpy.types.Modifier") -> bool:
     return _is_of(modifier, _DEFORMING, _DEFORMING_NODES)
 
 
-def _is_of(modifier: "bpy.types.Modifier", types: set[str], nodes: set[str]) -> bool:
+def _is_of(modifier: bpy.types.Modifier, types: set[str], nodes: set[str]) -> bool:
     if modifier.type == "NODES":
         return any(node.bl_idname in nodes for node in _nodes_of(modifier.node_group, set()))
     return modifier.type in types
 
 
-def _nodes_of(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]") -> "Iterator[bpy.types.Node]":
+def _nodes_of(tree: bpy.types.NodeTree | None, seen: set[bpy.types.NodeTree]) -> Iterator[bpy.types.Node]:
     """Yield the nodes of a tree and of the groups in it that are not muted, each tree once."""
     if tree is None or tree in seen:
         return
@@ -94,7 +93,7 @@ def _nodes_of(tree: "bpy.types.NodeTree | None", seen: "set[bpy.types.NodeTree]"
             yield from _nodes_of(getattr(node, "node_tree", None), seen)
 
 
-def unsteady(avoided: Iterable["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> Message | None:
+def unsteady(avoided: Iterable[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> Message | None:
     """Say what of objects that are avoided, or of curves that avoid them, does not stay as it is, or return None."""
     avoided = list(avoided)
     for obj in avoided:
@@ -110,7 +109,7 @@ def unsteady(avoided: Iterable["bpy.types.Object"], relaxed: Sequence["bpy.types
     return None
 
 
-def unsteady_object(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"]) -> Message | None:
+def unsteady_object(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object]) -> Message | None:
     """Say why an object cannot be avoided, since it does not stand still, or return None if it does."""
     sentence = (
         "'{name}' is moved by {mover}, and what is avoided must stand still; "
@@ -121,7 +120,7 @@ def unsteady_object(obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object
 
 
 def what_changes(
-    obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"] = (), seen: "set[bpy.types.ID] | None" = None
+    obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object] = (), seen: set[bpy.types.ID] | None = None
 ) -> Message | None:
     """Say what may move an object or change its shape, or return None if nothing does.
 
@@ -132,12 +131,10 @@ def what_changes(
     return what_moves(obj) or next(_changes(obj, relaxed, seen), None)
 
 
-def _changes(
-    obj: "bpy.types.Object", relaxed: Sequence["bpy.types.Object"], seen: "set[bpy.types.ID]"
-) -> Iterator[Message]:
+def _changes(obj: bpy.types.Object, relaxed: Sequence[bpy.types.Object], seen: set[bpy.types.ID]) -> Iterator[Message]:
     """Reasons why a shape may change, but for what was seen already."""
 
-    def changing(blocks: "Iterable[bpy.types.ID]") -> bool:
+    def changing(blocks: Iterable[bpy.types.ID]) -> bool:
         found = (each for each in blocks if each not in seen)
         return any(
             what_changes(each, relaxed, seen) if each.id_type == "OBJECT" else _is_animated(each) for each in found
@@ -156,7 +153,7 @@ def _changes(
             yield Message("the modifier '{modifier}'", modifier=modifier.name)
 
 
-def _is_animated(block: "bpy.types.ID | None") -> bool:
+def _is_animated(block: bpy.types.ID | None) -> bool:
     """Whether a datablock has animation that may change a shape; `what_moves` says where an object goes."""
     if block is None or block.animation_data is None:
         return False
@@ -165,16 +162,14 @@ def _is_animated(block: "bpy.types.ID | None") -> bool:
     return bool(animation.nla_tracks) or _any_of(curves, _SHAPING if block.id_type == "OBJECT" else "")
 
 
-def _is_changing(modifier: "bpy.types.Modifier") -> bool:
+def _is_changing(modifier: bpy.types.Modifier) -> bool:
     if modifier.type == "PARTICLE_SYSTEM":
         return bool(modifier.particle_system.settings.type == "EMITTER")
     return _is_of(modifier, _CHANGING, _CHANGING_NODES)
 
 
-def _ingredients(block: "bpy.types.bpy_struct") -> Iterator["bpy.types.ID"]:
+def _ingredients(block: bpy.types.bpy_struct) -> Iterator[bpy.types.ID]:
     """Yield what a modifier or other data refers to: objects, also those of collections, textures and node trees."""
-    import bpy
-
     for each in chain(_pointers(block), _inputs(block)):
         if isinstance(each, bpy.types.Collection):
             yield from each.all_objects
@@ -186,14 +181,12 @@ def _ingredients(block: "bpy.types.bpy_struct") -> Iterator["bpy.types.ID"]:
                 yield from _ingredients(node)
 
 
-def _pointers(block: "bpy.types.bpy_struct") -> "Iterator[Any]":
+def _pointers(block: bpy.types.bpy_struct) -> "Iterator[Any]":
     return (getattr(block, each.identifier) for each in block.bl_rna.properties if each.type == "POINTER")
 
 
-def _inputs(block: "bpy.types.bpy_struct") -> "Iterator[Any]":
+def _inputs(block: bpy.types.bpy_struct) -> "Iterator[Any]":
     """Values of sockets: of a node, and of a modifier, which before Blender 5.2 has them as custom properties."""
-    import bpy
-
     if isinstance(block, bpy.types.Node):
         yield from (getattr(socket, "default_value", None) for socket in block.inputs)
     elif isinstance(block, bpy.types.NodesModifier) and hasattr(block, "properties"):
@@ -202,10 +195,8 @@ def _inputs(block: "bpy.types.bpy_struct") -> "Iterator[Any]":
         yield from (value for _, value in block.items())
 
 
-def _metaballs(obj: "bpy.types.Object") -> Iterator["bpy.types.Object"]:
+def _metaballs(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
     """Yield the metaballs that are one surface with a metaball: those called the same up to the first dot."""
-    import bpy
-
     if obj.type == "META":
         stem = obj.name.partition(".")[0]
         yield from (each for each in bpy.data.objects if each.type == "META" and each.name.partition(".")[0] == stem)

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import Curve
@@ -17,9 +17,6 @@ from .recorded import Recorded
 from .splines import read
 from .surroundings import TUBE_OF
 
-if TYPE_CHECKING:
-    import bpy
-
 COLOUR = "colour"  # attribute of vertices
 _LOOKS = ("bevel_mode", "bevel_depth", "bevel_resolution", "extrude", "offset", "taper_object", "bevel_object")
 _RESOLUTION = 12  # points drawn for each segment of a smooth spline
@@ -32,20 +29,16 @@ _PLACE = (  # a matrix in their stead would be split into these anew, and lose s
 # fmt: on
 
 
-def _object_like(obj: "bpy.types.Object", data: "bpy.types.ID") -> "bpy.types.Object":
+def _object_like(obj: bpy.types.Object, data: bpy.types.ID) -> bpy.types.Object:
     """Make an object of other data with the place and the parent of an object, but not its animation."""
-    import bpy
-
     made = bpy.data.objects.new(data.name, data)
     for name in _PLACE:
         setattr(made, name, getattr(obj, name))
     return made
 
 
-def put_beside(made: "bpy.types.Object", obj: "bpy.types.Object", hide: bool) -> None:
+def put_beside(made: bpy.types.Object, obj: bpy.types.Object, hide: bool) -> None:
     """Put a new object into the collections of the one that it is made of, and select it instead."""
-    import bpy
-
     for collection in obj.users_collection:
         collection.objects.link(made)
     made.select_set(True)
@@ -61,14 +54,12 @@ def put_beside(made: "bpy.types.Object", obj: "bpy.types.Object", hide: bool) ->
 # -- tubes, with the same vertices at every key, for exporters and Geometry Nodes ------------------------------------
 
 
-def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, sides: int) -> "bpy.types.Object":
+def tube_object(obj: bpy.types.Object, recorded: Recorded, radii: FloatArray, sides: int) -> bpy.types.Object:
     """Make a mesh object where a curve object is, with its motion as shape keys, its materials and its caps.
 
     ``radii``: of the tube in the object's coordinates, (keys, n). Rings have ``sides`` vertices; those of curve vertex
     i are i · sides and the ones that follow.
     """
-    import bpy
-
     curve, surface = recorded.mesh, rings(recorded.points, radii, recorded.mesh, sides)
     mesh = bpy.data.meshes.new(f"{obj.name} Tube")
     ends = caps(curve, sides)[: None if obj.data.use_fill_caps else 0]
@@ -85,14 +76,14 @@ def tube_object(obj: "bpy.types.Object", recorded: Recorded, radii: FloatArray, 
     return made
 
 
-def write_values(mesh: "bpy.types.Mesh", values: Mapping[str, FloatArray]) -> None:
+def write_values(mesh: bpy.types.Mesh, values: Mapping[str, FloatArray]) -> None:
     """Keep numbers of curve vertices, (n,) each, as attributes of their rings' vertices."""
     for name, array in values.items():
         attribute = mesh.attributes.new(name, "FLOAT", "POINT")
         attribute.data.foreach_set("value", _on_rings(mesh, array))
 
 
-def write_colours(mesh: "bpy.types.Mesh", colours: FloatArray, material: "bpy.types.Material") -> None:
+def write_colours(mesh: bpy.types.Mesh, colours: FloatArray, material: bpy.types.Material) -> None:
     """Colour a tube by colours of curve vertices, linear RGB, (n, 3), in a material that shows them."""
     # bytes at the corners of faces are the only kind that Alembic keeps
     attribute = mesh.color_attributes.new(COLOUR, "BYTE_COLOR", "CORNER")
@@ -105,11 +96,11 @@ def write_colours(mesh: "bpy.types.Mesh", colours: FloatArray, material: "bpy.ty
     mesh.polygons.foreach_set("material_index", np.zeros(len(mesh.polygons), dtype=np.int32))
 
 
-def _on_rings(mesh: "bpy.types.Mesh", values: FloatArray) -> FloatArray:
+def _on_rings(mesh: bpy.types.Mesh, values: FloatArray) -> FloatArray:
     return np.repeat(values, len(mesh.vertices) // len(values), axis=0).astype(np.float32)
 
 
-def _fill(mesh: "bpy.types.Mesh", vertices: FloatArray, faces: Sequence[IntArray]) -> None:
+def _fill(mesh: bpy.types.Mesh, vertices: FloatArray, faces: Sequence[IntArray]) -> None:
     """Fill a mesh with faces, those with equally many corners in an array of their own."""
     corners = np.concatenate([each.ravel() for each in faces])
     sizes = np.concatenate([np.full(len(each), each.shape[1]) for each in faces])
@@ -123,7 +114,7 @@ def _fill(mesh: "bpy.types.Mesh", vertices: FloatArray, faces: Sequence[IntArray
     mesh.update(calc_edges=True)
 
 
-def _write_keys(made: "bpy.types.Object", surface: FloatArray, frames: FloatArray) -> None:
+def _write_keys(made: bpy.types.Object, surface: FloatArray, frames: FloatArray) -> None:
     """Relative shape keys, of which at most two count at a time: what exporters know, and straight from key to key."""
     for frame, shape in zip(frames, surface, strict=True):
         block = made.shape_key_add(name=f"Frame {frame:g}", from_mix=False)
@@ -140,8 +131,8 @@ def _write_keys(made: "bpy.types.Object", surface: FloatArray, frames: FloatArra
 
 
 def smooth_objects(
-    objects: Sequence["bpy.types.Object"], link: Curve, points: int | None, kind: str
-) -> tuple[list["bpy.types.Object"], SmoothFit]:
+    objects: Sequence[bpy.types.Object], link: Curve, points: int | None, kind: str
+) -> tuple[list[bpy.types.Object], SmoothFit]:
     """Make curve objects of smooth splines where others are, with their bevels and materials.
 
     ``link``: their splines as polygons in the world; ``points``: number of points of each spline, see `fitted`;
@@ -157,9 +148,7 @@ def smooth_objects(
     return made, SmoothFit(link, tuple(shown))
 
 
-def _smooth_object(obj: "bpy.types.Object", control: Sequence[Frame], kind: str) -> "bpy.types.Object":
-    import bpy
-
+def _smooth_object(obj: bpy.types.Object, control: Sequence[Frame], kind: str) -> bpy.types.Object:
     data = bpy.data.curves.new(f"{obj.name} Smooth", "CURVE")
     data.dimensions, data.resolution_u = "3D", _RESOLUTION
     for name in _LOOKS:
@@ -176,7 +165,7 @@ def _smooth_object(obj: "bpy.types.Object", control: Sequence[Frame], kind: str)
     return _object_like(obj, data)
 
 
-def _fill_bezier(spline: "bpy.types.Spline", control: Frame) -> None:
+def _fill_bezier(spline: bpy.types.Spline, control: Frame) -> None:
     bezier = bezier_points(control.astype(np.float64), bool(spline.use_cyclic_u))
     place, right, left = bezier[:, 0], bezier[:, 1], bezier[:, 2]
     if spline.use_cyclic_u:
@@ -193,7 +182,7 @@ def _fill_bezier(spline: "bpy.types.Spline", control: Frame) -> None:
         points.foreach_set(name, array.astype(np.float32).ravel())
 
 
-def _fill_nurbs(spline: "bpy.types.Spline", control: Frame) -> None:
+def _fill_nurbs(spline: bpy.types.Spline, control: Frame) -> None:
     spline.points.add(len(control) - 1)
     spline.points.foreach_set("co", np.pad(control, ((0, 0), (0, 1)), constant_values=1.0).ravel())
     spline.order_u, spline.use_endpoint_u = 4, not spline.use_cyclic_u

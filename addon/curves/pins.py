@@ -8,8 +8,9 @@ pinned too, and no others.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import bpy
 import numpy as np
 
 from ...core import CurveError, Mesh
@@ -18,9 +19,6 @@ from ...core.types import BoolArray, IntArray
 from ..engine.placement import Frame
 from .sampling import kind
 from .splines import control_points, coordinates, read
-
-if TYPE_CHECKING:
-    import bpy
 
 
 @dataclass(frozen=True)
@@ -40,21 +38,21 @@ _MARK = "weight_softbody"
 _PINNED, _FREE = 100.0, 1.0
 
 
-def marked(spline: "bpy.types.Spline") -> BoolArray:
+def marked(spline: bpy.types.Spline) -> BoolArray:
     return np.asarray(read(control_points(spline), _MARK) == _PINNED)
 
 
-def pin(spline: "bpy.types.Spline", chosen: BoolArray) -> None:
+def pin(spline: bpy.types.Spline, chosen: BoolArray) -> None:
     """Pin points of a spline, (points,)."""
     _mark(spline, chosen, _PINNED)
 
 
-def unpin(spline: "bpy.types.Spline", chosen: BoolArray) -> None:
+def unpin(spline: bpy.types.Spline, chosen: BoolArray) -> None:
     """Let pinned points of a spline, (points,), move again; others keep the weights that they have."""
     _mark(spline, chosen & marked(spline), _FREE)
 
 
-def ends(spline: "bpy.types.Spline") -> BoolArray:
+def ends(spline: bpy.types.Spline) -> BoolArray:
     """The first and the last point of an open spline, none of a closed one; (points,)."""
     found = np.zeros(len(control_points(spline)), dtype=bool)
     if not spline.use_cyclic_u:
@@ -62,22 +60,22 @@ def ends(spline: "bpy.types.Spline") -> BoolArray:
     return found
 
 
-def selected(spline: "bpy.types.Spline") -> BoolArray:
+def selected(spline: bpy.types.Spline) -> BoolArray:
     """The points of a spline that are selected in Edit Mode; (points,)."""
     return read(control_points(spline), "select_control_point" if spline.type == "BEZIER" else "select", dtype=bool)
 
 
-def count(data: "bpy.types.Curve") -> int:
+def count(data: bpy.types.Curve) -> int:
     return sum(int(marked(spline).sum()) for spline in data.splines)
 
 
-def places(data: "bpy.types.Curve") -> Frame:
+def places(data: bpy.types.Curve) -> Frame:
     """Coordinates of all pinned points; shape (k, 3)."""
     found = [coordinates(spline)[chosen] for spline in data.splines if (chosen := marked(spline)).any()]
     return np.concatenate([np.empty((0, 3), dtype=np.float32), *found])
 
 
-def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None:
+def check_place(obj: bpy.types.Object, number: int, chosen: BoolArray) -> None:
     """Raise a CurveError if some points, (points,), of a spline lie on no polygon that can be drawn for it."""
     spline = obj.data.splines[number]
     if spline.type != "POLY" and (chosen & ~ends(spline)).any():
@@ -88,7 +86,7 @@ def check_place(obj: "bpy.types.Object", number: int, chosen: BoolArray) -> None
         raise CurveError(Message(sentence, number=number + 1, name=obj.name, kind=kind(spline)))
 
 
-def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[int, ...]:
+def pinned_vertices(objects: Sequence[bpy.types.Object], mesh: Mesh) -> tuple[int, ...]:
     """The pinned vertices of the link that curve objects are, ascending; ``mesh`` has a component for each spline.
 
     Raises CurveError if a pinned point is between the ends of a smooth spline.
@@ -105,7 +103,7 @@ def pinned_vertices(objects: Sequence["bpy.types.Object"], mesh: Mesh) -> tuple[
     return tuple(map(int, np.concatenate(found)))
 
 
-def _mark(spline: "bpy.types.Spline", chosen: BoolArray, weight: float) -> None:
+def _mark(spline: bpy.types.Spline, chosen: BoolArray, weight: float) -> None:
     weights = read(control_points(spline), _MARK)
     weights[chosen] = weight
     control_points(spline).foreach_set(_MARK, weights)

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import Curve
@@ -18,9 +18,6 @@ from .keyframes import coordinate_curves
 from .moving import what_moves
 from .splines import radii
 
-if TYPE_CHECKING:
-    import bpy
-
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
@@ -34,7 +31,7 @@ class Recorded:
     keys: FloatArray
 
     @classmethod
-    def of(cls, obj: "bpy.types.Object") -> "Recorded":
+    def of(cls, obj: bpy.types.Object) -> "Recorded":
         """Read the splines of a curve object; raises CurveError if they cannot be read."""
         data = obj.data
         if not bake.is_baked(data):
@@ -50,9 +47,7 @@ class Recorded:
         return replace(self, frames=frames, points=points, radii=thickness)
 
 
-def in_world(
-    objects: Sequence["bpy.types.Object"], recorded: Sequence[Recorded], shapes: Sequence[FloatArray]
-) -> Curve:
+def in_world(objects: Sequence[bpy.types.Object], recorded: Sequence[Recorded], shapes: Sequence[FloatArray]) -> Curve:
     """Shapes of several objects as one link in world space; (n, 3) each."""
     components = [
         Placement.from_matrix(obj.matrix_world).to_world(points[piece])
@@ -62,7 +57,7 @@ def in_world(
     return Curve.from_components(components, [flag for each in recorded for flag in each.mesh.closed])
 
 
-def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def _from_shape_keys(data: bpy.types.Curve) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     (curve,) = fcurves_of(data.shape_keys)
     frames, blocks = _frames([curve]), data.shape_keys.key_blocks
     points, thickness = (
@@ -72,7 +67,7 @@ def _from_shape_keys(data: "bpy.types.Curve") -> tuple[FloatArray, FloatArray, F
     return frames, interpolated(points, place), interpolated(thickness, place), points
 
 
-def _from_fcurves(data: "bpy.types.Curve", mesh: Mesh) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def _from_fcurves(data: bpy.types.Curve, mesh: Mesh) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     curves = coordinate_curves(data)
     frames = _frames(curves)
     values = np.array([[curve.evaluate(frame) for curve in curves] for frame in frames])
@@ -80,7 +75,7 @@ def _from_fcurves(data: "bpy.types.Curve", mesh: Mesh) -> tuple[FloatArray, Floa
     return frames, points, np.tile(_radii(data, mesh), (len(frames), 1)), points[-1:]
 
 
-def _frames(curves: Sequence["bpy.types.FCurve"]) -> FloatArray:
+def _frames(curves: Sequence[bpy.types.FCurve]) -> FloatArray:
     """Frames between which F-curves run straight: those of their keys, or all where somebody has bent them."""
     keys = [point for curve in curves for point in curve.keyframe_points]
     frames = np.unique([point.co[0] for point in keys])
@@ -89,7 +84,7 @@ def _frames(curves: Sequence["bpy.types.FCurve"]) -> FloatArray:
     return np.asarray(frames, dtype=np.float64)
 
 
-def _radii(data: "bpy.types.Curve", mesh: Mesh) -> FloatArray:
+def _radii(data: bpy.types.Curve, mesh: Mesh) -> FloatArray:
     """Radii at the points drawn for all splines."""
     pieces = zip(data.splines, mesh.component_sizes, strict=True)
     return np.concatenate([along(radii(spline), size, spline.use_cyclic_u) for spline, size in pieces])
@@ -104,7 +99,7 @@ class WorldMotion:
     radii: FloatArray  # radius of the thickest tube at each of them; (frames,)
 
     @classmethod
-    def of(cls, scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "WorldMotion":
+    def of(cls, scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> "WorldMotion":
         """Look at curve objects at all their keys; where something moves them, at all frames of the scene too.
 
         Modifiers are not looked at. Raises CurveError if splines cannot be read.
@@ -125,7 +120,7 @@ class WorldMotion:
 
 
 def _placements(
-    scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"], frames: FloatArray
+    scene: bpy.types.Scene, objects: Sequence[bpy.types.Object], frames: FloatArray
 ) -> dict[str, list[Placement]]:
     """Places of objects by their names, at each of some frames; at a single one as they are now."""
     found: dict[str, list[Placement]] = {obj.name: [] for obj in objects}
@@ -142,7 +137,7 @@ def _placements(
     return found
 
 
-def drawn_radius(obj: "bpy.types.Object") -> float:
+def drawn_radius(obj: bpy.types.Object) -> float:
     """How far what is drawn around an object's curve reaches from it where the radius is 1, in the world."""
     data = obj.data
     return float((data.bevel_depth + data.extrude + abs(data.offset)) * stretch(obj))

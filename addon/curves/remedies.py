@@ -1,7 +1,6 @@
 """What keeps a curve object from being relaxed, changed with nothing else: materials, keys and users stay."""
 
-from typing import TYPE_CHECKING
-
+import bpy
 import numpy as np
 
 from ...core import Curve
@@ -10,27 +9,24 @@ from .exchange import closed, write_points
 from .moving import deforms
 from .splines import Splines
 
-if TYPE_CHECKING:
-    import bpy
 
-
-def make_3d(obj: "bpy.types.Object") -> None:
+def make_3d(obj: bpy.types.Object) -> None:
     """Let points be anywhere; a 2D curve's stay where they are."""
     obj.data.dimensions = "3D"
 
 
-def close(obj: "bpy.types.Object") -> None:
+def close(obj: bpy.types.Object) -> None:
     """Join the ends of all splines that are open."""
     for spline in obj.data.splines:
         spline.use_cyclic_u = True
 
 
-def make_single_user(obj: "bpy.types.Object") -> None:
+def make_single_user(obj: bpy.types.Object) -> None:
     """Give an object curve data of its own; that of others keeps its name and its keys."""
     obj.data = obj.data.copy()
 
 
-def make_local(obj: "bpy.types.Object") -> None:
+def make_local(obj: bpy.types.Object) -> None:
     """Make an object and its curve data this file's own; materials stay linked.
 
     Where the object must stay as it is, because a linked collection has it, a copy is selected in its place.
@@ -41,13 +37,13 @@ def make_local(obj: "bpy.types.Object") -> None:
         _select_instead(obj, local)
 
 
-def _own(block: "bpy.types.ID") -> "bpy.types.ID":
+def _own(block: bpy.types.ID) -> bpy.types.ID:
     """A datablock as this file's own, or a copy of it where only other linked data uses it."""
     own = block.make_local(clear_liboverride=True)
     return own.copy() if own.library else own
 
 
-def to_poly(obj: "bpy.types.Object") -> None:
+def to_poly(obj: bpy.types.Object) -> None:
     """Replace smooth splines by the polygons drawn for them.
 
     Raises CurveError if no polygon is drawn for one of them; nothing is changed then.
@@ -58,10 +54,8 @@ def to_poly(obj: "bpy.types.Object") -> None:
     write_points(obj.data, np.concatenate(frames))
 
 
-def to_curve(obj: "bpy.types.Object") -> "bpy.types.Object":
+def to_curve(obj: bpy.types.Object) -> bpy.types.Object:
     """Make a curve object of a text or of a mesh of edges, which stays; return it, selected in place of all else."""
-    import bpy
-
     bpy.ops.object.select_all(action="DESELECT")
     obj.select_set(True)
     bpy.context.view_layer.objects.active = obj
@@ -73,14 +67,12 @@ def to_curve(obj: "bpy.types.Object") -> "bpy.types.Object":
     return curve
 
 
-def still_copy(obj: "bpy.types.Object") -> "bpy.types.Object":
+def still_copy(obj: bpy.types.Object) -> bpy.types.Object:
     """Copy a curve object as it is shown now, and select the copy in its place; the original stays as it is.
 
     The copy has neither keys, drivers, constraints nor a parent, and none of the modifiers that may move points. The
     points are where keys and modifiers have put them; what geometry nodes and a parent do to them is left out.
     """
-    import bpy
-
     world = obj.matrix_world.copy()
     copy = obj.copy()
     _select_instead(obj, copy)
@@ -96,10 +88,8 @@ def still_copy(obj: "bpy.types.Object") -> "bpy.types.Object":
     return copy
 
 
-def _select_instead(obj: "bpy.types.Object", copy: "bpy.types.Object") -> None:
+def _select_instead(obj: bpy.types.Object, copy: bpy.types.Object) -> None:
     """Put a copy into the collections of the original, selected, and active if the original was."""
-    import bpy
-
     view_layer = bpy.context.view_layer
     was_active = view_layer.objects.active == obj
     own = [each for each in obj.users_collection if each.library is None and each.override_library is None]
@@ -111,10 +101,8 @@ def _select_instead(obj: "bpy.types.Object", copy: "bpy.types.Object") -> None:
         view_layer.objects.active = copy
 
 
-def _shown(obj: "bpy.types.Object") -> Splines:
+def _shown(obj: bpy.types.Object) -> Splines:
     """The splines as keys and modifiers leave them; the modifiers are told to work on the splines themselves."""
-    import bpy
-
     for modifier in filter(deforms, obj.modifiers):
         modifier.use_apply_on_spline = True
     bpy.context.view_layer.update()
@@ -126,7 +114,7 @@ def _shown(obj: "bpy.types.Object") -> Splines:
         evaluated.to_curve_clear()
 
 
-def _strip(obj: "bpy.types.Object") -> None:
+def _strip(obj: bpy.types.Object) -> None:
     """Take away all that moves an object with curve data of its own, or the points of it."""
     for modifier in list(filter(deforms, obj.modifiers)):
         obj.modifiers.remove(modifier)

@@ -1,8 +1,8 @@
 """Bézier and NURBS splines seen as the polygons that Blender draws for them."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import CurveError
@@ -10,24 +10,21 @@ from ...core.messages import Message
 from ..engine.placement import Frame
 from .splines import read
 
-if TYPE_CHECKING:
-    import bpy
-
 _KINDS = {"BEZIER": "Bézier", "NURBS": "NURBS"}
 _MAX_QUESTIONS = 5
 
 
-def kind(spline: "bpy.types.Spline") -> str:
+def kind(spline: bpy.types.Spline) -> str:
     """Name of a spline's type, as messages show it."""
     return _KINDS.get(spline.type, str(spline.type))
 
 
-def smooth_splines(data: "bpy.types.Curve") -> list["bpy.types.Spline"]:
+def smooth_splines(data: bpy.types.Curve) -> list[bpy.types.Spline]:
     """The splines that are no polygons yet."""
     return [spline for spline in data.splines if spline.type != "POLY"]
 
 
-def questions(objects: Sequence["bpy.types.Object"]) -> list[str]:
+def questions(objects: Sequence[bpy.types.Object]) -> list[str]:
     """Ask whether the smooth splines of objects may become polygons, a line each; raises as `sampled` does."""
     smooth = [obj for obj in objects if smooth_splines(obj.data)]
     lines = [_question(obj) for obj in smooth[:_MAX_QUESTIONS]]
@@ -35,7 +32,7 @@ def questions(objects: Sequence["bpy.types.Object"]) -> list[str]:
     return [*lines, Message("{count} more objects have smooth splines too", count=more)] if more else lines
 
 
-def _question(obj: "bpy.types.Object") -> str:
+def _question(obj: bpy.types.Object) -> str:
     smooth = smooth_splines(obj.data)
     kinds = sorted({kind(spline) for spline in smooth})
     points = sum(len(points) for points, spline in zip(sampled(obj), obj.data.splines, strict=True) if spline in smooth)
@@ -47,7 +44,7 @@ def _question(obj: "bpy.types.Object") -> str:
     return Message(several, name=obj.name, count=len(smooth), kinds=both if kinds[1:] else kinds[0], points=points)
 
 
-def sampled(obj: "bpy.types.Object") -> list[Frame]:
+def sampled(obj: bpy.types.Object) -> list[Frame]:
     """Points of all splines, each of shape (n, 3): smooth ones as drawn, at their own preview resolution.
 
     Raises CurveError if no polygon is drawn for a spline.
@@ -66,10 +63,8 @@ def sampled(obj: "bpy.types.Object") -> list[Frame]:
     return loops
 
 
-def _drawn(data: "bpy.types.Curve") -> list[Frame]:
+def _drawn(data: bpy.types.Curve) -> list[Frame]:
     """The line itself, without all that is drawn around it."""
-    import bpy
-
     copy = data.copy()
     bare = bpy.data.objects.new("Sampled", copy)
     try:
@@ -84,7 +79,7 @@ def _drawn(data: "bpy.types.Curve") -> list[Frame]:
         bpy.data.curves.remove(copy)
 
 
-def _loops(mesh: "bpy.types.Mesh") -> list[Frame]:
+def _loops(mesh: bpy.types.Mesh) -> list[Frame]:
     """The chains of a mesh: vertices one after the other, each joined to the next."""
     points, edges = read(mesh.vertices, "co", 3), read(mesh.edges, "vertices", 2, np.int32)
     low, high = np.sort(edges, axis=1).T

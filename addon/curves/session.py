@@ -8,8 +8,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import bpy
 import numpy as np
 
 from ...core import (
@@ -41,9 +42,6 @@ from .exchange import stretch
 from .group import Group
 from .pins import FREE, Held
 from .surroundings import NOTHING, Surroundings
-
-if TYPE_CHECKING:
-    import bpy
 
 
 @dataclass(frozen=True)
@@ -110,7 +108,7 @@ class Session:
 
     def __init__(
         self,
-        objects: Sequence["bpy.types.Object"],
+        objects: Sequence[bpy.types.Object],
         options: RelaxOptions,
         key_options: KeyOptions,
         continues: bool = False,

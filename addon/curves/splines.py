@@ -3,17 +3,15 @@
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import bpy
 import numpy as np
 import numpy.typing as npt
 
 from ...core import Curve
 from ..engine.interpolation import along, on_refined
 from ..engine.placement import Frame
-
-if TYPE_CHECKING:
-    import bpy
 
 _TYPES: dict[str, Any] = {"BOOLEAN": np.int32, "INT": np.int32, "FLOAT": np.float32, "ENUM": np.int32}
 _POINT_VALUES = ("radius", "tilt", "weight_softbody")
@@ -29,7 +27,7 @@ class _Spline:
     points: dict[str, npt.NDArray[Any]]
 
     @classmethod
-    def of(cls, spline: "bpy.types.Spline") -> "_Spline":
+    def of(cls, spline: bpy.types.Spline) -> "_Spline":
         points = control_points(spline)
         arrays = {}
         for prop in _properties(points[0]) if len(points) else ():
@@ -40,7 +38,7 @@ class _Spline:
             del settings["order_u"]  # means nothing, and is made valid when it is set
         return cls(spline.type, len(points), settings, arrays)
 
-    def put(self, spline: "bpy.types.Spline") -> None:
+    def put(self, spline: bpy.types.Spline) -> None:
         points = control_points(spline)
         points.add(self.count - len(points))
         for name, array in self.points.items():
@@ -57,7 +55,7 @@ class Splines:
     active: int | None
 
     @classmethod
-    def of(cls, data: "bpy.types.Curve") -> "Splines":
+    def of(cls, data: bpy.types.Curve) -> "Splines":
         active = next((k for k, spline in enumerate(data.splines) if spline == data.splines.active), None)
         return cls([_Spline.of(spline) for spline in data.splines], active)
 
@@ -79,7 +77,7 @@ class Splines:
             made.append(_Spline("POLY", refined.mesh.component_sizes[k], settings, points))
         return Splines(made, self.active)
 
-    def fill(self, data: "bpy.types.Curve") -> None:
+    def fill(self, data: bpy.types.Curve) -> None:
         """Give these splines to curve data in place of its own."""
         data.splines.clear()
         for spline in self.each:
@@ -98,11 +96,11 @@ class SplineShape:
     closed: bool
 
 
-def shape(data: "bpy.types.Curve") -> list[SplineShape]:
+def shape(data: bpy.types.Curve) -> list[SplineShape]:
     return [SplineShape(each.type, len(control_points(each)), bool(each.use_cyclic_u)) for each in data.splines]
 
 
-def digest(data: "bpy.types.Curve") -> bytes:
+def digest(data: bpy.types.Curve) -> bytes:
     """A name for the points, and for how many keys they have; cheap enough for every redraw."""
     keys = len(data.shape_keys.key_blocks) if data.shape_keys else 0
     hashed = hashlib.blake2b(repr((shape(data), keys)).encode(), digest_size=16)
@@ -111,18 +109,18 @@ def digest(data: "bpy.types.Curve") -> bytes:
     return hashed.digest()
 
 
-def control_points(spline: "bpy.types.Spline") -> Any:
+def control_points(spline: bpy.types.Spline) -> Any:
     """The points of a spline of any type."""
     return spline.bezier_points if spline.type == "BEZIER" else spline.points
 
 
-def coordinates(spline: "bpy.types.Spline") -> Frame:
+def coordinates(spline: bpy.types.Spline) -> Frame:
     """Where the points of a spline of any type are; shape (n, 3)."""
     width = 3 if spline.type == "BEZIER" else 4
     return read(control_points(spline), "co", width).reshape(-1, width)[:, :3]
 
 
-def radii(spline: "bpy.types.Spline") -> Frame:
+def radii(spline: bpy.types.Spline) -> Frame:
     """Radii of the points of a spline of any type, relative to the bevel depth; shape (n,)."""
     return read(control_points(spline), "radius")
 
@@ -134,7 +132,7 @@ def read(items: Any, name: str, width: int = 1, dtype: Any = np.float32) -> npt.
     return array if width == 1 else array.reshape(-1, width)
 
 
-def _properties(owner: "bpy.types.bpy_struct") -> list["bpy.types.Property"]:
+def _properties(owner: bpy.types.bpy_struct) -> list[bpy.types.Property]:
     """Everything that can be written but what belongs to surfaces; the type of a spline is set when it is made."""
     properties = (p for p in owner.bl_rna.properties if p.type in _TYPES and not p.is_readonly)
     return [p for p in properties if p.identifier != "type" and not p.identifier.endswith("_v")]

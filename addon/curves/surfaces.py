@@ -1,8 +1,8 @@
 """What objects show in the 3D view, with their modifiers and all that they show copies of, as triangles and edges."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import MobiusFlowError
@@ -12,15 +12,12 @@ from ..engine.placement import Placement
 from .moving import unsteady_object
 from .splines import read
 
-if TYPE_CHECKING:
-    import bpy
-
 SOLID = {"CURVE", "MESH", "SURFACE", "META", "FONT"}  # what Blender makes meshes of
 WITHOUT_SHAPE = {"ARMATURE", "CAMERA", "LATTICE", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
 
 
 def surfaces(
-    depsgraph: "bpy.types.Depsgraph", objects: Sequence["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]
+    depsgraph: bpy.types.Depsgraph, objects: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]
 ) -> list[list[Surface]]:
     """What each of some objects shows, piece by piece.
 
@@ -52,7 +49,7 @@ def surfaces(
     return [shown[obj.session_uid] for obj in objects]
 
 
-def _check_kind(obj: "bpy.types.Object", shown: str) -> None:
+def _check_kind(obj: bpy.types.Object, shown: str) -> None:
     """Refuse what is neither a mesh nor can be made one: an object's type, or that of a part which it shows besides.
 
     Geometry nodes can give an object parts of other types, such as points; of curves among them no mesh is made.
@@ -65,7 +62,7 @@ def _check_kind(obj: "bpy.types.Object", shown: str) -> None:
         raise MobiusFlowError(Message(sentence if shown == obj.type else beside, name=obj.name, type=kind))
 
 
-def _surface(instance: "bpy.types.DepsgraphObjectInstance") -> Surface | None:
+def _surface(instance: bpy.types.DepsgraphObjectInstance) -> Surface | None:
     """The mesh that is shown at one place; None if there is none."""
     obj = instance.object
     mesh = obj.to_mesh() if obj.type in SOLID else None

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import MobiusFlowError, Obstacle
@@ -17,17 +17,14 @@ from .reference import Reference
 from .splines import read
 from .surfaces import SOLID, WITHOUT_SHAPE, surfaces
 
-if TYPE_CHECKING:
-    import bpy
-
 STAGE = "mobius_flow_stage"  # custom property of what only surrounds curves, to be seen with them
 TUBE_OF = "mobius_flow_tube_of"  # custom property of a tube's mesh: the curve object that it was made of
 _MARGIN = 0.1  # of the diagonal of the curves' box
 
 
 def avoidable(
-    collection: "bpy.types.Collection | None", relaxed: Sequence["bpy.types.Object"]
-) -> Iterator["bpy.types.Object"]:
+    collection: bpy.types.Collection | None, relaxed: Sequence[bpy.types.Object]
+) -> Iterator[bpy.types.Object]:
     """Yield what of a collection is visible, has a shape, and is not relaxed itself."""
     for obj in collection.all_objects if collection is not None else ():
         bare = obj.type == "EMPTY" and obj.instance_type == "NONE"
@@ -35,13 +32,11 @@ def avoidable(
             yield obj
 
 
-def add(scene: "bpy.types.Scene", objects: Sequence["bpy.types.Object"]) -> "bpy.types.Collection":
+def add(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> bpy.types.Collection:
     """Add objects to the collection that the scene's curves avoid, which is made where there is none.
 
     Raises MobiusFlowError if the collection belongs to another file.
     """
-    import bpy
-
     settings = scene.mobius_flow_surroundings
     if settings.avoid is None:
         settings.avoid = bpy.data.collections.new("Avoid")
@@ -80,14 +75,12 @@ class Surroundings:
     _places: tuple[_Place, ...] = ()
 
     @classmethod
-    def of(cls, avoided: Sequence["bpy.types.Object"], relaxed: Sequence["bpy.types.Object"]) -> "Surroundings":
+    def of(cls, avoided: Sequence[bpy.types.Object], relaxed: Sequence[bpy.types.Object]) -> "Surroundings":
         """Read objects as they are shown at the current frame.
 
         Raises MobiusFlowError if one of them is hidden, moves, or shows nothing that can be avoided, or a curve that is
         relaxed moves.
         """
-        import bpy
-
         others = [obj for obj in dict.fromkeys(avoided) if obj not in relaxed]
         if reason := unsteady(others, relaxed):
             raise MobiusFlowError(reason)
@@ -109,7 +102,7 @@ NOTHING = Surroundings()
 
 
 def warning(
-    context: "bpy.types.Context", objects: Sequence["bpy.types.Object"], avoided: Sequence["bpy.types.Object"] = ()
+    context: bpy.types.Context, objects: Sequence[bpy.types.Object], avoided: Sequence[bpy.types.Object] = ()
 ) -> Message | None:
     """Name what is visible near curve objects, and neither one of them nor avoided by them, or return None."""
     if not (found := near(context, objects, avoided)):
@@ -121,8 +114,8 @@ def warning(
 
 
 def near(
-    context: "bpy.types.Context", objects: Sequence["bpy.types.Object"], avoided: Sequence["bpy.types.Object"] = ()
-) -> list["bpy.types.Object"]:
+    context: bpy.types.Context, objects: Sequence[bpy.types.Object], avoided: Sequence[bpy.types.Object] = ()
+) -> list[bpy.types.Object]:
     """Other visible objects with a surface or a line whose boxes in the world overlap those of the curves, enlarged.
 
     Cheap enough for every redraw.

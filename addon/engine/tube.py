@@ -58,7 +58,7 @@ def strand_gap(curve: Curve, widest: float) -> float:
 
 def between_edges(ends: FloatArray | float, lengths: FloatArray | float) -> FloatArray:
     """How near edges are whose ends are so far apart; no nearer, where the ends of the nearest two lie side by side."""
-    return np.sqrt(np.maximum(np.square(ends) - 0.25 * np.square(lengths), 0.25 * np.square(ends)))
+    return np.asarray(np.sqrt(np.maximum(np.square(ends) - 0.25 * np.square(lengths), 0.25 * np.square(ends))))
 
 
 def _thinned(curve: Curve, distance: float) -> Curve:

@@ -1,9 +1,11 @@
 """A camera that follows a moving curve gently, and a floor that stays below it."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+import bpy
+import mathutils
 import numpy as np
+from mathutils import Matrix
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ...core.types import FloatArray
@@ -11,10 +13,6 @@ from ..curves.fcurves import FCurves
 from ..engine.interpolation import interpolated
 from ..engine.placement import Frame
 from .stage import Stage, add
-
-if TYPE_CHECKING:
-    import bpy
-    import mathutils
 
 _LENS = 60.0  # mm
 _SENSOR = 36.0  # mm
@@ -26,21 +24,19 @@ _APERTURE = 0.03  # width of the lens in sizes of the stage: what is a size off 
 
 
 def follow(
-    collection: "bpy.types.Collection",
+    collection: bpy.types.Collection,
     size: tuple[float, float],
     stage: Stage,
-    floor: "bpy.types.Object",
+    floor: bpy.types.Object,
     points: "Sequence[Frame | FloatArray]",
     radii: FloatArray,
     frames: FloatArray,
-) -> "bpy.types.Object":
+) -> bpy.types.Object:
     """Add a camera that sees the whole tube in every frame, and keep the floor just below it.
 
     It swings around the stage, looks at an empty and is focused there. ``size`` is that of its pictures, in any unit;
     the floor is at the height of the stage's middle; points are the vertices, (n, 3), of every key.
     """
-    import bpy
-
     data = bpy.data.cameras.new("Camera")
     data.lens, data.sensor_width = _LENS, _SENSOR
     camera, focus = add(collection, "Camera", data), add(collection, "Focus", None)
@@ -90,10 +86,8 @@ def _targets(
     return targets, _calm(needed.max(axis=1))
 
 
-def _euler(axes: FloatArray) -> "mathutils.Euler":
+def _euler(axes: FloatArray) -> mathutils.Euler:
     """The rotation that turns the world's axes into others, rows."""
-    from mathutils import Matrix
-
     return Matrix(axes.T.tolist()).to_euler()
 
 
@@ -102,7 +96,7 @@ def _calm(values: FloatArray) -> FloatArray:
     return np.asarray(uniform_filter1d(maximum_filter1d(values, _CALM, mode="nearest"), _CALM, mode="nearest"))
 
 
-def _move(obj: "bpy.types.Object", places: FloatArray, frames: FloatArray) -> None:
+def _move(obj: bpy.types.Object, places: FloatArray, frames: FloatArray) -> None:
     """Put an object where it is in the first frame, and let it move if it does."""
     obj.location = places[0]
     if len(places) > 1 and np.ptp(places, axis=0).max() > 0:

@@ -9,7 +9,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -19,18 +19,14 @@ from ...core.deadline import termination_raises
 from ...core.errors import OutputError
 from ...core.files import atomic_write
 from ..engine.motion import Key, Keys
+from ..engine.playing import Origin, Playing, check_dimension, recorded, spatial
 from ..engine.rounded import rounded
 from ..engine.size import Measure
-from . import film, rendering
-from .film import Playing
 from .looks import DEFAULT, LOOKS
-from .movie import Progress, render_movie
-
-if TYPE_CHECKING:
-    import bpy
 
 ONCE = Playing()
 Target = str | os.PathLike[str]
+Progress = Callable[[int, int], None]
 
 _PICTURE = (800, 450)  # width, height
 _FILM = (640, 360)
@@ -58,9 +54,12 @@ def write_blend(path: Target, iterates: Sequence[Iterate], playing: Playing = ON
     ``iterates`` are those of a run, from the start to the last. Raises MobiusFlowError if
     Blender's module is missing or the file cannot be written.
     """
+    require_blender()
+    from . import film, rendering
+
     style = LOOKS[playing.look or DEFAULT]
     _, certified = _played(iterates, lambda scene: rendering.use_cycles(scene, style, *_PICTURE), playing, True)
-    _make(path, _save)
+    _make(path, film.save)
     return certified
 
 
@@ -72,8 +71,10 @@ def write_movie(
     ``progress`` gets the number of frames done and of all frames; without a look it is drawn plainly, in little
     time. Otherwise as `write_blend`.
     """
+    require_blender()
+    from . import movie, rendering
 
-    def set_up(scene: "bpy.types.Scene") -> None:
+    def set_up(scene: Any) -> None:
         if playing.look is not None:
             rendering.use_cycles(scene, LOOKS[playing.look], *_FILM, _FILM_SAMPLES)
         elif rendering.workbench_works():
@@ -83,25 +84,27 @@ def write_movie(
             rendering.skip_frames(scene)
 
     scene, certified = _played(iterates, set_up, playing)
-    _make(path, lambda temporary: render_movie(scene, temporary, progress))
+    _make(path, lambda temporary: movie.render_movie(scene, temporary, progress))
     return certified
 
 
 def _played(
-    iterates: Sequence[Iterate], set_up: Callable[["bpy.types.Scene"], None], playing: Playing, in_place: bool = False
-) -> tuple["bpy.types.Scene", bool]:
+    iterates: Sequence[Iterate], set_up: Callable[[Any], None], playing: Playing, in_place: bool = False
+) -> tuple[Any, bool]:
     """A scene that plays a relaxation, and whether all it shows is proved.
 
     ``in_place``: as large and where it is, with its corners; otherwise these are rounded.
     """
-    motion, origin = film.recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
+    from . import film
+
+    motion, origin = recorded(iterates, Measure.LENGTH if in_place else Measure.RADIUS)
     playing = playing.timed(motion)
     timing = playing.timing
     keys, mesh = motion.keys(is_free, timing.length, timing.pace), motion.start.mesh
     frames = timing.frames(motion.course(keys))
     if not in_place:
         mesh, keys = rounded(mesh, keys, is_free)
-    scene = _empty_scene()
+    scene = film.empty_scene()
     set_up(scene)
     film.compose(scene, keys, frames, mesh, playing, origin if in_place else None)
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
@@ -110,42 +113,29 @@ def _played(
 
 def write_still(path: Target, iterates: Sequence[Iterate], look: str | None = None) -> bool:
     """Render the relaxed curve, the last iterate, to a .png; otherwise as `write_blend`."""
-    motion, _ = film.recorded(iterates)
+    motion, _ = recorded(iterates)
     keys = motion.result(is_free)
     return _render(path, keys, motion.start.mesh, _PICTURE, look)
 
 
 def write_picture(path: Target, curve: Curve, width: int, height: int, look: str | None = None) -> None:
     """Render a curve to a .png of so many pixels; raises as `write_blend` does."""
-    film.check_dimension(curve)
-    link = film.Origin.of(film.spatial(curve.vertices)).link(curve.mesh)
+    check_dimension(curve)
+    link = Origin.of(spatial(curve.vertices)).link(curve.mesh)
     points = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
     _render(path, Keys((Key(0.0, points),), 0), curve.mesh, (width, height), look)
 
 
 def _render(path: Target, keys: Keys, mesh: Mesh, size: tuple[int, int], look: str | None) -> bool:
+    require_blender()
+    from . import film, rendering
+
     mesh, keys = rounded(mesh, keys, is_free)
-    scene = _empty_scene()
+    scene = film.empty_scene()
     rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size)
     film.compose(scene, keys, np.ones(1), mesh, Playing(look))
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
     return keys.certified
-
-
-def _empty_scene() -> "bpy.types.Scene":
-    require_blender()
-    import bpy
-
-    with rendering.quiet():
-        bpy.ops.wm.read_factory_settings(use_empty=True)
-    return bpy.context.scene
-
-
-def _save(path: Path) -> None:
-    import bpy
-
-    with rendering.quiet():
-        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
 
 
 def _make(path: Target, write: Callable[[Path], None]) -> None:

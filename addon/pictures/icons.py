@@ -2,6 +2,7 @@
 
 from functools import cache
 
+import bpy
 import bpy.utils.previews
 import numpy as np
 

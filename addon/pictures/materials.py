@@ -2,16 +2,14 @@
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import bpy
 import numpy as np
 
 from ...core.types import FloatArray
 from ..engine.colours import flatly_lit
 from .looks import ALONG, DEFAULT, LOOKS, SHADER, STRAND, TINT, TURNS, YARN, Nodes, Tint
-
-if TYPE_CHECKING:
-    import bpy
 
 _NONE: Mapping[str, Any] = MappingProxyType({})
 _PIXELS = 1024  # of what changes along a component
@@ -19,7 +17,7 @@ _PITCH = 1.55  # of a rope's strands, in its radii
 
 
 def colour_components(
-    data: "bpy.types.Curve", first: int = 0, look: str = DEFAULT, along: FloatArray | None = None
+    data: bpy.types.Curve, first: int = 0, look: str = DEFAULT, along: FloatArray | None = None
 ) -> None:
     """Give every spline the colour of its component, the ``first`` onwards, in slots after those that there are.
 
@@ -35,13 +33,11 @@ def colour_components(
         spline.material_index = slots[hue]
 
 
-def _glaze(data: "bpy.types.Curve", look: str, hue: int, along: FloatArray | None) -> "bpy.types.Material":
+def _glaze(data: bpy.types.Curve, look: str, hue: int, along: FloatArray | None) -> bpy.types.Material:
     """What a component is made of; the material that is there already if there is one, as other objects may have it.
 
     After the palette's hues comes the gradient.
     """
-    import bpy
-
     made_of = LOOKS[look]
     name = f"{made_of.label} {hue + 1}"
     if name in bpy.data.materials:
@@ -69,10 +65,8 @@ def _glaze(data: "bpy.types.Curve", look: str, hue: int, along: FloatArray | Non
     return material(name, made_of.palette[hue % len(made_of.palette)], made_of.shader, nodes, words)
 
 
-def vertex_colours(attribute: str) -> "bpy.types.Material":
+def vertex_colours(attribute: str) -> bpy.types.Material:
     """A material whose colour is an attribute of the mesh; the one of that name if there is one already."""
-    import bpy
-
     name = f"Glaze {attribute}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -86,10 +80,8 @@ def material(
     shader: Mapping[str, Any],
     nodes: Nodes = _NONE,
     words: Mapping[str, Any] = _NONE,
-) -> "bpy.types.Material":
+) -> bpy.types.Material:
     """A new material: inputs of its shader, and nodes that feed them; ``words`` is what words among the inputs mean."""
-    import bpy
-
     made = bpy.data.materials.new(name)
     made.diffuse_color = (*flatly_lit(np.array(tint)), 1.0)
     made.roughness = shader["Roughness"]
@@ -112,7 +104,7 @@ def material(
     return made
 
 
-def _feed(tree: "bpy.types.NodeTree", socket: Any, value: Any) -> None:
+def _feed(tree: bpy.types.NodeTree, socket: Any, value: Any) -> None:
     if isinstance(value, str):
         title, output = value.split(".")
         tree.links.new(tree.nodes[title].outputs[output], socket)
@@ -120,10 +112,8 @@ def _feed(tree: "bpy.types.NodeTree", socket: Any, value: Any) -> None:
         socket.default_value = value[: len(socket.default_value)] if isinstance(value, tuple) else value
 
 
-def _table(name: str, rows: FloatArray) -> "bpy.types.Image":
+def _table(name: str, rows: FloatArray) -> bpy.types.Image:
     """An image one pixel high, which is read along a component by its texture coordinates; rows of RGB."""
-    import bpy
-
     pixels = np.ones((len(rows), 4), dtype=np.float32)
     pixels[:, :3] = rows
     image = bpy.data.images.new(name, len(rows), 1, float_buffer=True)
@@ -132,7 +122,7 @@ def _table(name: str, rows: FloatArray) -> "bpy.types.Image":
     return image
 
 
-def _slot(data: "bpy.types.Curve", wanted: "bpy.types.Material") -> int:
+def _slot(data: bpy.types.Curve, wanted: bpy.types.Material) -> int:
     if wanted.name not in data.materials:
         data.materials.append(wanted)
     return int(data.materials.find(wanted.name))

@@ -10,13 +10,11 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import bpy
 
 from ..curves.fcurves import all_fcurves
 from . import rendering
-
-if TYPE_CHECKING:
-    import bpy
 
 Progress = Callable[[int, int], None]
 
@@ -26,7 +24,7 @@ _MARK = "mobius_flow_copy"  # custom property of scenes made here; before Blende
 class Reel:
     """A scene made for one film, which is rendered beside its place and moved there if it is whole."""
 
-    def __init__(self, scene: "bpy.types.Scene", path: Path) -> None:
+    def __init__(self, scene: bpy.types.Scene, path: Path) -> None:
         self.path = path
         self.frames = len(frames_of(scene))
         self.done, self._began = 0, 0.0  # frames that are written, and when that began
@@ -37,8 +35,6 @@ class Reel:
 
     def render(self) -> None:
         """Render the film in this call; raises OSError or RuntimeError if it does not come to its end."""
-        import bpy
-
         try:
             with rendering.quiet():
                 bpy.ops.render.render(animation=True, scene=self._scene)
@@ -49,8 +45,6 @@ class Reel:
 
     def start(self) -> None:
         """Begin to render in Blender's own window, and return at once; `finish` is to be called when that is over."""
-        import bpy
-
         self._began = time.monotonic()
         bpy.app.handlers.render_write.append(self._count)
         try:
@@ -64,13 +58,11 @@ class Reel:
         """How long the frames that are missing take, if they take as long as those before; None before the first."""
         return (time.monotonic() - self._began) / self.done * (self.frames - self.done) if self.done else None
 
-    def _count(self, scene: "bpy.types.Scene", *_: object) -> None:
+    def _count(self, scene: bpy.types.Scene, *_: object) -> None:
         self.done += scene.name == self._scene
 
     def finish(self) -> bool:
         """Put the film in its place if it is whole, and return whether it is; leave nothing else behind."""
-        import bpy
-
         with suppress(ValueError):  # it was not started in a window
             bpy.app.handlers.render_write.remove(self._count)
         try:
@@ -85,7 +77,7 @@ class Reel:
         return whole
 
 
-def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None = None) -> None:
+def render_movie(scene: bpy.types.Scene, path: Path, progress: Progress | None = None) -> None:
     """Render all frames of a scene made for that, in which F-curves alone move things, to an MP4 that plays everywhere.
 
     ``progress`` gets the number of frames done and of all frames. The film has the scene's resolution at 100 %; at more
@@ -101,7 +93,7 @@ def render_movie(scene: "bpy.types.Scene", path: Path, progress: Progress | None
         sweep()
 
 
-def copied(scene: "bpy.types.Scene") -> "bpy.types.Scene":
+def copied(scene: bpy.types.Scene) -> bpy.types.Scene:
     """A copy of a scene with the same objects, to be rendered with other settings, until `sweep`."""
     copy = scene.copy()
     copy.name, copy[_MARK] = "Film", True
@@ -110,20 +102,16 @@ def copied(scene: "bpy.types.Scene") -> "bpy.types.Scene":
 
 def sweep() -> None:
     """Remove scenes made here: those just rendered, and any that was saved while it was being rendered."""
-    import bpy
-
     for scene in [each for each in bpy.data.scenes if _MARK in each]:
         bpy.data.scenes.remove(scene)
 
 
-def frames_of(scene: "bpy.types.Scene") -> range:
+def frames_of(scene: bpy.types.Scene) -> range:
     return range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
 
 
 def length_of(path: Path) -> int:
     """Count a film's frames; Blender does not notice when it cannot write all of them."""
-    import bpy
-
     try:
         clip = bpy.data.movieclips.load(str(path))
     except RuntimeError:
@@ -133,7 +121,7 @@ def length_of(path: Path) -> int:
     return length
 
 
-def _pictures(scene: "bpy.types.Scene", room: Path, progress: Progress) -> Iterator[Path]:
+def _pictures(scene: bpy.types.Scene, room: Path, progress: Progress) -> Iterator[Path]:
     frames = frames_of(scene)
     curves, pictures = list(all_fcurves()), dict[tuple[str, ...], Path]()
     for k, frame in enumerate(frames, 1):
@@ -146,10 +134,8 @@ def _pictures(scene: "bpy.types.Scene", room: Path, progress: Progress) -> Itera
         progress(k, len(frames))
 
 
-def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path]) -> "bpy.types.Scene":
+def _spliced(scene: bpy.types.Scene, pictures: Sequence[Path]) -> bpy.types.Scene:
     """A new scene that shows pictures from one directory for a frame each, in the size and speed of another's film."""
-    import bpy
-
     reel = bpy.data.scenes.new("Film")
     reel[_MARK] = True
     for name in ("resolution_x", "resolution_y", "fps", "fps_base"):
@@ -166,7 +152,7 @@ def _spliced(scene: "bpy.types.Scene", pictures: Sequence[Path]) -> "bpy.types.S
     return reel
 
 
-def _use_h264(scene: "bpy.types.Scene") -> None:
+def _use_h264(scene: bpy.types.Scene) -> None:
     """Let a scene's animation be written as an MP4 that plays everywhere, without sound."""
     settings, video = scene.render.image_settings, scene.render.ffmpeg
     if hasattr(settings, "media_type"):  # Blender 5.0 and later

@@ -7,12 +7,10 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import bpy
 
 from .looks import Look
-
-if TYPE_CHECKING:
-    import bpy
 
 FRAME_RATE = 24
 NOT_WHOLE = "Blender did not finish writing it; is the disk full?"
@@ -29,13 +27,13 @@ bpy.ops.render.render(write_still=True)
 """
 
 
-def use_cycles(scene: "bpy.types.Scene", look: Look, width: int, height: int, samples: int | None = None) -> None:
+def use_cycles(scene: bpy.types.Scene, look: Look, width: int, height: int, samples: int | None = None) -> None:
     """Set a scene up for films by Cycles, which unlike the other engines needs no graphics driver."""
     look_fine(scene, look, samples)
     _set_size(scene, width, height)
 
 
-def look_fine(scene: "bpy.types.Scene", look: Look, samples: int | None = None) -> None:
+def look_fine(scene: bpy.types.Scene, look: Look, samples: int | None = None) -> None:
     """Let a scene be rendered by Cycles; drafts, of so few samples, are denoised less well, in a third of the time."""
     cycles = scene.cycles
     scene.render.engine = "CYCLES"
@@ -52,7 +50,7 @@ def look_fine(scene: "bpy.types.Scene", look: Look, samples: int | None = None) 
     cycles.denoising_input_passes = "RGB_ALBEDO_NORMAL"
 
 
-def use_workbench(scene: "bpy.types.Scene", width: int, height: int) -> None:
+def use_workbench(scene: bpy.types.Scene, width: int, height: int) -> None:
     """Set a scene up for films by Workbench, also without a graphics card.
 
     Edges are left jagged. More pixels than the film has look as smooth as Workbench's own antialiasing and take less
@@ -64,7 +62,7 @@ def use_workbench(scene: "bpy.types.Scene", width: int, height: int) -> None:
     scene.display.render_aa = "OFF"
 
 
-def look_plain(scene: "bpy.types.Scene") -> None:
+def look_plain(scene: bpy.types.Scene) -> None:
     """Let a scene be drawn by Workbench: plain shading, but many frames in little time."""
     scene.render.engine = "BLENDER_WORKBENCH"
     scene.view_settings.view_transform = "Standard"
@@ -76,11 +74,11 @@ def look_plain(scene: "bpy.types.Scene") -> None:
     shading.show_shadows, shading.shadow_intensity = True, 0.2
 
 
-def skip_frames(scene: "bpy.types.Scene") -> None:
+def skip_frames(scene: bpy.types.Scene) -> None:
     scene.frame_step, scene.render.fps = 2, FRAME_RATE // 2
 
 
-def _set_size(scene: "bpy.types.Scene", width: int, height: int) -> None:
+def _set_size(scene: bpy.types.Scene, width: int, height: int) -> None:
     render = scene.render
     render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
     render.fps = FRAME_RATE
@@ -89,8 +87,6 @@ def _set_size(scene: "bpy.types.Scene", width: int, height: int) -> None:
 
 def workbench_works() -> bool:
     """Try Workbench in an isolated process, since without a graphics driver it ends the process it runs in."""
-    import bpy
-
     with tempfile.TemporaryDirectory() as room:
         trial = _TRIAL.format(path=os.path.join(room, "trial.png"))
         blender = bpy.app.binary_path
@@ -103,13 +99,11 @@ def workbench_works() -> bool:
         return done.returncode == 0 and bool(os.listdir(room))
 
 
-def render_still(scene: "bpy.types.Scene", path: Path) -> None:
+def render_still(scene: bpy.types.Scene, path: Path) -> None:
     """Render the current frame to a PNG, or to a JPEG if it is to end in .jpg.
 
     Raises OSError if the picture is not whole, which Blender does not notice.
     """
-    import bpy
-
     settings = scene.render.image_settings
     if hasattr(settings, "media_type"):  # Blender 5.0 and later
         settings.media_type = "IMAGE"
@@ -125,8 +119,6 @@ def render_still(scene: "bpy.types.Scene", path: Path) -> None:
 
 def is_rendering() -> bool:
     """Whether Blender renders something in the background of a window."""
-    import bpy
-
     return bool(bpy.app.is_job_running("RENDER"))
 
 

@@ -2,18 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 import numpy.typing as npt
+from mathutils import Matrix
 
 from ...core.types import FloatArray
 from ..engine.placement import Frame
 from .looks import TINT, Light, Look
 from .materials import material
-
-if TYPE_CHECKING:
-    import bpy
 
 _WIDTH = 60.0  # of the floor: the camera sees no end of it
 _ELEVATIONS = np.arange(36.0, 69.0, 4.0)  # degrees: over the horizon, and not so steep that shadows hide
@@ -72,14 +70,14 @@ def facing(shapes: Sequence[Frame | FloatArray], up: FloatArray) -> tuple[FloatA
     return np.array([rights[best], np.cross(up, rights[best]), up]), float(heights[best])
 
 
-def build(collection: "bpy.types.Collection", stage: Stage, look: Look) -> "bpy.types.Object":
+def build(collection: bpy.types.Collection, stage: Stage, look: Look) -> bpy.types.Object:
     """Add lights and a floor to a collection; return the floor, which is at the height of the middle."""
     for k, light in enumerate(look.lights):
         _add_light(collection, stage, "Light" if k else "Key", light)
     return _add_floor(collection, stage, look)
 
 
-def light_workbench(scene: "bpy.types.Scene", direction: npt.ArrayLike) -> None:
+def light_workbench(scene: bpy.types.Scene, direction: npt.ArrayLike) -> None:
     """Let Workbench, which knows no lights, have its light from a direction of the world, (3,)."""
     x, y, z = np.asarray(direction) / np.linalg.norm(direction)
     scene.display.light_direction = (x, z, -y)  # its second axis is the world's up
@@ -89,18 +87,14 @@ def towards_key(stage: Stage, look: Look) -> FloatArray:
     return np.asarray(np.array(look.lights[0].at) @ stage.axes)
 
 
-def add(collection: "bpy.types.Collection", name: str, data: "bpy.types.ID") -> "bpy.types.Object":
-    import bpy
-
+def add(collection: bpy.types.Collection, name: str, data: bpy.types.ID) -> bpy.types.Object:
     obj = bpy.data.objects.new(name, data)
     collection.objects.link(obj)
     return obj
 
 
-def place(obj: "bpy.types.Object", at: FloatArray, towards: FloatArray, up: FloatArray) -> None:
+def place(obj: bpy.types.Object, at: FloatArray, towards: FloatArray, up: FloatArray) -> None:
     """Put an object somewhere with its −z axis pointing at a target and its y axis up."""
-    from mathutils import Matrix
-
     backward = (at - towards) / np.linalg.norm(at - towards)
     right = np.cross(up, backward)
     right /= np.linalg.norm(right)
@@ -108,10 +102,8 @@ def place(obj: "bpy.types.Object", at: FloatArray, towards: FloatArray, up: Floa
     obj.matrix_world = Matrix(np.block([[rotation, at[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]).tolist())
 
 
-def _add_light(collection: "bpy.types.Collection", stage: Stage, name: str, light: Light) -> None:
+def _add_light(collection: bpy.types.Collection, stage: Stage, name: str, light: Light) -> None:
     """Add a square light."""
-    import bpy
-
     data = bpy.data.lights.new(name, "AREA")
     data.size = light.width * stage.size
     data.energy = light.power * stage.size**2
@@ -120,9 +112,7 @@ def _add_light(collection: "bpy.types.Collection", stage: Stage, name: str, ligh
     place(add(collection, name, data), at, stage.middle, stage.axes[2])
 
 
-def _add_floor(collection: "bpy.types.Collection", stage: Stage, look: Look) -> "bpy.types.Object":
-    import bpy
-
+def _add_floor(collection: bpy.types.Collection, stage: Stage, look: Look) -> bpy.types.Object:
     x, y = _WIDTH * stage.size * stage.axes[:2]
     data = bpy.data.meshes.new("Floor")
     data.from_pydata([p.tolist() for p in (-x - y, x - y, x + y, y - x)], [], [(0, 1, 2, 3)])
@@ -132,7 +122,7 @@ def _add_floor(collection: "bpy.types.Collection", stage: Stage, look: Look) -> 
     return floor
 
 
-def add_sky(world: "bpy.types.World", look: Look) -> None:
+def add_sky(world: bpy.types.World, look: Look) -> None:
     """Light the world evenly."""
     if world.node_tree is None:  # from Blender 5.0 on there is one from the start, and the switch is deprecated
         world.use_nodes = True

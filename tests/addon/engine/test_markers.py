@@ -67,7 +67,7 @@ def test_strand_moves_are_keyed(untangled, limit):
         curve, points = iterates[key.time], Curve(key.points.astype(np.float64))
         assert {tuple(vertex) for vertex in curve.vertices.astype(np.float32)} <= {tuple(p) for p in key.points}
         assert points.length == pytest.approx(curve.length, rel=1e-5)
-    assert len(motion.start) < 1.5 * max(len(each.curve) for each in untangled)
+    assert len(motion.start) < 2 * max(len(each.curve) for each in untangled)
 
 
 def test_the_first_marker_may_come_to_lie_between_new_vertices():

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import evaluated, in_world
-from mobius_flow.addon.pictures import export, film, rendering
+from mobius_flow.addon.engine import playing
+from mobius_flow.addon.pictures import export, film, movie, rendering
 from mobius_flow.core import Curve, MobiusFlowError, RelaxOptions, relax
 from processes import finished
 from shapes import hopf_link, regular_polygon, torus_trefoil
@@ -25,9 +26,9 @@ def tiny(monkeypatch):
     monkeypatch.setattr(export, "_FILM_WITHOUT_DRIVER", (*TINY, 1))
     monkeypatch.setattr(export, "_FILM_SAMPLES", 1)
     monkeypatch.setattr(export, "_FILM", TINY)
-    monkeypatch.setattr(export.rendering, "workbench_works", lambda: False)
+    monkeypatch.setattr(rendering, "workbench_works", lambda: False)
     for name, value in (("_FILM", (4, 4)), ("_PAUSE", 1), ("_END", 1)):
-        monkeypatch.setattr(film, name, value)
+        monkeypatch.setattr(playing, name, value)
 
 
 def iterates_of(curve, **options):
@@ -120,14 +121,14 @@ def test_a_film(tmp_path, tiny, iterates, capfd):
 
 
 def test_a_film_rests_before_and_after(iterates):
-    motion, _ = film.recorded(iterates)
+    motion, _ = playing.recorded(iterates)
     keys = motion.keys(lambda *_: True)
-    timing = film.Playing().timed(motion).timing
+    timing = playing.Playing().timed(motion).timing
     frames = timing.frames(motion.course(keys))
     scene = bpy.context.scene
-    film.compose(scene, keys, frames, motion.start.mesh, film.Playing())
+    film.compose(scene, keys, frames, motion.start.mesh, playing.Playing())
     scene.frame_start, scene.frame_end = timing.scene_range(frames)
-    assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (film._PAUSE, film._END)
+    assert (frames[0] - scene.frame_start, scene.frame_end - frames[-1]) == (playing._PAUSE, playing._END)
 
 
 def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
@@ -138,11 +139,11 @@ def test_a_film_is_as_long_as_the_way_of_the_fastest_vertex():
     places.append(50.0 * places[-1])
     start = next(relax(ring, RelaxOptions(vertices=30)))
     moves = (replace(start, index=k, curve=ring.with_vertices(p), path=(p,)) for k, p in enumerate(places[1:], 1))
-    motion, _ = film.recorded([replace(start, curve=ring), *moves])
+    motion, _ = playing.recorded([replace(start, curve=ring), *moves])
     assert motion.way == pytest.approx(12 * 0.5 + 0.5 * 49 / 50, rel=0.1)
     assert (
-        film.Playing().timed(motion).timing.length
-        == 1 + film._PAUSE + round(film._FRAMES_PER_SIZE * motion.way) + film._END
+        playing.Playing().timed(motion).timing.length
+        == 1 + playing._PAUSE + round(playing._FRAMES_PER_SIZE * motion.way) + playing._END
     )
 
 
@@ -179,13 +180,15 @@ def test_a_missing_directory(tmp_path, tiny, iterates, write):
     assert os.listdir(tmp_path) == []
 
 
-@pytest.mark.parametrize("function", ["_save", "render_still", "render_movie"])
-def test_what_blender_cannot_write_leaves_the_old_file(tmp_path, tiny, iterates, monkeypatch, function):
+@pytest.mark.parametrize(
+    ("module", "function", "name"),
+    [(film, "save", "write_blend"), (rendering, "render_still", "write_still"), (movie, "render_movie", "write_movie")],
+)
+def test_what_blender_cannot_write_leaves_the_old_file(tmp_path, tiny, iterates, monkeypatch, module, function, name):
     def fail(*_arguments, **_options):
         raise RuntimeError("Error: no space left\n")
 
-    name = {"_save": "write_blend", "render_still": "write_still", "render_movie": "write_movie"}[function]
-    monkeypatch.setattr(rendering if function == "render_still" else export, function, fail)
+    monkeypatch.setattr(module, function, fail)
     target = tmp_path / "a.blend"
     target.write_text("old")
     with pytest.raises(MobiusFlowError, match="no space left"):
@@ -243,11 +246,11 @@ def test_a_missing_module_and_a_missing_library_of_it(monkeypatch, error, said):
 
 def test_a_film_that_loops_ends_where_it_begins(iterates, tmp_path, monkeypatch):
     monkeypatch.setattr(rendering, "workbench_works", lambda: True)
-    monkeypatch.setattr(film, "_FILM", (6, 6))
-    monkeypatch.setattr(export, "render_movie", lambda _scene, path, _progress: path.touch())
-    export.write_movie(tmp_path / "a.mp4", iterates, None, film.Playing(loop=True, constant_radius=True))
+    monkeypatch.setattr(playing, "_FILM", (6, 6))
+    monkeypatch.setattr(movie, "render_movie", lambda _scene, path, _progress: path.touch())
+    export.write_movie(tmp_path / "a.mp4", iterates, None, playing.Playing(loop=True, constant_radius=True))
     scene, (curve,) = bpy.context.scene, [obj for obj in bpy.data.objects if obj.type == "CURVE"]
-    half = film._PAUSE + 6 + film._END
+    half = playing._PAUSE + 6 + playing._END
     assert (scene.frame_start, scene.frame_end) == (1, 2 * half)
     assert len({point.radius for block in curve.data.shape_keys.key_blocks for point in block.data}) == 1
     for k in (0, 7, 9, half):

@@ -6,8 +6,9 @@ import pytest
 from blender_scenes import add_curve, add_hopf_link, add_trefoil, contents
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
+from mobius_flow.addon.engine import playing
 from mobius_flow.addon.engine.motion import Key, Keys
-from mobius_flow.addon.pictures import export, film, rendering, staging
+from mobius_flow.addon.pictures import film, rendering, staging
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.core import Curve
 from shapes import hopf_link, regular_polygon, torus_trefoil
@@ -17,10 +18,10 @@ SIZE = (96, 54)
 
 def composed(curve, look):
     """A scene of one key, and its points."""
-    scene = export._empty_scene()
+    scene = film.empty_scene()
     rendering.use_cycles(scene, LOOKS[look], *SIZE, 4)
     points = curve.vertices.astype(np.float32)
-    film.compose(scene, Keys((Key(0.0, points),), 0), np.ones(1), curve.mesh, film.Playing(look))
+    film.compose(scene, Keys((Key(0.0, points),), 0), np.ones(1), curve.mesh, playing.Playing(look))
     return scene, points
 
 
