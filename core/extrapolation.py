@@ -35,7 +35,7 @@ class Extrapolation:
         return float(np.log2(self.ratio)) if self.ratio > 0.0 else float("nan")
 
     @property
-    def value(self) -> float:
+    def energy(self) -> float:
         """E(h/4) + (E(h/4) − E(h/2)) / (2^p − 1), with p the observed order if that is believable and 2 if not."""
         _, middle, fine = self.energies
         return fine + (fine - middle) / ((self.ratio if self._is_regular else 2.0**ORDER) - 1.0)
@@ -53,7 +53,7 @@ class Extrapolation:
             return abs(coarse - middle) + abs(middle - fine)
         gain = 2.0**ORDER - 1.0
         first, last = middle + (middle - coarse) / gain, fine + (fine - middle) / gain
-        return abs(last - first) + SHARE * abs(self.value - fine)
+        return abs(last - first) + SHARE * abs(self.energy - fine)
 
     @property
     def _is_regular(self) -> bool:

@@ -1,16 +1,14 @@
 """Curves that are hard each in its own way, for benchmarks and tests."""
 
 from .contacts import rope, spiral
-from .lattice import lattice_closure, lattice_knot, lattice_unknot
 from .polygons import bent_trefoil, chain_of_rings, graded_trefoil, uneven
-from .unknots import hard_unknot, unknot_word
+from .unknots import hard_unknot, lattice_knot, lattice_unknot, unknot_word
 
 __all__ = [
     "bent_trefoil",
     "chain_of_rings",
     "graded_trefoil",
     "hard_unknot",
-    "lattice_closure",
     "lattice_knot",
     "lattice_unknot",
     "rope",

@@ -2,8 +2,9 @@
 
 import numpy as np
 from mobius_flow.core import Curve
-from mobius_flow.core.knots import braid_closure
+from mobius_flow.core.knots import braid_closure, braid_word
 from mobius_flow.core.knots.braids import Word
+from mobius_flow.core.knots.lattice import lattice_closure
 
 _MOVES_PER_LETTER = 4
 _MAX_TRIALS = 500  # insertions tried per letter
@@ -35,6 +36,16 @@ def hard_unknot(crossings: int, seed: int, vertices: int | None = None, *, stran
     1
     """
     return braid_closure(unknot_word(crossings, seed, strands=strands), vertices)
+
+
+def lattice_knot(name: str) -> Curve:
+    """A knot or link of the table as a coarse polygon on the cubic lattice."""
+    return lattice_closure(braid_word(name))
+
+
+def lattice_unknot(crossings: int, seed: int) -> Curve:
+    """A hard unknot as a coarse polygon on the cubic lattice."""
+    return lattice_closure(unknot_word(crossings, seed))
 
 
 def unknot_word(crossings: int, seed: int, *, strands: int | None = None) -> Word:

@@ -13,9 +13,11 @@ from ...core.collision.gap import thickness
 from ...core.curve.io import FORMATS, CurveFile, load_curve
 from ...core.curve.measures import writhe_and_crossings
 from ...core.errors import OutputError
-from ...core.extrapolation import extrapolated
+from ...core.extrapolation import Extrapolation, extrapolated
 from ...core.info import PAIRS_UP_TO
-from ...core.knots import knot, knot_type, scramble
+from ...core.knots import knot_type
+from ...core.knots.starts import scrambled, start
+from ...core.smooth import Rest, at_rest
 from ...core.units import check_units
 from ...core.verify import verify
 from .. import curves
@@ -25,8 +27,6 @@ from ..streams import one_line
 from .folder import new_folder, write_report, write_text
 from .job import CURVE, STILL, TRAJECTORY, Job
 from .table import Row, given
-
-GAP = 0.5  # of the mean edge length that scrambled strands keep: nearer ones would need thousands of vertices
 
 
 def relaxed(job: Job) -> Row:
@@ -52,11 +52,16 @@ def _relaxed(job: Job) -> Row:
         job = replace(job, sha256=file.source.sha256)  # of what is really relaxed
     origin = provenance(job.options, job.file or job.name, job.sha256)
     with nullcontext() if file is None else curves.refusals(file):
-        task = _task(job, file)
+        kind, task = _task(job, file)
         trajectory = Trajectory(origin, task.obstacles)
         result = minimize(task, options, trajectory.add)
-    found = _findings(job, options, task.curve, result)
-    name = one_line(job.name) + ("" if job.seed is None else f", scrambled with seed {job.seed}")
+    smooth = _smooth(job, options, result)
+    found = _findings(task.curve, result) | {
+        "kind": kind,
+        "extrapolated_energy": smooth and smooth.energy,
+        "extrapolated_energy_error": smooth and smooth.error,
+    }
+    name = one_line(job.name) + ("" if job.seed is None else f", {kind} with seed {job.seed}")
     head = (
         f"# {name}: {found['type_after']}, Möbius energy {found['energy']:.9g}, {found['status']}\n"
         f"# mobius-flow {job.version} batch, options {given(job)}\n"
@@ -68,37 +73,44 @@ def _relaxed(job: Job) -> Row:
             verified = verify(room / TRAJECTORY).accepted
             seconds, processor = (clock() - start for clock, start in zip(clocks, began, strict=True))
             row = Row.of(job, **found, verified=verified, seconds=seconds, processor_seconds=processor)
-            write_report(room, job, row, result.report() | origin)
+            shape = {"smooth": smooth.curve.as_lists} if isinstance(smooth, Rest) else {}
+            write_report(room, job, row, result.report() | origin | shape)
     except (OSError, OutputError) as error:
         cause = error.__cause__ if isinstance(error.__cause__, OSError) else error  # others name files that are gone
         raise OutputError(job.folder, cause) from error
     return row
 
 
-def _task(job: Job, file: CurveFile | None) -> Task:
-    """The start, scrambled or not, with its obstacles, which are read, and its pins, by a file's own numbers."""
+def _task(job: Job, file: CurveFile | None) -> tuple[str, Task]:
+    """The start and its kind, with its obstacles, which are read, and its pins, by a file's own numbers."""
     still: dict[str, Any] = {name: job.options[name] for name in STILL}
     pins = tuple(still["pins"] if file is None else map(file.index_of, still["pins"]))
-    start = knot(job.name) if file is None else file.curve
-    if start.dimension > 3:
+    kind, curve = start(job.name, job.start, job.seed or 0) if file is None else ("file", file.curve)
+    if curve.dimension > 3:
         raise CurveError(
-            f"the curve is in dimension {start.dimension}, and {CURVE} holds curves of dimension 2 or 3: "
+            f"the curve is in dimension {curve.dimension}, and {CURVE} holds curves of dimension 2 or 3: "
             "use mobius-flow relax, with an output in .json"
         )
-    if job.seed is not None:
-        check_units(start)
-        check_embedded(start)
-        start = scramble(start, job.seed, gap=GAP * float(start.edge_lengths.mean()))
+    if file is not None and job.seed is not None:
+        check_units(curve)
+        check_embedded(curve)
+        kind, curve = scrambled(curve, job.seed)
     obstacles = tuple(map(read_obstacle, still["avoid"]))
-    return Task(curve=start, obstacles=obstacles, pins=pins, pin_tangents=still["pin_tangents"])
+    return kind, Task(curve=curve, obstacles=obstacles, pins=pins, pin_tangents=still["pin_tangents"])
 
 
-def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> dict[str, object]:
+def _smooth(job: Job, options: RelaxOptions, result: Result) -> Rest | Extrapolation | None:
+    """Where finer meshes lead, if that is wanted: as a smooth curve at rest, or among obstacles from three meshes."""
+    if not (job.extrapolate and result.outcome.converged):
+        return None
+    end = replace(result.task, curve=result.curve, pins=result.last.pins, pin_tangents=False)
+    free = not (end.pins or end.obstacles or options.terms) and options.energy == RelaxOptions().energy
+    closed = result.curve.dimension == 3 and not len(result.curve.mesh.ends)
+    return (at_rest(result.curve) if free and closed else None) or extrapolated(end, options)
+
+
+def _findings(start: Curve, result: Result) -> dict[str, object]:
     """What the row says of a result."""
-    smooth = None
-    if job.extrapolate and result.outcome.converged:
-        end = replace(result.task, curve=result.curve, pins=result.last.pins, pin_tangents=False)
-        smooth = extrapolated(end, options)
     curve, kind = result.curve, knot_type(result.curve)
     few = len(curve) <= PAIRS_UP_TO
     writhe, crossings = writhe_and_crossings(curve) if few and curve.dimension == 3 else (None, None)
@@ -108,8 +120,6 @@ def _findings(job: Job, options: RelaxOptions, start: Curve, result: Result) -> 
         "proved": kind.proved,
         "vertices": len(curve),
         "energy": result.final_energy,
-        "extrapolated_energy": smooth and smooth.value,
-        "extrapolated_energy_error": smooth and smooth.error,
         "gradient_norm": result.last.gradient_norm,
         "index": result.outcome.negative_eigenvalues,
         "ropelength": curve.length / thickness(curve) if few else None,

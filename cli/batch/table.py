@@ -28,6 +28,7 @@ class Row:
     name: str
     start: int
     seed: int | None
+    kind: str | None = None
     input_sha256: str | None = None
     type_before: str | None = None
     type_after: str | None = None

@@ -23,7 +23,7 @@ def test_a_pure_second_order_error_is_taken_off() -> None:
     found = of_series(0.1)
     assert found.ratio == pytest.approx(4.0)
     assert found.order == pytest.approx(2.0)
-    assert found.value == pytest.approx(1.0, abs=1e-14)
+    assert found.energy == pytest.approx(1.0, abs=1e-14)
     assert 0.0 < found.error < 2e-3 * 0.1
 
 
@@ -31,13 +31,13 @@ def test_a_pure_second_order_error_is_taken_off() -> None:
 @pytest.mark.parametrize("sixth", [-0.01, 0.01])
 def test_the_limit_is_within_the_error(fourth: float, sixth: float) -> None:
     found = of_series(0.1, fourth, sixth)
-    assert abs(found.value - 1.0) <= found.error
+    assert abs(found.energy - 1.0) <= found.error
 
 
 @pytest.mark.parametrize("energies", [(1.0, 1.1, 1.0), (1.2, 1.1, 1.0), (1.0, 1.0, 1.0), (1.0, 0.9, 0.9)])
 def test_energies_of_no_order_have_a_large_error(energies: tuple[float, float, float]) -> None:
     found = Extrapolation(energies)
-    assert math.isfinite(found.value)
+    assert math.isfinite(found.energy)
     assert found.error == pytest.approx(float(np.abs(np.diff(energies)).sum()))
 
 
@@ -49,15 +49,15 @@ def test_known_energies_are_within_the_error(name: str, vertices: int, smooth: f
     options = RelaxOptions(vertices=vertices)
     found = extrapolated(minimize(knot(name, vertices), options).curve, options)
     assert found is not None
-    assert abs(found.value - smooth) <= found.error < 2e-5 * smooth
-    assert abs(found.value - smooth) < 0.1 * abs(found.energies[2] - smooth)
+    assert abs(found.energy - smooth) <= found.error < 2e-5 * smooth
+    assert abs(found.energy - smooth) < 0.1 * abs(found.energies[2] - smooth)
 
 
 def test_loose_runs_are_tightened() -> None:
     options = RelaxOptions(vertices=90, tolerance=0.1)
     found = extrapolated(minimize(knot("3_1", 90), options).curve, options)
     assert found is not None
-    assert abs(found.value - torus_knot_minimum(2, 3)) <= found.error
+    assert abs(found.energy - torus_knot_minimum(2, 3)) <= found.error
 
 
 def test_runs_that_do_not_converge_have_none() -> None:
@@ -74,7 +74,7 @@ def test_pins_stay_and_ends_are_free() -> None:
     found = extrapolated(Task(curve=result.curve, pins=result.last.pins), options)
     assert found is not None
     assert 1.0 < found.order < 3.0
-    assert abs(found.value - found.energies[2]) < abs(found.energies[2] - found.energies[1])
+    assert abs(found.energy - found.energies[2]) < abs(found.energies[2] - found.energies[1])
     assert found.energies[0] == pytest.approx(result.final_energy, rel=1e-3)
 
 

@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from mobius_flow.core import Curve
-from mobius_flow.core.knots import braid_word
-from mobius_flow.core.knots.braids import checked_word, columns, cycles
-from mobius_flow.core.types import IntArray
 
-from .unknots import unknot_word
+from ..curve import Curve
+from ..types import IntArray
+from .braids import checked_word, columns, cycles
 
 _COLUMN = 3  # length of a crossing along the strands
 _Corner = tuple[int, int, int]
@@ -50,16 +48,6 @@ def lattice_closure(word: Sequence[int], *, strands: int | None = None) -> Curve
             path += _strand(crossings, width, place, count)
         components.append(_corners(np.array(path)))
     return Curve.from_components(components)
-
-
-def lattice_knot(name: str) -> Curve:
-    """A knot or link of the table as a coarse polygon on the cubic lattice."""
-    return lattice_closure(braid_word(name))
-
-
-def lattice_unknot(crossings: int, seed: int) -> Curve:
-    """A hard unknot as a coarse polygon on the cubic lattice."""
-    return lattice_closure(unknot_word(crossings, seed))
 
 
 def _strand(crossings: dict[tuple[int, int], tuple[int, bool]], width: int, place: int, count: int) -> list[_Corner]:

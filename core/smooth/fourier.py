@@ -1,0 +1,137 @@
+"""Closed curves in space as Fourier series."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.linalg import block_diag
+
+from ..curve import Curve
+from ..types import ComplexArray, FloatArray, IntArray
+
+_PER_MODE, _LEAST = 10, 64  # vertices of a component for each of its modes, and altogether
+_SAMPLES = 16  # of a polygon's spline for each mode
+
+
+@dataclass(frozen=True, eq=False)
+class FourierCurve:
+    """A smooth knot or link.
+
+    For each component there are coefficients c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1.
+    """
+
+    coefficients: tuple[ComplexArray, ...]
+
+    @classmethod
+    def of(cls, curve: Curve, at: Sequence[FloatArray], modes: Sequence[int]) -> "FourierCurve":
+        """The first modes of the components' splines, which visit the vertices of closed polygons at parameters ``at``."""
+        return cls(tuple(map(_fitted, curve.components, at, modes)))
+
+    @property
+    def modes(self) -> list[int]:
+        """The highest frequency of each component."""
+        return [len(c) - 1 for c in self.coefficients]
+
+    @property
+    def as_lists(self) -> list[list[list[list[float]]]]:
+        """The real and imaginary parts of the coefficients, in brackets by component, frequency and coordinate."""
+        return [np.stack([c.real, c.imag], axis=-1).tolist() for c in self.coefficients]
+
+    @classmethod
+    def of_lists(cls, lists: Sequence[Sequence[Sequence[Sequence[float]]]]) -> "FourierCurve":
+        """The curve of what `as_lists` gives."""
+        return cls(tuple(np.array(part) @ [1.0, 1j] for part in lists))
+
+    @property
+    def sizes(self) -> list[int]:
+        """Numbers of vertices, for each component, that represent it as a polygon."""
+        return [max(_LEAST, _PER_MODE * modes) for modes in self.modes]
+
+    def polygon(self, sizes: Sequence[int]) -> Curve:
+        """Inscribe a polygon with so many vertices on each component, at equal steps of t."""
+        parts = []
+        for c, n in zip(self.coefficients, sizes, strict=True):
+            waves = np.exp(2j * np.pi * np.outer(np.arange(n) / n, np.arange(len(c))))
+            parts.append((waves @ c).real)
+        return Curve.from_components(parts)
+
+    def with_modes(self, modes: Sequence[int]) -> "FourierCurve":
+        """The same with higher frequencies, whose coefficients are 0, or without those above."""
+        parts = []
+        for c, k in zip(self.coefficients, modes, strict=True):
+            parts.append(np.concatenate([c[: k + 1], np.zeros((max(k + 1 - len(c), 0), 3))]))
+        return FourierCurve(tuple(parts))
+
+    def rounded(self, quantum: float) -> "FourierCurve":
+        """With coefficients that are multiples of a number."""
+        return FourierCurve(tuple(quantum * np.round(c / quantum) for c in self.coefficients))
+
+
+def _fitted(points: FloatArray, at: FloatArray, modes: int) -> ComplexArray:
+    spline = periodic(at, points)
+    count = _SAMPLES * max(modes, len(points) // 2)
+    spectrum = np.fft.rfft(spline(np.arange(count) / count), axis=0)[: modes + 1] * (2.0 / count)
+    spectrum[0] /= 2.0
+    return np.asarray(spectrum)
+
+
+def periodic(at: FloatArray, values: FloatArray) -> CubicSpline:
+    """The spline of period 1 with values at parameters that increase from 0 to below 1."""
+    return CubicSpline(np.append(at, 1.0), np.concatenate([values, values[:1]]), bc_type="periodic")
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Real Fourier modes of all components, sampled at n equal steps, for unknowns z with N rows, shape (N, 3).
+
+    The mode of frequency k is divided by k^{3/2}, which makes the energy's Hessian an operator of order 0.
+    """
+
+    modes: tuple[int, ...]
+    scale: FloatArray  # k^{-3/2}, or 1 for k = 0; shape (N,)
+    values: FloatArray  # points are ``values @ z``; shape (n, N)
+    slopes: FloatArray  # their derivatives by t are ``slopes @ z``; shape (n, N)
+    t: FloatArray  # of each point; shape (n,)
+    component: IntArray  # of each point; shape (n,)
+    weights: FloatArray  # of the trapezoidal rule, 1 in all for a component; shape (n,)
+
+    @classmethod
+    def of(cls, modes: Sequence[int], per_mode: int) -> "Basis":
+        """That for curves with some modes, with so many points for each of them."""
+        values, slopes, scales = [], [], []
+        for most in modes:
+            k = np.concatenate([np.arange(most + 1), np.arange(1, most + 1)])
+            turned = np.arange(len(k)) > most  # −sin(2πkt), for the imaginary parts
+            angles = 2.0 * np.pi * np.outer(np.arange(per_mode * most) / (per_mode * most), k)
+            scales.append(np.maximum(k, 1.0) ** -1.5)
+            values.append(np.where(turned, -np.sin(angles), np.cos(angles)) * scales[-1])
+            slopes.append(np.where(turned, -np.cos(angles), -np.sin(angles)) * (2.0 * np.pi * k * scales[-1]))
+        counts = [per_mode * most for most in modes]
+        t = np.concatenate([np.arange(count) / count for count in counts])
+        component, weights = np.repeat(np.arange(len(counts)), counts), 1.0 / np.repeat(counts, counts)
+        return cls(tuple(modes), np.concatenate(scales), block_diag(*values), block_diag(*slopes), t, component, weights)
+
+    def unknowns(self, curve: FourierCurve) -> FloatArray:
+        """Those of a curve with these modes; shape (N, 3)."""
+        parts = [part for c in curve.coefficients for part in (c.real, c.imag[1:])]
+        return np.asarray(np.concatenate(parts) / self.scale[:, None])
+
+    def unknowns_of(self, samples: FloatArray) -> FloatArray:
+        """Those of samples, shape (n, 3), or of the nearest ones that they have; shape (N, 3)."""
+        weighted = self.values.T * self.weights
+        return np.asarray(weighted @ samples / np.einsum("in,ni->i", weighted, self.values)[:, None])
+
+    def curve(self, z: FloatArray) -> FourierCurve:
+        """The curve of unknowns z."""
+        rows, parts = self.scale[:, None] * z, []
+        for k in self.modes:
+            imaginary = np.concatenate([np.zeros((1, 3)), rows[k + 1 : 2 * k + 1]])
+            parts.append(rows[: k + 1] + 1j * imaginary)
+            rows = rows[2 * k + 1 :]
+        return FourierCurve(tuple(parts))
+
+    def averages(self, samples: FloatArray) -> FloatArray:
+        """At each point its component's average of samples, shape (n, …)."""
+        means = [samples[self.component == k].mean(axis=0) for k in range(len(self.modes))]
+        return np.stack(means)[self.component]

@@ -1,0 +1,155 @@
+"""Minimisers of the Möbius energy among smooth curves: where relaxed polygons lead as meshes become finer.
+
+Newton's method for the coefficients of Fourier series, whose number grows until the energy stays what it is.
+"""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import eigh, orth
+
+from ..arguments import checked
+from ..curve import Curve, check_closed
+from ..driver.interventions.balance import balanced
+from ..energies import MoebiusEnergy
+from ..errors import CurveError
+from ..types import FloatArray
+from .energy import Pairs
+from .fourier import Basis, FourierCurve
+from .speeds import Pace
+
+MODES = (24, 36, 54, 80, 120, 180)  # of a component of average length
+ACCURACY = 1e-6  # of the energy: how much half as many modes again may change it
+_PER_MODE = 4  # points of the trapezoidal rule
+_FOLLOWS = 0.01  # of the energy: how far that of a first fit may be from the polygon's
+_STEPS, _REACH = 40, 0.02  # Newton steps, and how far they move points, in units of the curve's radius
+_GAIN = 1e-9  # of the energy: what a next step would gain at most, where it is at rest
+_SOFT = 1e-9  # of the largest eigenvalue: the sign of smaller ones is not known
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """A smooth curve at which the Möbius energy is stationary, about the origin, with radius about 1."""
+
+    curve: FourierCurve
+    energy: float
+    error: float  # how far the stationary value may be off: what the last modes and twice as many points change
+    index: int  # independent directions in which the energy falls, 0 at a minimum
+
+
+@checked
+def at_rest(polygon: Curve) -> Rest | None:
+    """The smooth curve that a relaxed polygon stands for, balanced; None if none is found.
+
+    Raises CurveError for arcs and for curves that are not in space.
+    """
+    check_closed(polygon, "smooth curves at rest")
+    if polygon.dimension != 3:
+        raise CurveError(f"the curve has dimension {polygon.dimension}; smooth curves at rest are found in space")
+    given, energy = _normalized(balanced(polygon)), MoebiusEnergy().value(polygon)
+    pace, last = Pace.of(given), None
+    for most in MODES:
+        modes = _shared(most, given)
+        start = last.curve.with_modes(modes) if last else FourierCurve.of(given, pace.at, modes)
+        found = _stationary(start, pace, last.energy if last else energy)
+        if found and last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
+            return replace(found, error=error)
+        last = found or last
+    return None
+
+
+def _normalized(curve: Curve) -> Curve:
+    centred = curve.vertices - curve.vertices.mean(axis=0)
+    return curve.with_vertices(centred / np.linalg.norm(centred, axis=1).max())
+
+
+def _shared(modes: int, curve: Curve) -> list[int]:
+    """Modes of components in proportion to their lengths."""
+    lengths = curve.component_lengths
+    return [max(MODES[0] // 2, round(modes * length / lengths.mean())) for length in lengths]
+
+
+def _stationary(start: FourierCurve, pace: Pace, energy: float) -> Rest | None:
+    """Where Newton's method leads from a curve of about an energy; None if the curve does not have it."""
+    basis, finer = (Basis.of(start.modes, points) for points in (_PER_MODE, 2 * _PER_MODE))
+    z = basis.unknowns(start)
+    if abs(Pairs.of(basis, z).energy - energy) > _FOLLOWS * energy:
+        return None
+    model = Model.of(basis, pace, z)
+    for _ in range(_STEPS):
+        better = None if model.gain < _GAIN * model.energy else _searched(basis, pace, z, model)
+        if better is None:
+            break
+        z, model = better, Model.of(basis, pace, better)
+    found = Pairs.of(finer, z).energy
+    return Rest(basis.curve(z), found, model.gain + abs(found - Pairs.of(basis, z).energy), model.index)
+
+
+class Model(NamedTuple):
+    """The quadratic model of energy and speeds at unknowns, without the directions in which neither changes."""
+
+    energy: float
+    slopes: FloatArray  # along eigenvectors of the Hessian
+    eigenvalues: FloatArray  # ascending
+    eigenvectors: FloatArray
+
+    @classmethod
+    def of(cls, basis: Basis, pace: Pace, z: FloatArray) -> "Model":
+        """That at unknowns z."""
+        pairs, speeds = Pairs.of(basis, z), pace.speeds(basis, z)
+        still = invariant(basis, z)
+        gradient = (pairs.gradient + speeds.gradient).ravel()
+        gradient -= still @ (still.T @ gradient)
+        hessian = pairs.hessian + speeds.hessian
+        across = hessian @ still
+        hessian -= across @ still.T + still @ (across.T - (still.T @ across) @ still.T)
+        values, vectors = eigh(hessian)
+        kept = np.argsort(np.abs(still.T @ vectors).max(axis=0), kind="stable")[: len(values) - still.shape[1]]
+        kept.sort()
+        return cls(pairs.energy + speeds.energy, vectors[:, kept].T @ gradient, values[kept], vectors[:, kept])
+
+    @property
+    def index(self) -> int:
+        return int(np.count_nonzero(self.eigenvalues < -_SOFT * self.eigenvalues[-1]))
+
+    @property
+    def step(self) -> FloatArray:
+        """Newton's step, downhill also where the energy is not convex; shape (N, 3)."""
+        return np.asarray(-self.eigenvectors @ (self.slopes / self._stiffness)).reshape(-1, 3)
+
+    @property
+    def gain(self) -> float:
+        """What the model says that the step gains."""
+        return 0.5 * float(np.sum(self.slopes**2 / self._stiffness))
+
+    @property
+    def _stiffness(self) -> FloatArray:
+        return np.maximum(np.abs(self.eigenvalues), _SOFT * self.eigenvalues[-1])
+
+
+def _searched(basis: Basis, pace: Pace, z: FloatArray, model: Model) -> FloatArray | None:
+    """Unknowns along the step with a lower energy; steps are short beside strands' distances. None if there are none."""
+    step = model.step
+    share = min(1.0, _REACH / np.abs(basis.values @ step).max())
+    while share > 1e-6:
+        trial = z + share * step
+        if Pairs.of(basis, trial).energy + pace.speeds(basis, trial).energy <= model.energy - 1e-4 * share * model.gain:
+            return trial
+        share *= 0.5
+    return None
+
+
+def invariant(basis: Basis, z: FloatArray) -> FloatArray:
+    """Orthonormal directions in which neither energy nor speeds change: similarities, Möbius maps, sliding; (3N, k).
+
+    Möbius maps change speeds; the balanced one is kept.
+    """
+    x, v = basis.values @ z, basis.slopes @ z
+    fields: list[FloatArray] = [x]
+    for axis in np.eye(3):
+        fields += [np.broadcast_to(axis, x.shape), np.cross(axis, x)]
+        fields.append(2.0 * (x @ axis)[:, None] * x - np.sum(x**2, axis=1)[:, None] * axis)
+    fields += [np.where((basis.component == k)[:, None], v, 0.0) for k in range(len(basis.modes))]
+    return np.asarray(orth(np.stack([basis.unknowns_of(field).ravel() for field in fields], axis=1)))
+
