@@ -20,7 +20,8 @@ from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
 from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.knots import KNOTS, knot
 from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic, strand_gap
-from mobius_flow.core.knots.shapes import FILE, QUANTUM, Shape, shapes, smooth_knot
+from mobius_flow.core.knots.shapes import FILE, QUANTUM, shapes, smooth_knot
+from mobius_flow.core.smooth.fourier import FourierCurve
 from mobius_flow.core.types import ComplexArray, FloatArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
@@ -52,12 +53,12 @@ def main() -> int:
     return 0
 
 
-def rounded(given: Shape) -> Shape:
+def rounded(given: FourierCurve) -> FourierCurve:
     """A shape as it is stored: coefficients are multiples of the quantum."""
-    return Shape(tuple(QUANTUM * np.round(c / QUANTUM) for c in given.coefficients))
+    return FourierCurve(tuple(QUANTUM * np.round(c / QUANTUM) for c in given.coefficients))
 
 
-def store(given: Mapping[str, Shape], path: Path = FILE) -> None:
+def store(given: Mapping[str, FourierCurve], path: Path = FILE) -> None:
     """Write shapes, rounded."""
     parts = [c for each in given.values() for c in each.coefficients]
     values = np.concatenate(parts)
@@ -140,11 +141,11 @@ def _clutter(points: FloatArray) -> int:
     return len(cKDTree(points[:, :2]).query_pairs(NEAR * size, output_type="ndarray"))
 
 
-def shape(name: str) -> Shape:
+def shape(name: str) -> FourierCurve:
     """Fit a knot's shape with as few modes as stay close to it and are proved to keep its type."""
     curve = facing(relaxed(name))
     for tolerance in TOLERANCES:
-        fitted = rounded(Shape(tuple(_fitted(part, tolerance) for part in curve.components)))
+        fitted = rounded(FourierCurve(tuple(_fitted(part, tolerance) for part in curve.components)))
         if is_proved(curve, fitted):
             return fitted
     sys.exit(f"{name}: the motion from the relaxed curve to no stored shape is proved free of contact")
@@ -164,7 +165,7 @@ def _fitted(points: FloatArray, tolerance: float) -> ComplexArray:
     return np.asarray(spectrum[: modes + 1])
 
 
-def is_proved(curve: Curve, fitted: Shape) -> bool:
+def is_proved(curve: Curve, fitted: FourierCurve) -> bool:
     """Whether the motion from a relaxed polygon to the one inscribed in a shape is proved free of contact."""
     polygon = fitted.polygon(fitted.sizes)
     return is_isotopic(curve, [arc_steps(part) for part in curve.components], polygon, equal_steps(polygon))

@@ -4,8 +4,7 @@
 made here has the type its name says.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -14,37 +13,12 @@ import numpy as np
 
 from ..arguments import checked
 from ..curve import Curve
-from ..types import ComplexArray
+from ..smooth.fourier import FourierCurve
 from .inscribed import equal_steps, is_isotopic, shares, too_few
 from .names import table_name
 
 FILE = Path(__file__).with_name("shapes.npz")
 QUANTUM = 2.0**-13  # coefficients are stored as multiples of it, in 16 bits
-_PER_MODE, _LEAST = 10, 64  # vertices of a component for each of its modes, and altogether
-
-
-@dataclass(frozen=True, eq=False)
-class Shape:
-    """A smooth knot or link, about as wide as the interval from −1 to 1, lying flat and facing +z.
-
-    For each component there are coefficients c, shape (modes + 1, 3): it is t ↦ Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, at
-    nearly constant speed.
-    """
-
-    coefficients: tuple[ComplexArray, ...]
-
-    @property
-    def sizes(self) -> list[int]:
-        """Numbers of vertices, for each component, of the polygon whose type is proved."""
-        return [max(_LEAST, _PER_MODE * (len(c) - 1)) for c in self.coefficients]
-
-    def polygon(self, sizes: Sequence[int]) -> Curve:
-        """Inscribe a polygon with so many vertices on each component, at equal steps of t."""
-        parts = []
-        for c, n in zip(self.coefficients, sizes, strict=True):
-            waves = np.exp(2j * np.pi * np.outer(np.arange(n) / n, np.arange(len(c))))
-            parts.append((waves @ c).real)
-        return Curve.from_components(parts)
 
 
 @checked
@@ -72,7 +46,7 @@ def smooth_knot(name: str, vertices: int | None = None) -> Curve:
 
 
 @cache
-def shapes() -> Mapping[str, Shape]:
+def shapes() -> Mapping[str, FourierCurve]:
     """All stored shapes by their names in the table."""
     with np.load(FILE) as stored:
         names, counts, modes = stored["names"], stored["components"], stored["modes"]
@@ -80,5 +54,8 @@ def shapes() -> Mapping[str, Shape]:
     rows = np.split(values[..., 0] + 1j * values[..., 1], np.cumsum(modes + 1)[:-1])
     parts = iter(rows)
     return MappingProxyType(
-        {str(name): Shape(tuple(next(parts) for _ in range(count))) for name, count in zip(names, counts, strict=True)}
+        {
+            str(name): FourierCurve(tuple(next(parts) for _ in range(count)))
+            for name, count in zip(names, counts, strict=True)
+        }
     )

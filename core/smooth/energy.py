@@ -1,9 +1,9 @@
 """The Möbius energy of smooth links without arc length, with its first and second derivatives.
 
-For one closed curve it is 4 + ∬ (1 − cos α)/|x − y|² dx dy, where α is the angle between the circles through x and y that
-are tangent to the curve at x and at y (Doyle and Schramm; see O'Hara, *Energy of Knots and Conformal Geometry*, 2003);
-the integrand is smooth, also on the diagonal, where it is 0.  Two components have 2 ∬ 1/|x − y|² dx dy.  Integrands of
-analytic curves are analytic and periodic, so that the trapezoidal rule converges geometrically.
+For one closed curve it is 4 + ∬ (1 − cos α)/|x − y|² dx dy, where α is the angle between the circles through x and y
+that are tangent to the curve at x and at y (Doyle and Schramm; see O'Hara, *Energy of Knots and Conformal Geometry*,
+2003).  The integrand is smooth, also on the diagonal, where it is 0.  Two components have 2 ∬ 1/|x − y|² dx dy.
+Integrands of analytic curves are analytic and periodic, so that the trapezoidal rule converges geometrically.
 
 With r = y − x and velocities v at x, w at y the integrand is f = (|v||w| + s⟨v, w⟩) u − 2s ⟨v, r⟩⟨w, r⟩ u², u = 1/|r|²,
 where s is 1 on one component and 0 between two.
@@ -75,7 +75,7 @@ class Pairs:
     @property
     def hessian(self) -> FloatArray:
         """By the unknowns, coordinate by coordinate within each; shape (3N, 3N)."""
-        B, D = self.basis.values, self.basis.slopes  # noqa: N806
+        B, D = self.basis.values, self.basis.slopes
         count, twice = len(self.basis.scale), 2.0 * self.weights
         here = np.arange(len(B))
         hessian = np.zeros((count, 3, count, 3))

@@ -25,7 +25,7 @@ class FourierCurve:
 
     @classmethod
     def of(cls, curve: Curve, at: Sequence[FloatArray], modes: Sequence[int]) -> "FourierCurve":
-        """The first modes of the components' splines, which visit the vertices of closed polygons at parameters ``at``."""
+        """The first modes of the components' splines, which visit closed polygons' vertices at parameters ``at``."""
         return cls(tuple(map(_fitted, curve.components, at, modes)))
 
     @property
@@ -102,7 +102,7 @@ class Basis:
         values, slopes, scales = [], [], []
         for most in modes:
             k = np.concatenate([np.arange(most + 1), np.arange(1, most + 1)])
-            turned = np.arange(len(k)) > most  # −sin(2πkt), for the imaginary parts
+            turned = np.arange(len(k)) > most  # −sin 2πkt, for the imaginary parts
             angles = 2.0 * np.pi * np.outer(np.arange(per_mode * most) / (per_mode * most), k)
             scales.append(np.maximum(k, 1.0) ** -1.5)
             values.append(np.where(turned, -np.sin(angles), np.cos(angles)) * scales[-1])
@@ -110,7 +110,9 @@ class Basis:
         counts = [per_mode * most for most in modes]
         t = np.concatenate([np.arange(count) / count for count in counts])
         component, weights = np.repeat(np.arange(len(counts)), counts), 1.0 / np.repeat(counts, counts)
-        return cls(tuple(modes), np.concatenate(scales), block_diag(*values), block_diag(*slopes), t, component, weights)
+        return cls(
+            tuple(modes), np.concatenate(scales), block_diag(*values), block_diag(*slopes), t, component, weights
+        )
 
     def unknowns(self, curve: FourierCurve) -> FloatArray:
         """Those of a curve with these modes; shape (N, 3)."""
@@ -134,4 +136,4 @@ class Basis:
     def averages(self, samples: FloatArray) -> FloatArray:
         """At each point its component's average of samples, shape (n, …)."""
         means = [samples[self.component == k].mean(axis=0) for k in range(len(self.modes))]
-        return np.stack(means)[self.component]
+        return np.asarray(np.stack(means)[self.component])

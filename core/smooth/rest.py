@@ -4,10 +4,9 @@ Newton's method for the coefficients of Fourier series, whose number grows until
 """
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh, orth
+from scipy.linalg import eigh, null_space
 
 from ..arguments import checked
 from ..curve import Curve, check_closed
@@ -86,31 +85,27 @@ def _stationary(start: FourierCurve, pace: Pace, energy: float) -> Rest | None:
     return Rest(basis.curve(z), found, model.gain + abs(found - Pairs.of(basis, z).energy), model.index)
 
 
-class Model(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Model:
     """The quadratic model of energy and speeds at unknowns, without the directions in which neither changes."""
 
     energy: float
     slopes: FloatArray  # along eigenvectors of the Hessian
     eigenvalues: FloatArray  # ascending
-    eigenvectors: FloatArray
+    eigenvectors: FloatArray  # as columns, orthonormal; shape (3N, k)
 
     @classmethod
     def of(cls, basis: Basis, pace: Pace, z: FloatArray) -> "Model":
         """That at unknowns z."""
         pairs, speeds = Pairs.of(basis, z), pace.speeds(basis, z)
-        still = invariant(basis, z)
-        gradient = (pairs.gradient + speeds.gradient).ravel()
-        gradient -= still @ (still.T @ gradient)
-        hessian = pairs.hessian + speeds.hessian
-        across = hessian @ still
-        hessian -= across @ still.T + still @ (across.T - (still.T @ across) @ still.T)
-        values, vectors = eigh(hessian)
-        kept = np.argsort(np.abs(still.T @ vectors).max(axis=0), kind="stable")[: len(values) - still.shape[1]]
-        kept.sort()
-        return cls(pairs.energy + speeds.energy, vectors[:, kept].T @ gradient, values[kept], vectors[:, kept])
+        free = null_space(invariant(basis, z))
+        values, vectors = eigh(free.T @ (pairs.hessian + speeds.hessian) @ free)
+        slopes = (free @ vectors).T @ (pairs.gradient + speeds.gradient).ravel()
+        return cls(pairs.energy + speeds.energy, slopes, values, free @ vectors)
 
     @property
     def index(self) -> int:
+        """The number of directions in which the energy is concave."""
         return int(np.count_nonzero(self.eigenvalues < -_SOFT * self.eigenvalues[-1]))
 
     @property
@@ -129,27 +124,27 @@ class Model(NamedTuple):
 
 
 def _searched(basis: Basis, pace: Pace, z: FloatArray, model: Model) -> FloatArray | None:
-    """Unknowns along the step with a lower energy; steps are short beside strands' distances. None if there are none."""
+    """Unknowns of lower energy along the step, which is short beside strands' distances; None if there are none."""
     step = model.step
     share = min(1.0, _REACH / np.abs(basis.values @ step).max())
     while share > 1e-6:
-        trial = z + share * step
-        if Pairs.of(basis, trial).energy + pace.speeds(basis, trial).energy <= model.energy - 1e-4 * share * model.gain:
+        trial: FloatArray = z + share * step
+        energy = Pairs.of(basis, trial).energy + pace.speeds(basis, trial).energy
+        if energy <= model.energy - 1e-4 * share * model.gain:
             return trial
         share *= 0.5
     return None
 
 
 def invariant(basis: Basis, z: FloatArray) -> FloatArray:
-    """Orthonormal directions in which neither energy nor speeds change: similarities, Möbius maps, sliding; (3N, k).
+    """Directions in which the energy does not change: similarities, Möbius maps, sliding; shape (k, 3N).
 
-    Möbius maps change speeds; the balanced one is kept.
+    Speeds do not change either, but by Möbius maps: those of the balanced curve are kept.
     """
     x, v = basis.values @ z, basis.slopes @ z
     fields: list[FloatArray] = [x]
     for axis in np.eye(3):
-        fields += [np.broadcast_to(axis, x.shape), np.cross(axis, x)]
-        fields.append(2.0 * (x @ axis)[:, None] * x - np.sum(x**2, axis=1)[:, None] * axis)
+        inversion = 2.0 * (x @ axis)[:, None] * x - np.sum(x**2, axis=1)[:, None] * axis
+        fields += [np.broadcast_to(axis, x.shape), np.cross(axis, x), inversion]
     fields += [np.where((basis.component == k)[:, None], v, 0.0) for k in range(len(basis.modes))]
-    return np.asarray(orth(np.stack([basis.unknowns_of(field).ravel() for field in fields], axis=1)))
-
+    return np.stack([basis.unknowns_of(field).ravel() for field in fields])

@@ -27,7 +27,9 @@ class Pace:
     @classmethod
     def of(cls, curve: Curve) -> "Pace":
         """That of a closed polygon."""
-        densities, edges = (np.split(each, curve.mesh.offsets[1:-1]) for each in (moebius_by_length(curve), curve.edge_lengths))
+        densities, edges = (
+            np.split(each, curve.mesh.offsets[1:-1]) for each in (moebius_by_length(curve), curve.edge_lengths)
+        )
         at, logarithms = [], []
         for density, ell in zip(densities, edges, strict=True):
             density = density + _LEAST / ell.sum()

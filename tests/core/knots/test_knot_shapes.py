@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from families import family
-from mobius_flow.core.knots.shapes import QUANTUM, Shape, shapes
+from mobius_flow.core.knots.shapes import QUANTUM, shapes
+from mobius_flow.core.smooth.fourier import FourierCurve
 
 _FILE = Path(__file__).resolve().parents[3] / "tools" / "knot_shapes.py"
 _SPEC = importlib.util.spec_from_file_location("knot_shapes", _FILE)
@@ -29,7 +30,7 @@ def test_what_is_stored_is_read_again(tmp_path: Path, monkeypatch: pytest.Monkey
     rng = np.random.default_rng(3)
     parts = [QUANTUM * rng.integers(-9000, 9000, size=(n, 3, 2)) for n in (4, 2, 7)]
     first, second, third = (part[..., 0] + 1j * part[..., 1] for part in parts)
-    tool.store({"a": Shape((first, second)), "b": Shape((third,))}, tmp_path / "shapes.npz")
+    tool.store({"a": FourierCurve((first, second)), "b": FourierCurve((third,))}, tmp_path / "shapes.npz")
     monkeypatch.setattr("mobius_flow.core.knots.shapes.FILE", tmp_path / "shapes.npz")
     found = shapes.__wrapped__()
     assert list(found) == ["a", "b"]

@@ -1,0 +1,76 @@
+"""Smooth minimisers from relaxed polygons, against energies that are known otherwise."""
+
+import numpy as np
+import pytest
+from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
+from mobius_flow.core.extrapolation import extrapolated
+from mobius_flow.core.knots import knot, knot_type, overhand, torus_knot
+from mobius_flow.core.smooth import rest
+from mobius_flow.core.smooth.rest import Rest, at_rest
+from shapes import torus_trefoil
+from torus_energies import torus_knot_minimum, torus_knot_tube
+
+
+def found(curve: Curve) -> Rest:
+    smooth = at_rest(curve)
+    assert smooth is not None
+    return smooth
+
+
+@pytest.mark.kernels
+@pytest.mark.parametrize(
+    ("name", "vertices", "energy"),
+    [("3_1", 90, torus_knot_minimum(2, 3)), ("5_1", 120, torus_knot_minimum(2, 5)), ("hopf", 80, 8.0 + 4.0 * np.pi**2)],
+)
+def test_known_minima(name: str, vertices: int, energy: float) -> None:
+    smooth = found(minimize(knot(name, vertices), RelaxOptions(vertices=vertices)).curve)
+    assert abs(smooth.energy - energy) < max(smooth.error, 1e-7 * energy) <= 2e-6 * energy
+    assert smooth.index == 0
+    assert str(knot_type(smooth.curve.polygon(smooth.curve.sizes))) == str(knot_type(knot(name)))
+
+
+@pytest.mark.kernels
+@pytest.mark.parametrize(("p", "q", "index"), [(3, 4, 2), (3, 5, 4)])
+def test_symmetric_torus_knots_are_saddles(p: int, q: int, index: int) -> None:
+    smooth = found(torus_knot(p, q, 300, minor=torus_knot_tube(p, q)))
+    assert abs(smooth.energy - torus_knot_minimum(p, q)) < 1e-6 * smooth.energy
+    assert smooth.index == index
+
+
+def test_it_does_not_depend_on_the_start() -> None:
+    curves = [minimize(knot("4_1", n), RelaxOptions(vertices=n)).curve for n in (100, 150)]
+    one, other = map(found, curves)
+    assert abs(one.energy - other.energy) <= one.error + other.error
+    assert one.energy == pytest.approx(108.8237248, abs=2e-6)
+    assert max(np.linalg.norm(one.curve.polygon([200]).vertices, axis=1)) == pytest.approx(1.0, abs=0.05)
+
+
+def test_it_agrees_with_what_meshes_are_extrapolated_to() -> None:
+    options = RelaxOptions(vertices=120)
+    curve = minimize(knot("5_2", 120), options).curve
+    meshes, smooth = extrapolated(curve, options), found(curve)
+    assert meshes is not None
+    assert abs(meshes.energy - smooth.energy) <= meshes.error + smooth.error
+
+
+def test_more_modes_and_points_do_not_change_the_energy_by_more_than_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = minimize(knot("4_1", 100), RelaxOptions(vertices=100)).curve
+    coarse = found(curve)
+    monkeypatch.setattr(rest, "MODES", (54, 80))
+    monkeypatch.setattr(rest, "_PER_MODE", 6)
+    assert abs(found(curve).energy - coarse.energy) <= coarse.error + 1e-9 * coarse.energy
+
+
+def test_a_fit_that_does_not_follow_the_polygon_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rest, "MODES", (3, 4))
+    assert at_rest(torus_trefoil(120)) is None
+
+
+@pytest.mark.parametrize(
+    ("curve", "told"),
+    [(overhand(), "open"), (Curve(np.random.default_rng(0).normal(size=(9, 4))), "dimension 4")],
+    ids=["arc", "4-D"],
+)
+def test_arcs_and_other_dimensions_are_refused(curve: Curve, told: str) -> None:
+    with pytest.raises(CurveError, match=told):
+        at_rest(curve)
