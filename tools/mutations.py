@@ -457,7 +457,7 @@ MUTANTS = (
     ),
     Mutant(
         "ears without area",
-        "core/triangulation.py",
+        "core/obstacle_files.py",
         "flat[after[k]]) > 0.0",
         "flat[after[k]]) >= 0.0",
         "tests/core/test_obstacle.py::test_vertices_within_straight_edges_are_corners_of_triangles_with_area",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import CurveError, CurveFileError, MobiusFlowError, Obstacle, read_obstacle, write_curve
-from mobius_flow.core.triangulation import triangulated
+from mobius_flow.core.obstacle_files import triangulated
 from shapes import hopf_link, regular_polygon
 
 SQUARE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
