@@ -16,14 +16,15 @@ from ..errors import CurveError
 from ..types import FloatArray
 from .energy import Pairs
 from .fourier import Basis, FourierCurve
-from .speeds import Pace
+from .pace import parameters, sliding
 
 MODES = (24, 36, 54, 80, 120, 180)  # of a component of average length
-ACCURACY = 1e-6  # of the energy: how much half as many modes again may change it
+ACCURACY = 1e-7  # of the energy: how much half as many modes again may change it
 _PER_MODE = 4  # points of the trapezoidal rule
 _FOLLOWS = 0.01  # of the energy: how far that of a first fit may be from the polygon's
-_STEPS, _REACH = 40, 0.02  # Newton steps, and how far they move points, in units of the curve's radius
-_GAIN = 1e-9  # of the energy: what a next step would gain at most, where it is at rest
+_STEPS, _REACH = 20, 0.02  # Newton steps, and how far they move points, in units of the curve's radius
+_GAIN = 1e-10  # of the energy: what a next step would gain at most, where it is at rest
+_STIFFNESS = 2.0  # against sliding
 _SOFT = 1e-9  # of the largest eigenvalue: the sign of smaller ones is not known
 
 
@@ -47,11 +48,11 @@ def at_rest(polygon: Curve) -> Rest | None:
     if polygon.dimension != 3:
         raise CurveError(f"the curve has dimension {polygon.dimension}; smooth curves at rest are found in space")
     given, energy = _normalized(balanced(polygon)), MoebiusEnergy().value(polygon)
-    pace, last = Pace.of(given), None
+    at, last = parameters(given), None
     for most in MODES:
         modes = _shared(most, given)
-        start = last.curve.with_modes(modes) if last else FourierCurve.of(given, pace.at, modes)
-        found = _stationary(start, pace, last.energy if last else energy)
+        start = last.curve.with_modes(modes) if last else FourierCurve.of(given, at, modes)
+        found = _stationary(start, last.energy if last else energy)
         if found and last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
             return replace(found, error=error)
         last = found or last
@@ -69,25 +70,25 @@ def _shared(modes: int, curve: Curve) -> list[int]:
     return [max(MODES[0] // 2, round(modes * length / lengths.mean())) for length in lengths]
 
 
-def _stationary(start: FourierCurve, pace: Pace, energy: float) -> Rest | None:
+def _stationary(start: FourierCurve, energy: float) -> Rest | None:
     """Where Newton's method leads from a curve of about an energy; None if the curve does not have it."""
     basis, finer = (Basis.of(start.modes, points) for points in (_PER_MODE, 2 * _PER_MODE))
     z = basis.unknowns(start)
     if abs(Pairs.of(basis, z).energy - energy) > _FOLLOWS * energy:
         return None
-    model = Model.of(basis, pace, z)
+    model = Model.of(basis, z)
     for _ in range(_STEPS):
-        better = None if model.gain < _GAIN * model.energy else _searched(basis, pace, z, model)
+        better = None if model.gain < _GAIN * model.energy else _searched(basis, z, model)
         if better is None:
             break
-        z, model = better, Model.of(basis, pace, better)
+        z, model = better, Model.of(basis, better)
     found = Pairs.of(finer, z).energy
     return Rest(basis.curve(z), found, model.gain + abs(found - Pairs.of(basis, z).energy), model.index)
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """The quadratic model of energy and speeds at unknowns, without the directions in which neither changes."""
+    """The quadratic model of the energy at unknowns, without the directions in which it does not change."""
 
     energy: float
     slopes: FloatArray  # along eigenvectors of the Hessian
@@ -95,13 +96,12 @@ class Model:
     eigenvectors: FloatArray  # as columns, orthonormal; shape (3N, k)
 
     @classmethod
-    def of(cls, basis: Basis, pace: Pace, z: FloatArray) -> "Model":
+    def of(cls, basis: Basis, z: FloatArray) -> "Model":
         """That at unknowns z."""
-        pairs, speeds = Pairs.of(basis, z), pace.speeds(basis, z)
-        free = null_space(invariant(basis, z))
-        values, vectors = eigh(free.T @ (pairs.hessian + speeds.hessian) @ free)
-        slopes = (free @ vectors).T @ (pairs.gradient + speeds.gradient).ravel()
-        return cls(pairs.energy + speeds.energy, slopes, values, free @ vectors)
+        pairs, free = Pairs.of(basis, z), null_space(invariant(basis, z))
+        values, vectors = eigh(free.T @ (pairs.hessian + _STIFFNESS * sliding(basis, z)) @ free)
+        slopes = (free @ vectors).T @ pairs.gradient.ravel()
+        return cls(pairs.energy, slopes, values, free @ vectors)
 
     @property
     def index(self) -> int:
@@ -123,13 +123,13 @@ class Model:
         return np.maximum(np.abs(self.eigenvalues), _SOFT * self.eigenvalues[-1])
 
 
-def _searched(basis: Basis, pace: Pace, z: FloatArray, model: Model) -> FloatArray | None:
+def _searched(basis: Basis, z: FloatArray, model: Model) -> FloatArray | None:
     """Unknowns of lower energy along the step, which is short beside strands' distances; None if there are none."""
     step = model.step
     share = min(1.0, _REACH / np.abs(basis.values @ step).max())
     while share > 1e-6:
         trial: FloatArray = z + share * step
-        energy = Pairs.of(basis, trial).energy + pace.speeds(basis, trial).energy
+        energy = Pairs.of(basis, trial).energy
         if energy <= model.energy - 1e-4 * share * model.gain:
             return trial
         share *= 0.5
@@ -137,10 +137,7 @@ def _searched(basis: Basis, pace: Pace, z: FloatArray, model: Model) -> FloatArr
 
 
 def invariant(basis: Basis, z: FloatArray) -> FloatArray:
-    """Directions in which the energy does not change: similarities, Möbius maps, sliding; shape (k, 3N).
-
-    Speeds do not change either, but by Möbius maps: those of the balanced curve are kept.
-    """
+    """Directions in which the energy does not change: similarities, Möbius maps, a shift of t; shape (k, 3N)."""
     x, v = basis.values @ z, basis.slopes @ z
     fields: list[FloatArray] = [x]
     for axis in np.eye(3):

@@ -5,20 +5,20 @@ import json
 import numpy as np
 from mobius_flow.core.knots.inscribed import arc_steps
 from mobius_flow.core.smooth.fourier import Basis, FourierCurve
-from mobius_flow.core.smooth.speeds import Pace
+from mobius_flow.core.smooth.pace import parameters
 from shapes import hopf_link, torus_trefoil
 
 
 def fitted() -> FourierCurve:
     link = hopf_link(50)
-    return FourierCurve.of(link, Pace.of(link).at, [7, 5])
+    return FourierCurve.of(link, parameters(link), [7, 5])
 
 
 def test_fits_visit_the_vertices() -> None:
     polygon = torus_trefoil(200)
-    pace = Pace.of(polygon)
-    curve = FourierCurve.of(polygon, pace.at, [40])
-    waves = np.exp(2j * np.pi * np.outer(pace.at[0], np.arange(41)))
+    (at,) = parameters(polygon)
+    curve = FourierCurve.of(polygon, [at], [40])
+    waves = np.exp(2j * np.pi * np.outer(at, np.arange(41)))
     np.testing.assert_allclose((waves @ curve.coefficients[0]).real, polygon.vertices, rtol=0, atol=1e-5)
 
 
@@ -63,10 +63,10 @@ def test_rounding_is_to_the_nearest_multiple() -> None:
     assert np.abs((c - r).view(np.float64)).max() <= 2.0**-11
 
 
-def test_the_pace_is_that_of_moebius_images_too() -> None:
+def test_parameters_are_those_of_moebius_images_too() -> None:
     polygon = torus_trefoil(400)
     x = polygon.vertices - [2.5, 0.0, 0.3]
     image = polygon.with_vertices(x / np.sum(x**2, axis=1, keepdims=True))
-    own, other = (Pace.of(curve).at[0] for curve in (polygon, image))
+    own, other = (parameters(curve)[0] for curve in (polygon, image))
     by_length, elsewhere = (arc_steps(curve.vertices) for curve in (polygon, image))
     assert np.abs(own - other).max() < 0.1 * np.abs(by_length - elsewhere).max()

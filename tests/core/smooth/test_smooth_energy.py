@@ -5,7 +5,7 @@ import pytest
 from mobius_flow.core.energies import MoebiusEnergy
 from mobius_flow.core.smooth.energy import Pairs
 from mobius_flow.core.smooth.fourier import Basis, FourierCurve
-from mobius_flow.core.smooth.speeds import Pace
+from mobius_flow.core.smooth.pace import parameters, sliding
 from mobius_flow.core.taylor import taylor_slope
 from mobius_flow.core.types import FloatArray
 from shapes import torus_trefoil
@@ -48,14 +48,14 @@ def linked_circles() -> float:
 
 def test_it_is_what_the_energies_of_polygons_tend_to() -> None:
     polygon = torus_trefoil(400)
-    curve = FourierCurve.of(polygon, Pace.of(polygon).at, [20])
+    curve = FourierCurve.of(polygon, parameters(polygon), [20])
     values = [MoebiusEnergy().value(curve.polygon([n])) for n in (400, 800)]
     assert energy(curve, 8) == pytest.approx((4.0 * values[1] - values[0]) / 3.0, rel=1e-6)
 
 
 def test_the_trapezoidal_rule_converges_geometrically() -> None:
     polygon = torus_trefoil(400)
-    curve = FourierCurve.of(polygon, Pace.of(polygon).at, [12])
+    curve = FourierCurve.of(polygon, parameters(polygon), [12])
     exact = energy(curve, 16)
     errors = [abs(energy(curve, points) - exact) for points in (2, 3, 4)]
     assert errors[1] < 0.05 * errors[0]
@@ -75,26 +75,15 @@ def test_derivatives() -> None:
     np.testing.assert_allclose(pairs.hessian, pairs.hessian.T, rtol=0, atol=1e-9 * np.abs(pairs.hessian).max())
 
 
-def test_derivatives_of_speeds() -> None:
+def test_sliding_is_what_changes_speeds() -> None:
+    """The form against differences: of logarithms of speeds over their components' averages."""
     basis, z, u = random_link(np.random.default_rng(2))
-    pace = Pace.of(FourierCurve.of(torus := torus_trefoil(60), Pace.of(torus).at, [5]).polygon([60]))
-    pace = Pace([pace.at[0]] * 2, [pace.logarithms[0]] * 2)
-    speeds = pace.speeds(basis, z)
 
-    def along(t: float) -> float:
-        return pace.speeds(basis, z + t * u).energy
+    def excess(t: float) -> FloatArray:
+        logarithms = np.log(np.linalg.norm(basis.slopes @ (z + t * u), axis=1))
+        return logarithms - basis.averages(logarithms)
 
-    terms = [speeds.energy, float(np.sum(speeds.gradient * u))]
-    assert taylor_slope(along, terms, 1e-2) == pytest.approx(2.0, abs=0.1)
-
-
-def test_speeds_have_the_exact_hessian_where_they_are_as_wanted() -> None:
-    basis = Basis.of([4], 16)
-    ring = np.stack([np.cos(t := 2.0 * np.pi * np.arange(60) / 60), np.sin(t), 0 * t], axis=1)
-    curve = circles((0, 0, 0)).with_modes([4])
-    pace = Pace.of(curve.polygon([len(ring)]))
-    z, u = basis.unknowns(curve), np.random.default_rng(3).normal(size=(9, 3))
-    speeds = pace.speeds(basis, z)
-    assert speeds.energy < 1e-20
-    terms = [speeds.energy, float(np.sum(speeds.gradient * u)), float(u.ravel() @ speeds.hessian @ u.ravel())]
-    assert taylor_slope(lambda t: pace.speeds(basis, z + t * u).energy, terms, 1e-2) == pytest.approx(3.0, abs=0.1)
+    change = (excess(1e-6) - excess(-1e-6)) / 2e-6
+    form = sliding(basis, z)
+    assert u.ravel() @ form @ u.ravel() == pytest.approx(np.sum(basis.weights * change**2), rel=1e-6)
+    assert np.abs(form @ z.ravel()).max() < 1e-9 * np.abs(form).max()  # speeds in proportion are no sliding
