@@ -10,7 +10,7 @@ from ..core.curve.closing import closed_far_away
 from ..core.energies import ENERGIES
 from ..core.errors import counted
 from ..core.info import Info, info, measure
-from ..core.knots.knot_type import FLOER
+from ..core.knots.exterior import FLOER
 from . import curves
 from .streams import emit
 
@@ -102,6 +102,7 @@ def _as_json(path: str, found: Info) -> Mapping[str, object]:
             "determinant": kind.determinant,
             "genus": kind.floer and kind.floer.genus,
             "fibered": kind.floer and kind.floer.fibered,
+            "group": kind.group and kind.group._asdict(),
             "jones": None if kind.jones is None else [[power / 2, c] for power, c in kind.jones.items()],
         },
         "energies": {**found.energies, "objective": rest and rest.objective},
@@ -124,6 +125,8 @@ def _rows(found: Info) -> Iterator[tuple[str, str]]:
     yield "type", found.type.sentence
     if found.type.floer is not None:
         yield "genus", f"{found.type.floer.genus}{', fibered' * found.type.floer.fibered} (by {FLOER})"
+    if found.type.group is not None:
+        yield "group", f"{found.type.group if len(str(found.type.group)) < 100 else 'long; see --json'} (by SnapPy)"
     if found.type.diagram is not None and len(found.components) > 1:
         yield "linking numbers", ", ".join(map(str, found.type.diagram.linking_numbers))
     for name, value in found.energies.items():

@@ -12,7 +12,7 @@ from ..core.knots import UnknownKnotError, knot, knot_names, smooth_knot
 from . import curves
 from .places import check_place
 
-LISTS = (".csv", ".tsv")
+LISTS = (".csv", ".tsv", ".txt", ".xls", ".xlsx")
 _EPILOG = """\
 examples:
   mobius-flow knot 3_1 trefoil.txt
@@ -25,8 +25,8 @@ examples:
   mobius-flow knot knotinfo.csv knots/
   mobius-flow knot --list
 
-A list (.csv, .tsv: a table with a column such as pd_notation, dt_notation or braid_notation, or a code in each line)
-makes a file for each of its knots in the directory OUT.
+A list (.csv, .tsv, .txt: a table with a column such as pd_notation, dt_notation or braid_notation, a code or a name in
+each line, or Knoodle's knots) makes a file for each of its knots in the directory OUT.
 
 Knots are numbered as in KnotInfo: 10_162 to 10_165 are 10_163 to 10_166 in Rolfsen's book, where 10_161 stands twice
 (Perko's pair), and SnapPy has 10_83 and 10_86 the other way round.

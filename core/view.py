@@ -128,7 +128,13 @@ def figure(shown: Motion, radius: float | None = None, title: str = "") -> Any:
         """Traces of a frame: tubes, and of a motion a mark on the line of energies."""
         corners = (frames[k].points.T.astype(np.float32) for frames in made)
         marked = energies[k : k + moves]
-        mark = {"type": "scatter", "x": [k], "y": list(marked), "marker": {"size": 11, "color": COLOURS[1]}}
+        mark = {
+            "type": "scatter",
+            "x": [k],
+            "y": list(marked),
+            "marker": {"size": 11, "color": COLOURS[1]},
+            "cliponaxis": False,
+        }
         surfaces = [{"type": "mesh3d", **dict(zip("xyz", xyz, strict=True))} for xyz in corners]
         return [*surfaces, mark] if marked else surfaces
 

@@ -14,7 +14,7 @@ crosses nothing.
 
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
 from types import MappingProxyType
 from typing import NamedTuple
@@ -28,7 +28,8 @@ from .realize import realized
 MAX_CROSSINGS = 1000  # of a code; drawing takes seconds
 _MAX_LENGTH = 100_000  # characters
 _SPELLING = re.compile(r"[\s\[({\"']*([A-Za-z]+)(?:\.([01]+))?[\s\])}\"']*")
-_CROSSING = re.compile(r"(?<![A-Za-z])X(?=\s*[\[({])")
+_CROSSING = re.compile(r"(?<![A-Za-z])X[pm]?(?=\s*[\[({])")
+_CIRCLE = re.compile(r"\bP\s*\[\s*(\d+)\s*,\s*\1\s*\]")  # one that crosses nothing, as KnotFolio writes it
 _BRACKETS = ("[", "(", "{")
 
 
@@ -100,11 +101,13 @@ def check_count(crossings: int) -> None:
 
 
 def _planar(text: str) -> Diagram:
+    text, circles = _CIRCLE.subn(" ", text)
     rows = components(nested(_CROSSING.sub(" ", text)))
     if len(rows) == 1:
         rows = [rows[0][k : k + 4] for k in range(0, len(rows[0]), 4)]
-    check_count(len(rows))
-    return diagram_of(rows) if rows else Diagram(((),), ())
+    check_count(len(rows) + circles)
+    diagram = diagram_of(rows)
+    return Diagram((*diagram.passes, *((),) * (circles or not rows)), diagram.signs)
 
 
 def _dowker_thistlethwaite(text: str) -> Diagram:
@@ -201,6 +204,20 @@ def _gauss(text: str) -> Diagram:
     return _in_the_plane(Diagram(tuple(map(tuple, passes)), tuple(signs.values())), "the Gauss code with these signs")
 
 
+def joined(diagrams: Sequence[Diagram]) -> Diagram:
+    """The connected sum of diagrams of knots, or one diagram; raises CurveError if one of several is of a link."""
+    if len(diagrams) == 1:
+        return diagrams[0] if diagrams[0].passes else Diagram(((),), ())
+    passes: list[Pass] = []
+    signs: list[int] = []
+    for diagram in diagrams:
+        if len(diagram.passes) > 1:
+            raise CurveError("a summand is a link, and the code does not say which components are joined")
+        passes += [(crossing + len(signs), over) for part in diagram.passes for crossing, over in part]
+        signs += diagram.signs
+    return Diagram((tuple(passes),), tuple(signs))
+
+
 def planar_text(diagram: Diagram) -> str:
     """PD code, edges numbered from 1; raises CurveError for components without crossings, which it does not have."""
     if not all(diagram.passes):
@@ -218,7 +235,7 @@ def gauss_text(diagram: Diagram) -> str:
 
 NOTATIONS: Mapping[str, Notation] = MappingProxyType(
     {
-        "pd": Notation("PD", "PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", _planar),
+        "pd": Notation(r"(?:PD|Link(?=\())", "PD[X[1,5,2,4], X[3,1,4,6], X[5,3,6,2]]", _planar),
         "dt": Notation("DT", "DT: [4 6 2]", _dowker_thistlethwaite),
         "gauss": Notation(r"Gauss(?:\s?code)?", "Gauss: 1 -2 3 -1 2 -3", _gauss),
     }

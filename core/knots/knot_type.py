@@ -23,12 +23,11 @@ from ..diagrams import (
 )
 from ..errors import counted
 from .catalogue import KNOTS_TO, LINKS_TO, Key, bracket_key, crossing_number, invariant_of, key, types_with
-from .floer import Floer, floer, of_least_genus
+from .exterior import FLOER, Floer, Group, floer, group, names_by_exterior
 
 _UNKNOT = re.compile(r"\b0_1\b")
 NO_CROSSINGS, JONES, ALEXANDER = "a diagram without crossings", "the Jones polynomial", "the Alexander polynomial"
 SIGNATURE, DOUBLED, LINKING = "the signature", "the Jones polynomial of the doubled knot", "linking numbers"
-FLOER, GENUS = "knot Floer homology", "its genus by knot Floer homology"
 
 
 @checked_fields
@@ -89,6 +88,11 @@ class KnotType:
     def floer(self) -> Floer | None:
         """Knot Floer homology, and by it genus and fiberedness; None for links, or without the extra "knots"."""
         return floer(self.diagram) if self.diagram else None
+
+    @cached_property
+    def group(self) -> Group | None:
+        """The fundamental group of the complement; None where it is large, or without the extra "knots"."""
+        return group(self.diagram) if self.diagram else None
 
     @property
     def determinant(self) -> int | None:
@@ -185,9 +189,9 @@ def _factor_type(factor: Diagram, effort: Effort) -> KnotType:
     if not factor.crossings:
         return KnotType(("0_1",), True, factor, (NO_CROSSINGS,))
     complete = _complete(factor)
-    known = of_least_genus(found) if factor.crossings > complete and (found := floer(factor)) else ()
+    known, how = names_by_exterior(factor) if factor.crossings > complete else ((), "")
     if known == ("0_1",):
-        return KnotType(known, True, factor, (GENUS,))
+        return KnotType(known, True, factor, (how,))
     bracket = bracket_key(factor)
     if bracket is None:
         return KnotType((), False, factor, ())

@@ -51,7 +51,7 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     >>> knot("T(2,4)", 100).mesh.component_sizes
     (50, 50)
     """
-    name = str(name)  # a number is refused as other unknown names are
+    name = re.sub(r"(?<=\d)(\(0,0\))+$", "", str(name))  # SnapPy prints the fillings of manifolds
     squeezed = _squeezed(name)
     if (torus := _TORUS.fullmatch(squeezed)) is not None:
         return torus_knot(*_torus(torus, name), vertices)

@@ -60,7 +60,10 @@ def drawn(diagram: Diagram) -> Curve:
 def _of_link(other: object) -> Curve | None:
     """The drawing of an object that has a planar diagram code, or is made of one that has; None for others."""
     makes_link = getattr(other, "link", None)  # as SnapPy's manifolds do
-    link = makes_link() if callable(makes_link) and not hasattr(other, "PD_code") else other
+    try:
+        link = makes_link() if callable(makes_link) and not hasattr(other, "PD_code") else other
+    except ValueError as error:
+        raise CurveError(f"{str(other)[:60]} has no link: {str(error)[:200]}") from error
     code_of = getattr(link, "PD_code", None)
     if not callable(code_of):
         return None

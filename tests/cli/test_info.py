@@ -11,7 +11,7 @@ KEYS = {
 }  # fmt: skip
 TYPE_KEYS = {
     "name", "names", "proved", "evidence", "crossings", "linking_numbers", "alexander", "determinant", "jones",
-    "genus", "fibered",
+    "genus", "fibered", "group",
 }  # fmt: skip
 
 

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TextIO
 
 from ...diagrams import Diagram, diagram_of, views
-from ...diagrams.codes import check_count, diagram_from_code, gauss_text, planar_text
+from ...diagrams.codes import check_count, diagram_from_code, gauss_text, joined, planar_text
 from ...diagrams.nested import CodeError
 from ...errors import CurveError, CurveFileError
 from ...knots.planar import drawn
@@ -17,7 +17,8 @@ from . import xyz
 from .source import Polygon, Source
 
 _VIEWS = 4
-_EDGES = 4  # in a row of Knoodle's, before the sign
+_EDGES = 4  # in a row of Knoodle's, before the sign and two colours
+_COLUMNS = range(_EDGES, _EDGES + 4)
 
 
 def _read(kind: str, source: Source) -> list[Polygon]:
@@ -35,29 +36,56 @@ read_pd, read_dt, read_gauss = (partial(_read, kind) for kind in ("pd", "dt", "g
 
 
 def read_tsv(source: Source) -> list[Polygon]:
-    """Polygons of coordinates, or of crossings: four edges in a line, and a sign if it is given; or CurveFileError."""
-    rows = [(number, line.partition("#")[0].split()) for number, line in enumerate(source.lines, start=1)]
-    rows = [(number, words) for number, words in rows if words]
-    if not rows or not _EDGES <= len(rows[0][1]) <= _EDGES + 1:
+    """Polygons of coordinates, or of a knot's crossings, as `knoodle_diagrams` reads them; or CurveFileError."""
+    found = knoodle_diagrams(source)
+    if not found:
         return xyz.read(source)
-    code = []
-    for number, words in rows:
-        if len(words) != len(rows[0][1]):
-            raise source.error(f"{len(words)} columns where the lines before have {len(rows[0][1])}", number)
-        code.append([source.integer(word, number) for word in words])
+    if len(found) > 1:
+        raise source.error(f"{len(found)} knots; mobius-flow knot FILE DIRECTORY makes a file for each")
     try:
-        check_count(len(code))
-        diagram = diagram_of([edges[:_EDGES] for edges in code])
-        for (number, _), edges, sign, (a, b) in zip(rows, code, diagram.signs, diagram.joins(), strict=True):
-            if a == b and edges[_EDGES:] not in ([], [sign]):
-                raise source.error(
-                    f"the sign of this crossing is {edges[_EDGES]}, but its edges make it {sign}", number
-                )
-        return _polygons(drawn(diagram))
+        return _polygons(drawn(found[0]))
+    except CurveError as error:
+        raise source.error(str(error)) from error
+
+
+def knoodle_diagrams(source: Source) -> list[Diagram]:
+    """The diagrams in a file of Knoodle's; none if there are no crossings.  Raises CurveFileError.
+
+    Lines have a crossing's four edges, its sign if it is given, and colours, which are read over.  A line with ``k``
+    begins a knot, and with ``s`` a summand of it; one without crossings is a circle.
+    """
+    knots: list[list[list[tuple[int, list[int]]]]] = []  # summands of crossings with their lines
+    columns = 0
+    for number, line in enumerate(source.lines, start=1):
+        words = line.partition("#")[0].split()
+        mark = words[0].lower() if words else ""
+        if not knots and mark and mark not in ("k", "l", "s", "u") and len(words) not in _COLUMNS:
+            return []
+        if mark in ("k", "l") or (mark and not knots):
+            knots.append([])
+        if mark in ("s", "u") or (mark and mark not in ("k", "l") and not knots[-1]):
+            knots[-1].append([])
+        if not mark or mark in ("k", "l", "s", "u"):
+            continue
+        if len(words) != (columns := columns or len(words)) or columns not in _COLUMNS:
+            raise source.error(f"{len(words)} columns, where each crossing has {columns} or 4 to 7", number)
+        knots[-1][-1].append((number, [source.integer(word, number) for word in words]))
+    try:
+        return [joined([_crossings(source, rows) for rows in summands]) for summands in knots]
     except CurveFileError:
         raise
     except CurveError as error:
         raise source.error(str(error)) from error
+
+
+def _crossings(source: Source, rows: list[tuple[int, list[int]]]) -> Diagram:
+    """The diagram of crossings with their lines; raises CurveError if there is none, or signs are not its own."""
+    check_count(len(rows))
+    diagram = diagram_of([edges[:_EDGES] for _, edges in rows])
+    for (number, edges), sign, (a, b) in zip(rows, diagram.signs, diagram.joins(), strict=True):
+        if a == b and len(edges) % 2 and edges[_EDGES] != sign:
+            raise source.error(f"the sign of this crossing is {edges[_EDGES]}, but its edges make it {sign}", number)
+    return diagram
 
 
 def _polygons(curve: Curve) -> list[Polygon]:

@@ -57,6 +57,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
         ".tsv": Format("x y z between tabs, or Knoodle's crossings", codes.read_tsv, xyz.separated("\t")),
         ".raw": _COLUMNS,
         ".kp": _COLUMNS,
+        ".kndlxyz": _COLUMNS,
         ".pdb": Format("Protein Data Bank, the alpha carbons of each chain as an open arc (read only)", pdb.read, None),
         ".cif": Format("PDBx/mmCIF, likewise (read only)", pdb.read_cif, None),
         ".pd": Format("planar diagram code of a knot or link, PD[X[1,5,2,4], ...]", codes.read_pd, codes.write_pd),

@@ -1,0 +1,83 @@
+"""What the complement of a knot tells, by other programs where they are installed (the extra "knots").
+
+The fundamental group, by SnapPy, is infinite cyclic for the unknot alone (Papakyriakopoulos 1957); the genus and
+fiberedness are by knot Floer homology (Szabó's program; Ozsváth and Szabó 2004, Ni 2007).
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+from ..diagrams import Diagram, PlanarCrossing
+
+_FLOER, _GROUP = 60, 150  # crossings of diagrams: the homology of wide ones of more takes minutes
+_TETRAHEDRA = 60  # of complements, whose presentations are simplified in a second; those of many more take hours
+FLOER, GENUS, GROUP = "knot Floer homology", "its genus by knot Floer homology", "its group, which is infinite cyclic"
+
+
+class Group(NamedTuple):
+    """A presentation of the fundamental group: a capital letter is the inverse of a generator."""
+
+    generators: tuple[str, ...]
+    relators: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"⟨{', '.join(self.generators)} | {', '.join(self.relators)}⟩"
+
+
+class Floer(NamedTuple):
+    """What knot Floer homology says."""
+
+    genus: int
+    fibered: bool
+    ranks: tuple[tuple[tuple[int, int], int], ...]  # by Alexander and Maslov gradings
+
+
+def group(link: Diagram) -> Group | None:
+    """The group of a link; None for large ones, for diagrams that fall apart, and where SnapPy is not installed."""
+    fits = 0 < link.crossings <= _GROUP and len(link.pieces()) == 1
+    return _group(tuple(link.planar_code)) if fits else None
+
+
+def floer(knot: Diagram) -> Floer | None:
+    """The homology of a knot; None for links, large diagrams, and where the library is not installed."""
+    fits = 0 < knot.crossings <= _FLOER and len(knot.passes) == 1
+    return _floer(tuple(knot.planar_code)) if fits else None
+
+
+@cache
+def _group(code: tuple[PlanarCrossing, ...]) -> Group | None:
+    try:
+        from snappy import Link
+        from snappy.SnapPy import set_rand_seed
+    except ImportError:  # also where python-snappy has that name
+        return None
+    set_rand_seed(0)  # which presentation is found hangs on it
+    exterior = Link(list(map(list, code))).exterior(with_hyperbolic_structure=False)
+    if exterior.num_tetrahedra() > _TETRAHEDRA:
+        return None
+    found = exterior.fundamental_group()
+    return Group(tuple(found.generators()), tuple(found.relators()))
+
+
+@cache
+def _floer(code: tuple[PlanarCrossing, ...]) -> Floer | None:
+    try:
+        from knot_floer_homology import pd_to_hfk
+    except ImportError:
+        return None
+    found = pd_to_hfk(list(map(list, code)))
+    return Floer(found["seifert_genus"], found["fibered"], tuple(sorted(found["ranks"].items())))
+
+
+def names_by_exterior(knot: Diagram) -> tuple[tuple[str, ...], str]:
+    """The names of all knots that can have this complement, where theorems say so, and how; empty otherwise.
+
+    Only the unknot has an infinite cyclic group, and genus 0; only the trefoils and the figure-eight are fibered of
+    genus 1.
+    """
+    if len(knot.passes) == 1 and group(knot) == Group(("a",), ()):
+        return ("0_1",), GROUP
+    found = floer(knot)
+    if found is None or found.genus > 1 or (found.genus == 1 and not found.fibered):
+        return (), ""
+    return (("3_1", "m3_1", "4_1") if found.genus else ("0_1",)), GENUS

@@ -1,0 +1,86 @@
+"""Groups and knot Floer homology decide where polynomials do not, and only where their programs are installed."""
+
+import sys
+
+import pytest
+from mobius_flow.core.diagrams import diagram_of
+from mobius_flow.core.knots import HARD_UNKNOTS, KNOTS, braid_word, exterior
+from mobius_flow.core.knots.braids import braid_diagram, connected_sum
+from mobius_flow.core.knots.exterior import GENUS, GROUP, Group, floer, group, names_by_exterior
+from mobius_flow.core.knots.knot_type import type_of_diagram
+
+GENERA = {"3_1": 1, "4_1": 1, "5_1": 2, "7_4": 1, "8_19": 3, "10_132": 2}
+
+
+@pytest.mark.parametrize("name", GENERA)
+def test_genera_of_the_table(name):
+    pytest.importorskip("knot_floer_homology")
+    assert floer(braid_diagram(KNOTS[name])).genus == GENERA[name]
+
+
+@pytest.fixture
+def missing(monkeypatch):
+    """Say that a program is not installed."""
+
+    def forget():
+        exterior._group.cache_clear()
+        exterior._floer.cache_clear()
+
+    def missing(name):
+        monkeypatch.setitem(sys.modules, name, None)
+        forget()
+
+    forget()
+    yield missing
+    forget()
+
+
+def test_unknots_are_proved_without_being_simplified(missing):
+    pytest.importorskip("snappy")
+    diagram = diagram_of(HARD_UNKNOTS["ochiai-1"])
+    for program, evidence in (("snappy", GROUP), ("knot_floer_homology", GENUS)):
+        found = type_of_diagram(diagram)
+        assert (found.names, found.proved, found.evidence) == (("0_1",), True, (evidence,))
+        missing(program)
+    assert floer(diagram) is group(diagram) is None
+    assert not {GENUS, GROUP} & set(type_of_diagram(diagram).evidence)
+
+
+def _abelian(relator, generator):
+    return relator.count(generator) - relator.count(generator.upper())
+
+
+@pytest.mark.parametrize("name", ["3_1", "4_1", "10_123", "L2a1", "L6a4"])
+def test_groups_are_presented(name):
+    """What is commutative of a link's group has a generator for each component (Hurewicz and Alexander)."""
+    sympy = pytest.importorskip("sympy")
+    pytest.importorskip("snappy")
+    diagram = braid_diagram(KNOTS[name])
+    found = group(diagram)
+    matrix = sympy.Matrix([[_abelian(each, a) for a in found.generators] for each in found.relators])
+    assert len(found.generators) - matrix.rank() == len(diagram.passes)
+    exterior._group.cache_clear()
+    group(braid_diagram(KNOTS["9_32"]))
+    assert group(diagram) == found  # whatever was asked before
+    assert str(group(braid_diagram(KNOTS["3_1"]))) == "⟨a, b | aabbb⟩"
+
+
+def test_what_is_large_or_falls_apart_has_no_group():
+    circle = braid_diagram(())
+    assert group(circle) is None
+    assert group(braid_diagram((1, 1, 3, 3))) is None
+    assert group(braid_diagram((1,) * 151)) is None
+    assert group(diagram_of(HARD_UNKNOTS["ochiai-1"])) in (Group(("a",), ()), None)
+
+
+def test_only_three_knots_are_fibered_of_genus_one():
+    pytest.importorskip("knot_floer_homology")
+    found = {
+        name
+        for name, word in KNOTS.items()
+        if name[0] != "L" and name != "0_1" and names_by_exterior(braid_diagram(word))[0]
+    }
+    assert found == {"3_1", "4_1"}
+    long = braid_diagram((*braid_word("3_1"), *[letter for k in range(5) for letter in (2, -2)]))
+    assert type_of_diagram(long).names in (("3_1",), ())
+    assert floer(braid_diagram(connected_sum(KNOTS["3_1"], KNOTS["3_1"]))).genus == 2
