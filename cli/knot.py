@@ -19,6 +19,7 @@ examples:
   mobius-flow knot "T(3,5)" - --format obj
   mobius-flow knot 7_4 smooth.obj --smooth
   mobius-flow knot overhand arc.txt
+  mobius-flow knot "plat(2,2,-1,2)" plat.txt
   mobius-flow knot "DT: [4 8 10 2 6]" coded.txt
   mobius-flow knot "[[1,5,2,4],[3,1,4,6],[5,3,6,2]]" coded.txt
   mobius-flow knot K11n34 larger.txt

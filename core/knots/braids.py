@@ -6,7 +6,7 @@ letter is a positive (right-handed) crossing, so the closure of (1, 1, 1) is the
 
 from collections.abc import Sequence
 
-from ..diagrams import Diagram, Pass
+from ..diagrams import Diagram, Pass, diagram_of
 from ..errors import CurveError
 
 Word = tuple[int, ...]
@@ -85,3 +85,27 @@ def braid_diagram(word: Sequence[int]) -> Diagram:
         at[place], at[place + 1] = at[place + 1], at[place]
     parts = (tuple(each for strand in cycle for each in passes[strand]) for cycle in cycles(letters, strands))
     return Diagram(tuple(parts), tuple(1 if letter > 0 else -1 for letter in letters))
+
+
+def plat_diagram(word: Sequence[int]) -> Diagram:
+    """The plat of a braid: its strands, an even number, are joined in pairs at either end; raises as `checked_word`.
+
+    With three strands' letters these are the two-bridge links (Birman 1976).
+    """
+    letters, strands = checked_word(word)
+    ends = [place // 2 for place in range(strands + strands % 2)]  # the edge that comes up at each place
+    new, circles = len(ends) // 2, 0
+    code: list[tuple[int, ...]] = []
+    for letter in letters:
+        i = abs(letter) - 1
+        left, right = ends[i : i + 2]
+        code.append((right, new + 1, new, left) if letter > 0 else (left, right, new + 1, new))
+        ends[i : i + 2] = new, new + 1
+        new += 2
+    for place in range(0, len(ends), 2):
+        kept, other = ends[place : place + 2]
+        circles += kept == other
+        code = [tuple(kept if edge == other else edge for edge in edges) for edges in code]
+        ends = [kept if edge == other else edge for edge in ends]
+    diagram = diagram_of(code)
+    return Diagram((*diagram.passes, *((),) * circles), diagram.signs)

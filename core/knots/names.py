@@ -5,9 +5,9 @@ import re
 
 from ..arguments import checked
 from ..curve import Curve
-from ..diagrams.codes import is_code
+from ..diagrams.codes import gauss_text, is_code
 from ..errors import CurveError, MobiusFlowError
-from .braids import Word, checked_word, connected_sum, mirror
+from .braids import Word, checked_word, connected_sum, mirror, plat_diagram
 from .closed_braids import braid_closure, torus_knot
 from .parametric import ARCS
 from .planar import coded_knot, diagram_knot
@@ -17,6 +17,7 @@ _TORUS = re.compile(r"(?:t|torus)\((?P<numbers>[^()#]*)(?P<end>\)?)")
 _BRAID = re.compile(  # braid(1,1), {1,1} as in KnotInfo, BR[2,{1,1}] as in the Knot Atlas
     r"(?:braid\(|\{|br[\[(](?:(?P<strands>\d{1,9}),)?[\[({])(?P<numbers>[^\[\](){}#]*)(?P<end>[\])}]{0,2})"
 )
+_PLAT = re.compile(r"plat\((?P<numbers>[^()#]*)(?P<end>\)?)")
 _NUMBER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _FORMS = "write T(p,q) or braid(1,-2,...)"
 _MAX_LETTERS = 10_000  # about p·q, of a torus knot that is given as a braid
@@ -41,9 +42,10 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     Names: the table's (``3_1`` to ``10_165``, ``L5a1``, also ``5^2_1``), the words of :data:`ALIASES` (``trefoil``,
     ``figure-eight``), those of larger tables (``K11n34``, ``L10a100``) where spherogram is installed, torus knots
     ``T(2,5)`` or ``torus(2,5)``, braids ``braid(1,-2,1,-2)``, ``{1,-2,1,-2}`` or ``BR[3,{1,-2,1,-2}]``, mirror images
-    ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, the diagrams of :data:`HARD_UNKNOTS`
-    (``goeritz``), the open polygons of :data:`ARCS` (``overhand``), and codes of diagrams (``DT: [4 6 2]``,
-    ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``, and lists in brackets as SnapPy and KnotInfo have them).
+    ``m3_1``, and connected sums ``3_1#m3_1``; also, by themselves, plats of braids ``plat(2,2,-1,2)``, the diagrams of
+    :data:`HARD_UNKNOTS` (``goeritz``), the open polygons of :data:`ARCS` (``overhand``), and codes of diagrams
+    (``DT: [4 6 2]``, ``PD[X[1,5,2,4],...]``, ``Gauss: 1 -2 3 -1 2 -3``, and lists in brackets as SnapPy and KnotInfo
+    have them).
 
     ``vertices`` is the total number; by default edges are shorter than strands are apart.  Raises UnknownKnotError for
     other names, and CurveError if the vertices are too few or a number is not allowed.
@@ -58,6 +60,8 @@ def knot(name: str, vertices: int | None = None) -> Curve:
     if (braid := _BRAID.fullmatch(squeezed)) is not None:
         word, strands = _braid(braid, name)
         return braid_closure(word, vertices, strands=strands)
+    if (plat := _PLAT.fullmatch(squeezed)) is not None:
+        return coded_knot(gauss_text(plat_diagram(_numbers(plat, name))), vertices)
     if is_code(name) and "#" not in name:
         return coded_knot(name, vertices)
     by_itself = re.sub(r"[\s_-]", "", _plain(name))

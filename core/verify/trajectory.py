@@ -108,7 +108,7 @@ def _opened(path: Path | str) -> Iterator[zipfile.ZipFile]:
     except TrajectoryError:
         raise
     except (*_DAMAGE, ValueError) as error:  # ValueError: a path with a null character
-        raise TrajectoryError(f"the file cannot be read: {error}") from error
+        raise TrajectoryError(f"the file cannot be read: {getattr(error, 'strerror', None) or error}") from error
 
 
 def _count(archive: zipfile.ZipFile) -> int:

@@ -68,7 +68,7 @@ def knoodle_diagrams(source: Source) -> list[Diagram]:
         if not mark or mark in ("k", "l", "s", "u"):
             continue
         if len(words) != (columns := columns or len(words)) or columns not in _COLUMNS:
-            raise source.error(f"{len(words)} columns, where each crossing has {columns} or 4 to 7", number)
+            raise source.error(f"{len(words)} columns; all crossings have as many, 4 to 7", number)
         knots[-1][-1].append((number, [source.integer(word, number) for word in words]))
     try:
         return [joined([_crossings(source, rows) for rows in summands]) for summands in knots]

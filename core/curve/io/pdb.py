@@ -54,6 +54,8 @@ def _atoms(source: Source) -> Iterator[_Atom]:
 def read_cif(source: Source) -> list[Polygon]:
     """Read the chains of an mmCIF file; raises CurveFileError naming the line."""
     rows = list(_sites(source))
+    if rows and (missing := {f"Cartn_{axis}" for axis in "xyz"}.difference(rows[0][1])):
+        raise source.error(f"the loop of atoms, _atom_site, has no {', '.join(sorted(missing))}")
     models = list(dict.fromkeys(row.get("pdbx_PDB_model_num", "1") for _, row in rows))
     atoms = []
     for number, row in rows:
@@ -62,7 +64,7 @@ def read_cif(source: Source) -> list[Polygon]:
             continue  # residues of a chain have a number in the sequence, and other molecules have none
         chain, place = (row.get(f"auth_{key}", row.get(f"label_{key}", "")) for key in ("asym_id", "seq_id"))
         residue = f"{row.get('label_comp_id', '')} {chain}{place}{row.get('pdbx_PDB_ins_code', '').strip('?.')}"
-        point = tuple(source.number(row.get(f"Cartn_{axis}", "nothing"), number) for axis in "xyz")
+        point = tuple(source.number(row[f"Cartn_{axis}"], number) for axis in "xyz")
         atoms.append(_Atom(chain, residue, number, point))
     return _arcs(source, atoms, len(models))
 

@@ -137,6 +137,7 @@ def test_missing_residues_are_noted(tmp_path: Path, caplog: pytest.LogCaptureFix
     assert "residues may be missing from GLY A 1 to GLY A 7; joined straight" in caplog.text
 
 
+FEW = "data_X\nloop_\n_atom_site.id\n_atom_site.label_atom_id\n1 CA\n"
 CIF = """data_KNOT
 _entry.id KNOT
 loop_
@@ -187,7 +188,12 @@ def test_chains_of_cif_files(tmp_path: Path, caplog: pytest.LogCaptureFixture) -
 
 @pytest.mark.parametrize(
     ("text", "reason"),
-    [("data_X\n", "no alpha carbon"), (CIF.format(more="ATOM C\n"), "2 values"), (CIF.format(more=""), "")],
+    [
+        ("data_X\n", "no alpha carbon"),
+        (CIF.format(more="ATOM C\n"), "2 values"),
+        (CIF.format(more=""), ""),
+        (FEW, "has no Cartn_x, Cartn_y, Cartn_z"),
+    ],
 )
 def test_cif_files_that_are_none(tmp_path: Path, text: str, reason: str) -> None:
     text = text if reason else text.replace("3 0 0 A", "x 0 0 A")

@@ -126,7 +126,7 @@ def test_one_knot_of_knoodles_is_a_curve(tmp_path):
     for text, reason in {
         f"k\n{TREFOIL}k\n{TREFOIL}": "2 knots; mobius-flow knot FILE DIRECTORY",
         TREFOIL + "1 2 3\n": "line 4: 3 columns",
-        f"s\n4 1 3 2\n2 3 1 4\ns\n{TREFOIL}": "columns",
+        f"s\n4 1 3 2\n2 3 1 4\ns\n{TREFOIL}": "columns; all crossings have as many",
         "s\n4 1 3 2\n2 3 1 4\ns\n4 1 3 2\n2 3 1 4\n": "a summand is a link",
         TREFOIL.replace("-1", "1"): "line 1: the sign of this crossing",
     }.items():

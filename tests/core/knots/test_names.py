@@ -17,6 +17,7 @@ from mobius_flow.core.knots import (
     braid_word,
     knot,
     knot_names,
+    knot_type,
     lissajous_knot,
     smooth_knot,
 )
@@ -186,3 +187,33 @@ def test_mirror_images_of_mirror_images() -> None:
     with pytest.raises(UnknownKnotError, match="no knot is called"):
         knot(5000 * "m")
     assert braid_word(5001 * "m" + "3_1") == braid_word("m3_1")
+
+
+CONWAY = {"3_1": (3,), "4_1": (2, 1, 1), "5_2": (3, 1, 1), "6_2": (3, 1, 2), "7_7": (2, 1, 1, 1, 2), "L4a1": (4,)}
+
+
+@pytest.mark.parametrize("name", CONWAY)
+def test_rational_knots_are_plats(name: str) -> None:
+    """Conway's C(a, b, c, …): twists by turns of the middle strands and of those on a side, crossings alternating."""
+    word = [letter for k, count in enumerate(CONWAY[name]) for letter in [(2, -1)[k % 2]] * count]
+    found = knot_type(knot(f"plat({','.join(map(str, word))})"))
+    assert found.proved
+    assert set(found.names) <= {name, f"m{name}"}
+    assert found.diagram is not None
+    assert found.diagram.crossings == sum(CONWAY[name])
+
+
+@pytest.mark.parametrize(
+    ("plat", "names", "parts"),
+    [("plat()", ("0_1",), 1), ("plat(1,1)", ("0_1",), 1), ("plat(3,-3)", ("0_1 ⊔ 0_1",), 2), ("plat(4,4,4)", None, 2)],
+)
+def test_plats_of_few_letters(plat: str, names: tuple[str, ...] | None, parts: int) -> None:
+    curve = knot(plat)
+    assert len(curve.components) == parts
+    assert names is None or knot_type(curve).names == names
+
+
+@pytest.mark.parametrize("plat", ["plat(1,0)", "plat(1", "plat(a)", "plat(" + ",".join("12" * 600) + ")"])
+def test_what_is_no_plat(plat: str) -> None:
+    with pytest.raises(MobiusFlowError):
+        knot(plat)
