@@ -4,8 +4,9 @@
     OPENBLAS_NUM_THREADS=1 python benchmarks/morphs.py --only 8_19,perko
 
 A row tells the numbers of vertices of both curves and the most on the way, how far apart their shapes met, in radii of
-gyration, the legs, processor seconds of morph and of verify, and what the latter says. Exit status 1: a motion is not
-found, not accepted, or does not begin and end with the curves, or none is refused that should be.
+gyration, the legs, processor seconds of morph, of verify and of the stand-alone checker, and what these say. Exit
+status 1: a motion is not found, not accepted by both, or does not begin and end with the curves, or none is refused
+that should be.
 """
 
 import argparse
@@ -21,6 +22,9 @@ from mobius_flow.core import Curve, Iterate, NoMotionError, RelaxOptions, Trajec
 from mobius_flow.core.knots import coded_knot, knot, knot_type, scramble, smooth_knot
 from mobius_flow.core.knots.planar import drawn
 from mobius_flow.core.verify import verify
+
+sys.path.append(str(Path(__file__).parents[1] / "tools"))
+from check_trajectory import check
 
 # two reduced diagrams of 10_161, of writhe 8 and 10, that stood in tables as two knots for 75 years
 PERKO = (
@@ -109,7 +113,9 @@ def row(name: str) -> bool:
         trajectory.save(Path(room, "t.npz"))
         saved = time.process_time()
         verdict = verify(Path(room, "t.npz"))
-    checked = time.process_time() - saved
+        verified = time.process_time()
+        alone, said = check(Path(room, "t.npz"))
+    checked = time.process_time()
     exact = all(
         sorted(given.vertices.tolist()) == sorted(shown.vertices.tolist())
         for given, shown in ((a, way[0].curve), (b, way[-1].curve))
@@ -117,11 +123,12 @@ def row(name: str) -> bool:
     apart = re.search(r"met, (\S+)", result.message)
     print(
         f"{name:9} {words:42.42} {len(a):4} {len(b):4} {max(len(each.curve) for each in way):5} "
-        f"{apart[1] if apart else '?':>7} {verdict.legs:5} {found - began:6.1f} {checked:5.1f}  "
-        f"{'accepted' if verdict.accepted else verdict.reason}{'' if exact else ', OTHER ENDS'}",
+        f"{apart[1] if apart else '?':>7} {verdict.legs:5} {found - began:6.1f} "
+        f"{verified - saved:5.1f} {checked - verified:5.1f}  {'accepted' if verdict.accepted else verdict.reason}"
+        f"{'' if alone else f', {said}'}{'' if exact else ', OTHER ENDS'}",
         flush=True,
     )
-    return verdict.accepted and exact and result.certified
+    return verdict.accepted and alone and exact and result.certified
 
 
 def refused(a: str, b: str) -> bool:

@@ -5,7 +5,7 @@ import argparse
 from ..core import Iterate, Status
 from ..core.driver import finish
 from ..core.errors import counted
-from ..core.morphing import NoMotionError, agreement, check_alike, difference, morphing, type_of
+from ..core.morphing import DifferentError, NoMotionError, compare, moving
 from . import options as relax_options
 from .morph import NAMES, NOT_FOUND, add_pair, read_pair
 from .signals import INTERRUPTED
@@ -36,20 +36,17 @@ def add_same(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     wanted = relax_options.from_arguments(options)
-    task, goal = (task for _, task in read_pair(options, wanted))
-    check_alike((task.curve, goal.curve), NAMES)
-    a, b = type_of(task.curve), type_of(goal.curve)
-    if a and b and not task.obstacles and (agreed := agreement(a, b)):
-        emit(f"same: {agreed}")
-        return 0
-    if a and b and (different := difference(a, b, NAMES)):
-        emit(f"different: {different}")
-        return NOT_FOUND
+    tasks = [task for _, task in read_pair(options, wanted)]
+    iterates = moving(tasks, wanted, NAMES)
     way: list[Iterate] = []
     try:
-        result = finish(morphing((task, goal), wanted, NAMES), task, wanted, way.append)
+        agreed = compare([each.curve for each in tasks], NAMES)
+        if agreed and not options.avoid:
+            emit(f"same: {agreed}")
+            return 0
+        result = finish(iterates, tasks[0], wanted, way.append)
     except NoMotionError as error:
-        emit(f"not known: {error}")
+        emit(f"{'different' if isinstance(error, DifferentError) else 'not known'}: {error}")
         return NOT_FOUND
     if not (result.outcome.converged and result.certified):
         emit(f"not known: {result.message}")

@@ -1,6 +1,6 @@
 """Morphs: proved motions from one curve to another."""
 
-from .evidence import agreement, difference, type_of
-from .morph import NoMotionError, check_alike, morph, morphing
+from .evidence import DifferentError, NoMotionError, compare
+from .morph import morph, morphing, moving
 
-__all__ = ["NoMotionError", "agreement", "check_alike", "difference", "morph", "morphing", "type_of"]
+__all__ = ["DifferentError", "NoMotionError", "compare", "morph", "morphing", "moving"]

@@ -27,33 +27,29 @@ DISTINCT = 0.3  # difference of rotation matrices, from which they are looked at
 
 @dataclass(frozen=True, eq=False)
 class Freedom:
-    """The similarities that are allowed: rotations about any or one axis, if any; and shifts and scalings or none."""
+    """The similarities that are allowed: rotations about any axis, or about one; and shifts and scalings, or none."""
 
-    rotates: bool = True
-    axis: FloatArray | None = None  # the only one, of length 1; shape (3,)
+    axis: FloatArray | None = None  # the only one, of length 1, or 0 for no rotations; shape (3,)
     fixed: FloatArray | None = None  # a point that neither shifts nor scalings may move; shape (3,)
 
     def best(self, covariances: FloatArray) -> FloatArray:
         """The rotations R with the largest tr(RᵀK), of each K = Σ y xᵀ; shapes (k, 3, 3)."""
-        if not self.rotates:
-            return np.broadcast_to(np.eye(3), covariances.shape)
         if self.axis is None:
             u, _, v = np.linalg.svd(covariances)
             u[:, :, 2] *= np.linalg.det(u @ v)[:, None]
             return np.asarray(u @ v)
         across = np.cross(np.eye(3), self.axis)  # the matrix of u ↦ axis × u
         cosine = np.trace(covariances, axis1=1, axis2=2) - self.axis @ covariances @ self.axis
-        angles = np.arctan2(np.einsum("ij,kij->k", across, covariances), cosine)
-        return np.asarray(Rotation.from_rotvec(angles[:, None] * self.axis).as_matrix())
+        return self._about(np.arctan2(np.einsum("ij,kij->k", across, covariances), cosine))
 
     def starts(self) -> FloatArray:
-        """Rotations all over; shape (k, 3, 3)."""
-        if not self.rotates:
-            return np.eye(3)[None]
-        if self.axis is None:
-            found = Rotation.from_quat(np.random.default_rng(1).normal(size=(STARTS, 4))).as_matrix()
-            return np.concatenate([np.eye(3)[None], found])
-        angles = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
+        """Rotations all over, the identity first; shape (k, 3, 3)."""
+        if self.axis is not None:
+            return self._about(np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False))
+        turns = np.random.default_rng(1).normal(size=(STARTS, 4))
+        return np.asarray(Rotation.from_quat(np.concatenate([[[0, 0, 0, 1]], turns])).as_matrix())
+
+    def _about(self, angles: FloatArray) -> FloatArray:
         return np.asarray(Rotation.from_rotvec(angles[:, None] * self.axis).as_matrix())
 
 
@@ -100,27 +96,23 @@ class Alignment:
 def alignments(curve: Curve, other: Curve, freedom: Freedom) -> list[Alignment]:
     """Ways to lay a curve upon another one with as many components, closed and open ones; the best first."""
     x, y = _samples(curve), _samples(other)
-    source = target = freedom.fixed
-    scale = 1.0
-    if source is None or target is None:
-        source, target = x.mean(axis=(0, 1)), y.mean(axis=(0, 1))
-        scale = float(np.sqrt(np.square(y - target).sum() / np.square(x - source).sum()))
-    x, y = x - source, y - target
-    pairs = _Pairs(scale * x, y, np.array(curve.mesh.closed), np.array(other.mesh.closed))
+    source, target = (each.mean(axis=(0, 1)) if freedom.fixed is None else freedom.fixed for each in (x, y))
+    radii = [np.sqrt(np.square(each).sum(axis=2).mean()) for each in (x - source, y - target)]
+    scale = 1.0 if freedom.fixed is not None else float(radii[1] / radii[0])
+    x, y = scale * (x - source) / radii[1], (y - target) / radii[1]
+    pairs = _Pairs(x, y, np.array(curve.mesh.closed), np.array(other.mesh.closed))
     rotations = freedom.starts()
     for _ in range(TURNS):
         covariances, orders, backwards, begins = pairs.best(rotations)
         before, rotations = rotations, freedom.best(covariances)
         if np.allclose(rotations, before):
             break
-    radius = np.sqrt(np.square(y).sum(axis=2).mean())
-    squares = scale**2 * np.square(x).sum() + np.square(y).sum() - 2.0 * np.einsum("kij,kij->k", rotations, covariances)
-    distances = np.sqrt(np.maximum(squares, 0.0) / (len(y) * SAMPLES)) / radius
+    squares = np.square(x).sum() + np.square(y).sum() - 2.0 * np.einsum("kij,kij->k", rotations, covariances)
+    distances = np.sqrt(np.maximum(squares, 0.0) / (len(y) * SAMPLES))
+    columns = rotations, orders.tolist(), backwards.tolist(), begins / SAMPLES, distances.tolist()
     found = [
-        Alignment(rotation, scale, source, target, tuple(order), tuple(back), tuple(begin / SAMPLES), distance)
-        for rotation, order, back, begin, distance in zip(
-            rotations, orders.tolist(), backwards.tolist(), begins, distances.tolist(), strict=True
-        )
+        Alignment(rotation, scale, source, target, tuple(order), tuple(back), tuple(begin), distance)
+        for rotation, order, back, begin, distance in zip(*columns, strict=True)
     ]
     distinct: list[Alignment] = []
     for each in sorted(found, key=lambda each: each.cost):

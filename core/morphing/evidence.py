@@ -1,19 +1,30 @@
-"""What is known of two curves without any motion: that there is none, by invariants, or that they are the same."""
+"""What invariants tell of curves without any motion: that none leads from one to another, or that they are the same."""
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 from ..curve import Curve
 from ..diagrams import Diagram, alexander, jones, signature
+from ..errors import MobiusFlowError
 from ..knots import KnotType, knot_type
 from ..knots.catalogue import bracket_key
 from ..messages import Message
+
+_JONES = Message("different Jones polynomials")
+
+
+class NoMotionError(MobiusFlowError):
+    """No motion leads from one curve to another, or none was found; the message says which of the two, and why."""
+
+
+class DifferentError(NoMotionError):
+    """No motion leads from one curve to another."""
 
 
 def _unsigned_linking(link: Diagram) -> tuple[int, ...]:
     return tuple(sorted(map(abs, link.linking_numbers)))
 
 
-_JONES = Message("different Jones polynomials")
 # cheap ones first; those of links do not depend on their orientations
 _OF_KNOTS: tuple[tuple[Message, Callable[[Diagram], object]], ...] = (
     (Message("signatures {a} and {b}"), signature),
@@ -26,24 +37,28 @@ _OF_LINKS: tuple[tuple[Message, Callable[[Diagram], object]], ...] = (
 )
 
 
-def type_of(curve: Curve) -> KnotType | None:
-    """The type of a curve, if it has one: in the plane, and of open components, there is none."""
-    return knot_type(curve) if curve.mesh.all_closed and curve.dimension == 3 else None
+def compare(curves: Sequence[Curve], names: Sequence[str]) -> Message | None:
+    """Say of which type all curves are, if that is proved of each; None if it is not, or they have none.
 
-
-def agreement(a: KnotType, b: KnotType) -> Message | None:
-    """Say of which type both are, if that is proved; None if it is not."""
-    if not (a.proved and b.proved and a.names == b.names and len(a.names) == 1):
+    In the plane there are no types, nor of open components.  Raises DifferentError, by their names, where one is told
+    apart from the next.
+    """
+    if not all(each.mesh.all_closed and each.dimension == 3 for each in curves):
         return None
-    evidence = ", ".join(dict.fromkeys((*a.evidence, *b.evidence)))
-    return Message("both are {type}, by {evidence}", type=str(a), evidence=evidence)
+    kinds = [knot_type(each) for each in curves]
+    for pair, called in zip(pairwise(kinds), pairwise(names), strict=True):
+        _refuse_different(*pair, called)
+    if not all(each.proved and each.names == kinds[0].names for each in kinds) or len(kinds[0].names) != 1:
+        return None
+    evidence = ", ".join(dict.fromkeys(each for kind in kinds for each in kind.evidence))
+    return Message("both are {type}, by {evidence}", type=str(kinds[0]), evidence=evidence)
 
 
-def difference(a: KnotType, b: KnotType, names: Sequence[str]) -> Message | None:
-    """Say what the types of two curves, by their names, are, and which invariant tells them apart, if one does."""
+def _refuse_different(a: KnotType, b: KnotType, names: Sequence[str]) -> None:
+    """Raise a DifferentError that says of which types two curves are, and which invariant tells them apart, if any."""
     told = a.diagram and b.diagram and _told_apart(a.diagram, b.diagram)
     if not told and not (a.proved and b.proved and not set(a.names) & set(b.names)):
-        return None
+        return
     one, other = str(a), str(b)
     mirrored = other == (one[1:] if one.startswith("m") else f"m{one}")
     facts = {"one": names[0], "other": names[1]}
@@ -53,7 +68,7 @@ def difference(a: KnotType, b: KnotType, names: Sequence[str]) -> Message | None
     else:
         types = Message("{one} and {other} are of different types", **facts)
     none = Message("{types}: no motion leads from one to the other", types=types)
-    return Message("{none} ({told})", none=none, told=told) if told else none
+    raise DifferentError(Message("{none} ({told})", none=none, told=told) if told else none)
 
 
 def _told_apart(a: Diagram, b: Diagram) -> Message | None:

@@ -4,6 +4,7 @@ All curves that they come to by Möbius maps have the same energy.  The images t
 the same minimum have one in common, up to a similarity.
 """
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..curve import Curve
 from ..curve.measures import bending
 from ..driver import Iterate
 from ..driver.interventions.balance import MoebiusImages, least_bending, turn
-from ..task import Task
+from ..obstacle import Obstacle
 from ..types import FloatArray
 from .alignment import Alignment, Freedom, alignments
 from .joint import refined_alike
@@ -24,64 +25,63 @@ TRIES = 8  # to join them, the best alignment first
 MOEBIUS, TURN, ACROSS = 0.02, 0.2, 0.125  # legs at most: radians in the sphere and in space, share of the straight way
 LEG = 3e-4  # radii of gyration by which shapes may be further apart to save a leg of a Möbius map
 NEAR = 1e-3  # half the angle of rotation, in radians, of a Möbius map that is hardly any
-STILL = Freedom(rotates=False, fixed=np.zeros(3))
+UPWARDS = np.array([0.0, 0.0, 1.0])
+STILL = Freedom(np.zeros(3), fixed=np.zeros(3))
 
 
-class Shape:
-    """A curve at rest in a task, the last iterate of its way, and its Möbius images that bend least and are reached.
-
-    ``ways``: the iterates from the curve to each image, both included, and at first to the curve itself.
-    """
-
-    def __init__(self, end: Iterate, task: Task) -> None:
-        self.end, self.task = end, task
-        self.ways = [[end]]
-        if end.curve.mesh.all_closed and not task.obstacles:
-            images = MoebiusImages(end.curve, end.curve.edge_lengths)
-            maps = [q for q in least_bending(images, end.curve.dimension) if np.linalg.norm(q[1:]) > NEAR]
-            maps = sorted(maps, key=lambda q: bending(images.at(q)))[:IMAGES]
+def images(end: Iterate, obstacles: Sequence[Obstacle]) -> list[list[Iterate]]:
+    """The iterates from a curve at rest to each of its Möbius images that bend least and are reached; itself first."""
+    curve, ways = end.curve, [[end]]
+    if curve.mesh.all_closed and not obstacles:
+        found = MoebiusImages(curve, curve.edge_lengths)
+        maps = [q for q in least_bending(found, curve.dimension) if np.linalg.norm(q[1:]) > NEAR]
+        for q in sorted(maps, key=lambda q: bending(found.at(q)))[:IMAGES]:
             # each map by both its signs: the pole comes from the one side or from the other
-            legs = (_rotated(end.curve, images, q) or _rotated(end.curve, images, -q) for q in maps)
-            self.ways += [[end, *gone(end, each)] for each in legs if each]
+            legs = _rotated(curve, found, q) or _rotated(curve, found, -q)
+            ways += [[end, *gone(end, legs)]] if legs else []
+    return ways
 
 
-def _rotated(curve: Curve, images: MoebiusImages, q: FloatArray) -> list[FloatArray] | None:
+def _rotated(curve: Curve, found: MoebiusImages, q: FloatArray) -> list[FloatArray] | None:
     """Ends of proved legs to the image of q; None if strands interfere."""
     angle, map_of = turn(q)
-    return followed(curve, lambda share: images.at(map_of(share * angle)).vertices, MOEBIUS / angle)
+    return followed(curve, lambda share: found.at(map_of(share * angle)).vertices, MOEBIUS / angle)
 
 
-def meeting(x: Shape, y: Shape) -> tuple[Alignment, list[Iterate]] | None:
-    """How one shape was aligned with another, and the iterates from it to that one, which are named as it is.
+def meeting(
+    ours: Sequence[list[Iterate]], theirs: Sequence[list[Iterate]], obstacles: Sequence[Obstacle]
+) -> tuple[Alignment, list[Iterate] | None]:
+    """How one curve lies upon another, by their ways to their images, and the iterates to the other one, named alike.
 
-    None if no way was found that is free of contact.
+    Without a way that is free of contact they are None, and the alignment is the best one.
     """
     pairs = [
         (alignment, way, other)
-        for way, other in product(x.ways, y.ways)
-        for freedom in _freedoms(x.task)
+        for way, other in product(ours, theirs)
+        for freedom in _freedoms(way[0].curve, obstacles)
         for alignment in alignments(way[-1].curve, other[-1].curve, freedom)[:TRIES]
     ]
     pairs.sort(key=lambda each: each[0].cost + LEG * (len(each[1]) + len(each[2])))
     for alignment, way, other in pairs[:TRIES]:
-        other = [renamed(each, alignment) for each in other]
-        if (joint := _joint(way[-1], other[-1], alignment, x.task)) is not None:
-            return alignment, [*way[1:], *joint, *back(other)]
-    return None
+        renamed_way = [renamed(each, alignment) for each in other]
+        joint = _joint(way[-1], renamed_way[-1], alignment, obstacles)
+        if joint is not None:
+            return alignment, [*way[1:], *joint, *back(renamed_way)]
+    return pairs[0][0], None
 
 
-def _freedoms(task: Task) -> tuple[Freedom, ...]:
+def _freedoms(curve: Curve, obstacles: Sequence[Obstacle]) -> tuple[Freedom, ...]:
     """Similarities that may be tried: open components are held at their ends, and walls may be in the way."""
-    curve = task.curve
-    if not curve.mesh.all_closed:
-        start, end = curve.vertices[[0, -1]]
-        single = curve.dimension == 3 and len(curve.mesh.component_sizes) == 1
-        return (STILL, Freedom(axis=(end - start) / np.linalg.norm(end - start), fixed=start)) if single else (STILL,)
-    free = Freedom(axis=np.array([0.0, 0.0, 1.0]) if curve.dimension == 2 else None)
-    return (STILL, free) if task.obstacles else (free,)
+    if curve.mesh.all_closed:
+        free = Freedom(UPWARDS if curve.dimension == 2 else None)
+        return (STILL, free) if obstacles else (free,)
+    if curve.dimension == 2 or len(curve.components) > 1:
+        return (STILL,)
+    start, end = curve.vertices[[0, -1]]
+    return STILL, Freedom((end - start) / np.linalg.norm(end - start), fixed=start)
 
 
-def _joint(x: Iterate, y: Iterate, alignment: Alignment, task: Task) -> list[Iterate] | None:
+def _joint(x: Iterate, y: Iterate, alignment: Alignment, obstacles: Sequence[Obstacle]) -> list[Iterate] | None:
     """The iterates from one aligned curve to another, that one included; None if they are not proved free."""
     curve, ends = x.curve, x.curve.mesh.ends
 
@@ -90,14 +90,14 @@ def _joint(x: Iterate, y: Iterate, alignment: Alignment, task: Task) -> list[Ite
         moved[ends] = curve.vertices[ends]
         return moved
 
-    turning = followed(curve, turned, TURN / max(alignment.angle, TURN), task.obstacles)
+    turning = followed(curve, turned, TURN / max(alignment.angle, TURN), obstacles)
     if turning is None:
         return None
     start, goal = refined_alike(curve.with_vertices(turning[-1]), y.curve, alignment.begins)
-    if not all(survives_rounding(each, task.obstacles) for each in (start, goal)):
+    if not all(survives_rounding(each, obstacles) for each in (start, goal)):
         return None
     a, b = start.vertices, goal.vertices
-    legs = followed(start, lambda t: b if t == 1.0 else a + t * (b - a), ACROSS, task.obstacles)
+    legs = followed(start, lambda t: b if t == 1.0 else a + t * (b - a), ACROSS, obstacles)
     if legs is None:
         return None
     begun = on_mesh(y, start, tuple(start.mesh.ends.ravel().tolist()))

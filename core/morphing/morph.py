@@ -2,33 +2,33 @@
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise, product
 
 from ..arguments import checked
-from ..collision import check_clear, check_embedded
 from ..curve import Curve
 from ..deadline import TimeLimit
 from ..driver import Iterate, Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
 from ..driver.loop import within
-from ..errors import CurveError, MobiusFlowError, OptionError, counted
+from ..errors import CurveError, OptionError, counted
 from ..messages import OF_GOAL, Message
 from ..task import Task
 from ..threads import BLAS
-from ..units import check_units
-from .alignment import Alignment, Freedom, alignments
-from .evidence import difference, type_of
-from .meeting import Shape, meeting
+from .alignment import Alignment
+from .evidence import NoMotionError, compare
+from .meeting import images, meeting
 from .ways import back, on_mesh, renamed
 
+_Joining = Generator[Iterate, None, tuple[Alignment, list[Iterate]]]
 MET = "the shapes that they relax to met, {distance:.2g} radii of gyration apart"
 NAMES = ("the first curve", "the second curve")
 RENAMED = "in the end components have another order or direction than they were given in"
-
-
-class NoMotionError(MobiusFlowError):
-    """No motion leads from one curve to another, or none was found; the message says which of the two, and why."""
+APART = (
+    "no motion was found, though no invariant tells {one} and {other} apart: they come to rest at energies {a:.6g} and "
+    "{b:.6g}, in shapes that differ by {distance:.2g} radii of gyration; more hops, or the term bending=0.1, may lead "
+    "both to the same shape"
+)
 
 
 @checked
@@ -59,48 +59,61 @@ def morphing(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str])
 
     Obstacles are those of the first task; names of the curves are for sentences.  Raises as `morph` does.
     """
+    work = moving(tasks, options, names)
+    compare([each.curve for each in tasks], names)
+    return work
+
+
+def moving(tasks: Sequence[Task], options: RelaxOptions, names: Sequence[str]) -> Relaxation:
+    """The same, but that no invariants are looked at."""
+    began = time.perf_counter()
     for pair, called in zip(pairwise(tasks), pairwise(names), strict=True):
         check_alike([each.curve for each in pair], called)
-    ways = [_Way(*each, tasks[0]) for each in zip(names, tasks, strict=True)]
-    work = BLAS.bounding(_numbered(_chain(ways, options)))
-    return work if options.time_limit is None else _limited(work, options.time_limit)
-
-
-def _limited(work: Relaxation, seconds: float) -> Relaxation:
-    """The same until the time is up, but for the first curve, which is yielded in any case."""
-    began = time.perf_counter()
-    yield next(work)
-    return (yield from within(TimeLimit(seconds, used=time.perf_counter() - began), work))
-
-
-def _chain(ways: "Sequence[_Way]", options: RelaxOptions) -> Relaxation:
-    kinds = [type_of(each.task.curve) for each in ways]
-    for (a, b), called in zip(pairwise(kinds), pairwise(each.name for each in ways), strict=True):
-        if a and b and (reason := difference(a, b, called)):
-            raise NoMotionError(reason)
     alone = replace(options, time_limit=None, balance=False, hops=0)
+    ways = [_Way(*each, tasks[0], alone) for each in zip(names, tasks, strict=True)]
+    work = BLAS.bounding(_numbered(_chain(ways, alone, options.hops)))
+    if options.time_limit is None:
+        return work
+    return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)
+
+
+def _chain(ways: "Sequence[_Way]", options: RelaxOptions, hops: int) -> Relaxation:
     found: list[Alignment] = []
-    yield from ways[0].relaxed(alone)
+    yield from ways[0].iterates
+    yield from ways[0].relaxed()
     for here, there in pairwise(ways):
         yield from here.iterates[1:] if found else ()
-        deque(there.relaxed(alone), maxlen=0)
-        met = meeting(here.shape, there.shape)
-        for way in sorted((here, there), key=lambda each: -each.end.energy) if options.hops else ():
-            if met is None:
-                hops = way.relaxed(replace(alone.at_rest(way.end.curve), hops=options.hops))
-                yield from hops if way is here else ()
-                deque(hops, maxlen=0)
-                met = meeting(here.shape, there.shape)
-        if met is None:
-            raise NoMotionError(_apart(here, there))
-        alignment, joint = met
+        deque(there.relaxed(), maxlen=0)
+        alignment, joint = yield from _joined(here, there, options, hops)
         there.iterates = [renamed(each, alignment) for each in there.iterates]
         yield from joint
         yield from back(there.iterates)
         found.append(alignment)
-    met_at = Message(MET, distance=max(each.distance for each in found))
-    outcome = Outcome(Status.CONVERGED, (met_at,))
+    outcome = Outcome(Status.CONVERGED, (Message(MET, distance=max(each.distance for each in found)),))
     return outcome if all(each.as_given for each in found) else outcome.adding(RENAMED)
+
+
+def _joined(here: "_Way", there: "_Way", options: RelaxOptions, hops: int) -> _Joining:
+    """How two shapes lie upon each other, and the iterates from one to the other; yields how the first one goes on.
+
+    Coarse meshes may be what keeps them apart: they go on on equally fine ones, the higher first, and then hop.
+    """
+    ways, obstacles = (here, there), here.task.obstacles
+    shapes = [images(each.end, obstacles) for each in ways]
+    alignment, joint = meeting(*shapes, obstacles)
+    higher = int(there.end.energy > here.end.energy)
+    fine = replace(options, mesh="fixed", untangle="never", vertices=max(len(each.end.curve) for each in ways))
+    for count, k in product(dict.fromkeys((0, hops)), (higher, 1 - higher)):
+        if joint is None:
+            further = ways[k].relaxed(replace(fine, hops=count))
+            yield from further if k == 0 else ()
+            deque(further, maxlen=0)
+            shapes[k] = images(ways[k].end, obstacles)
+            alignment, joint = meeting(*shapes, obstacles)
+    if joint is None:
+        facts = {"one": here.name, "other": there.name, "a": here.end.energy, "b": there.end.energy}
+        raise NoMotionError(Message(APART, **facts, distance=alignment.distance))
+    return alignment, joint
 
 
 def _numbered(work: Relaxation) -> Relaxation:
@@ -116,44 +129,34 @@ def _numbered(work: Relaxation) -> Relaxation:
 class _Way:
     """The way of a curve to where it comes to rest: its iterates, the given curve first."""
 
-    def __init__(self, name: str, task: Task, first: Task) -> None:
+    def __init__(self, name: str, task: Task, first: Task, options: RelaxOptions) -> None:
         if task.pins:
             raise OptionError("a morph holds the ends of open components, and no other vertices; leave pins out")
         if task.obstacles and {each.key for each in task.obstacles} != {each.key for each in first.obstacles}:
             raise OptionError(f"{name} has obstacles of its own; a motion avoids the same ones all along")
         ends = tuple(task.curve.mesh.ends.ravel().tolist())
         self.name, self.task = name, Task(curve=task.curve, obstacles=first.obstacles, pins=ends)
-        self.iterates: list[Iterate] = []
         try:
-            check_units(task.curve)
-            check_embedded(task.curve)
-            check_clear(task.curve, first.obstacles)
+            self._run = relax(self.task, options)
         except CurveError as error:
             if task is first:
                 raise
             raise CurveError(Message(OF_GOAL, goal=name, reason=str(error))) from error  # its place is not the first's
+        start = next(self._run)
+        self.iterates = [on_mesh(start, task.curve, ends), start][: 1 + (len(start.curve) > len(task.curve))]
 
     @property
     def end(self) -> Iterate:
         """Where it comes to rest, so far."""
         return self.iterates[-1]
 
-    @property
-    def shape(self) -> Shape:
-        """The curve there, and its images."""
-        return Shape(self.end, self.task)
-
-    def relaxed(self, options: RelaxOptions) -> Iterator[Iterate]:
-        """Go on from where it ends, and yield what comes there."""
-        on = bool(self.iterates)
-        task = replace(self.task, curve=self.end.curve, pins=self.end.pins) if on else self.task
-        for iterate in relax(task, options):
-            new = [iterate]
-            if iterate.index == 0:
-                given = on_mesh(iterate, task.curve, task.pins)
-                new = [] if on else [given, iterate][: 1 + (len(iterate.curve) > len(task.curve))]
-            self.iterates += new
-            yield from new
+    def relaxed(self, options: RelaxOptions | None = None) -> Iterator[Iterate]:
+        """Go on to where it comes to rest, once more if there are options, and yield what comes there."""
+        if options is not None:
+            self._run = relax(replace(self.task, curve=self.end.curve, pins=self.end.pins), options)
+        for iterate in self._run:
+            self.iterates.append(iterate)
+            yield iterate
 
 
 def check_alike(curves: Sequence[Curve], names: Sequence[str]) -> None:
@@ -180,17 +183,3 @@ def _kind(curve: Curve) -> str:
     closed = sum(curve.mesh.closed)
     parts = [(closed, "closed component"), (len(curve.mesh.closed) - closed, "open component")]
     return " and ".join(counted(count, noun) for count, noun in parts if count)
-
-
-def _apart(one: _Way, other: _Way) -> Message:
-    """Say that shapes do not meet, how much they differ, and what to try."""
-    ends = product(one.shape.ways, other.shape.ways)
-    apart = min(alignments(a[-1].curve, b[-1].curve, Freedom())[0].distance for a, b in ends)
-    facts = {"a": f"{one.end.energy:.6g}", "b": f"{other.end.energy:.6g}", "distance": f"{apart:.2g}"}
-    return Message(
-        "no motion was found, though no invariant tells {one} and {other} apart: they come to rest at energies {a} and "
-        "{b}, in shapes that differ by {distance} radii of gyration; more hops may lead both to the same shape",
-        **facts,
-        one=one.name,
-        other=other.name,
-    )

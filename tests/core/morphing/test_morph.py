@@ -21,6 +21,7 @@ from mobius_flow.core import (
 )
 from mobius_flow.core.knots import knot, overhand, smooth_knot
 from mobius_flow.core.morphing import morphing
+from mobius_flow.core.morphing.meeting import meeting
 from mobius_flow.core.morphing.ways import back
 from mobius_flow.core.verify import verify
 
@@ -114,18 +115,23 @@ def test_shapes_that_do_not_meet_are_told_with_their_energies():
         morph(Task(curve=knot("3_1", 60), obstacles=(walls,)), moved(knot("3_1", 60), 0.1), stopped)
 
 
-@pytest.mark.parametrize("misses", [1, 2])
-def test_hops_from_one_end_and_then_from_the_other(misses, tmp_path, monkeypatch):
+@pytest.mark.parametrize("misses", [1, 2, 3, 4])
+def test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop(misses, tmp_path, monkeypatch):
     module, asked = sys.modules["mobius_flow.core.morphing.morph"], []
-    meet = module.meeting
-    monkeypatch.setattr(
-        module, "meeting", lambda *ends: asked.append(ends) or (meet(*ends) if len(asked) > misses else None)
-    )
+
+    def met(*shapes):
+        asked.append([len(ways[0][0].curve) for ways in shapes[:2]])
+        alignment, joint = meeting(*shapes)
+        return alignment, joint if len(asked) > misses else None
+
+    monkeypatch.setattr(module, "meeting", met)
     options = replace(QUICK, hops=1, max_iterations=60)
-    result, _, verdict = proved(knot("4_1", 60), knot("4_1", 80), options, tmp_path / "t.npz")
+    result, _, verdict = proved(knot("4_1", 60), knot("4_1", 300), options, tmp_path / "t.npz")
     assert verdict.accepted
     assert len(asked) == misses + 1
-    assert np.array_equal(result.curve.vertices, knot("4_1", 80).vertices)
+    assert asked[0][0] < asked[0][1] == 300
+    assert asked[2:] == [[300, 300]] * (misses - 1)
+    assert np.array_equal(result.curve.vertices, knot("4_1", 300).vertices)
 
 
 def test_every_leg_is_run_back():
