@@ -22,7 +22,6 @@ from ..core import Curve, Hand, Iterate, MobiusFlowError, OptionError
 from ..core.errors import choice, likeliest
 from .curves import bake
 from .curves.baked_keys import BakedKeys
-from .curves.exchange import read_link
 from .curves.pins import Held
 from .curves.session import Report, Session
 from .curves.surroundings import Surroundings
@@ -176,8 +175,7 @@ def begin(
     options = key_options(values)
     options = bake.continued(objects, options) if continues else options
     surroundings = Surroundings.of(_objects(values["avoid"]), [*objects, *goals])
-    shapes = {each.name: read_link([each])[0] for each in goals}
-    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values), shapes)
+    return Session(objects, relax_options(values), options, continues, surroundings, Held.of(values), goals)
 
 
 def _update() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from ...core import MobiusFlowError
 from ...core.messages import Message
 from ..engine.key_options import KeyOptions, Output, Timing
-from . import keyframes
+from . import blends, keyframes
 from .exchange import key_points
 from .fcurves import animated, count_own
 from .splines import Splines, shape
@@ -106,6 +106,7 @@ def clear(obj: bpy.types.Object) -> None:
     Splines.of(before).fill(data)
     for spline, slot in zip(data.splines, slots, strict=True):
         spline.material_index = slot
+    blends.take_off(data)
     if data.bevel_depth == bevel_depth:
         for name in _BEVEL:
             setattr(data, name, getattr(before, name))

@@ -4,10 +4,9 @@ A plain class: a blocking operator runs it, a modal one hands it the iterates of
 What it knows lives here and never in the file.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from types import MappingProxyType
 from typing import Any
 
 import bpy
@@ -39,6 +38,7 @@ from ..engine.words import named
 from ..engine.worker import begun
 from . import bake, bevel
 from .exchange import stretch
+from .goals import Goals
 from .group import Group
 from .pins import FREE, Held
 from .surroundings import NOTHING, Surroundings
@@ -101,7 +101,7 @@ class Prepared:
 class Session:
     """A relaxation of curve objects as one link; ``objects`` and ``continues`` as for `Group`.
 
-    ``goals``: curves in the world that it is to become, one after the other, by name; by default it is relaxed alone.
+    ``goals``: curve objects that it is to become, one after the other; by default it is relaxed alone.
     ``outcome``: how the relaxation ended, once it has.  Raises MobiusFlowError if the curves cannot be relaxed, or
     there is no room for their keys.
     """
@@ -114,10 +114,10 @@ class Session:
         continues: bool = False,
         surroundings: Surroundings = NOTHING,
         held: Held = FREE,
-        goals: Mapping[str, Curve] = MappingProxyType({}),
+        goals: Sequence["bpy.types.Object"] = (),
     ) -> None:
         key_options.check_room(options.max_iterations)
-        self.surroundings, self.goals = surroundings, goals
+        self.surroundings, self.goals = surroundings, Goals(goals)
         self._key_options = key_options
         self.group = Group(objects, continues)
         try:
@@ -162,7 +162,7 @@ class Session:
     def _relaxed(self, drag: Callable[[Hand, Iterate], object] | None) -> Prepared:
         hand = Hand()
         try:
-            run = WithOutcome(begun(self.task, self.options, self.goals, hand))
+            run = WithOutcome(begun(self.task, self.options, self.goals.curves, hand))
             for iterate in run:
                 self.take(iterate)
                 if drag is not None:
@@ -193,7 +193,7 @@ class Session:
     @property
     def _measure(self) -> Measure:
         """What stays as it is."""
-        if self.goals:  # which have sizes of their own
+        if self.goals.curves:  # which have sizes of their own
             return Measure.LENGTH
         stays = self.task.pins or self.task.obstacles or self.options.grow != 1.0
         return self._key_options.keep_size or (Measure.LENGTH if stays else Measure.RADIUS)
@@ -204,6 +204,7 @@ class Session:
         if before is not None and before.curve.mesh == iterate.curve.mesh:
             self._repinned |= before.pins != iterate.pins
         self._motion.add(iterate)
+        self.goals.note(iterate)
 
     def unsized(self, point: FloatArray) -> FloatArray:
         """The point of the relaxation, shape (3,), that is shown at another."""
@@ -279,6 +280,7 @@ class Session:
         yield from self.group.writing(
             self.start.mesh, prepared.keys, prepared.frames, self._key_options, prepared.radii
         )
+        self.goals.paint(self.group.objects, prepared.keys, prepared.frames, self._key_options.timing)
 
     def report(self, prepared: Prepared) -> Report:
         assert self.outcome is not None, "what is written has ended"

@@ -64,7 +64,7 @@ class Run:
         self._session, self._refresh = session, refresh
         self.time_left = TimeLeft(session.options)
         try:
-            self._worker = Worker(session.task, session.options, self.group.link, stays, session.goals)
+            self._worker = Worker(session.task, session.options, self.group.link, stays, session.goals.curves)
         except BaseException:
             self.group.discard()
             raise

@@ -1,0 +1,105 @@
+"""Blends: materials that change into others, keyed like the motion of what wears them.
+
+A blend is a copy of a material in whose tree stand the nodes of the others as well, with keyed shares of their shaders:
+a material like any other, which is shown and rendered everywhere. It takes a slot of its own, after those that a curve
+has, so that these are as they were when it goes.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core.types import FloatArray
+from ..engine.key_options import Timing
+from .fcurves import FCurves, own_action
+from .nodes import copied
+
+if TYPE_CHECKING:
+    import bpy
+
+_SLOT = "mobius_flow_slot"  # custom property of blends: the slot that splines had before
+_SHADERS = ("Surface", "Volume")  # inputs of a material's output that can be mixed
+_FLAT = ("diffuse_color", "metallic", "roughness")  # what Solid shading shows
+
+
+def worn(obj: "bpy.types.Object", spline: "bpy.types.Spline") -> "bpy.types.Material | None":
+    """The material that a spline is drawn in; None for Blender's own."""
+    slots = obj.material_slots
+    return slots[min(spline.material_index, len(slots) - 1)].material if slots else None
+
+
+def put_on(data: "bpy.types.Curve", spline: "bpy.types.Spline", material: "bpy.types.Material | None") -> None:
+    """Let a spline be drawn in a material, in a slot after those that there are unless it has one."""
+    if material not in list(data.materials):
+        data.materials.append(material)
+    spline.material_index = list(data.materials).index(material)
+
+
+def take_off(data: "bpy.types.Curve") -> None:
+    """Give splines back the slots that they had before they wore blends, and take the blends' away."""
+    import bpy
+
+    slots = [None if each is None else each.get(_SLOT) for each in data.materials]
+    for spline in data.splines:
+        if spline.material_index < len(slots) and slots[spline.material_index] is not None:
+            spline.material_index = slots[spline.material_index]
+    for number in reversed([number for number, slot in enumerate(slots) if slot is not None]):
+        blend = data.materials.pop(index=number)
+        if not blend.users:
+            actions = [owner.animation_data.action for owner in (blend, blend.node_tree) if owner.animation_data]
+            bpy.data.batch_remove([blend, *(each for each in actions if each is not None and each.users == 1)])
+
+
+def blend(
+    materials: "Sequence[bpy.types.Material | None]", slot: int, frames: FloatArray, timing: Timing
+) -> "bpy.types.Material":
+    """A material that is each of some at its frame, ascending, (materials,); ``slot``: what `take_off` gives back."""
+    import bpy
+
+    plain = bpy.data.materials.new("Default")
+    chain = [each or plain for each in materials]
+    for each in chain:
+        if each.node_tree is None:  # from Blender 5.0 on there is one from the start, and the switch is deprecated
+            each.use_nodes = True
+    made = chain[0].copy()
+    made.name, made[_SLOT] = " to ".join(each.name for each in chain), slot
+    back = timing.way_back(frames)
+
+    def key(block: "bpy.types.ID", path: str, axis: int, values: FloatArray) -> None:
+        there = np.concatenate([values, values[::-1][len(values) - len(back) :]])
+        FCurves(block, f"{made.name} Colors").add(path, axis, np.concatenate([frames, back]), there)
+
+    for block in (made, made.node_tree):
+        if block.animation_data is not None and block.animation_data.action is not None:
+            own_action(block)
+    for name in _FLAT:
+        values = np.array([getattr(each, name) for each in chain]).reshape(len(chain), -1)
+        for axis in np.flatnonzero(np.ptp(values, axis=0)):
+            key(made, name, int(axis), values[:, axis])
+    for number, other in enumerate(chain[1:], 1):
+        for path in _mix(made.node_tree, other.node_tree, f"To {other.name}"):
+            key(made.node_tree, path, 0, (np.arange(len(chain)) >= number).astype(np.float64))
+    bpy.data.materials.remove(plain)
+    return made
+
+
+def _mix(tree: "bpy.types.NodeTree", other: "bpy.types.NodeTree", name: str) -> list[str]:
+    """Mix the shaders of another tree into those of one; where the shares are found that it has of them."""
+    output, copies, paths = tree.get_output_node("ALL"), copied(other, tree), []
+    theirs = copies.get(other.get_output_node("ALL"))
+    for socket in _SHADERS:
+        ends = [node.inputs[socket] for node in (output, theirs) if node is not None]
+        if output is None or not any(end.is_linked for end in ends):
+            continue
+        mix = tree.nodes.new("ShaderNodeMixShader")
+        mix.name, mix.location = f"{name} {socket}", (output.location[0], output.location[1] + 200)
+        for end, entry in zip(ends, mix.inputs[1:], strict=False):
+            if end.is_linked:
+                tree.links.new(end.links[0].from_socket, entry)
+        tree.links.new(mix.outputs[0], output.inputs[socket])
+        paths.append(f'nodes["{mix.name}"].inputs[0].default_value')
+    for copy in copies.values():
+        if copy.type == "OUTPUT_MATERIAL":
+            tree.nodes.remove(copy)
+    return paths
