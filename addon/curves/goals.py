@@ -16,15 +16,17 @@ from .reference import Reference
 if TYPE_CHECKING:
     import bpy
 
+_NEAR = 1e-6  # lengths of a curve: places that are stored in 32 bits are as far apart
+
 
 class Goals:
-    """Curve objects that others become; raises CurveError if their splines cannot be read.
+    """Curve objects that a curve in the world becomes; raises CurveError if their splines cannot be read.
 
     ``curves``: what they are in the world, by their names.
     """
 
-    def __init__(self, objects: Sequence["bpy.types.Object"] = ()) -> None:
-        self.curves = {obj.name: read_link([obj])[0] for obj in objects}
+    def __init__(self, objects: Sequence["bpy.types.Object"], moving: Curve) -> None:
+        self.curves = {obj.name: _held(read_link([obj])[0], moving) for obj in objects}
         self._objects = [Reference(obj) for obj in objects]
         # the iterate in which each is reached, and which of its splines each component is then
         self._reached: list[tuple[int, list[int]]] = []
@@ -55,6 +57,16 @@ class Goals:
             elif which not in made:
                 made[which] = blends.blend(chain, spline.material_index, times, timing)
             blends.put_on(obj.data, spline, made[which])
+
+
+def _held(goal: Curve, moving: Curve) -> Curve:
+    """A goal whose ends are exactly where those of another curve are if they are there but for Blender's rounding."""
+    ends, there = goal.mesh.ends, moving.vertices[moving.mesh.ends]
+    vertices = goal.vertices.copy()
+    if vertices[ends].shape != there.shape or np.abs(vertices[ends] - there).max(initial=0.0) > _NEAR * moving.length:
+        return goal
+    vertices[ends] = there
+    return goal.with_vertices(vertices)
 
 
 def _material(

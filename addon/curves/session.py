@@ -117,10 +117,11 @@ class Session:
         goals: Sequence["bpy.types.Object"] = (),
     ) -> None:
         key_options.check_room(options.max_iterations)
-        self.surroundings, self.goals = surroundings, Goals(goals)
+        self.surroundings = surroundings
         self._key_options = key_options
         self.group = Group(objects, continues)
         try:
+            self.goals = Goals(goals, self.group.curve)
             self.task, self.options = self._task(held, options.balance), options
             if continues:  # the keys that are there have as many points as the curves have now
                 self.options = replace(options, vertices=len(self.group.curve), mesh="fixed", untangle="never")

@@ -26,6 +26,7 @@ class VIEW3D_MT_mobius_flow(bpy.types.Menu):
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Offer it all; what does not apply is grey, and its tooltip says why."""
+        self.layout.operator_context = "INVOKE_REGION_WIN"  # or else they do the whole job while Blender waits
         # Operator Search lists this first for who types no ö
         operator(self.layout, "relax", text="Relax and Untangle (Mobius Flow)", icon="PLAY")
         for group in _OPERATORS:

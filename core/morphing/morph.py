@@ -21,7 +21,7 @@ from .meeting import images, meeting
 from .ways import back, on_mesh, renamed
 
 _Joining = Generator[Iterate, None, tuple[Alignment, list[Iterate]]]
-MET = "the shapes that they relax to met, {distance:.2g} radii of gyration apart"
+MET = "became the other curve: relaxed shapes met, {distance:.2g} radii of gyration apart"
 NAMES = ("the first curve", "the second curve")
 RENAMED = "in the end components have another order or direction than they were given in"
 APART = (

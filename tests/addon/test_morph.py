@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_curve, stored
+from mathutils import Vector
 from mobius_flow import Relaxation
 from mobius_flow.addon.curves import bake
 from mobius_flow.addon.engine import wire
@@ -61,6 +62,17 @@ def test_what_is_wrong_with_a_goal_is_said_of_its_splines():
     told = f"^Segment 1 of spline 1 of '{name}' and segment 3 of spline 1 of '{name}' touch"
     with pytest.raises(MobiusFlowError, match=told):
         Relaxation(moving).morph(goal, **SHORT)
+
+
+def test_ends_that_are_in_one_place_but_for_rounding_are_held_there():
+    moving, goal = (add_curve([ZIGZAG], cyclic=False) for _ in range(2))
+    goal.location, goal.rotation_euler.z = (0.1, 0.2, 0.3), 0.7
+    bpy.context.view_layer.update()
+    away = goal.matrix_world.inverted()
+    for point, place in zip(goal.data.splines[0].points, ZIGZAG, strict=True):
+        point.co = (*(away @ Vector(place)), 1.0)
+    goal.data.splines[0].points[2].co.z += 0.5
+    assert Relaxation(moving).morph(goal, **SHORT).certified
 
 
 def test_goals_reach_the_worker(tmp_path):
