@@ -1,10 +1,8 @@
 """Check recorded motions of curves by whole numbers alone: ``python check_trajectory.py T.npz ...``.
 
-A file is accepted if no edges meet, nor any obstacle, while the vertices of a leg move on straight lines, if stages
-differ by vertices on edges only, and if pins hold: see docs/certificate.md.  Exit status: 0 accepted, 1 rejected.
-
-This file needs Python's standard library only, and shares no line with the program that writes such files, nor with its
-``verify``.  Doubles are whole numbers in a unit that is a power of two, and nothing is rounded.  Of two edges
+What a file must fulfil is in docs/certificate.md.  Exit status: 0 accepted, 1 rejected.  This needs Python's standard
+library only, and shares no line with the program that writes such files, nor with its ``verify``.  Doubles are whole
+numbers in a unit that is a power of two, and nothing is rounded.  Of two edges
 
 1. planes that stand still for a part of the time may show that they are apart;
 2. else they can meet where the volume of the four ends, a cubic polynomial in time, is zero: at its roots, isolated by
@@ -26,17 +24,14 @@ DECISIONS, PER_LEG = 3000, 200  # exact ones, of a file and for each of its legs
 ROUNDING_UNITS = 16  # distance from its edge, in units of the last place, of a vertex that is inserted or removed
 FINER = 64  # bits of a place on an edge, by which the unit is finer than coordinates
 DAMAGE = (OSError, EOFError, zipfile.BadZipFile, zlib.error, struct.error, RuntimeError, ValueError, OverflowError)
+HEADERS = (KeyError, MemoryError, RecursionError, SyntaxError, TypeError, ValueError)  # what wrong ones may raise
 CODES = {"f8": "d", "b1": "?", "i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "i8": "q", "u8": "Q"}
 WHOLE = "bBhHiIqQ"
 
 
-class RejectedError(Exception):
-    """The file is no certificate; the message says why."""
-
-
 def need(condition, reason):
     if not condition:
-        raise RejectedError(reason)
+        raise ValueError(reason)
 
 
 # Polynomials: c[0] w^n + c[1] w^(n-1) v + ... + c[n] v^n with w = 1 - t, v = t, so that (a, b) goes from a to b.  Where
@@ -91,8 +86,7 @@ def divided(p, q):
     return trimmed(quotient), trimmed(rest)
 
 
-def common(p, q):
-    """Greatest common divisor."""
+def common_divisor(p, q):
     p, q = trimmed(p), trimmed(q)
     while q:
         p, q = q, divided(p, q)[1]
@@ -103,7 +97,7 @@ def roots(p):
     """The roots 0 < t < 1 of a polynomial that is not zero: (p, i, j, m) with i/m < t < j/m, or t = i/m = j/m."""
     work = [(0, 1, 1)] if changes(p) else []
     if work:
-        p = divided(p, common(p, [k * c for k, c in enumerate(p)][1:]))[0]  # which has no multiple roots
+        p = divided(p, common_divisor(p, [k * c for k, c in enumerate(p)][1:]))[0]  # which has no multiple roots
     while work:
         i, j, m = work.pop()
         count = changes(between(p, i, j, m))
@@ -119,7 +113,7 @@ def sign(q, time):
     """A number that has the sign of a polynomial at a root, or at a time that is known."""
     p, i, j, m = time
     while changes(here := between(q, i, j, m)):
-        if changes(between(common(p, q), i, j, m)) % 2:  # the root is one of both
+        if changes(between(common_divisor(p, q), i, j, m)) % 2:  # the root is one of both
             return 0
         middle, m = i + j, 2 * m
         if not between(p, middle, middle, m)[0]:
@@ -209,19 +203,11 @@ def apart(first, second, halvings=4):
 
 def normals(first, second):
     """Directions in which the first may be above the second, for corners halfway."""
-    rows = [minus(p, q) for p in first for q in second]
-    yield (chord := [sum(column) for column in zip(*rows, strict=True)])
+    yield (chord := [sum(column) for column in zip(*(minus(p, q) for p in first for q in second), strict=True)])
     e, *sides = (minus(q, p) for p, q in chain(combinations(first, 2), combinations(second, 2)))
     for u, v in chain(((e, side) for side in sides), combinations(sides[:2], 2)):
         normal = cross(u, v)
         yield normal if dot(normal, chord) > 0 else [-c for c in normal]
-    for side, row in product((e, *sides), rows):  # from a side's line to a corner
-        square, share = dot(side, side), dot(row, side)
-        yield [square * c - share * d for c, d in zip(row, side, strict=True)]
-    yield from rows
-
-
-# Curves
 
 
 class Mesh:
@@ -294,14 +280,11 @@ def overlapping(first, second):
                 yield i, j
 
 
-# Files
-
-
 class Check:
-    """A file, and how far it is checked."""
+    """A file, and how much of it is checked."""
 
     def __init__(self, path):
-        self.place, self.legs, self.decisions, self.archive = "", 0, 0, zipfile.ZipFile(path)
+        self.legs, self.decisions, self.archive = 0, 0, zipfile.ZipFile(path)
         self.names = self.archive.namelist()
         need(len(set(self.names)) == len(self.names), "two arrays have one name")
 
@@ -318,8 +301,8 @@ class Check:
                 header = ast.literal_eval(stream.read(length).decode("latin1"))
                 shape, (order, *kind) = header["shape"], header["descr"]
                 code, count = CODES["".join(kind)], prod(map(index, shape))
-            except (KeyError, MemoryError, RecursionError, SyntaxError, TypeError, ValueError):
-                raise RejectedError(f"{name} has a header that cannot be read") from None
+            except HEADERS:
+                raise ValueError(f"{name} has a header that cannot be read") from None
             right = code in kinds and len(shape) == dimension and order in ("<" if code == "d" else "<>|")
             need(right, f"{name} is an array {shape} of {header['descr']}, which is not what it must be")
             size = count * struct.calcsize(f"={code}")
@@ -358,7 +341,7 @@ class Check:
         return Mesh(sizes, closed), [rows(frame, m) for frame in rows(values, m * vertices)]
 
     def run(self):
-        """Check it; raises RejectedError."""
+        """Check it, and yield what is checked next; raises a ValueError that says what is wrong."""
         triangles = [each for name in self.numbered("obstacle", "_faces", "_vertices") for each in self.obstacle(name)]
         (_, size), values = self.array("pins", "d", 2) if "pins.npy" in self.names else ((0, 0), ())
         pins = rows(values, size)
@@ -371,13 +354,15 @@ class Check:
         self.triangles, before = [self.whole(corners) for corners in triangles], None
         self.around = boxes(self.triangles)
         for number, (mesh, frames) in enumerate(stages):
-            self.place, last = f"stage {number}: ", self.whole(frames[0])
+            yield f"stage {number}: "
+            last = self.whole(frames[0])
             if before:
                 self.change(*before, last, mesh)
             need(all(pin in frames[0] for pin in pins), "at a pin there is no vertex")
             held = [(pin, frames[0].index(pin)) for pin in pins]
             for k, frame in enumerate(frames[1:] or frames):
-                self.place, here = f"stage {number}, frame {k}: ", self.whole(frame)
+                yield f"stage {number}, frame {k}: "
+                here = self.whole(frame)
                 need(all(frame[vertex] == pin for pin, vertex in held), "a vertex leaves its pin")
                 self.leg(last, here, mesh)
                 last, self.legs = here, self.legs + (len(frames) > 1)
@@ -425,14 +410,13 @@ def rows(values, size):
 
 def check(path):
     """Whether a file is accepted, and a sentence."""
-    made = None
+    place = ""
     try:
         made = Check(path)
-        made.run()
-    except RejectedError as reason:
-        return False, f"rejected: {made.place if made else ''}{reason}"
-    except DAMAGE as error:
-        return False, f"rejected: the file cannot be read: {error}"
+        for place in made.run():  # noqa: B007 (told where it is rejected)
+            pass
+    except DAMAGE as reason:
+        return False, f"rejected: {place}{reason}"
     return True, f"accepted: no contact on {made.legs} legs; {made.decisions} pairs were decided by polynomials"
 
 

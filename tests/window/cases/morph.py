@@ -65,7 +65,7 @@ def colours(name: str) -> Steps:
         space.shading.type, before = kind, ""
         for frame in (1, 1 + LENGTH // 4, 1 + LENGTH // 2):
             window().scene.frame_set(frame)
-            for _ in range(10):
+            for _ in range(10 if before else 100):  # shaders are compiled at first
                 yield
             yield from picture(f"{name}-{kind.lower()}-{frame}", differs_from=before)
             before = f"{name}-{kind.lower()}-{frame}"
@@ -83,9 +83,10 @@ def undone() -> Steps:
 
 def refused() -> Steps:
     """A mirror image is refused in one sentence, and nothing is lost."""
-    before = in_world("Moving")
+    before, last = in_world("Moving"), addon("live.registry").latest()
     select("Moving", "Mirrored")
     yield from choose("mobius_flow_morph")
+    yield from until(lambda: addon("live.registry").latest() is not last, "the refused run")
     yield from over("the mirror image")
     said = str(addon("live.registry").latest().message)
     assert said.startswith("the curve that moves is 3_1, 'Mirrored' its mirror image m3_1"), said
