@@ -40,17 +40,18 @@ class Freedom:
             return np.asarray(u @ v)
         across = np.cross(np.eye(3), self.axis)  # the matrix of u ↦ axis × u
         cosine = np.trace(covariances, axis1=1, axis2=2) - self.axis @ covariances @ self.axis
-        return self._about(np.arctan2(np.einsum("ij,kij->k", across, covariances), cosine))
+        return _about(self.axis, np.arctan2(np.einsum("ij,kij->k", across, covariances), cosine))
 
     def starts(self) -> FloatArray:
         """Rotations all over, the identity first; shape (k, 3, 3)."""
         if self.axis is not None:
-            return self._about(np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False))
+            return _about(self.axis, np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False))
         turns = np.random.default_rng(1).normal(size=(STARTS, 4))
         return np.asarray(Rotation.from_quat(np.concatenate([[[0, 0, 0, 1]], turns])).as_matrix())
 
-    def _about(self, angles: FloatArray) -> FloatArray:
-        return np.asarray(Rotation.from_rotvec(angles[:, None] * self.axis).as_matrix())
+
+def _about(axis: FloatArray, angles: FloatArray) -> FloatArray:
+    return np.asarray(Rotation.from_rotvec(angles[:, None] * axis).as_matrix())
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,7 +100,7 @@ def _joined(here: "_Way", there: "_Way", options: RelaxOptions, hops: int) -> _J
     """
     ways, obstacles = (here, there), here.task.obstacles
     shapes = [images(each.end, obstacles) for each in ways]
-    alignment, joint = meeting(*shapes, obstacles)
+    alignment, joint = meeting(shapes[0], shapes[1], obstacles)
     higher = int(there.end.energy > here.end.energy)
     fine = replace(options, mesh="fixed", untangle="never", vertices=max(len(each.end.curve) for each in ways))
     for count, k in product(dict.fromkeys((0, hops)), (higher, 1 - higher)):
@@ -109,7 +109,7 @@ def _joined(here: "_Way", there: "_Way", options: RelaxOptions, hops: int) -> _J
             yield from further if k == 0 else ()
             deque(further, maxlen=0)
             shapes[k] = images(ways[k].end, obstacles)
-            alignment, joint = meeting(*shapes, obstacles)
+            alignment, joint = meeting(shapes[0], shapes[1], obstacles)
     if joint is None:
         facts = {"one": here.name, "other": there.name, "a": here.end.energy, "b": there.end.energy}
         raise NoMotionError(Message(APART, **facts, distance=alignment.distance))
