@@ -6,8 +6,8 @@ has, so that these are as they were when it goes.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core.types import FloatArray
@@ -15,31 +15,26 @@ from ..engine.key_options import Timing
 from .fcurves import FCurves, own_action
 from .nodes import copied
 
-if TYPE_CHECKING:
-    import bpy
-
 _SLOT = "mobius_flow_slot"  # custom property of blends: the slot that splines had before
 _SHADERS = ("Surface", "Volume")  # inputs of a material's output that can be mixed
 _FLAT = ("diffuse_color", "metallic", "roughness")  # what Solid shading shows
 
 
-def worn(obj: "bpy.types.Object", spline: "bpy.types.Spline") -> "bpy.types.Material | None":
+def worn(obj: bpy.types.Object, spline: bpy.types.Spline) -> bpy.types.Material | None:
     """The material that a spline is drawn in; None for Blender's own."""
     slots = obj.material_slots
     return slots[min(spline.material_index, len(slots) - 1)].material if slots else None
 
 
-def put_on(data: "bpy.types.Curve", spline: "bpy.types.Spline", material: "bpy.types.Material | None") -> None:
+def put_on(data: bpy.types.Curve, spline: bpy.types.Spline, material: bpy.types.Material | None) -> None:
     """Let a spline be drawn in a material, in a slot after those that there are unless it has one."""
     if material not in list(data.materials):
         data.materials.append(material)
     spline.material_index = list(data.materials).index(material)
 
 
-def take_off(data: "bpy.types.Curve") -> None:
+def take_off(data: bpy.types.Curve) -> None:
     """Give splines back the slots that they had before they wore blends, and take the blends' away."""
-    import bpy
-
     slots = [None if each is None else each.get(_SLOT) for each in data.materials]
     for spline in data.splines:
         if spline.material_index < len(slots) and slots[spline.material_index] is not None:
@@ -52,11 +47,9 @@ def take_off(data: "bpy.types.Curve") -> None:
 
 
 def blend(
-    materials: "Sequence[bpy.types.Material | None]", slot: int, frames: FloatArray, timing: Timing
-) -> "bpy.types.Material":
+    materials: Sequence[bpy.types.Material | None], slot: int, frames: FloatArray, timing: Timing
+) -> bpy.types.Material:
     """A material that is each of some at its frame, ascending, (materials,); ``slot``: what `take_off` gives back."""
-    import bpy
-
     plain = bpy.data.materials.new("Default")
     chain = [each or plain for each in materials]
     for each in chain:
@@ -66,7 +59,7 @@ def blend(
     made.name, made[_SLOT] = " to ".join(each.name for each in chain), slot
     back = timing.way_back(frames)
 
-    def key(block: "bpy.types.ID", path: str, axis: int, values: FloatArray) -> None:
+    def key(block: bpy.types.ID, path: str, axis: int, values: FloatArray) -> None:
         there = np.concatenate([values, values[::-1][len(values) - len(back) :]])
         FCurves(block, f"{made.name} Colors").add(path, axis, np.concatenate([frames, back]), there)
 
@@ -84,7 +77,7 @@ def blend(
     return made
 
 
-def _mix(tree: "bpy.types.NodeTree", other: "bpy.types.NodeTree", name: str) -> list[str]:
+def _mix(tree: bpy.types.NodeTree, other: bpy.types.NodeTree, name: str) -> list[str]:
     """Mix the shaders of another tree into those of one; where the shares are found that it has of them."""
     output, copies, paths = tree.get_output_node("ALL"), copied(other, tree), []
     theirs = copies.get(other.get_output_node("ALL"))

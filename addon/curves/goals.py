@@ -1,8 +1,8 @@
 """What curves become in a morph, one after the other: where they pass by, and the materials that they take on there."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ...core import Curve, Iterate
@@ -13,9 +13,6 @@ from . import blends
 from .exchange import read_link
 from .reference import Reference
 
-if TYPE_CHECKING:
-    import bpy
-
 _NEAR = 1e-6  # lengths of a curve: places that are stored in 32 bits are as far apart
 
 
@@ -25,7 +22,7 @@ class Goals:
     ``curves``: what they are in the world, by their names.
     """
 
-    def __init__(self, objects: Sequence["bpy.types.Object"], moving: Curve) -> None:
+    def __init__(self, objects: Sequence[bpy.types.Object], moving: Curve) -> None:
         self.curves = {obj.name: _held(read_link([obj])[0], moving) for obj in objects}
         self._objects = [Reference(obj) for obj in objects]
         # the iterate in which each is reached, and which of its splines each component is then
@@ -37,7 +34,7 @@ class Goals:
         if left and iterate.index and (components := _components(iterate.curve, left[0])):
             self._reached.append((iterate.index, components))
 
-    def paint(self, objects: Sequence["bpy.types.Object"], keys: Keys, frames: FloatArray, timing: Timing) -> None:
+    def paint(self, objects: Sequence[bpy.types.Object], keys: Keys, frames: FloatArray, timing: Timing) -> None:
         """Let the splines of keyed objects take on the materials of the goals on the way there.
 
         ``frames``: those of the keys. Without an animation they have the last one's. Goals that are gone change none.
@@ -70,8 +67,8 @@ def _held(goal: Curve, moving: Curve) -> Curve:
 
 
 def _material(
-    goal: "bpy.types.Object | None", spline: int, before: "bpy.types.Material | None"
-) -> "bpy.types.Material | None":
+    goal: bpy.types.Object | None, spline: int, before: bpy.types.Material | None
+) -> bpy.types.Material | None:
     """The material of one of a goal's splines; that before if there is no such spline any more."""
     if goal is None or goal.type != "CURVE" or spline >= len(goal.data.splines):
         return before

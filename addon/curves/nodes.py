@@ -2,21 +2,18 @@
 
 from collections.abc import Iterable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    import bpy
+import bpy
 
 _LOOKS = ("name", "label", "width", "mute", "hide")
 
 
-def copied(source: "bpy.types.NodeTree", tree: "bpy.types.NodeTree") -> "dict[bpy.types.Node, bpy.types.Node]":
+def copied(source: bpy.types.NodeTree, tree: bpy.types.NodeTree) -> dict[bpy.types.Node, bpy.types.Node]:
     """Copy all nodes of a tree, with their links, into another one; the copy of each.
 
     Kinds of nodes that no running extension knows are left out: they do nothing.
     """
-    import bpy
-
     known = [node for node in source.nodes if hasattr(bpy.types, node.bl_idname)]
     copies = {node: tree.nodes.new(node.bl_idname) for node in known}
     common = _settings(bpy.types.Node)
