@@ -23,7 +23,8 @@ ACCURACY = 1e-7  # of the energy: how much half as many modes again may change i
 _PER_MODE = 4  # points of the trapezoidal rule
 _FOLLOWS = 0.01  # of the energy: how far that of a first fit may be from the polygon's
 _STEPS, _REACH = 20, 0.02  # Newton steps, and how far they move points, in units of the curve's radius
-_GAIN = 1e-10  # of the energy: what a next step would gain at most, where it is at rest
+_GAIN = 1e-8  # of the energy: what a next step would gain at most, where more modes do better
+_LEAST = 1e-11  # the same in the end
 _STIFFNESS = 2.0  # against sliding
 _SOFT = 1e-9  # of the largest eigenvalue: the sign of smaller ones is not known
 
@@ -52,9 +53,10 @@ def at_rest(polygon: Curve) -> Rest | None:
     for most in MODES:
         modes = _shared(most, given)
         start = last.curve.with_modes(modes) if last else FourierCurve.of(given, at, modes)
-        found = _stationary(start, last.energy if last else energy)
+        found = _stationary(start, last.energy if last else energy, _GAIN)
         if found and last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
-            return replace(found, error=error)
+            polished = _stationary(found.curve, found.energy, _LEAST)
+            return polished and replace(polished, error=error)
         last = found or last
     return None
 
@@ -70,7 +72,7 @@ def _shared(modes: int, curve: Curve) -> list[int]:
     return [max(MODES[0] // 2, round(modes * length / lengths.mean())) for length in lengths]
 
 
-def _stationary(start: FourierCurve, energy: float) -> Rest | None:
+def _stationary(start: FourierCurve, energy: float, gain: float) -> Rest | None:
     """Where Newton's method leads from a curve of about an energy; None if the curve does not have it."""
     basis, finer = (Basis.of(start.modes, points) for points in (_PER_MODE, 2 * _PER_MODE))
     z = basis.unknowns(start)
@@ -78,7 +80,7 @@ def _stationary(start: FourierCurve, energy: float) -> Rest | None:
         return None
     model = Model.of(basis, z)
     for _ in range(_STEPS):
-        better = None if model.gain < _GAIN * model.energy else _searched(basis, z, model)
+        better = None if model.gain < gain * model.energy else _searched(basis, z, model)
         if better is None:
             break
         z, model = better, Model.of(basis, better)
