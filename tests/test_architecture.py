@@ -19,6 +19,7 @@ FLOORS = (
     {"core.types", "core.errors"},
     {"core.verify", "core.files", "core.threads", "core.quadrature"},
     {"core.curve"},
+    {"core.symmetry"},
     {"core.energies", "core.collision", "core.constraints", "core.diagrams"},
     {"core.saddle", "core.knots", "core.passes"},
     {"core.metrics", "core.curve.io"},

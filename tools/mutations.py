@@ -885,10 +885,10 @@ MUTANTS = (
     ),
     Mutant(
         "shapes are laid upon their mirror images",
-        "core/morphing/alignment.py",
+        "core/curve/alignment.py",
         "            u[:, :, 2] *= np.linalg.det(u @ v)[:, None]\n",
         "",
-        f"{MORPHING}/test_alignment.py::test_no_reflection_is_an_alignment",
+        "tests/core/curve/test_alignment.py::test_no_reflection_is_an_alignment",
     ),
     Mutant(
         "the way back leaves out the ends of inner legs",

@@ -6,6 +6,9 @@ have few rows, which border the rest.
 
 A pinned vertex is no unknown: P_v = P⁰_v holds exactly, not as rows of Φ.  It takes the place of its part's barycenter,
 and the length of an edge between two pins, which cannot change, is no row either: so DΦ has full rank on what is free.
+
+Under a symmetry all vertices of an orbit are one unknown: images are put where they belong, as pins are.  Φ keeps its
+rows, whose solutions are symmetric where the curve is.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -18,6 +21,7 @@ import scipy.sparse as sp
 
 from ..curve import Curve, Mesh
 from ..curve.pins import NO_PINS, NOWHERE, Pins, free_edges
+from ..symmetry import NO_SYMMETRY, Symmetry
 from ..types import FloatArray, IntArray
 from .barycenters import Barycenters, Parts, weighted_barycenter
 
@@ -84,6 +88,7 @@ class Constraints:
     lengths: FloatArray  # target lengths ℓ⁰, positive, shape (edges,)
     blocks: tuple[Block, ...]  # the rows after those of the lengths
     pins: Pins = NO_PINS  # vertices that stay where they are
+    symmetry: Symmetry = NO_SYMMETRY  # which all displacements have
     grown: float = 1.0  # how many times as long the targets are as they were at first, but for edges between two pins
 
     @classmethod
@@ -108,7 +113,8 @@ class Constraints:
 
     def derivative(self, curve: Curve) -> "ConstraintDerivative":
         blocks = tuple(block.derivative(curve) for block in self.blocks)
-        return ConstraintDerivative.of(curve, self.pins.vertices, free_edges(curve.mesh, self.pins.vertices), blocks)
+        edges = free_edges(curve.mesh, self.pins.vertices)
+        return replace(ConstraintDerivative.of(curve, self.pins.vertices, edges, blocks), symmetry=self.symmetry)
 
     def residual(self, curve: Curve) -> FloatArray:
         """Φ(P): the logarithmic errors of r lengths, then the k rows of blocks; shape (r + k,)."""
@@ -139,6 +145,7 @@ class ConstraintDerivative:
     edges: IntArray  # those whose lengths are rows, ascending; shape (r,)
     pins: IntArray  # vertices at which u is 0; shape (k,)
     blocks: tuple[BlockDerivative, ...] = ()  # the derivatives of the blocks
+    symmetry: Symmetry = NO_SYMMETRY
 
     @classmethod
     def of(

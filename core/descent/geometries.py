@@ -101,8 +101,9 @@ class Penalised:
     def tangent_space(self, problem: Problem, curve: Curve, inner: InnerProduct) -> TangentSpace:
         """The whole space, but for pins."""
         penalty = self.penalty if problem.metric.extends_penalty else 0.0
-        rows = ConstraintDerivative.of_lengths(curve, problem.constraints.pins.vertices)
-        return inner.whole_space(rows, penalty * problem.constraints.lengths)
+        constraints = problem.constraints
+        rows = ConstraintDerivative.of_lengths(curve, constraints.pins.vertices)
+        return inner.whole_space(replace(rows, symmetry=constraints.symmetry), penalty * constraints.lengths)
 
     def residual(self, problem: Problem, curve: Curve) -> FloatArray:
         """Every polygon is allowed: 0."""

@@ -25,13 +25,17 @@ _LARGEST = 1e6  # σ; that of a Hessian whose steps are those of the metric is 1
 
 
 class Curvature:
-    """The Lagrangian's second derivative at a point, on the tangent space, against the metric there."""
+    """The Lagrangian's second derivative at a point, on the tangent space, against the metric there.
+
+    Under a symmetry it is the metric on all directions that break it, so that they neither count nor are gone.
+    """
 
     def __init__(self, point: Point) -> None:
         check_time()
         self.point, self._chains = point, Chains(point.tangent_space.constraints)
-        self._hessian = self._chains.of_hessian(lagrangian_matrix(point))
-        self._metric = self._chains.of_metric(point.inner_product.dense())
+        gram = point.inner_product.dense()
+        hessian = self.point.problem.constraints.symmetry.within(lagrangian_matrix(point), gram)
+        self._hessian, self._metric = self._chains.of_hessian(hessian), self._chains.of_metric(gram)
 
     @staticmethod
     def is_known(point: Point) -> bool:

@@ -108,7 +108,7 @@ class Problem:
         pins, held = self.constraints.pins.on(curve), self.constraints
         lengths = curve.edge_lengths if lengths is None else lengths
         problem = Problem.of(curve, lengths, pins, self.obstacles, self.solver, self.geometry, held.blocks)
-        constraints = replace(problem.constraints, grown=held.grown)
+        constraints = replace(problem.constraints, grown=held.grown, symmetry=held.symmetry.on(curve))
         return replace(problem, constraints=constraints).at_curve(curve)
 
     def inner_product(self, curve: Curve) -> InnerProduct:
@@ -121,8 +121,15 @@ class Problem:
         return inner if stiffness is None else inner.plus(SparseInnerProduct(stiffness))
 
     def at(self, vertices: FloatArray) -> "Point":
-        """The point with these vertices, in the program's units; pinned ones are put back to their last digits."""
-        pins, placed = self.constraints.pins, self.units.to_user(vertices)
+        """The point with these vertices, in the program's units; pinned ones are put back to their last digits.
+
+        What is to be symmetric is made so.
+        """
+        pins, symmetry = self.constraints.pins, self.constraints.symmetry
+        if len(symmetry):
+            centre = self.units.from_user(symmetry.centre)
+            vertices = centre + symmetry.mean(vertices - centre)
+        placed = self.units.to_user(vertices)
         if not len(pins):
             return Point(self, vertices, placed)
         own = self.units.from_user(pins.positions)
@@ -228,7 +235,8 @@ class Point:
     @cached_property
     def _energy_and_derivative(self) -> tuple[float, FloatArray]:
         check_time()
-        return self.problem.geometry.value_and_derivative(self.problem, self.curve)
+        value, derivative = self.problem.geometry.value_and_derivative(self.problem, self.curve)
+        return value, self.problem.constraints.symmetry.mean(derivative)
 
     @property
     def energy(self) -> float:

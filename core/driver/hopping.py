@@ -20,6 +20,7 @@ from .loop import Relaxation, descent, iterates, summarised
 from .motions import MOTIONS, Motion
 from .outcome import Outcome
 from .run import Run
+from .symmetric import Symmetrised
 from .untangling import Untangling
 
 IS_UNKNOT = Message("the curve is an unknot, and a circle has less energy")
@@ -30,7 +31,7 @@ ROUND = 0.9  # of the area of the circle of the same length: coarse and uneven o
 MOST_VERTICES = 10_000  # for which the knot type is computed: a few seconds
 
 
-def hopping(run: Run, hold: Hold | None = None) -> Relaxation:
+def hopping(run: Run, hold: Hold | None = None, symmetrised: Symmetrised | None = None) -> Relaxation:
     """Yield the iterates of a relaxation, of strand moves and of hops; return how it ended.
 
     A hop is one iterate: its path is the motion, and the relaxation to where there is less energy than at the minimum
@@ -38,6 +39,8 @@ def hopping(run: Run, hold: Hold | None = None) -> Relaxation:
     """
     hops, strands = Hops(run), Untangling(run)
     yield run.iterate
+    if symmetrised and (change := symmetrised.change(run)):
+        yield from run.change(change)
     yield from strands.before_flow()
     outcome = yield from descent(run, hold=hold)
     stuck = run.iterate
@@ -47,7 +50,8 @@ def hopping(run: Run, hold: Hold | None = None) -> Relaxation:
     while hops.led_lower(outcome):
         yield run.iterate
         outcome = yield from descent(run, hold=hold)
-    return hops.summarised(strands.summarised(summarised(outcome, run)))
+    outcome = hops.summarised(strands.summarised(summarised(outcome, run)))
+    return symmetrised.summarised(outcome) if symmetrised else outcome
 
 
 @checked_fields

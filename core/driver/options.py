@@ -14,6 +14,7 @@ from ..energies import ENERGIES, TERMS, Energy, Term
 from ..errors import OptionError
 from ..metrics import METRICS, Metric
 from ..option import declared, documented, option
+from ..symmetry import IS_NAME
 
 EDGE_LENGTHS = ("auto", "equal", "keep")
 MESHES = ("auto", "fixed", "finer", "adaptive")
@@ -216,6 +217,14 @@ class RelaxOptions:
         metavar="U",
         row=True,
     )
+    symmetry: str | None = option(
+        None,
+        "Symmetry",
+        "group of rotations and reflections, after Schoenflies (C3, D2, S4, …), that the curve has from the start, but "
+        "for some tolerance, and keeps exactly; auto, all that it has",
+        automatic="no symmetry is kept",
+        metavar="GROUP",
+    )
     hops: int = option(
         0,
         "Hops",
@@ -241,8 +250,18 @@ class RelaxOptions:
         if self.mesh in ("finer", "adaptive") and self.edge_lengths != "auto":
             raise OptionError(f"mesh={self.mesh!r} makes its own edge_lengths; leave one of the two options out")
         if self.untangle == "always" and not self.may_untangle:
-            other = "mesh='fixed'" if self.mesh == "fixed" else "edge_lengths"
+            other = "mesh='fixed'" if self.mesh == "fixed" else "symmetry" if self.symmetry else "edge_lengths"
             raise OptionError(f"untangle='always' changes the mesh; leave it or {other} out")
+        if self.symmetry is not None:
+            self._check_symmetry(self.symmetry)
+
+    def _check_symmetry(self, name: str) -> None:
+        if name != "auto" and not IS_NAME.fullmatch(name):
+            raise OptionError(f"symmetry is {short(name)}; give auto, or a group such as C3, D2, S4 or Th")
+        if self.mesh == "adaptive":
+            raise OptionError("symmetry keeps orbits of vertices, which mesh='adaptive' does not; take mesh='finer'")
+        if self.edge_lengths not in ("auto", "equal"):
+            raise OptionError("symmetry spreads vertices evenly; leave it or edge_lengths out")
 
     def __repr__(self) -> str:
         values = [(each, getattr(self, each.name)) for each in declared(type(self))]
@@ -252,7 +271,7 @@ class RelaxOptions:
     @property
     def may_untangle(self) -> bool:
         """Whether the mesh may change as it does where strands are moved."""
-        return self.mesh != "fixed" and self.edge_lengths in ("auto", "equal")
+        return self.mesh != "fixed" and self.edge_lengths in ("auto", "equal") and self.symmetry is None
 
     @property
     def ends_finer(self) -> bool:

@@ -27,6 +27,7 @@ class Outcome:
     - ``status``: why it ended.
     - ``clauses``: the same in words, and what else there is to say.
     - ``negative_eigenvalues``: of the Lagrangian's Hessian at a converged curve, if known: 0 at a minimum.
+    - ``symmetric_negative_eigenvalues``: those among displacements that keep the symmetry, if one is kept.
     - ``sampled_errors``: those of the hierarchical solver when last looked at: in the end, unless that came suddenly.
     - ``place``: where on the last curve the reason is, if it is somewhere.
     - ``unbounded``: whether strands pull tight without limit, so that there is no least energy to look for.
@@ -35,6 +36,7 @@ class Outcome:
     status: Status
     clauses: tuple[str, ...]
     negative_eigenvalues: int | None = None
+    symmetric_negative_eigenvalues: int | None = None
     sampled_errors: SampledErrors | None = None
     place: Place | None = None
     unbounded: bool = False

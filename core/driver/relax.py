@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from ..arguments import checked, checked_fields
 from ..curve import Curve
 from ..deadline import TimeLimit
-from ..errors import CurveError, counted
+from ..errors import CurveError, OptionError, counted
 from ..hierarchy import moebius_energy
 from ..messages import COMPONENT, VERTEX_COUNT, Message
 from ..task import Task
@@ -26,6 +26,7 @@ from .outcome import INTERRUPTED, OUT_OF_MEMORY, Outcome, Status
 from .prepare import start_problem
 from .run import Run
 from .solver import Solver
+from .symmetric import Symmetrised
 from .trajectory import Iterate
 
 WIDTHS = 100.0  # the curve's width, in lengths of a component, from which that is the reason for a singular matrix
@@ -134,6 +135,7 @@ class Result:
             "vertices": len(self.curve),
             "components": len(self.curve.mesh.component_sizes),
             "pins": list(self.last.pins),
+            "symmetry": self.last.symmetry or None,
             "obstacles": len(self.task.obstacles),
             "grown": self.last.grown,
             "max_edge_length_error": self.last.edge_length_error,
@@ -141,6 +143,7 @@ class Result:
             "method": self.method,
             "fallback_steps": list(self.fallback_steps),
             "negative_eigenvalues": self.outcome.negative_eigenvalues,
+            "symmetric_negative_eigenvalues": self.outcome.symmetric_negative_eigenvalues,
             "sampled_errors": None if errors is None else asdict(errors),
             "strand_moves": self.last.strand_moves and self.last.strand_moves.report(),
         }
@@ -162,13 +165,18 @@ def relax(curve: Curve | Task, options: RelaxOptions | None = None, hand: Hand |
     options = RelaxOptions() if options is None else options
     task = Task.of(curve)
     Solver(options).check_size(task.curve)
-    start = task.refined(options.vertices)
+    start, symmetrised = task.refined(options.vertices), None
+    if options.symmetry is not None:
+        if task.pins or task.obstacles:
+            raise OptionError("pins and obstacles break symmetry; leave them out, or the option")
+        symmetrised = Symmetrised.of(start.curve, options.symmetry)
+        start = replace(start, curve=symmetrised.start)
     try:
         run = Run(start_problem(start, options), start.curve, options)
     except np.linalg.LinAlgError as error:
         degenerate = "the curve is too degenerate to be relaxed: {error}; {remedy}"
         raise CurveError(Message(degenerate, error=str(error), remedy=_remedy(start.curve, options))) from error
-    work = BLAS.bounding(hopping(run, None if hand is None else Hold(run, hand)))
+    work = BLAS.bounding(hopping(run, None if hand is None else Hold(run, hand), symmetrised))
     if options.time_limit is None:
         return work
     return within(TimeLimit(options.time_limit, used=time.perf_counter() - began), work)

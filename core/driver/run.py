@@ -243,6 +243,7 @@ class Run:
             method=self.method.name,
             pins=tuple(constraints.pins.vertices.tolist()),
             strand_moves=self.strand_moves,
+            symmetry=constraints.symmetry.name,
         )
 
 

@@ -54,6 +54,7 @@ class Iterate:
     - ``grown``: factor by which target lengths have grown since the start.
     - ``pins``: pinned vertices of this curve, counted from 0, and those that cannot move between them.
     - ``strand_moves``: what these have come to so far; None before the first one.
+    - ``symmetry``: name of the group of symmetries that are kept, if any are.
     """
 
     index: int
@@ -68,6 +69,7 @@ class Iterate:
     grown: float = 1.0
     pins: tuple[int, ...] = ()
     strand_moves: StrandMoves | None = None
+    symmetry: str = ""
 
     def __repr__(self) -> str:
         proved = "certified" if self.certified else "not certified"

@@ -11,13 +11,13 @@ import numpy as np
 
 from ..collision import survives_rounding
 from ..curve import Curve
+from ..curve.alignment import Alignment, Freedom, alignments
+from ..curve.joint import refined_alike
 from ..curve.measures import bending
 from ..driver import Iterate
 from ..driver.interventions.balance import MoebiusImages, least_bending, turn
 from ..obstacle import Obstacle
 from ..types import FloatArray
-from .alignment import Alignment, Freedom, alignments
-from .joint import refined_alike
 from .ways import back, followed, gone, on_mesh, renamed
 
 IMAGES = 3  # of each curve, those that bend least, besides itself

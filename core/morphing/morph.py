@@ -8,6 +8,7 @@ from itertools import pairwise, product
 
 from ..arguments import checked
 from ..curve import Curve
+from ..curve.alignment import Alignment
 from ..deadline import TimeLimit
 from ..driver import Iterate, Outcome, Relaxation, RelaxOptions, Result, Status, WithOutcome, finish, relax
 from ..driver.loop import within
@@ -15,7 +16,6 @@ from ..errors import CurveError, OptionError, counted
 from ..messages import OF_GOAL, Message
 from ..task import Task
 from ..threads import BLAS
-from .alignment import Alignment
 from .evidence import NoMotionError, compare
 from .meeting import images, meeting
 from .ways import back, on_mesh, renamed

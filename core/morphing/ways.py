@@ -8,11 +8,11 @@ import numpy as np
 
 from ..collision import is_free
 from ..curve import Curve, Mesh
+from ..curve.alignment import Alignment
 from ..deadline import check_time
 from ..driver import Iterate
 from ..obstacle import Obstacle
 from ..types import FloatArray
-from .alignment import Alignment
 
 SHORTEST = 1e-4  # share of a motion in one leg, with which it is given up
 

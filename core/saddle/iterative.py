@@ -80,7 +80,7 @@ class IterativeTangentSpace(TangentSpace):
 
     def project(self, u: FloatArray) -> FloatArray:
         """The orthogonal projection of u: less the shortest correction, a small one where u is nearly tangent."""
-        return u - self.pseudo_inverse(self.constraints.apply(u))
+        return self.constraints.symmetry.mean(u) - self.pseudo_inverse(self.constraints.apply(u))
 
     def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray:
         """The shortest in the model, exact enough for quadratic convergence; Euclidean ones turn fine edges too far."""

@@ -36,11 +36,12 @@ class TangentSpace(ABC):
 
     def gradient(self, derivative: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Projected gradient u, shape (n, m), and multipliers λ, shape (rows of C,), of a derivative, shape (n, m)."""
-        return self.solve(derivative, None)
+        u, multipliers = self.solve(derivative, None)
+        return self.constraints.symmetry.mean(u), multipliers
 
     def pseudo_inverse(self, xi: FloatArray) -> FloatArray:
         """C^† ξ, the shortest u with C u = ξ; shapes (rows of C,) -> (n, m)."""
-        return self.solve(None, xi)[0]
+        return self.constraints.symmetry.mean(self.solve(None, xi)[0])
 
     def restoration(self, constraints: Constraints, curve: Curve, residual: FloatArray) -> FloatArray | None:
         """A short u, (n, m), with DΦ u = −Φ near by; by default the Euclidean one in O(n), None if there is none."""
@@ -48,7 +49,7 @@ class TangentSpace(ABC):
 
     def project(self, u: FloatArray) -> FloatArray:
         """The orthogonal projection of u, which vanishes at pins; shape (n, m)."""
-        return self.solve(self.apply(u), None)[0]
+        return self.constraints.symmetry.mean(self.solve(self.apply(u), None)[0])
 
     def norm(self, u: FloatArray) -> float:
         """√⟨u, J u⟩."""

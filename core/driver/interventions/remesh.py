@@ -189,6 +189,7 @@ class FinerMesh(Intervention):
 
 def split_edges(problem: Problem, curve: Curve, pieces: IntArray) -> Point | None:
     """The same curve in the same problem with every edge in pieces; None if it has too few digits or is too large."""
+    pieces = problem.constraints.symmetry.most(pieces, curve.mesh)
     finer = subdivide(curve, pieces) if pieces.max() > 1 else curve
     try:
         check_refined(curve, finer, problem.obstacles)

@@ -9,14 +9,18 @@ from ...descent import METHODS, Point, Step
 from ...descent.newton import Curvature, Newton
 from ...descent.searches.trials import on_target
 from ...energies.components import energy_scale
+from ...messages import Message
 from ...metrics import MoebiusMetric
 from ...saddle.indefinite import FactorisedHessian
+from ...symmetry import NO_SYMMETRY
 from ..outcome import Outcome
 from ..run import Change, Intervention
 from .links import is_unresolved
 from .saddle import stability, unresolved
 
 MINIMUM = "a minimum"
+SADDLE = "a saddle of index {index}"
+WITHIN = "{kind} among curves of symmetry {group}"
 ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
 
 
@@ -77,7 +81,13 @@ class Rest(Intervention):
             index = stability(self.run.point).index
         else:
             return None
-        return self._told(replace(outcome, negative_eigenvalues=index))
+        if not self.run.iterate.symmetry:
+            return self._told(replace(outcome, negative_eigenvalues=index))
+        kind = ILL_CONDITIONED if index is None else Message(SADDLE, index=index) if index else Message(MINIMUM)
+        outcome = outcome.adding(WITHIN, kind=kind, group=self.run.iterate.symmetry)
+        free = replace(self.run.problem.constraints, symmetry=NO_SYMMETRY)
+        whole = stability(self.run.point.changing(constraints=free)).index
+        return self._told(replace(outcome, negative_eigenvalues=whole, symmetric_negative_eigenvalues=index))
 
     def _steps(self, curvature: Curvature, inverse: FactorisedHessian, shift: float) -> tuple[Step, ...]:
         most, least = self.run.iterations_left, self._least(curvature.point)
@@ -89,8 +99,8 @@ class Rest(Intervention):
     def _told(self, outcome: Outcome) -> Outcome:
         index, options = outcome.negative_eigenvalues, self.run.options
         if index:
-            return outcome.adding("a saddle of index {index}", index=index)
-        if not (options.stability or options.escape_saddles):
+            return outcome.adding(SADDLE, index=index)
+        if not (options.stability or options.escape_saddles or self.run.iterate.symmetry):
             return outcome
         return outcome.adding(ILL_CONDITIONED if index is None else MINIMUM)
 

@@ -12,9 +12,9 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial.transform import Rotation
 
-from ..curve import Curve
-from ..curve.smooth import evenly
 from ..types import BoolArray, FloatArray, IntArray
+from .curve import Curve
+from .smooth import evenly
 
 SAMPLES = 256  # of a component: half a spacing is some 0.01 radii of gyration
 STARTS, AROUND = 400, 64  # rotations to climb from, and those about a single axis

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, Mesh
+from mobius_flow.core.curve.alignment import Alignment, Freedom, alignments
+from mobius_flow.core.curve.joint import refined_alike
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.knots import knot, smooth_knot
-from mobius_flow.core.morphing.alignment import Alignment, Freedom, alignments
-from mobius_flow.core.morphing.joint import refined_alike
 from scipy.spatial.transform import Rotation
 
 TURN = Rotation.from_rotvec([0.3, -1.1, 2.0])

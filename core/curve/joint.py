@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from ..curve import Curve, Mesh
-from ..curve.smooth import arc_lengths, at_shares
 from ..types import FloatArray
+from .curve import Curve
+from .mesh import Mesh
+from .smooth import arc_lengths, at_shares
 
 TOGETHER = 0.3  # mean edges that vertices of the two may be apart to be one
 
