@@ -260,8 +260,10 @@ class RelaxOptions:
             raise OptionError(f"symmetry is {short(name)}; give auto, or a group such as C3, D2, S4 or Th")
         if self.mesh == "adaptive":
             raise OptionError("symmetry keeps orbits of vertices, which mesh='adaptive' does not; take mesh='finer'")
-        if self.edge_lengths not in ("auto", "equal"):
-            raise OptionError("symmetry spreads vertices evenly; leave it or edge_lengths out")
+        if not isinstance(self.edge_lengths, str):
+            raise OptionError(
+                "symmetry makes its own vertices, to which edge_lengths do not belong; leave one of them out"
+            )
 
     def __repr__(self) -> str:
         values = [(each, getattr(self, each.name)) for each in declared(type(self))]

@@ -10,7 +10,7 @@ from ..errors import CurveError
 from ..messages import Message
 from ..symmetry import TOLERANCE, Symmetry, SymmetryGroup, symmetries
 from .outcome import Outcome
-from .prepare import equal_lengths
+from .prepare import target_lengths
 from .run import Change, Run
 
 ASKED = 0.1  # radii of gyration that a start may be off a symmetry that is asked for by name
@@ -18,14 +18,17 @@ BLOCKED = (
     "the straight way to the nearest curve with symmetry {group} is not free of contact, as where strands meet on an "
     "axis that no symmetric curve passes through; relax the curve a little before, or ask for another symmetry"
 )
-LACKING = "the curve has no symmetry {group}: within {tolerance:g} radii of gyration its group is {own}"
+LACKING = (
+    "the curve has no symmetry {group}: within {tolerance:g} radii of gyration its group is {own}; relax and balance "
+    "it before, or ask for another symmetry"
+)
 KEPT = "symmetry {group} was kept, from which the start was {distance:.2g} radii of gyration away"
 NONE = "symmetry {group}, so that there was none to keep"
 
 
 @dataclass(frozen=True, eq=False)
 class Symmetrised:
-    """A start, refined, and the exactly symmetric curve that is its mean over a group, on two meshes.
+    """A start, refined, and the exactly symmetric curve that is its mean over a group.
 
     Both ``start`` and ``end`` have the vertices of the refined start and those of ``mean`` on their edges.
     """
@@ -65,7 +68,7 @@ class Symmetrised:
             return None
         end = run.problem.at_curve(self.end)
         proof = run.problem.free_motion(self.start.vertices, self.end.vertices)
-        lengths = equal_lengths(self.mean.mesh, self.mean.edge_lengths, run.problem.constraints.pins.vertices)
+        lengths = target_lengths(self.mean, run.problem.constraints.pins.vertices, (), run.options)
         problem = run.problem.on(self.mean, lengths).problem
         problem = replace(problem, constraints=replace(problem.constraints, symmetry=self.symmetry))
         change = Change((Step((Leg(end, proof),), 0.0, None),), problem.at_curve(self.mean))

@@ -12,6 +12,8 @@ from scipy.spatial import cKDTree
 from ..curve import Curve, Mesh
 from ..types import FloatArray, IntArray
 
+FIXED = 1e-3
+
 
 @dataclass(frozen=True, eq=False)
 class Symmetry:
@@ -49,6 +51,16 @@ class Symmetry:
         for _ in range(2):
             beyond = self.mean(beyond.reshape(shape)).reshape(hessian.shape).T
         return np.asarray(metric + beyond)
+
+    def fixes(self, v: FloatArray) -> bool:
+        """Whether a vector of length 1 or less is where all isometries take it, but for what minimisers leave open."""
+        return not len(self) or bool(np.abs(self.matrices @ v - v).max() < FIXED)
+
+    def error(self, curve: Curve) -> float:
+        """How far an image is from the vertex it should be, at most, in lengths of the shortest edge."""
+        arms = curve.vertices - self.centre
+        off = arms @ self.matrices.transpose(0, 2, 1) - arms[self.images]
+        return float(np.abs(off).max() / curve.edge_lengths.min())
 
     def on(self, curve: Curve) -> "Symmetry":
         """The same on another mesh of a symmetric curve."""

@@ -13,6 +13,7 @@ from .isometry import Isometry
 from .names import multiplication, schoenflies
 
 TURNS = 4  # of a mean that converges quadratically
+ROUNDING = 1e-9  # of an edge, which is what images of symmetric vertices are off at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +63,12 @@ class SymmetryGroup:
     def symmetrised(self, curve: Curve, sizes: Sequence[int]) -> tuple[Curve, Symmetry, tuple[float, ...]]:
         """The mean of a curve's images, on a mesh of at least so many vertices, spread evenly over each component.
 
-        With it come the group's action, and the share of each component at which its first vertex was.
+        With it come the group's action, and the share of each component at which its first vertex was.  A curve whose
+        vertices are symmetric keeps them.
         """
+        symmetry = Symmetry(self.name, self.centre, self.matrices).on(curve)
+        if symmetry.error(curve) < ROUNDING:
+            return self._mean(curve, symmetry), symmetry, (0.0,) * len(sizes)
         counts, begins, steps = np.array(sizes), np.zeros(len(sizes)), np.ones(len(sizes), dtype=np.intp)
         orders, signs, shifts = (
             np.stack([getattr(each, name) for each in self.elements]) for name in ("order", "signs", "shifts")
@@ -91,8 +96,10 @@ class SymmetryGroup:
             turn = np.rint(k * (signs[g, c] * begins[c] + shifts[g, c] - begins[e])).astype(np.intp) * (n // k)
             images[g, mesh.slices[c]] = mesh.offsets[e] + (signs[g, c] * np.arange(n) + turn) % n
         symmetry = Symmetry(self.name, self.centre, self.matrices, images)
-        mean = self.centre + symmetry.mean(points - self.centre)
-        return Curve(mean, mesh), symmetry, tuple(begins.tolist())
+        return self._mean(Curve(points, mesh), symmetry), symmetry, tuple(begins.tolist())
+
+    def _mean(self, curve: Curve, symmetry: Symmetry) -> Curve:
+        return curve.with_vertices(self.centre + symmetry.mean(curve.vertices - self.centre))
 
 
 def _generated(elements: set[int], table: IntArray) -> frozenset[int]:

@@ -104,9 +104,10 @@ class Balance(Intervention):
         # against the identity's image too: what smoothing alone takes off is no gain, the flow would put it back
         still = images.at(np.eye(point.curve.dimension + 1)[0])
         enough = (1.0 - self.gain) * min(bending(point.curve), bending(still))
+        symmetry = point.problem.constraints.symmetry
         for q in least_bending(images, point.curve.dimension):
             image = images.at(q)
-            if bending(image) > enough:
+            if bending(image) > enough or not symmetry.fixes(q[1:]):
                 continue
             problem = _problem_of(point.problem, image)
             for end in (q, -q):  # the same map, the pole having come from the one side or from the other

@@ -20,7 +20,7 @@ from .saddle import stability, unresolved
 
 MINIMUM = "a minimum"
 SADDLE = "a saddle of index {index}"
-WITHIN = "{kind} among curves of symmetry {group}"
+AMONG = "{kind} among curves of symmetry {group}, {whole} among all"
 ILL_CONDITIONED = "the Hessian is too ill-conditioned to tell a minimum from a saddle"
 
 
@@ -83,11 +83,10 @@ class Rest(Intervention):
             return None
         if not self.run.iterate.symmetry:
             return self._told(replace(outcome, negative_eigenvalues=index))
-        kind = ILL_CONDITIONED if index is None else Message(SADDLE, index=index) if index else Message(MINIMUM)
-        outcome = outcome.adding(WITHIN, kind=kind, group=self.run.iterate.symmetry)
         free = replace(self.run.problem.constraints, symmetry=NO_SYMMETRY)
         whole = stability(self.run.point.changing(constraints=free)).index
-        return self._told(replace(outcome, negative_eigenvalues=whole, symmetric_negative_eigenvalues=index))
+        outcome = replace(outcome, negative_eigenvalues=whole, symmetric_negative_eigenvalues=index)
+        return outcome.adding(AMONG, kind=_kind(index), group=self.run.iterate.symmetry, whole=_kind(whole))
 
     def _steps(self, curvature: Curvature, inverse: FactorisedHessian, shift: float) -> tuple[Step, ...]:
         most, least = self.run.iterations_left, self._least(curvature.point)
@@ -98,11 +97,8 @@ class Rest(Intervention):
 
     def _told(self, outcome: Outcome) -> Outcome:
         index, options = outcome.negative_eigenvalues, self.run.options
-        if index:
-            return outcome.adding(SADDLE, index=index)
-        if not (options.stability or options.escape_saddles or self.run.iterate.symmetry):
-            return outcome
-        return outcome.adding(ILL_CONDITIONED if index is None else MINIMUM)
+        asked = options.stability or options.escape_saddles
+        return replace(outcome, clauses=(*outcome.clauses, _kind(index))) if index or asked else outcome
 
     @property
     def _applies(self) -> bool:
@@ -111,3 +107,8 @@ class Rest(Intervention):
         usual = run.method is METHODS["lbfgs"] and point.problem.metric.name == MoebiusMetric.name
         at_once = run.options.tolerance <= self.loosest and not run.frozen and on_target(point)
         return usual and free and at_once and Curvature.is_known(point)
+
+
+def _kind(index: int | None) -> Message:
+    """What critical points of an index are, if it is known."""
+    return Message(ILL_CONDITIONED) if index is None else Message(SADDLE, index=index) if index else Message(MINIMUM)
