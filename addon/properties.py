@@ -7,7 +7,7 @@ from enum import Enum
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core import RelaxOptions
 from ..core.option import Option, declared
@@ -16,7 +16,7 @@ from .engine.size import Measure
 
 _TINY = 1e-37  # just above the smallest of 32-bit numbers that are computed with
 _Item = tuple[str, str, str, str, int]
-_PROPERTIES = {bool: BoolProperty, int: IntProperty, float: FloatProperty}
+_PROPERTIES = {bool: BoolProperty, int: IntProperty, float: FloatProperty, str: StringProperty}
 _AUTOMATIC = "AUTO"  # stands for None among names, as 0 does among numbers
 _OUTPUTS = {
     Output.SHAPE_KEYS: "Absolute shape keys and one F-curve on their evaluation time: small, fast, renders anywhere",
@@ -55,7 +55,10 @@ def _property(option: Option, options: set[str]) -> Any:
     automatic = option.default is None
     words: dict[str, Any] = {"name": option.label, "options": options}
     if option.choices is None:
-        words |= {"description": option.sentence("0"), "default": option.default or option.kind()}
+        words |= {
+            "description": option.sentence("Empty" if option.kind is str else "0"),
+            "default": option.default or option.kind(),
+        }
         return _PROPERTIES[option.kind](**words, **_bounds(option))
     items = [(_AUTOMATIC, "Automatic", option.automatic, "NONE", 0)] if automatic else []
     items += _items(option.choices)
@@ -189,8 +192,8 @@ class MobiusFlowSettings(bpy.types.PropertyGroup):
 def relax_options(values: Mapping[str, Any]) -> RelaxOptions:
     """The core's options from the values of the settings; raises OptionError."""
     wanted = {option.name: values[option.name] for option in shown()}
-    automatic = [option.name for option in shown() if option.default is None and wanted[option.name] in (0, _AUTOMATIC)]
-    return RelaxOptions(**wanted | dict.fromkeys(automatic))
+    optional = [option.name for option in shown() if option.default is None]
+    return RelaxOptions(**wanted | dict.fromkeys(name for name in optional if wanted[name] in (0, "", _AUTOMATIC)))
 
 
 def key_options(values: Mapping[str, Any]) -> KeyOptions:

@@ -32,8 +32,9 @@ The type is identified by simplifying a diagram and computing polynomial invaria
 m3_1 its mirror image, # stands for a sum, and ⊔ separates parts that come apart.  Thickness is the smaller of the least
 radius of curvature and half the least distance between strands; ropelength is length over thickness.  A curve is at
 rest where the projected gradient is within the default tolerance of relax; pins and obstacles are not known here.  The
-index is the number of independent directions downhill, 0 at a minimum.  Knots are numbered as in KnotInfo (see
-mobius-flow knot --help).
+index is the number of independent directions downhill, 0 at a minimum.  Symmetry, after Schoenflies, is that of the
+curve as it lies, within 0.02 radii of gyration; Möbius images of symmetric curves have it when they are balanced (see
+relax --balance).  Knots are numbered as in KnotInfo (see mobius-flow knot --help).
 
 exit status: 0, or 2 on bad input or bad options
 """
@@ -112,6 +113,7 @@ def _as_json(path: str, found: Info) -> Mapping[str, object]:
             "longest": found.longest_edge,
             "ratio": found.longest_edge / found.shortest_edge,
         },
+        "symmetry": found.symmetry and {"group": found.symmetry.name, "distance": found.symmetry.distance},
         "gap": found.gap if found.gap < float("inf") else None,
         "gradient_norm": rest and rest.gradient_norm,
         "at_rest": rest and rest.at_rest,
@@ -139,6 +141,8 @@ def _rows(found: Info) -> Iterator[tuple[str, str]]:
     longest, shortest = found.longest_edge, found.shortest_edge
     yield "edges", f"{shortest:.6g} to {longest:.6g}, ratio {longest / shortest:.4g}"
     yield "gap between edges", _number(found.gap)
+    if found.symmetry is not None and found.symmetry.name != "C1":
+        yield "symmetry", f"{found.symmetry.name} (within {found.symmetry.distance:.2g} radii of gyration)"
 
 
 def _number(value: float | None) -> str:

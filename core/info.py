@@ -17,6 +17,7 @@ from .energies import MoebiusEnergy
 from .errors import CurveError
 from .hierarchy import moebius_energy
 from .knots import KnotType, knot_type
+from .symmetry import SymmetryGroup, symmetries
 from .threads import BLAS
 from .units import centred, check_units
 
@@ -82,6 +83,7 @@ class Info:
     average_crossing_number: float | None
     shortest_edge: float
     longest_edge: float
+    symmetry: SymmetryGroup | None
     gap: float  #: least distance of edges that are no neighbours; infinite for a triangle
 
     def __repr__(self) -> str:
@@ -113,8 +115,16 @@ def info(curve: Curve) -> Info:
         average_crossing_number=crossings,
         shortest_edge=float(curve.edge_lengths.min()),
         longest_edge=float(curve.edge_lengths.max()),
+        symmetry=_symmetry(curve),
         gap=minimal_gap(curve)[0],
     )
+
+
+def _symmetry(curve: Curve) -> SymmetryGroup | None:
+    try:
+        return symmetries(curve)
+    except CurveError:
+        return None
 
 
 def _rest(curve: Curve) -> Rest:

@@ -40,7 +40,7 @@ class Option:
     shorthands: Mapping[str, str] = field(default_factory=dict, repr=False)
     repeated: bool = False  # whether its value is a tuple, whose items are checked
     flag: str = ""  # what it is called on the command line, if not by its name
-    example: str = ""  # A tuple that is allowed, for messages
+    example: str = ""  # a tuple that is allowed, for messages, or a word
 
     @property
     def is_setting(self) -> bool:

@@ -13,6 +13,8 @@ def unlike_default(option: Option) -> object:
         return (("bending", 0.25),)
     if option.choices is not None:
         return next(name for name in reversed(list(option.choices)) if name != option.default)
+    if option.kind is str:
+        return option.example
     if math.isfinite(option.high):
         return option.kind(2.0 ** math.floor(math.log2(option.high)))
     value = option.kind(max(option.low, 0) + 2.5)

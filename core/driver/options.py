@@ -223,6 +223,7 @@ class RelaxOptions:
         "group of rotations and reflections, after Schoenflies (C3, D2, S4, …), that the curve has from the start, but "
         "for some tolerance, and keeps exactly; auto, all that it has",
         automatic="no symmetry is kept",
+        example="C3",
         metavar="GROUP",
     )
     hops: int = option(

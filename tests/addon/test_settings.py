@@ -50,10 +50,11 @@ def test_every_option_is_a_setting_of_scene_and_operator(each):
             automatic = ["AUTO"] if each.default is None else []
             assert [item.identifier for item in shown.enum_items] == automatic + list(each.choices)
             assert len({item.value for item in shown.enum_items}) == len(shown.enum_items)
-        elif each.kind is not bool:
+        elif each.kind not in (bool, str):
             assert shown.hard_min == pytest.approx(0 if each.default is None else each.low)
             assert shown.hard_max >= min(each.high * (1 - 1e-7), 2**31 - 1)
-        assert ("; 0: " in shown.description) == (each.default is None and each.choices is None)
+        none = f"; {'Empty' if each.kind is str else 0}: "
+        assert (none in shown.description) == (each.default is None and each.choices is None)
 
 
 def test_defaults_are_the_librarys():
