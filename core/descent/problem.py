@@ -19,6 +19,7 @@ from ..errors import OptionError
 from ..metrics import InnerProduct, Metric, SparseInnerProduct
 from ..obstacle import Obstacle
 from ..saddle import TangentSpace
+from ..symmetry import NO_SYMMETRY, Symmetry
 from ..types import FloatArray
 from ..units import Units
 
@@ -91,24 +92,29 @@ class Problem:
         solver: Solver,
         geometry: "Geometry",
         blocks: Sequence[Block] | None = None,
+        symmetry: Symmetry = NO_SYMMETRY,
     ) -> "Problem":
         """The problem from a curve on, in the user's units; a CurveError if curve or obstacles are too large for it."""
         units, solver = Units.of(curve), solver.on(curve)
+        if len(symmetry):  # about whose centre Σ ℓ_I m_I is symmetric, whatever the lengths are on the way
+            units = replace(units, offset=symmetry.centre)
         own = curve.with_vertices(units.from_user(curve.vertices))
-        constraints = replace(Constraints.of(own, pins, blocks), lengths=lengths / units.scale)
+        constraints = replace(Constraints.of(own, pins, blocks), lengths=lengths / units.scale, symmetry=symmetry)
         objective = solver.objective(map(units.obstacle_from_user, obstacles))
         return cls(curve.mesh, objective, solver.metric, constraints, units, geometry, solver, obstacles)
 
-    def on(self, curve: Curve, lengths: FloatArray | None = None) -> "Point":
+    def on(self, curve: Curve, lengths: FloatArray | None = None, symmetry: Symmetry | None = None) -> "Point":
         """The point of a curve on another mesh, in the same problem there; all in the user's units.
 
-        Pins, blocks and the growth so far stay; targets are what the curve has, but for lengths that are given, shape
-        (edges,). A CurveError if the curve has too many vertices for the solver.
+        Pins, blocks, the growth so far and, unless there is a new one, the symmetry stay; targets are what the curve
+        has, but for lengths that are given, shape (edges,). A CurveError if the curve has too many vertices for the
+        solver.
         """
+        symmetry = self.constraints.symmetry.on(curve) if symmetry is None else symmetry
         pins, held = self.constraints.pins.on(curve), self.constraints
         lengths = curve.edge_lengths if lengths is None else lengths
-        problem = Problem.of(curve, lengths, pins, self.obstacles, self.solver, self.geometry, held.blocks)
-        constraints = replace(problem.constraints, grown=held.grown, symmetry=held.symmetry.on(curve))
+        problem = Problem.of(curve, lengths, pins, self.obstacles, self.solver, self.geometry, held.blocks, symmetry)
+        constraints = replace(problem.constraints, grown=held.grown)
         return replace(problem, constraints=constraints).at_curve(curve)
 
     def inner_product(self, curve: Curve) -> InnerProduct:
@@ -123,13 +129,10 @@ class Problem:
     def at(self, vertices: FloatArray) -> "Point":
         """The point with these vertices, in the program's units; pinned ones are put back to their last digits.
 
-        What is to be symmetric is made so.
+        Those that are to be symmetric are made so; the centre is the origin.
         """
-        pins, symmetry = self.constraints.pins, self.constraints.symmetry
-        if len(symmetry):
-            centre = self.units.from_user(symmetry.centre)
-            vertices = centre + symmetry.mean(vertices - centre)
-        placed = self.units.to_user(vertices)
+        vertices = self.constraints.symmetry.mean(vertices)
+        pins, placed = self.constraints.pins, self.units.to_user(vertices)
         if not len(pins):
             return Point(self, vertices, placed)
         own = self.units.from_user(pins.positions)

@@ -1,6 +1,6 @@
 """Relaxations among symmetric curves: the exactly symmetric curve that a start is near to, and the proved way there."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from ..collision import is_free, survives_rounding
 from ..curve import Curve
@@ -69,9 +69,8 @@ class Symmetrised:
         end = run.problem.at_curve(self.end)
         proof = run.problem.free_motion(self.start.vertices, self.end.vertices)
         lengths = target_lengths(self.mean, run.problem.constraints.pins.vertices, (), run.options)
-        problem = run.problem.on(self.mean, lengths).problem
-        problem = replace(problem, constraints=replace(problem.constraints, symmetry=self.symmetry))
-        change = Change((Step((Leg(end, proof),), 0.0, None),), problem.at_curve(self.mean))
+        point = run.problem.on(self.mean, lengths, self.symmetry)
+        change = Change((Step((Leg(end, proof),), 0.0, None),), point)
         return change if run.allows(change) else None
 
     def summarised(self, outcome: Outcome) -> Outcome:

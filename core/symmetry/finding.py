@@ -34,7 +34,7 @@ def symmetries(curve: Curve, tolerance: float = TOLERANCE) -> SymmetryGroup:
     if curve.dimension != 3:
         raise CurveError(f"the curve is in dimension {curve.dimension}; symmetries are for curves in space")
     if components > MOST_COMPONENTS:
-        raise CurveError(f"the curve has {components} components; symmetries are looked for with {MOST_COMPONENTS}")
+        raise CurveError(f"the curve has {components} components; symmetries are found with up to {MOST_COMPONENTS}")
     centre = curve.edge_lengths @ curve.midpoints / curve.length
     identity = Isometry.identity(components)
     mirrored = curve.with_vertices(2.0 * centre - curve.vertices)
