@@ -21,7 +21,7 @@ FLOORS = (
     {"core.curve"},
     {"core.symmetry"},
     {"core.energies", "core.collision", "core.constraints", "core.diagrams"},
-    {"core.saddle", "core.knots", "core.passes"},
+    {"core.saddle", "core.knots", "core.passes", "core.smooth"},
     {"core.metrics", "core.curve.io"},
     {"core.hierarchy"},
     {"core.descent"},

@@ -12,17 +12,18 @@ def torus_knot_minimum(p: int, q: int) -> float:
     are critical where they are critical among themselves (Kim and Kusner, *Torus knots extremizing the Möbius energy*,
     1993).  All points of an orbit being alike, one integral does.
     """
-    return _energy(p, q, np.sqrt(1.0 - torus_knot_tube(p, q) ** 2))
+    return torus_knot_energy(p, q, np.sqrt(1.0 - torus_knot_tube(p, q) ** 2))
 
 
 def torus_knot_tube(p: int, q: int) -> float:
     """The radius b of the tube about the unit circle on which that orbit lies in space."""
     options = {"xatol": 1e-9}
-    found = minimize_scalar(lambda a: _energy(p, q, a), bounds=(0.1, 0.99), method="bounded", options=options)
+    found = minimize_scalar(lambda a: torus_knot_energy(p, q, a), bounds=(0.1, 0.99), method="bounded", options=options)
     return float(np.sqrt(1.0 - found.x**2))
 
 
-def _energy(p: int, q: int, a: float) -> float:
+def torus_knot_energy(p: int, q: int, a: float) -> float:
+    """The Möbius energy of one of these orbits."""
     b = np.sqrt(1.0 - a * a)
     speed = np.hypot(p * a, q * b)
 

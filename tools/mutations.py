@@ -12,7 +12,7 @@ WINDOWS = "tests/core/collision/test_windows.py"
 MOTIONS, HOPS = "tests/core/test_hop_motions.py", "tests/core/test_hops.py"
 KNOT_TYPE, PASSES = "tests/core/knots/test_knot_type.py", "tests/core/passes"
 HIERARCHY, ENGINE = "tests/core/hierarchy", "tests/addon/engine"
-MORPHING = "tests/core/morphing"
+MORPHING, SMOOTH = "tests/core/morphing", "tests/core/smooth"
 UNTANGLING = "tests/core/test_untangling.py"
 CERTIFICATE, VERIFY, GROW = "tests/core/test_certificate.py", "tests/core/verify", "tests/core/test_grow.py"
 
@@ -912,24 +912,57 @@ MUTANTS = (
         f"{MORPHING}/test_morph.py::test_pins_and_ends_elsewhere_are_refused",
     ),
     Mutant(
-        "a morph gives up where shapes do not meet at once",
-        "core/morphing/morph.py",
-        "        if joint is None:\n            further",
-        "        if False:\n            further",
-        f"{MORPHING}/test_morph.py::test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop",
+        "between nodes anything may be",
+        "core/smooth/balls.py",
+        "bend / (8 * nodes**2)",
+        "bend / (80 * nodes**2)",
+        f"{SMOOTH}/test_balls.py::test_lower_bounds_hold_between_nodes",
     ),
     Mutant(
-        "colors stay behind on the way back of a loop",
-        "addon/curves/blends.py",
-        "np.concatenate([values, values[::-1][len(values) - len(back) :]])",
-        "np.concatenate([values, values[-1:].repeat(len(back))])",
-        "tests/addon/curves/test_blends.py::test_a_loop_takes_them_off_again",
+        "second derivatives in one variable only",
+        "core/smooth/balls.py",
+        "abs(z) * (u + v)",
+        "abs(z) * u",
+        f"{SMOOTH}/test_balls.py::test_lower_bounds_hold_between_nodes",
     ),
     Mutant(
-        "ends of goals are where Blender rounds them",
-        "addon/curves/goals.py",
-        "    vertices[ends] = there\n",
+        "the trapezoidal rule converges faster than it does",
+        "core/smooth/bounds.py",
+        "(2 * arb.pi() * self.height * nodes).expm1()",
+        "(3 * arb.pi() * self.height * nodes).expm1()",
+        f"{SMOOTH}/test_bounds.py::test_the_error_of_the_trapezoidal_rule_for_a_pole",
+    ),
+    Mutant(
+        "a sum is taken for the integral",
+        "core/smooth/bounds.py",
+        "ball = value + arb(0, ",
+        "ball = value + 0 * arb(0, ",
+        f"{SMOOTH}/test_bounds.py::test_wide_bounds_are_right_too",
+    ),
+    Mutant(
+        "near the diagonal the integrand is as anywhere",
+        "core/smooth/bounds.py",
+        " / (arb.pi() * height).sinh() ** 2",
         "",
-        "tests/addon/test_morph.py::test_ends_that_are_in_one_place_but_for_rounding_are_held_there",
+        f"{SMOOTH}/test_bounds.py::test_the_integrand_is_bounded_in_the_strip_and_analytic",
     ),
-)
+    Mutant(
+        "polygons that turn back have the curve's type",
+        "core/smooth/isotopy.py",
+        "n * _longest(turns) + g / (2 * n)",
+        "g / (2 * n)",
+        f"{SMOOTH}/test_isotopy.py::test_many_vertices_out_of_order_prove_nothing",
+    ),
+    Mutant(
+        "polygons anywhere have the curve's type",
+        "core/smooth/isotopy.py",
+        "slope + g * sup / (2 * c) < v",
+        "slope < v",
+        f"{SMOOTH}/test_isotopy.py::test_polygons_far_away_are_not_held_for_the_same",
+    ),
+    Mutant(
+        "components may be pulled through each other",
+        "core/smooth/isotopy.py",
+        "sups[i] + sups[j] < gap",
+        "sups[i] < gap",
+        f"{SMOOTH}/test_isotopy.py::test_components_that_were_pulled_through_each_other",

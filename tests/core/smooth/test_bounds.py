@@ -1,0 +1,117 @@
+"""Energies lie between their bounds, however far these are apart, and the integrand is bounded in its strip."""
+
+import math
+
+import numpy as np
+import pytest
+from fourier_curves import CIRCLE, CUSPS, DOUBLE_POINT, DUAL_CIRCLE, ELLIPSE, fitted, torus_knot, values
+from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
+from mobius_flow.core.knots.shapes import shapes, smooth_knot
+from smooth_curves import SMOOTH_CURVES
+from torus_energies import torus_knot_energy
+
+bounds = pytest.importorskip("mobius_flow.core.smooth.bounds")
+HOPF = [CIRCLE, DUAL_CIRCLE]
+
+
+@pytest.mark.parametrize("name", SMOOTH_CURVES)
+def test_curves_of_known_energies(name):
+    curve = SMOOTH_CURVES[name]
+    c = fitted(curve.polygon(32).vertices @ np.eye(curve.polygon(32).dimension, 3), 15)
+    lower, upper = bounds.energy_bounds([c], 1e-9)
+    assert lower - 2e-9 <= curve.energy <= upper + 2e-9  # known to nine decimals
+    assert upper - lower < 2e-9
+
+
+@pytest.mark.parametrize("tolerance", [1e6, 1e3, 1.0, 1e-4, 1e-12])
+def test_wide_bounds_are_right_too(tolerance):
+    exact = 81.840852989
+    c = fitted(SMOOTH_CURVES["trefoil"].polygon(32).vertices, 15)
+    for curves, energy, slack in ([c], exact, 1e-9), ([CIRCLE], 4.0, 1e-13), (HOPF, 8.0 + 4.0 * np.pi**2, 1e-13):
+        lower, upper = bounds.energy_bounds(curves, tolerance)
+        assert lower - slack <= energy <= upper + slack
+        assert upper - lower <= tolerance + 1e-13
+
+
+def test_few_nodes_err_more_than_rounding():
+    """Or else the bounds above would hold without any error term."""
+    c = fitted(SMOOTH_CURVES["trefoil"].polygon(32).vertices, 15)
+    lower, upper = bounds.energy_bounds([c], 1e6)
+    assert abs(0.5 * (lower + upper) - 81.840852989) > 0.01
+
+
+@pytest.mark.parametrize(("q", "a", "energy"), [(3, 0.8804855, 74.4120428860), (5, 0.93, None)])
+def test_torus_knots_by_their_integrals(q, a, energy):
+    """Of the minimum, where the energy is known, modes that are left out and the last digits of a hardly matter."""
+    lower, upper = bounds.energy_bounds([fitted(torus_knot(2, q, a, 512), 60)])
+    assert lower - 1e-7 <= (energy or torus_knot_energy(2, q, a)) <= upper + 1e-7
+    assert bounds.least_energy(q) < lower
+
+
+def test_a_fit_to_a_polygon_at_rest_is_above_the_minimum_by_little():
+    rest = minimize(smooth_knot("4_1", 160), RelaxOptions(vertices=160)).curve.vertices
+    lower, upper = bounds.energy_bounds([fitted(rest, 24)], 1e-6)
+    assert upper > 108.8237248
+    assert lower < 108.8237248 * (1 + 1e-4)
+
+
+@pytest.mark.parametrize("curves", [[ELLIPSE], HOPF, shapes()["5_2"].coefficients, shapes()["L6a4"].coefficients])
+def test_the_integrand_is_bounded_in_the_strip_and_analytic(curves):
+    loops = [bounds.Loop(c) for c in curves]
+    for i, j in {(0, 0), (0, len(loops) - 1)}:
+        strip = bounds._strip(loops[i], loops[j])
+        s, t = np.arange(400) / 400, (np.arange(400) + 0.5) / 400
+        for y in np.linspace(0.0, strip.height, 4):
+            tangents = values(curves[i], s + 1j * y, 1)
+            squares = (tangents**2).sum(axis=1)
+            chords = ((values(curves[i], s + 1j * y)[:, None] - values(curves[j], t)) ** 2).sum(axis=2)
+            speeds = np.linalg.norm(values(curves[j], t, 1), axis=1)
+            density = np.sqrt(squares)[:, None] * speeds / chords
+            if i == j:
+                sines = np.sin(np.pi * (s[:, None] + 1j * y - t)) ** 2
+                density, chords = density - np.pi**2 / sines, chords / sines
+            assert np.abs(density).max() <= float(strip.bound)
+            factors = (
+                np.abs(tangents).max() * speeds.max() / np.abs(chords).min()
+            )  # also if each was worst at one point
+            if i == j:
+                factors = (factors + np.pi**2) / np.sinh(np.pi * strip.height) ** 2
+            assert factors <= float(strip.bound)
+            assert squares.real.min() > 0.0
+            assert chords.real.min() > 0.0
+
+
+@pytest.mark.parametrize("nodes", [1, 2, 5, 12])
+def test_the_error_of_the_trapezoidal_rule_for_a_pole(nodes):
+    """For 1/(1 − r e^{2πis}), whose trapezoidal sums err by r^n/(1 − r^n)."""
+    r, height = 0.1, 0.3
+    strip = bounds._Strip(height, bounds.arb(1 / (1 - r * math.exp(2 * np.pi * height))))
+    assert 2 * r**nodes / (1 - r**nodes) <= float(strip.error(nodes)) < 40 * 0.67**-nodes * r**nodes
+    assert strip.nodes(float(strip.error(nodes))) == nodes
+
+
+@pytest.mark.parametrize(
+    ("curves", "message"),
+    [
+        ([DOUBLE_POINT], "component 1 meets itself or has a cusp, or nearly so"),
+        ([CIRCLE, CUSPS + np.outer([1, 0, 0, 0], [0, 0, 5])], "component 2 meets itself or has a cusp, or nearly so"),
+        ([np.zeros((3, 3))], "component 1 meets itself"),
+        ([CIRCLE[[0, 0, 1]]], "component 1 meets itself"),
+        ([CIRCLE, CIRCLE], "components 1 and 2 meet, or nearly so: no bound of the energy can be proved"),
+    ],
+    ids=["double point", "cusps", "point", "twice round", "twice the same"],
+)
+def test_curves_without_energy(curves, message):
+    with pytest.raises(CurveError, match=message):
+        bounds.energy_bounds(curves)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, 1e-13, math.nan, math.inf])
+def test_tolerances_that_there_are_not(tolerance):
+    with pytest.raises(OptionError, match="give a number from 1e-12 on"):
+        bounds.energy_bounds([CIRCLE], tolerance)
+
+
+def test_lower_bounds_by_crossing_number():
+    assert bounds.least_energy(0) == 4.0
+    assert 22.8495559 < bounds.least_energy(3) < 4.0 + 6.0 * np.pi < 22.8495560
