@@ -966,3 +966,5 @@ MUTANTS = (
         "sups[i] + sups[j] < gap",
         "sups[i] < gap",
         f"{SMOOTH}/test_isotopy.py::test_components_that_were_pulled_through_each_other",
+    ),
+)
