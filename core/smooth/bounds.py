@@ -28,9 +28,9 @@ _FINEST = 1e-12
 def energy_bounds(coefficients: Sequence[ComplexArray], tolerance: float = 1e-8) -> tuple[float, float]:
     """Bounds of the Möbius energy of a smooth knot or link that are proved, and no further apart than ``tolerance``.
 
-    ``coefficients`` has an array for each component, shape (modes + 1, 3), as in `FourierCurve`; rounding adds some units in
-    the last place to the tolerance.  Raises CurveError where no bound is found because the curve meets itself or has a
-    cusp, or nearly so, and OptionError for a tolerance below 1e-12.
+    ``coefficients`` has an array for each component, shape (modes + 1, 3), as in `FourierCurve`.  The last places of
+    doubles come on top of the tolerance.  Raises CurveError where no bound is found because the curve meets itself or
+    has a cusp, or nearly so, and OptionError for a tolerance below 1e-12.
 
     >>> import numpy as np
     >>> lower, upper = energy_bounds([np.array([[0, 0, 0], [1, -1j, 0]])])

@@ -19,8 +19,8 @@ _SPARE = 1.1  # times the vertices that are about enough
 def inscribed(coefficients: Sequence[ComplexArray]) -> Curve:
     """Inscribe a polygon in a smooth knot or link, at equal steps, which is proved to be ambient isotopic to it.
 
-    ``coefficients`` has an array for each component, shape (modes + 1, 3), as in `FourierCurve`.  Raises CurveError where
-    nothing is proved because the curve meets itself or has a cusp, or nearly so.
+    ``coefficients`` has an array for each component, shape (modes + 1, 3), as in `FourierCurve`.  Raises CurveError
+    where nothing is proved because the curve meets itself or has a cusp, or nearly so.
     """
     with precise():
         margins = _Margins(coefficients)
