@@ -38,6 +38,15 @@ def from_arguments(arguments: argparse.Namespace) -> RelaxOptions:
     return RelaxOptions(**wanted)
 
 
+def flags(values: Mapping[str, object]) -> list[str]:
+    """The words of the command line for options without terms, by their names, in plain values."""
+    words: list[str] = []
+    for option in declared(RelaxOptions):
+        if value := values.get(option.name):
+            words += [flag(option)] if option.kind is bool else [flag(option), str(value)]
+    return words
+
+
 def add_task(parser: argparse.ArgumentParser) -> None:
     """Add what a curve is to respect."""
     group = parser.add_argument_group("pins and obstacles")

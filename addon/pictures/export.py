@@ -118,21 +118,28 @@ def write_still(path: Target, iterates: Sequence[Iterate], look: str | None = No
     return _render(path, keys, motion.start.mesh, _PICTURE, look)
 
 
-def write_picture(path: Target, curve: Curve, width: int, height: int, look: str | None = None) -> None:
-    """Render a curve to a .png of so many pixels; raises as `write_blend` does."""
+def write_picture(
+    path: Target, curve: Curve, width: int, height: int, look: str | None = None, samples: int | None = None
+) -> None:
+    """Render a curve to a .png or .jpg of so many pixels; raises as `write_blend` does.
+
+    ``samples`` of each pixel, by default the look's: fewer are denoised less well, in less time.
+    """
     check_dimension(curve)
     link = Origin.of(spatial(curve.vertices)).link(curve.mesh)
     points = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
-    _render(path, Keys((Key(0.0, points),), 0), curve.mesh, (width, height), look)
+    _render(path, Keys((Key(0.0, points),), 0), curve.mesh, (width, height), look, samples)
 
 
-def _render(path: Target, keys: Keys, mesh: Mesh, size: tuple[int, int], look: str | None) -> bool:
+def _render(
+    path: Target, keys: Keys, mesh: Mesh, size: tuple[int, int], look: str | None, samples: int | None = None
+) -> bool:
     require_blender()
     from . import film, rendering
 
     mesh, keys = rounded(mesh, keys, is_free)
     scene = film.empty_scene()
-    rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size)
+    rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size, samples)
     film.compose(scene, keys, np.ones(1), mesh, Playing(look))
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
     return keys.certified

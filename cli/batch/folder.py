@@ -128,6 +128,23 @@ def finished(job: Job) -> Row | None:
         return None
 
 
+def results(directory: Path) -> Iterator[tuple[Path, dict[str, Any], Row]]:
+    """The folders of results in a directory, whose reports are as a batch wrote them, with these and their rows.
+
+    Raises a MobiusFlowError if there are none.
+    """
+    found = 0
+    for folder in sorted(directory.iterdir()) if directory.is_dir() else ():
+        report = _report(folder)
+        files = report.pop(_FILES, None)
+        if isinstance(files, dict) and files.get(REPORT) == _sha256_of(report):
+            with suppress(KeyError, TypeError):  # rows of other versions
+                yield folder, report | {_FILES: files}, Row(**report["row"])
+                found += 1
+    if not found:
+        raise MobiusFlowError(f"{directory}: holds no results of mobius-flow batch")
+
+
 def write_report(room: Path, job: Job, row: Row, report: dict[str, object]) -> None:
     """Write the report, last of all, with what `finished` looks for and the mark by which the files are ours."""
     report = report | {"row": vars(row), "recipe": job.recipe}

@@ -63,6 +63,16 @@ class FourierCurve:
             parts.append(np.concatenate([c[: k + 1], np.zeros((max(k + 1 - len(c), 0), 3))]))
         return FourierCurve(tuple(parts))
 
+    @classmethod
+    def through(cls, curve: Curve, modes: Sequence[int]) -> "FourierCurve":
+        """The first modes of components that visit the vertices of closed polygons at equal steps of t."""
+        return cls(tuple(map(_spectrum, curve.components, modes)))
+
+    @property
+    def mirrored(self) -> "FourierCurve":
+        """Its mirror image in the plane of the first two coordinates."""
+        return FourierCurve(tuple(c * [1.0, 1.0, -1.0] for c in self.coefficients))
+
     def rounded(self, quantum: float) -> "FourierCurve":
         """With coefficients that are multiples of a number."""
         return FourierCurve(tuple(quantum * np.round(c / quantum) for c in self.coefficients))
@@ -71,7 +81,11 @@ class FourierCurve:
 def _fitted(points: FloatArray, at: FloatArray, modes: int) -> ComplexArray:
     spline = periodic(at, points)
     count = _SAMPLES * max(modes, len(points) // 2)
-    spectrum = np.fft.rfft(spline(np.arange(count) / count), axis=0)[: modes + 1] * (2.0 / count)
+    return _spectrum(spline(np.arange(count) / count), modes)
+
+
+def _spectrum(samples: FloatArray, modes: int) -> ComplexArray:
+    spectrum = np.fft.rfft(samples, axis=0)[: modes + 1] * (2.0 / len(samples))
     spectrum[0] /= 2.0
     return np.asarray(spectrum)
 

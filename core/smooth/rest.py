@@ -61,6 +61,20 @@ def at_rest(polygon: Curve) -> Rest | None:
     return None
 
 
+@checked
+def energy_of(curve: FourierCurve) -> float:
+    """The Möbius energy, by a trapezoidal rule that is far more exact than the curve's modes."""
+    basis = Basis.of(curve.modes, 2 * _PER_MODE)
+    return Pairs.of(basis, basis.unknowns(curve)).energy
+
+
+@checked
+def index_of(curve: FourierCurve) -> int:
+    """The number of independent directions in which the energy of a curve at rest falls, 0 at a minimum."""
+    basis = Basis.of(curve.modes, _PER_MODE)
+    return Model.of(basis, Pace.of(curve.polygon(curve.sizes)), basis.unknowns(curve)).index
+
+
 def _normalized(curve: Curve) -> Curve:
     centred = curve.vertices - curve.vertices.mean(axis=0)
     return curve.with_vertices(centred / np.linalg.norm(centred, axis=1).max())

@@ -1,0 +1,92 @@
+"""What an atlas says of one knot or link: its minima and saddles, measured, as plain values that files hold."""
+
+import hashlib
+import json
+import math
+import shlex
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ... import __version__
+from ...core.collision.gap import thickness
+from ...core.curve.measures import writhe_and_crossings
+from ...core.knots.catalogue import crossing_number
+from ...core.knots.table import AMPHICHEIRAL
+from ...core.smooth.fourier import FourierCurve
+from ...core.smooth.minima import balanced, distinct
+from ...core.smooth.rest import Rest, index_of
+from ..batch.job import folder_name
+from ..batch.table import Row
+from ..options import flags
+from .folder import Folder
+from .runs import Run
+
+Values = dict[str, Any]
+_FINER = 2  # times the vertices that represent a curve, where it is measured
+_KNOTTED = 6.0 * math.pi + 4.0
+
+
+def entry(folder: Folder, name: str, runs: Sequence[Run]) -> Values:
+    """The entry of a type, made anew unless it is there, of the same runs by the same version."""
+    file = f"data/fourier/{name}.json"
+    text = "\n".join([__version__, *(run.mark for run in runs)])
+    made_from = hashlib.sha256(text.encode()).hexdigest()
+    known = json.loads(folder.read(file) or "{}")
+    found: Values = known if known.get("made_from") == made_from else _made(name, runs) | {"made_from": made_from}
+    folder.put(file, json.dumps(found, indent=1) + "\n")
+    return found
+
+
+def curve_of(minimum: Mapping[str, Any]) -> FourierCurve:
+    """The smooth curve of an entry's minimum."""
+    return FourierCurve.of_lists(minimum["coefficients"])
+
+
+def _made(name: str, runs: Sequence[Run]) -> Values:
+    ends = [balanced(run.rest) for run in runs]
+    groups = distinct(ends, name in AMPHICHEIRAL)
+    minima = [
+        {"number": number} | _described(ends[group[0]], [runs[k] for k in group])
+        for number, group in enumerate(groups, start=1)
+    ]
+    return {"name": name, "lower_bound": _lower_bound(name), "runs": len(runs), "minima": minima}
+
+
+def _described(rest: Rest, runs: Sequence[Run]) -> Values:
+    """What is known of a curve, by the names of the tables' columns; it is an image of what the first run led to."""
+    curve = rest.curve
+    fine = curve.polygon([_FINER * size for size in curve.sizes])
+    writhe, crossings = writhe_and_crossings(fine)
+    row = runs[0].row
+    return {
+        "energy": rest.energy,
+        "error": rest.error,
+        "index": index_of(runs[0].curve),  # which is at rest but for rounding
+        "mesh_index": row.index,
+        "met": len(runs),
+        "kinds": dict(Counter(run.row.kind or "named" for run in runs).most_common()),
+        "modes": curve.modes,
+        "ropelength": fine.length / thickness(fine),
+        "writhe": writhe,
+        "average_crossing_number": crossings,
+        "version": row.version,
+        "command": _command(row),
+        "folder": folder_name(row.name, row.start),
+        "coefficients": curve.as_lists,
+    }
+
+
+def _lower_bound(name: str) -> float | None:
+    """What the literature proves for all curves of a type: 4, 6π + 4 and 2πc + 4; None for links."""
+    crossings = crossing_number(name)
+    if name.startswith("L"):
+        return None
+    return max(_KNOTTED, 2.0 * math.pi * crossings + 4.0) if crossings else 4.0
+
+
+def _command(row: Row) -> str:
+    """The command that makes a run again, with all those of the starts before."""
+    seed = [] if row.seed in (None, row.start) else ["--seed", str(row.seed - row.start)]
+    words = [row.name, "--starts", str(row.start), *seed, *flags(json.loads(row.options)), "--extrapolate"]
+    return shlex.join(["mobius-flow", "batch", *words, "-o", "results"])

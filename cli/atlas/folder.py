@@ -1,0 +1,93 @@
+"""The directory of an atlas: every file in it that is ours is in its list of checksums, as sha256sum writes them."""
+
+import hashlib
+from pathlib import Path
+
+from ...core import MobiusFlowError
+from ...core.errors import OutputError
+from ...core.files import atomic_write
+from ..batch.job import sha256_of
+
+SUMS = "SHA256SUMS"
+_MARK = "# mobius-flow atlas; check with: sha256sum -c SHA256SUMS\n"
+
+
+class Folder:
+    """A directory that is filled anew: what is the same stays, what is not ours is neither replaced nor removed.
+
+    Each file is listed before it is in its place, so that an interruption leaves none behind that is not.  Raises
+    MobiusFlowError where something else is there, or a file has been changed since.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path, self._sums = path, path / SUMS
+        self._ours: dict[str, set[str]] = {}  # hashes that files may have
+        self._kept: dict[str, str] = {}  # those of this time
+        text = self._sums.read_text(encoding="utf-8") if self._sums.is_file() else ""
+        if not text.startswith(_MARK) and (path.is_symlink() or (path.exists() and not path.is_dir()) or self._any()):
+            raise _foreign(path)
+        for line in text.splitlines()[1:]:
+            digest, _, name = line.partition("  ")
+            self._ours.setdefault(name, set()).add(digest)
+        for name in self._ours:  # before any work
+            self._check(name)
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            self._write(SUMS, (text or _MARK).encode())
+        except OSError as error:
+            raise OutputError(path, error) from error
+
+    def read(self, name: str) -> bytes | None:
+        """A file of ours, of this time or before."""
+        return (self.path / name).read_bytes() if name in self._ours and (self.path / name).is_file() else None
+
+    def keep(self, name: str) -> bool:
+        """Whether a file of ours is there, which is to stay as it is."""
+        if name in self._ours and (digest := sha256_of(self.path / name)):
+            self._kept[name] = digest
+        return name in self._kept
+
+    def put(self, name: str, data: bytes | str) -> None:
+        """Write a file, unless it is there."""
+        data = data.encode() if isinstance(data, str) else data
+        digest = hashlib.sha256(data).hexdigest()
+        there = self._check(name)
+        self._kept[name] = digest
+        if there == digest:
+            return
+        try:
+            with self._sums.open("a", encoding="utf-8") as sums:
+                sums.write(f"{digest}  {name}\n")
+            self._ours.setdefault(name, set()).add(digest)
+            (self.path / name).parent.mkdir(parents=True, exist_ok=True)
+            self._write(name, data)
+        except OSError as error:
+            raise OutputError(self.path / name, error) from error
+
+    def close(self) -> None:
+        """Remove what was ours and is not wanted any more."""
+        for name in self._ours.keys() - self._kept.keys():
+            (self.path / name).unlink(missing_ok=True)
+        lines = (f"{digest}  {name}\n" for name, digest in sorted(self._kept.items()))
+        self._write(SUMS, "".join([_MARK, *lines]).encode())
+
+    def _any(self) -> bool:
+        return self.path.is_dir() and next(self.path.iterdir(), None) is not None
+
+    def _check(self, name: str) -> str | None:
+        """The hash of a file, None where there is none; a MobiusFlowError if it is not ours."""
+        path = self.path / name
+        digest = sha256_of(path)
+        if path.is_symlink() or (path.exists() and digest not in self._ours.get(name, ())):
+            raise _foreign(path)
+        return digest
+
+    def _write(self, name: str, data: bytes) -> None:
+        with atomic_write(self.path / name) as temporary:
+            temporary.write_bytes(data)
+
+
+def _foreign(path: Path) -> MobiusFlowError:
+    return MobiusFlowError(
+        f"{path}: was not written by mobius-flow atlas, or has been changed since; move it, or name another directory"
+    )

@@ -1,0 +1,49 @@
+"""Pictures of the minima, by Blender where its module is there; each is made once."""
+
+import hashlib
+import json
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ...addon.pictures import export
+from ...core import MobiusFlowError
+from .entry import curve_of
+from .folder import Folder
+
+LARGE, SMALL = (640, 480), (240, 180)
+_SAMPLES = 16
+NO_LOOK = "none"
+
+
+def picture(folder: Folder, name: str, minimum: Mapping[str, Any], look: str) -> str | None:
+    """The path of a minimum's picture in the folder, rendered unless it is there; the least one's is large.
+
+    Its name has the hash of what it shows, as another curve may take its place.
+    """
+    if look == NO_LOOK:
+        return None
+    size = LARGE if minimum["number"] == 1 else SMALL
+    shown = json.dumps([minimum["coefficients"], look, size, _SAMPLES])
+    path = f"pictures/{name}-{minimum['number']}-{hashlib.sha256(shown.encode()).hexdigest()[:10]}.jpg"
+    if not folder.keep(path):
+        curve = curve_of(minimum)
+        with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
+            made = Path(room, "picture.jpg")
+            export.write_picture(made, curve.polygon(curve.sizes), *size, look, _SAMPLES)
+            folder.put(path, made.read_bytes())
+    return path
+
+
+def usable(look: str | None) -> str:
+    """The look that is wanted, by default the pictures' own where Blender's module is there; raises MobiusFlowError."""
+    if look == NO_LOOK:
+        return look
+    try:
+        export.require_blender()
+    except MobiusFlowError:
+        if look is None:
+            return NO_LOOK
+        raise
+    return look or export.DEFAULT

@@ -1,0 +1,89 @@
+"""The runs of batches, by the types that they ended as, and those that are left out."""
+
+import json
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...core import MobiusFlowError
+from ...core.errors import counted
+from ...core.knots import KNOTS
+from ...core.knots.names import table_name
+from ...core.smooth.fourier import FourierCurve
+from ...core.smooth.rest import Rest
+from ..batch.folder import results
+from ..batch.table import Row
+
+SMOOTH = "without a smooth shape (run batch with --extrapolate)"
+CHECKED = "that verify did not accept"
+PROVED = "whose type is not proved to be one of the table"
+_SHOWN = 8  # names of runs that are left out
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run that ended as a knot or link of the table, and the smooth curve that it led to, with the table's chirality."""
+
+    row: Row
+    curve: FourierCurve
+    mark: str  # of its results: their hash
+
+    @property
+    def rest(self) -> Rest:
+        """The curve as it is at rest; the index is that of the polygon, -1 if it is not known."""
+        row = self.row
+        index = -1 if row.index is None else row.index
+        return Rest(self.curve, row.extrapolated_energy or 0.0, row.extrapolated_energy_error or 0.0, index)
+
+
+@dataclass
+class Runs:
+    """Runs by the names of the table, in its order, and the names of those that are left out, by the reason."""
+
+    by_type: dict[str, list[Run]] = field(default_factory=lambda: defaultdict(list))
+    left_out: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
+
+    @classmethod
+    def of(cls, directories: Iterable[Path]) -> "Runs":
+        """Those of directories that batches wrote to; a MobiusFlowError tells where there is none."""
+        found = cls()
+        for directory in directories:
+            for folder, report, row in results(directory):
+                found._add(folder, report, row)
+        if not found.by_type:
+            raise MobiusFlowError(f"there is nothing for an atlas: {found.missing}")
+        found.by_type = {name: sorted(found.by_type[name], key=_order) for name in KNOTS if name in found.by_type}
+        return found
+
+    @property
+    def missing(self) -> str:
+        """What is left out, and why."""
+        return "; ".join(_told(why, names) for why, names in self.left_out.items())
+
+    def _add(self, folder: Path, report: Mapping[str, object], row: Row) -> None:
+        try:
+            name, mirrored = table_name(row.type_after or "")
+        except MobiusFlowError:
+            name, mirrored = "", False
+        try:
+            curve = FourierCurve.of_lists(report["smooth"])  # type: ignore[arg-type]
+        except (KeyError, TypeError, ValueError):
+            self.left_out[SMOOTH].append(folder.name)
+            return
+        if not (row.certified and row.verified):
+            self.left_out[CHECKED].append(folder.name)
+        elif not (name and row.proved):
+            self.left_out[PROVED].append(folder.name)
+        else:
+            curve = curve.mirrored if mirrored else curve
+            self.by_type[name].append(Run(row, curve, json.dumps(report["files"])))
+
+
+def _order(run: Run) -> tuple[str, int, str]:
+    return run.row.name, run.row.start, run.mark
+
+
+def _told(why: str, names: Sequence[str]) -> str:
+    more = ", …" if len(names) > _SHOWN else ""
+    return f"{counted(len(names), 'run')} {why}: {', '.join(names[:_SHOWN])}{more}"
