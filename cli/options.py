@@ -9,9 +9,10 @@ import numpy
 import scipy
 
 from .. import __version__
+from ..addon.pictures.looks import LOOKS
 from ..core import RelaxOptions, Task, read_obstacle
 from ..core.curve.io import CurveFile
-from ..core.errors import OptionError
+from ..core.errors import OptionError, choice
 from ..core.option import Option, declared
 from ..core.threads import THREADS
 
@@ -109,6 +110,14 @@ def _declaration(option: Option) -> dict[str, Any]:
     choices = f"; one of {', '.join(option.choices)}" if option.choices else ""
     default = f" (default: {option.automatic or option.default})"
     return common | {"help": f"{option.help}{choices}{default}", "type": option.kind}
+
+
+def look(word: str, *others: str) -> str:
+    """The name of a look, or another word that stands in its place."""
+    names = [*(name.lower() for name in LOOKS), *others]
+    if word not in names:
+        raise argparse.ArgumentTypeError(f"{word!r:.40} is unknown; {choice(word, names)}")
+    return word if word in others else word.upper()
 
 
 def provenance(options: Mapping[str, object], name: str, sha256: str | None) -> dict[str, object]:

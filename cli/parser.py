@@ -14,6 +14,7 @@ COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it d
     "morph": ("morph", "find a proved motion from one curve to another"),
     "same": ("same", "tell whether two curves are the same knot or link"),
     "batch": ("batch", "relax many curves, on all cores or a cluster"),
+    "atlas": ("atlas", "make pages and tables of the minima that batches found"),
     "gallery": ("gallery", "show the results of a batch"),
     "energy": ("info", "print the energy of a curve"),
     "info": ("info", "identify the knot type of curves, and measure them"),

@@ -12,7 +12,7 @@ from ..addon.engine.playing import Playing
 from ..addon.pictures.looks import DEFAULT, LOOKS
 from ..core import Iterate, MobiusFlowError, RelaxOptions, Result, Status, Task, Trajectory, relax, write_curve
 from ..core.driver import Relaxation, finish
-from ..core.errors import choice, counted
+from ..core.errors import counted
 from . import curves, signals
 from . import options as relax_options
 from .outputs import OUTPUTS, Output, admit, output_for
@@ -75,15 +75,7 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
         f"stage and material of a scene, film or picture: {', '.join(name.lower() for name in LOOKS)} (default: "
         f"{DEFAULT.lower()}; films are then drawn plainly, in a tenth of the time)"
     )
-    parser.add_argument("--look", type=_look, metavar="LOOK", help=text)
-
-
-def _look(word: str) -> str:
-    """The name of a look."""
-    names = [name.lower() for name in LOOKS]
-    if word not in names:
-        raise argparse.ArgumentTypeError(f"{word!r:.40} is unknown; {choice(word, names)}")
-    return word.upper()
+    parser.add_argument("--look", type=relax_options.look, metavar="LOOK", help=text)
 
 
 def _run(options: argparse.Namespace) -> int:

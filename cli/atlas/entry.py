@@ -12,7 +12,7 @@ from ... import __version__
 from ...core.collision.gap import thickness
 from ...core.curve.measures import writhe_and_crossings
 from ...core.knots.catalogue import crossing_number
-from ...core.knots.table import AMPHICHEIRAL
+from ...core.knots.table import AMPHICHEIRAL, KNOTS
 from ...core.smooth.fourier import FourierCurve
 from ...core.smooth.minima import balanced, distinct
 from ...core.smooth.rest import Rest, index_of
@@ -50,7 +50,13 @@ def _made(name: str, runs: Sequence[Run]) -> Values:
         {"number": number} | _described(ends[group[0]], [runs[k] for k in group])
         for number, group in enumerate(groups, start=1)
     ]
-    return {"name": name, "lower_bound": _lower_bound(name), "runs": len(runs), "minima": minima}
+    return {
+        "name": name,
+        "position": [*KNOTS].index(name),
+        "lower_bound": _lower_bound(name),
+        "runs": len(runs),
+        "minima": minima,
+    }
 
 
 def _described(rest: Rest, runs: Sequence[Run]) -> Values:

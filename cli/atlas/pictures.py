@@ -13,7 +13,7 @@ from .entry import curve_of
 from .folder import Folder
 
 LARGE, SMALL = (640, 480), (240, 180)
-_SAMPLES = 16
+_SAMPLES = 8  # of a pixel: more are not seen once noise is taken off
 NO_LOOK = "none"
 
 

@@ -1,0 +1,183 @@
+"""The pages: an index that can be sorted and filtered, and one for each knot or link."""
+
+import math
+import re
+from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
+
+from ... import __version__
+from .data import CURVES, curve_path
+from .entry import Values
+from .folder import Folder
+
+_ASSETS = ("style.css", "sort.js")
+_TITLE = "Curves at rest under the Möbius energy"
+_DECIMALS = 9  # at most
+_HEADS = (
+    "",
+    "type",
+    "least energy known",
+    "proved from below",
+    "minima",
+    "saddles",
+    "met",
+    "ropelength",
+    "writhe",
+    "crossings",
+)
+_KINDS = ("", "energy", "above the least", "index", "met", "from", "ropelength", "writhe", "crossings", "curve")
+_PAGE = """\
+<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<title>{title}</title>
+<link rel="stylesheet" href="{root}style.css">
+{body}
+<footer>Made by mobius-flow {version}. <a href="{root}data/README.md">The data</a>:
+<a href="{root}data/atlas.csv">least</a>, <a href="{root}data/minima.csv">all</a>, <a href="{root}data/atlas.json">JSON</a>.</footer>
+</html>
+"""
+_INDEX = """\
+<header><h1>{title}</h1>
+<p>{types} knots and links, and the least Möbius energies known of them: those of smooth curves, from {runs} relaxations,
+each of them proved to be an isotopy. The circle has 4.</p></header>
+<main><p><input id="filter" type="search" placeholder="filter: 7_, L6, 10_1 …" aria-label="filter by type"></p>
+<div class="wide"><table class="sortable"><thead><tr>{heads}</tr></thead>
+<tbody>
+{rows}
+</tbody></table></div></main>
+<script src="sort.js"></script>"""
+_KNOT = """\
+<nav>{before}<a href="../index.html">all</a>{after}</nav>
+<main><h1>{name}</h1>
+<div class="facing"><figure>{picture}</figure>
+<dl>{facts}</dl></div>
+<h2>Where runs came to rest</h2>
+<div class="wide"><table><thead><tr>{heads}</tr></thead>
+<tbody>
+{rows}
+</tbody></table></div>
+<h2>To make it again</h2>
+<pre>{command}</pre>
+<p>The way there is in <code>results/{folder}/trajectory.npz</code>, free of contact by proof, as anybody can check:</p>
+<pre>mobius-flow verify results/{folder}/trajectory.npz
+mobius-flow view results/{folder}/trajectory.npz motion.html</pre>
+<p>Found by mobius-flow {version}. Coefficients of all these curves: <a href="../data/fourier/{file}.json">Fourier series</a>.</p>
+</main>"""
+
+
+def write(folder: Folder, entries: Sequence[Values]) -> None:
+    """Write the index and the page of each entry."""
+    for asset in _ASSETS:
+        folder.put(asset, files(__package__).joinpath(asset).read_text(encoding="utf-8"))
+    heads = "".join(f'<th scope="col"><button>{head}</button></th>' if head else "<th></th>" for head in _HEADS)
+    rows = "\n".join(map(_index_row, entries))
+    runs = sum(entry["runs"] for entry in entries)
+    _put(
+        folder, "index.html", _TITLE, _INDEX.format(title=_TITLE, types=len(entries), runs=runs, heads=heads, rows=rows)
+    )
+    for before, entry, after in zip([None, *entries[:-1]], entries, [*entries[1:], None], strict=True):
+        _put(folder, f"knots/{entry['name']}.html", f"{entry['name']} – {_TITLE}", _knot(entry, before, after))
+
+
+def _put(folder: Folder, path: str, title: str, body: str) -> None:
+    root = "../" * path.count("/")
+    folder.put(path, _PAGE.format(title=title, root=root, body=body, version=__version__))
+
+
+def _index_row(entry: Values) -> str:
+    least = entry["minima"][0]
+    saddles = sum(each["index"] > 0 for each in entry["minima"])
+    link = f'<a href="knots/{entry["name"]}.html">'
+    cells = [
+        _cell(f"{link}{_picture(least, '', 'lazy')}</a>"),
+        f'<th scope="row" data-value="{entry["position"]}">{link}{typeset(entry["name"])}</a></th>',
+        _cell(_energy(least), least["energy"]),
+        _cell(*_number(entry["lower_bound"], 2)),
+        _cell(*_number(len(entry["minima"]) - saddles, 0)),
+        _cell(*_number(saddles, 0)),
+        _cell(f"{least['met']} of {entry['runs']}", least["met"] / entry["runs"]),
+        *(_cell(*_number(least[name], 2)) for name in ("ropelength", "writhe", "average_crossing_number")),
+    ]
+    return f'<tr data-name="{entry["name"]}">{"".join(cells)}</tr>'
+
+
+def _knot(entry: Values, before: Values | None, after: Values | None) -> str:
+    least, name = entry["minima"][0], entry["name"]
+    facts = {
+        "Möbius energy": _energy(least),
+        "proved from below, for all curves of the type": _number(entry["lower_bound"], 4)[0],
+        "at rest": _index(least),
+        "met by": f"{least['met']} of {entry['runs']} runs",
+        "ropelength": _number(least["ropelength"], 3)[0],
+        "writhe": _number(least["writhe"], 4)[0],
+        "average crossing number": _number(least["average_crossing_number"], 4)[0],
+    }
+    return _KNOT.format(
+        name=typeset(name),
+        file=name,
+        before="<span></span>" if before is None else _link(before["name"], "← "),
+        after="<span></span>" if after is None else _link(after["name"], "", " →"),
+        picture=_picture(least, "../"),
+        facts="".join(f"<div><dt>{term}</dt><dd>{text}</dd></div>" for term, text in facts.items()),
+        heads="".join(f'<th scope="col">{head}</th>' for head in _KINDS),
+        rows="\n".join(_knot_row(entry, minimum) for minimum in entry["minima"]),
+        command=escape(least["command"]),
+        folder=escape(least["folder"]),
+        version=escape(least["version"]),
+    )
+
+
+def _knot_row(entry: Values, minimum: Values) -> str:
+    least = entry["minima"][0]["energy"]
+    kinds = ", ".join(f"{count} {kind}" for kind, count in minimum["kinds"].items())
+    share = round(100 * minimum["met"] / entry["runs"])
+    curves = (f'<a href="../{curve_path(entry, minimum, suffix)}">{suffix[1:].upper()}</a>' for suffix in CURVES)
+    cells = [
+        _picture(minimum, "../", "lazy"),
+        _energy(minimum),
+        f"{100 * (minimum['energy'] / least - 1):.3f} %" if minimum["number"] > 1 else "",
+        _index(minimum),
+        f'<span class="bar" style="--share: {share}%">{minimum["met"]}</span>',
+        escape(kinds),
+        *(_number(minimum[name], 2)[0] for name in ("ropelength", "writhe", "average_crossing_number")),
+        " ".join(curves),
+    ]
+    return f"<tr>{''.join(map(_cell, cells))}</tr>"
+
+
+def typeset(name: str) -> str:
+    """A name with its number as an index: 6_2, L6a4."""
+    return re.sub(r"_(\d+)", r"<sub>\1</sub>", name)
+
+
+def _link(name: str, before: str = "", after: str = "") -> str:
+    return f'<a href="{name}.html">{before}{typeset(name)}{after}</a>'
+
+
+def _picture(minimum: Values, root: str, loading: str = "eager") -> str:
+    path = minimum["picture"]
+    return f'<img src="{root}{path}" alt="" width="640" height="480" loading="{loading}">' if path else ""
+
+
+def _cell(text: str, value: float | None = None) -> str:
+    return f"<td>{text}</td>" if value is None else f'<td data-value="{value:.12g}">{text}</td>'
+
+
+def _number(value: float | None, decimals: int) -> tuple[str, float | None]:
+    return ("", None) if value is None else (f"{value:.{decimals}f}".replace("-", "−"), value)
+
+
+def _energy(minimum: Values) -> str:
+    """The energy to the first decimal of its error."""
+    energy, error = minimum["energy"], minimum["error"]
+    power = math.floor(math.log10(error)) if error else -_DECIMALS
+    digits = f"{energy:.{min(max(-power, 0), _DECIMALS)}f}"
+    return f"{digits} <small>± {math.ceil(error / 10.0**power)}·10<sup>{power}</sup></small>".replace("-", "−")
+
+
+def _index(minimum: Values) -> str:
+    return f"saddle of index {minimum['index']}" if minimum["index"] else "minimum"
