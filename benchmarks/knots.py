@@ -7,12 +7,12 @@
 ``knots`` are hard curves of all kinds, unknots of up to 141 crossings among them; ``primes`` are the knots to ten
 crossings and the links of the table, as coarse lattice polygons; ``woven`` are the 249 prime knots as mobius-flow knot
 draws them. The column "energy" is the Möbius energy of the result, as mobius-flow energy prints it, "above" how far in
-per cent that is above the smooth curve's in docs/least-energies.md, and "dgemms" is processor time in products of two
+per cent that is above the smooth curve's in docs/least-energies.csv, and "dgemms" is processor time in products of two
 1000 × 1000 matrices. Exit status 1: a type changed, an unknot is no circle, or a proof is missing.
 """
 
 import argparse
-import re
+import csv
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -49,8 +49,8 @@ HARD: Curves = {
 PRIMES: Curves = {name: partial(lattice_knot, name) for name in KNOTS if name != "0_1"}
 WOVEN: Curves = {name: partial(knot, name) for name in KNOTS if "_" in name and name != "0_1"}
 SETS = {"knots": HARD, "primes": PRIMES, "woven": WOVEN}
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "least-energies.md"
-LEAST = {name: float(energy) for name, energy in re.findall(r"(\w+) \| ([\d.]+) ±", PAGE.read_text(encoding="utf-8"))}
+TABLE = Path(__file__).resolve().parents[1] / "docs" / "least-energies.csv"
+LEAST = {row["type"]: float(row["energy"]) for row in csv.DictReader(TABLE.read_text(encoding="utf-8").splitlines())}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

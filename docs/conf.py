@@ -67,6 +67,9 @@ html_theme = "furo"
 html_title = "Möbius Flow"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+if (_SITE := ROOT / "build" / "site").is_dir():  # with the pages of mobius-flow atlas
+    html_extra_path = [str(_SITE)]
+    tags.add("atlas")  # type: ignore[name-defined]  # noqa: F821  # Sphinx's
 html_copy_source = html_show_sourcelink = False
 html_math_renderer = "mathml"
 graphviz_output_format = "svg"

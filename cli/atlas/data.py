@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 
@@ -12,7 +13,7 @@ from .entry import Values, curve_of
 from .folder import Folder
 
 CURVES = (".vect", ".json")
-# of minima.csv: names, types of Frictionless's table schema, descriptions; atlas.csv has those of the least minima
+# of the tables: names, types of Frictionless's table schema, descriptions
 COLUMNS = (
     ("type", "string", "knot or link, by its number in KnotInfo; links as in the table of Thistlethwaite"),
     ("number", "integer", "of the curve at rest, by energy; 1 is the least known"),
@@ -31,16 +32,28 @@ COLUMNS = (
     ("command", "string", "that finds it again, and records a proved way to it in the folder named"),
     ("folder", "string", "of the run within results"),
 )
+SHORT = (
+    "type",
+    "energy",
+    "error",
+    "lower_bound",
+    "index",
+    "met",
+    "runs",
+    "ropelength",
+    "writhe",
+    "average_crossing_number",
+)
 _README = """\
 # Curves at rest under the Möbius energy
 
-{types} knots and links and {minima} curves at which the Möbius energy is stationary, found by mobius-flow {version} from
-{runs} relaxations, each of them proved to be an isotopy. The energies are those of smooth curves; they are upper bounds of
-the least energies up to their errors, and no more than that.
+{types} knots and links and {minima} curves at which the Möbius energy is stationary, found by mobius-flow {version}
+from {runs} relaxations, each of them proved to be an isotopy. The energies are those of smooth curves; they are upper
+bounds of the least energies up to their errors, and no more than that.
 
 | file | |
 | --- | --- |
-| `atlas.csv` | the curve of least energy of each type |
+| `atlas.csv` | the curve of least energy of each type, in short: rounded, and without where it comes from |
 | `minima.csv`, `minima.parquet` | all curves at rest that were met |
 | `atlas.json` | the same, with all that is known |
 | `fourier/` | their Fourier coefficients: a component is t ↦ Re Σₖ cₖ exp(2πikt), 0 ≤ t < 1; real and imaginary parts |
@@ -80,7 +93,7 @@ def write(folder: Folder, entries: Sequence[Values]) -> None:
                 folder.put(curve_path(entry, minimum, suffix), FORMATS[suffix].text(curve.polygon(curve.sizes)))
     bare = [{**entry, "minima": [_without_curve(each) for each in entry["minima"]]} for entry in entries]
     folder.put("data/atlas.json", json.dumps(bare, indent=1, ensure_ascii=False) + "\n")
-    folder.put("data/atlas.csv", _csv([row for row in rows if row["number"] == 1]))
+    folder.put("data/atlas.csv", _csv([_short(row) for row in rows if row["number"] == 1]))
     folder.put("data/minima.csv", _csv(rows))
     if find_spec("pyarrow"):
         folder.put("data/minima.parquet", _parquet(rows))
@@ -90,8 +103,8 @@ def write(folder: Folder, entries: Sequence[Values]) -> None:
     folder.put("data/CITATION.cff", _CITATION.format(version=__version__))
     fields = [{"name": name, "type": kind, "description": text} for name, kind, text in COLUMNS]
     tables = [
-        {"name": name, "path": f"{name}.csv", "schema": {"fields": fields}, "profile": "tabular-data-resource"}
-        for name in ("atlas", "minima")
+        {"name": name, "path": f"{name}.csv", "schema": {"fields": known}, "profile": "tabular-data-resource"}
+        for name, known in (("atlas", [field for field in fields if field["name"] in SHORT]), ("minima", fields))
     ]
     package = {"name": "moebius-energy-atlas", "title": "Curves at rest under the Möbius energy", "resources": tables}
     folder.put("data/datapackage.json", json.dumps(package, indent=1, ensure_ascii=False) + "\n")
@@ -114,9 +127,19 @@ def _without_curve(minimum: Values) -> Values:
     return {name: value for name, value in minimum.items() if name not in ("coefficients", "picture")}
 
 
+def _short(row: Values) -> Values:
+    short = {name: f"{row[name]:.4f}" if isinstance(row[name], float) else row[name] for name in SHORT}
+    return short | {"energy": rounded(row["energy"], row["error"]), "error": f"{row['error']:.0e}"}
+
+
+def rounded(energy: float, error: float) -> str:
+    """An energy to the first decimal of its error, but for more than nine."""
+    return f"{energy:.{min(max(-math.floor(math.log10(error)), 0), 9) if error else 9}f}"
+
+
 def _csv(rows: Sequence[Values]) -> str:
     stream = io.StringIO(newline="")
-    writer = csv.DictWriter(stream, [name for name, _, _ in COLUMNS], lineterminator="\n")
+    writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return stream.getvalue()

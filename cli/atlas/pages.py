@@ -1,19 +1,17 @@
 """The pages: an index that can be sorted and filtered, and one for each knot or link."""
 
-import math
 import re
 from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 
 from ... import __version__
-from .data import CURVES, curve_path
+from .data import CURVES, curve_path, rounded
 from .entry import Values
 from .folder import Folder
 
 _ASSETS = ("style.css", "sort.js")
 _TITLE = "Curves at rest under the Möbius energy"
-_DECIMALS = 9  # at most
 _HEADS = (
     "",
     "type",
@@ -36,14 +34,15 @@ _PAGE = """\
 <title>{title}</title>
 <link rel="stylesheet" href="{root}style.css">
 {body}
-<footer>Made by mobius-flow {version}. <a href="{root}data/README.md">The data</a>:
-<a href="{root}data/atlas.csv">least</a>, <a href="{root}data/minima.csv">all</a>, <a href="{root}data/atlas.json">JSON</a>.</footer>
+<footer>Made by mobius-flow {version}. The data: <a href="{root}data/README.md">what they are</a>,
+<a href="{root}data/atlas.csv">the least</a>, <a href="{root}data/minima.csv">all</a>,
+<a href="{root}data/atlas.json">JSON</a>.</footer>
 </html>
 """
 _INDEX = """\
 <header><h1>{title}</h1>
-<p>{types} knots and links, and the least Möbius energies known of them: those of smooth curves, from {runs} relaxations,
-each of them proved to be an isotopy. The circle has 4.</p></header>
+<p>The least Möbius energies known of {types} knots and links, as smooth curves: where {runs} relaxations came to rest,
+each of them proved to be an isotopy. The circle has 4. Shapes are those Möbius images that bend least.</p></header>
 <main><p><input id="filter" type="search" placeholder="filter: 7_, L6, 10_1 …" aria-label="filter by type"></p>
 <div class="wide"><table class="sortable"><thead><tr>{heads}</tr></thead>
 <tbody>
@@ -65,7 +64,8 @@ _KNOT = """\
 <p>The way there is in <code>results/{folder}/trajectory.npz</code>, free of contact by proof, as anybody can check:</p>
 <pre>mobius-flow verify results/{folder}/trajectory.npz
 mobius-flow view results/{folder}/trajectory.npz motion.html</pre>
-<p>Found by mobius-flow {version}. Coefficients of all these curves: <a href="../data/fourier/{file}.json">Fourier series</a>.</p>
+<p>Found by mobius-flow {version}. The smooth curves are in <a href="../data/fourier/{file}.json">{file}.json</a>, as
+Fourier series.</p>
 </main>"""
 
 
@@ -109,7 +109,7 @@ def _knot(entry: Values, before: Values | None, after: Values | None) -> str:
     least, name = entry["minima"][0], entry["name"]
     facts = {
         "Möbius energy": _energy(least),
-        "proved from below, for all curves of the type": _number(entry["lower_bound"], 4)[0],
+        "lower bound, proved, of all such curves": _number(entry["lower_bound"], 4)[0],
         "at rest": _index(least),
         "met by": f"{least['met']} of {entry['runs']} runs",
         "ropelength": _number(least["ropelength"], 3)[0],
@@ -142,7 +142,7 @@ def _knot_row(entry: Values, minimum: Values) -> str:
         f"{100 * (minimum['energy'] / least - 1):.3f} %" if minimum["number"] > 1 else "",
         _index(minimum),
         f'<span class="bar" style="--share: {share}%">{minimum["met"]}</span>',
-        escape(kinds),
+        f'<span class="kinds">{escape(kinds)}</span>',
         *(_number(minimum[name], 2)[0] for name in ("ropelength", "writhe", "average_crossing_number")),
         " ".join(curves),
     ]
@@ -172,11 +172,9 @@ def _number(value: float | None, decimals: int) -> tuple[str, float | None]:
 
 
 def _energy(minimum: Values) -> str:
-    """The energy to the first decimal of its error."""
-    energy, error = minimum["energy"], minimum["error"]
-    power = math.floor(math.log10(error)) if error else -_DECIMALS
-    digits = f"{energy:.{min(max(-power, 0), _DECIMALS)}f}"
-    return f"{digits} <small>± {math.ceil(error / 10.0**power)}·10<sup>{power}</sup></small>".replace("-", "−")
+    digits, power = f"{minimum['error']:.0e}".split("e")
+    error = f"{digits}·10<sup>{int(power)}</sup>".replace("-", "−")
+    return f"{rounded(minimum['energy'], minimum['error'])} <small>± {error}</small>"
 
 
 def _index(minimum: Values) -> str:

@@ -31,7 +31,8 @@ def picture(folder: Folder, name: str, minimum: Mapping[str, Any], look: str) ->
         curve = curve_of(minimum)
         with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
             made = Path(room, "picture.jpg")
-            export.write_picture(made, curve.polygon(curve.sizes), *size, look, _SAMPLES)
+            smooth = curve.polygon([2 * n for n in curve.sizes])
+            export.write_picture(made, smooth, *size, look, _SAMPLES)
             folder.put(path, made.read_bytes())
     return path
 

@@ -23,7 +23,7 @@ _SHOWN = 8  # names of runs that are left out
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run that ended as a knot or link of the table, and the smooth curve that it led to, with the table's chirality."""
+    """A run that ended as a knot or link of the table, and the smooth curve of the table's chirality that it led to."""
 
     row: Row
     curve: FourierCurve

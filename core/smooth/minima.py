@@ -19,9 +19,9 @@ _GROWN = (1.0, 1.25, 1.5, 2.0, 3.0)  # times the modes, that a Möbius image nee
 
 @checked
 def balanced(rest: Rest) -> Rest:
-    """The Möbius image that bends least, about the origin, with radius 1, and modes that keep the energy within its error.
+    """The Möbius image that bends least, about the origin, with radius 1, and the energy but for its error.
 
-    They are hardly more, as the speeds that curves at rest have are those of their Möbius images, too.
+    It has hardly more modes, as the speeds that curves at rest have are those of their Möbius images, too.
     """
     polygon = rest.curve.polygon(rest.curve.sizes)
     images = MoebiusImages(polygon, polygon.edge_lengths)
@@ -37,7 +37,7 @@ def balanced(rest: Rest) -> Rest:
 
 @checked
 def distinct(ends: Sequence[Rest], amphicheiral: bool = False) -> list[list[int]]:
-    """Sort balanced curves of one type into those that are the same: the numbers of each, the one of least energy first.
+    """Sort balanced curves of one type into those that are the same: numbers of each group, that of least energy first.
 
     The first of the same has the smallest error.  Mirror images of each other are the same where the type is
     ``amphicheiral``.
