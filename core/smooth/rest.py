@@ -62,9 +62,9 @@ def at_rest(polygon: Curve) -> Rest | None:
 
 
 @checked
-def energy_of(curve: FourierCurve) -> float:
-    """The Möbius energy, by a trapezoidal rule that is far more exact than the curve's modes."""
-    basis = Basis.of(curve.modes, 2 * _PER_MODE)
+def energy_of(curve: FourierCurve, per_mode: int = 2 * _PER_MODE) -> float:
+    """The Möbius energy, by a trapezoidal rule with so many points for each mode."""
+    basis = Basis.of(curve.modes, per_mode)
     return Pairs.of(basis, basis.unknowns(curve)).energy
 
 

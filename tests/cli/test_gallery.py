@@ -1,17 +1,16 @@
 """A page with the results of a batch."""
 
-import csv
+import argparse
 import os
 import sys
-from dataclasses import asdict, fields
 from pathlib import Path
 
 import numpy as np
 import pytest
+from batch_results import write_run
 from mobius_flow.addon.pictures import export
 from mobius_flow.cli import gallery, main
-from mobius_flow.cli.batch.table import Row
-from mobius_flow.core import Curve, MobiusFlowError, write_curve
+from mobius_flow.core import Curve, MobiusFlowError
 from mobius_flow.core.curve.measures import bending
 from shapes import half_circle, regular_polygon, torus_trefoil
 
@@ -20,31 +19,12 @@ CURVES = {"round": regular_polygon(24), "knot": torus_trefoil(60), "knot-2": tor
 
 @pytest.fixture
 def results(tmp_path: Path) -> Path:
-    """Three results, and a run without one."""
+    """Three results."""
     place = tmp_path / "results"
-    rows = [
-        Row(name="knot", start=1, seed=None, status="converged", message="", options="{}", energy=74.5),
-        Row(name="knot", start=2, seed=2, status="iteration_limit", message="", options="{}", energy=80.0),
-        Row(name="none", start=1, seed=None, status="failed", message="empty", options="{}"),
-        Row(
-            name="round",
-            start=1,
-            seed=None,
-            status="converged",
-            message="",
-            options="{}",
-            energy=4.0,
-            extrapolated_energy=4.0,
-            extrapolated_energy_error=2e-4,
-        ),
-    ]
-    for name, curve in CURVES.items():
-        (place / name).mkdir(parents=True)
-        write_curve(place / name / "curve.txt", curve)
-    with (place / "results.csv").open("w", newline="") as stream:
-        table = csv.DictWriter(stream, [field.name for field in fields(Row)])
-        table.writeheader()
-        table.writerows(map(asdict, rows))
+    write_run(place, "knot", 1, CURVES["knot"], energy=74.5)
+    write_run(place, "knot", 2, CURVES["knot-2"], status="iteration_limit", energy=80.0)
+    known = {"extrapolated_energy": 4.0, "extrapolated_energy_error": 2e-4}
+    write_run(place, "round", 1, CURVES["round"], energy=4.0, **known)
     return place
 
 
@@ -56,13 +36,13 @@ def test_every_result_has_its_picture_name_and_energy(
     titles: list[str] = []
     write_page = gallery._write_page
 
-    def draw(path: Path, curve: Curve, width: int, height: int) -> None:
+    def draw(path: Path, curve: Curve, width: int, height: int, look: str | None) -> None:
         drawn.append(curve)
         image.imsave(path, np.full((height, width, 3), 0.1 * len(drawn)))
 
-    def spied(path: str, given: list[str], pictures: list[Path]) -> None:
+    def spied(path: str, given: list[str], pictures: list[Path], size: int) -> None:
         titles.extend(given)
-        write_page(path, given, pictures)
+        write_page(path, given, pictures, size)
 
     monkeypatch.setattr(export, "require_blender", lambda: None)
     monkeypatch.setattr(export, "write_picture", draw)
@@ -76,19 +56,13 @@ def test_every_result_has_its_picture_name_and_energy(
     assert [np.isclose(page[..., :3], 0.1 * k, atol=0.01).all(axis=2).sum() > 20_000 for k in (1, 2, 3)] == [True] * 3
 
 
-def test_tables_of_earlier_versions_are_read(results: Path) -> None:
-    table = results / "results.csv"
-    new = {"input_sha256", "proved", "ropelength", "writhe", "average_crossing_number"}
-    new |= {"iterations", "fallback_steps", "processor_seconds"}
-    now = [(each.title, each.free) for each in gallery._results(results)]
-    with table.open(encoding="utf-8", newline="") as stream:
-        rows = [{name: row[name] for name in row if name not in new} for row in csv.DictReader(stream)]
-    with table.open("w", encoding="utf-8", newline="") as stream:
-        old = csv.DictWriter(stream, list(rows[0]))
-        old.writeheader()
-        old.writerows(rows)
-    assert len(rows[0]) == 18
-    assert [(each.title, each.free) for each in gallery._results(results)] == now
+def test_only_what_is_named_is_shown_in_that_order(results: Path) -> None:
+    options = argparse.Namespace(results="here", only="round, knot")
+    found = gallery._found(results)
+    assert [each.name for each in gallery._chosen(found, options)] == ["round", "knot"]
+    options.only = "knot,3_1"
+    with pytest.raises(MobiusFlowError, match="here: has no '3_1'; leave it out of --only"):
+        gallery._chosen(found, options)
 
 
 @pytest.mark.parametrize("options", ["{}", '{"avoid": [{"name": "ball.obj"}]}', '{"pins": [0]}'])
@@ -96,48 +70,24 @@ def test_tables_of_earlier_versions_are_read(results: Path) -> None:
 def test_curves_whose_moebius_images_are_something_else_are_shown_as_they_are(
     tmp_path: Path, curve: Curve, options: str
 ) -> None:
-    row = {"name": "k", "start": "1", "extrapolated_energy": "", "energy": "1", "status": "converged"}
-    (tmp_path / "k").mkdir()
-    write_curve(tmp_path / "k" / "curve.txt", curve)
-    shown = gallery._shown(tmp_path, row | {"options": options})
+    write_run(tmp_path, "k", 1, curve, energy=1.0, options=options)
+    (shown,) = gallery._found(tmp_path)
     moved = not np.array_equal(shown.look().vertices, curve.vertices)
     assert moved == (options == "{}" and curve.mesh.all_closed)
 
 
-@pytest.mark.parametrize(
-    "text", ["name,start,status\nknot\n", f"name,start,status,energy\n{'x' * 200_000},1,converged,1\n", "\0\xff"]
-)
-def test_other_tables_are_no_results(
-    text: str, results: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    pytest.importorskip("matplotlib")
-    monkeypatch.setattr(export, "require_blender", lambda: None)
-    (results / "results.csv").write_text(text, encoding="latin-1")
-    assert main(["gallery", str(results), "-o", str(results / "page.png")]) == 2
-    assert capsys.readouterr().err == f"mobius-flow: {results}: holds no results of mobius-flow batch\n"
-
-
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names")
-@pytest.mark.parametrize(
-    ("pipe", "told"),
-    [
-        ("results.csv", "{}: holds no results of mobius-flow batch"),
-        ("round/curve.txt", "{}/round/curve.txt: cannot be read: it is missing, or not a regular file"),
-    ],
-)
-def test_a_pipe_is_no_result(pipe: str, told: str, results: Path) -> None:
-    (results / pipe).unlink()
-    os.mkfifo(results / pipe)
-    with pytest.raises(MobiusFlowError) as refusal:
-        gallery._results(results)
-    assert str(refusal.value) == told.format(results)
+def test_a_pipe_is_no_result(results: Path) -> None:
+    (results / "round/curve.txt").unlink()
+    os.mkfifo(results / "round/curve.txt")
+    with pytest.raises(MobiusFlowError, match=r"round/curve.txt: cannot be read: it is missing, or not a regular file"):
+        gallery._chosen(gallery._found(results), argparse.Namespace(only=None))
 
 
 def test_rendered_by_blender(results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("bpy")
     image = pytest.importorskip("matplotlib.image")
-    monkeypatch.setattr(gallery, "SIZE", 32)
-    assert main(["gallery", str(results), "-o", str(tmp_path / "page.png")]) == 0
+    assert main(["gallery", str(results), "-o", str(tmp_path / "page.png"), "--size", "32"]) == 0
     assert len(np.unique(image.imread(tmp_path / "page.png").reshape(-1, 4), axis=0)) > 200  # shaded
 
 
@@ -160,7 +110,8 @@ def test_a_missing_library_is_named(
         ("results", "none/page.png", "does not exist"),
         ("none", "page.png", "holds no results of mobius-flow batch"),
         ("empty", "page.png", "holds no results of mobius-flow batch"),
-        ("failed", "page.png", "none of the runs has a result"),
+        ("results", "page.png --only 9_1", "has no '9_1'"),
+        ("results", "page.png --size 2", "size is 2; give 16 to 4000"),
     ],
 )
 def test_one_sentence(
@@ -173,11 +124,9 @@ def test_one_sentence(
 ) -> None:
     pytest.importorskip("matplotlib")
     monkeypatch.setattr(export, "require_blender", lambda: None)
-    for name in ("empty", "failed"):
-        (results.parent / name).mkdir()
-    lines = (results / "results.csv").read_text().splitlines(keepends=True)
-    (results.parent / "failed/results.csv").write_text("".join([lines[0], lines[3]]))
-    assert main(["gallery", str(results.parent / place), "-o", str(results.parent / out)]) == 2
+    (results.parent / "empty").mkdir()
+    first, *more = out.split()
+    assert main(["gallery", str(results.parent / place), "-o", str(results.parent / first), *more]) == 2
     said = capsys.readouterr().err
     assert told in said
     assert said.count("\n") == 1

@@ -1,0 +1,67 @@
+"""Smooth curves at rest that are told apart, up to Möbius maps and isometries."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mobius_flow.core import RelaxOptions, minimize
+from mobius_flow.core.curve.measures import bending
+from mobius_flow.core.curve.moebius_map import moebius_image
+from mobius_flow.core.knots import knot
+from mobius_flow.core.smooth.fourier import FourierCurve
+from mobius_flow.core.smooth.minima import balanced, distinct
+from mobius_flow.core.smooth.rest import Rest, at_rest, energy_of, index_of
+
+
+@pytest.fixture(scope="module")
+def trefoil() -> Rest:
+    found = at_rest(minimize(knot("3_1", 90), RelaxOptions(vertices=90)).curve)
+    assert found is not None
+    return found
+
+
+def image(rest: Rest, q: np.ndarray) -> Rest:
+    """A Möbius image with many modes, begun elsewhere and run through backwards."""
+    polygon = rest.curve.polygon([1000])
+    points = np.roll(moebius_image(polygon.vertices, q / np.linalg.norm(q))[::-1], 123, axis=0)
+    return replace(rest, curve=FourierCurve.through(polygon.with_vertices(points), [90]))
+
+
+Q = np.array([1.0, 0.1, -0.2, 0.15])
+
+
+def test_a_balanced_image_bends_least_and_has_the_same_energy(trefoil: Rest) -> None:
+    far = image(trefoil, Q)
+    near = balanced(far)
+    least, bent, straightened = (bending(each.curve.polygon([400])) for each in (balanced(trefoil), far, near))
+    assert bent > 1.02 * straightened
+    assert straightened == pytest.approx(least, rel=1e-5)
+    assert energy_of(near.curve) == pytest.approx(trefoil.energy, abs=max(trefoil.error, 1e-9))
+    assert np.linalg.norm(near.curve.polygon([400]).vertices, axis=1).max() == pytest.approx(1.0, abs=1e-3)
+
+
+def test_modes_are_added_where_an_image_needs_them(trefoil: Rest) -> None:
+    few = replace(trefoil, curve=image(trefoil, Q).curve.with_modes([30]))
+    few = replace(few, energy=energy_of(few.curve), error=1e-10)
+    assert balanced(few).curve.modes[0] > 30
+    assert energy_of(balanced(few).curve) == pytest.approx(few.energy, abs=1e-9)
+
+
+def test_images_are_the_same_and_other_energies_are_not(trefoil: Rest) -> None:
+    ends = [replace(trefoil, energy=trefoil.energy + 1.0), image(trefoil, Q), replace(trefoil, error=0.0)]
+    assert distinct([balanced(end) for end in ends]) == [[2, 1], [0]]
+
+
+def test_mirror_images_are_the_same_where_the_type_is_amphicheiral(trefoil: Rest) -> None:
+    ends = [balanced(end) for end in (trefoil, replace(trefoil, curve=trefoil.curve.mirrored))]
+    assert sorted(distinct(ends)) == [[0], [1]]
+    assert distinct(ends, amphicheiral=True) == [[0, 1]]
+
+
+def test_other_shapes_of_equal_energy_are_others(trefoil: Rest) -> None:
+    wide = tuple(c * [1.0, 0.6, 1.0] for c in trefoil.curve.coefficients)
+    assert sorted(distinct([trefoil, replace(trefoil, curve=FourierCurve(wide))])) == [[0], [1]]
+
+
+def test_the_index_of_a_minimum(trefoil: Rest) -> None:
+    assert index_of(trefoil.curve) == trefoil.index == 0
