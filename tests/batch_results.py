@@ -7,7 +7,7 @@ from mobius_flow.cli.batch.folder import new_folder, write_report
 from mobius_flow.cli.batch.job import CURVE, TRAJECTORY, Job, folder_name
 from mobius_flow.cli.batch.table import Row
 from mobius_flow.core import Curve, write_curve
-from mobius_flow.core.smooth.fourier import FourierCurve
+from mobius_flow.core.curve.fourier import FourierCurve
 
 _ENDED = MappingProxyType({"status": "converged", "message": "", "options": "{}", "certified": True, "verified": True})
 

@@ -967,4 +967,25 @@ MUTANTS = (
         "sups[i] < gap",
         f"{SMOOTH}/test_isotopy.py::test_components_that_were_pulled_through_each_other",
     ),
+    Mutant(
+        "a morph gives up where shapes do not meet at once",
+        "core/morphing/morph.py",
+        "        if joint is None:\n            further",
+        "        if False:\n            further",
+        f"{MORPHING}/test_morph.py::test_where_shapes_do_not_meet_both_go_on_with_equal_meshes_and_then_hop",
+    ),
+    Mutant(
+        "colors stay behind on the way back of a loop",
+        "addon/curves/blends.py",
+        "np.concatenate([values, values[::-1][len(values) - len(back) :]])",
+        "np.concatenate([values, values[-1:].repeat(len(back))])",
+        "tests/addon/curves/test_blends.py::test_a_loop_takes_them_off_again",
+    ),
+    Mutant(
+        "ends of goals are where Blender rounds them",
+        "addon/curves/goals.py",
+        "    vertices[ends] = there\n",
+        "",
+        "tests/addon/test_morph.py::test_ends_that_are_in_one_place_but_for_rounding_are_held_there",
+    ),
 )

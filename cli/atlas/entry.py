@@ -10,10 +10,10 @@ from typing import Any
 
 from ... import __version__
 from ...core.collision.gap import thickness
+from ...core.curve.fourier import FourierCurve
 from ...core.curve.measures import writhe_and_crossings
 from ...core.knots.catalogue import crossing_number
 from ...core.knots.table import AMPHICHEIRAL, KNOTS
-from ...core.smooth.fourier import FourierCurve
 from ...core.smooth.minima import balanced, distinct
 from ...core.smooth.rest import Rest, index_of
 from ..batch.job import folder_name

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...addon.pictures import export
+from ...addon.pictures import export, looks
 from ...core import MobiusFlowError
 from .entry import curve_of
 from .folder import Folder
@@ -47,4 +47,4 @@ def usable(look: str | None) -> str:
         if look is None:
             return NO_LOOK
         raise
-    return look or export.DEFAULT
+    return look or looks.DEFAULT

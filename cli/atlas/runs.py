@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...core import MobiusFlowError
+from ...core.curve.fourier import FourierCurve
 from ...core.errors import counted
 from ...core.knots import KNOTS
 from ...core.knots.names import table_name
-from ...core.smooth.fourier import FourierCurve
 from ...core.smooth.rest import Rest
 from ..batch.folder import results
 from ..batch.table import Row

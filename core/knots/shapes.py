@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..curve import Curve
-from ..smooth.fourier import FourierCurve
+from ..curve.fourier import FourierCurve
 from .inscribed import equal_steps, is_isotopic, shares, too_few
 from .names import table_name
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..types import FloatArray
-from .fourier import Basis
+from .basis import Basis
 
 Block = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 """∂²f by (r, r), (r, v), (r, w), (v, v) and (v, w), of one coordinate each; shape (n, n)."""

@@ -7,10 +7,10 @@ from itertools import combinations
 
 from ..arguments import checked
 from ..curve import Curve
+from ..curve.fourier import FourierCurve
 from ..errors import CurveError
 from ..types import ComplexArray, FloatArray
 from .balls import Loop, acb_mat, arb, floor, precise, separations
-from .fourier import FourierCurve
 
 _SPARE = 1.1  # times the vertices that are about enough
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..arguments import checked
+from ..curve.alignment import Freedom, alignments
+from ..curve.fourier import FourierCurve
 from ..curve.measures import bending
 from ..driver.interventions.balance import MoebiusImages, least_bending
-from ..morphing.alignment import Freedom, alignments
-from .fourier import FourierCurve
 from .rest import Rest, energy_of
 
 SAME_ENERGY = 1e-6  # of the energy, by which those of one curve differ beside their errors

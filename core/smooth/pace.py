@@ -5,7 +5,7 @@ import numpy as np
 from ..curve import Curve
 from ..energies.moebius import moebius_by_length
 from ..types import FloatArray
-from .fourier import Basis
+from .basis import Basis
 
 _SHARE = 4.0  # energy of a circle, which its pairs do not have: it is spread over each component by length
 

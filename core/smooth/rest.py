@@ -10,12 +10,13 @@ from scipy.linalg import eigh, null_space
 
 from ..arguments import checked
 from ..curve import Curve, check_closed
+from ..curve.fourier import FourierCurve
 from ..driver.interventions.balance import balanced
 from ..energies import MoebiusEnergy
 from ..errors import CurveError
 from ..types import FloatArray
+from .basis import Basis
 from .energy import Pairs
-from .fourier import Basis, FourierCurve
 from .pace import parameters, sliding
 
 MODES = (24, 36, 54, 80, 120, 180)  # of a component of average length
@@ -72,7 +73,7 @@ def energy_of(curve: FourierCurve, per_mode: int = 2 * _PER_MODE) -> float:
 def index_of(curve: FourierCurve) -> int:
     """The number of independent directions in which the energy of a curve at rest falls, 0 at a minimum."""
     basis = Basis.of(curve.modes, _PER_MODE)
-    return Model.of(basis, Pace.of(curve.polygon(curve.sizes)), basis.unknowns(curve)).index
+    return Model.of(basis, basis.unknowns(curve)).index
 
 
 def _normalized(curve: Curve) -> Curve:

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from families import family
+from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots.shapes import QUANTUM, shapes
-from mobius_flow.core.smooth.fourier import FourierCurve
 
 _FILE = Path(__file__).resolve().parents[3] / "tools" / "knot_shapes.py"
 _SPEC = importlib.util.spec_from_file_location("knot_shapes", _FILE)

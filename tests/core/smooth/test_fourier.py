@@ -3,8 +3,9 @@
 import json
 
 import numpy as np
+from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots.inscribed import arc_steps
-from mobius_flow.core.smooth.fourier import Basis, FourierCurve
+from mobius_flow.core.smooth.basis import Basis
 from mobius_flow.core.smooth.pace import parameters
 from shapes import hopf_link, torus_trefoil
 

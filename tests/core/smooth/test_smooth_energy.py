@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.energies import MoebiusEnergy
+from mobius_flow.core.smooth.basis import Basis
 from mobius_flow.core.smooth.energy import Pairs
-from mobius_flow.core.smooth.fourier import Basis, FourierCurve
 from mobius_flow.core.smooth.pace import parameters, sliding
 from mobius_flow.core.taylor import taylor_slope
 from mobius_flow.core.types import FloatArray
