@@ -111,7 +111,7 @@ def floor(sample: Sample, degree: int) -> arb | None:
     rows = list(sample(nodes))
     bend, least = _bend(rows), _least(rows)
     while least > 0.0:
-        nodes = max(nodes, math.ceil(math.sqrt(float(bend) / (4.0 * least))))
+        nodes = max(nodes, math.ceil(min(math.sqrt(float(bend) / (4.0 * least)), _MOST + 1.0)))
         if nodes > _MOST:
             return None
         least = _least(sample(nodes))

@@ -42,7 +42,7 @@ def energy_bounds(coefficients: Sequence[ComplexArray], tolerance: float = 1e-8)
     with precise():
         loops = [Loop(c) for c in coefficients]
         pairs = [*((i, i) for i in range(len(loops))), *permutations(range(len(loops)), 2)]
-        strips = [_found(i, j, _strip(loops[i], loops[j])) for i, j in pairs]
+        strips = [_strip(loops, i, j) for i, j in pairs]
         nodes = max((strip.nodes(tolerance / (2 * len(strips))) for strip in strips), default=1)
         value = sum((_mean(loops[i], loops[j], nodes) for i, j in pairs), len(loops) * (4 - nodes * arb.pi() ** 2))
         ball = value + arb(0, sum((strip.error(nodes) for strip in strips), arb(0)).upper())
@@ -74,12 +74,13 @@ class _Strip:
         return max(1, math.ceil(math.log1p(float(4 * self.bound) / error) / (2 * math.pi * self.height)))
 
 
-def _strip(first: Loop, second: Loop) -> _Strip | None:
-    """A strip about as high as can be; None if none is found.
+def _strip(loops: Sequence[Loop], i: int, j: int) -> _Strip:
+    """A strip about as high as can be; CurveError if none is found.
 
     Real parts are harmonic in s, so they are least on the edges of a strip, which are alike by conjugation: where those
     of q and γ₁'² are positive there, r² has no zeros but those of sin², and |γ₁'| is the root of what has none.
     """
+    first, second = loops[i], loops[j]
     samples = first.speeds, partial(separations, first, second)
     degree = 2 * max(first.modes, second.modes)
     shares = [_SHARE * coarsely(partial(sample, 0.0)) for sample in samples]
@@ -92,12 +93,6 @@ def _strip(first: Loop, second: Loop) -> _Strip | None:
                 if first is second:
                     bound = (bound + arb.pi() ** 2) / (arb.pi() * height).sinh() ** 2
                 return _Strip(height, bound)
-    return None
-
-
-def _found(i: int, j: int, strip: _Strip | None) -> _Strip:
-    if strip is not None:
-        return strip
     which = f"component {i + 1} meets itself or has a cusp" if i == j else f"components {i + 1} and {j + 1} meet"
     raise CurveError(f"{which}, or nearly so: no bound of the energy can be proved")
 

@@ -1,7 +1,7 @@
 """Polygons that are proved to be ambient isotopic to smooth knots and links, by ball arithmetic (docs/bounds.md)."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from itertools import combinations
 
@@ -57,9 +57,11 @@ class _Margins:
     def __init__(self, coefficients: Sequence[ComplexArray]) -> None:
         self.loops = loops = [Loop(c) for c in coefficients]
         self.bends = [loop.majorant(2) for loop in loops]
-        self.speeds = [_root(floor(partial(loop.speeds, 0.0), 2 * loop.modes)) for loop in loops]
-        self.chords = [_distance(loop, loop) for loop in loops]
-        self.gaps = {(i, j): _distance(loops[i], loops[j]) for i, j in combinations(range(len(loops)), 2)}
+        self.speeds = [_root(loop.speeds, loop.modes) for loop in loops]
+        self.chords = [_root(partial(separations, loop, loop), loop.modes) for loop in loops]
+        modes = max((loop.modes for loop in loops), default=0)
+        pairs = combinations(range(len(loops)), 2)
+        self.gaps = {(i, j): _root(partial(separations, loops[i], loops[j]), modes) for i, j in pairs}
 
     def sizes(self) -> list[int]:
         """Numbers of vertices, for each component, of an inscribed polygon that is near enough."""
@@ -95,11 +97,9 @@ def _longest(vectors: Sequence[Sequence[arb]]) -> arb:
     return longest.upper().sqrt()
 
 
-def _distance(first: Loop, second: Loop) -> arb:
-    return _root(floor(partial(separations, first, second, 0.0), 2 * max(first.modes, second.modes)))
-
-
-def _root(square: arb | None) -> arb:
+def _root(line: Callable[[float, int], Iterable[Sequence[arb]]], modes: int) -> arb:
+    """A lower bound of the root of what is sampled on the real line."""
+    square = floor(partial(line, 0.0), 2 * modes)
     if square is None:
         raise CurveError(_REFUSAL)
     return square.sqrt()

@@ -7,6 +7,8 @@ import pytest
 from fourier_curves import CIRCLE, CUSPS, DOUBLE_POINT, DUAL_CIRCLE, ELLIPSE, fitted, torus_knot, values
 from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
 from mobius_flow.core.knots.shapes import shapes, smooth_knot
+from mobius_flow.core.smooth.energy import Pairs
+from mobius_flow.core.smooth.fourier import Basis, FourierCurve
 from smooth_curves import SMOOTH_CURVES
 from torus_energies import torus_knot_energy
 
@@ -21,6 +23,14 @@ def test_curves_of_known_energies(name):
     lower, upper = bounds.energy_bounds([c], 1e-9)
     assert lower - 2e-9 <= curve.energy <= upper + 2e-9  # known to nine decimals
     assert upper - lower < 2e-9
+
+
+@pytest.mark.parametrize("name", ["5_2", "9_40", "L6a4", "L7a1"])
+def test_another_formula_in_doubles(name):
+    curve = FourierCurve(shapes()[name].coefficients)
+    basis = Basis.of(curve.modes, 960 // sum(curve.modes))
+    lower, upper = bounds.energy_bounds(curve.coefficients, 1e-6)
+    assert lower - 1e-6 < Pairs.of(basis, basis.unknowns(curve)).energy < upper + 1e-6
 
 
 @pytest.mark.parametrize("tolerance", [1e6, 1e3, 1.0, 1e-4, 1e-12])
@@ -59,7 +69,7 @@ def test_a_fit_to_a_polygon_at_rest_is_above_the_minimum_by_little():
 def test_the_integrand_is_bounded_in_the_strip_and_analytic(curves):
     loops = [bounds.Loop(c) for c in curves]
     for i, j in {(0, 0), (0, len(loops) - 1)}:
-        strip = bounds._strip(loops[i], loops[j])
+        strip = bounds._strip(loops, i, j)
         s, t = np.arange(400) / 400, (np.arange(400) + 0.5) / 400
         for y in np.linspace(0.0, strip.height, 4):
             tangents = values(curves[i], s + 1j * y, 1)
