@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from fourier_curves import CIRCLE, CUSPS, DOUBLE_POINT, DUAL_CIRCLE, ELLIPSE, fitted, torus_knot, values
 from mobius_flow.core import CurveError, OptionError, RelaxOptions, minimize
+from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.knots.shapes import shapes, smooth_knot
+from mobius_flow.core.smooth.basis import Basis
 from mobius_flow.core.smooth.energy import Pairs
-from mobius_flow.core.smooth.fourier import Basis, FourierCurve
 from smooth_curves import SMOOTH_CURVES
 from torus_energies import torus_knot_energy
 
