@@ -12,7 +12,6 @@ from .group import SymmetryGroup
 from .isometry import Fit, Isometry
 
 TOLERANCE = 0.02  # radii of gyration: relaxed and balanced polygons are some .002 off
-COARSE = 0.02  # what samples add to distances
 DISTINCT = 0.15  # norm of the difference of matrices that are not the same element
 MOST = 120  # elements: those of the icosahedron's group; more have only curves that are round
 MOST_COMPONENTS = 10  # for which all orders are looked at in a second
@@ -37,14 +36,14 @@ def symmetries(curve: Curve, tolerance: float = TOLERANCE) -> SymmetryGroup:
         raise CurveError(f"the curve has {components} components; symmetries are found with up to {MOST_COMPONENTS}")
     centre = curve.edge_lengths @ curve.midpoints / curve.length
     identity = Isometry.identity(components)
+    fit = Fit(curve, centre)
     mirrored = curve.with_vertices(2.0 * centre - curve.vertices)
     near = [
         Isometry.of(alignment, sign)
         for sign, other in ((1, curve), (-1, mirrored))
         for alignment in alignments(curve, other, Freedom(fixed=centre))
-        if alignment.distance < tolerance + COARSE
+        if alignment.distance < tolerance + fit.coarseness
     ]
-    fit = Fit(curve, centre)
     if (axis := fit.axis_of_rotation(tolerance)) is not None:
         flips = any(each.matrix @ axis @ axis < -1.0 + DISTINCT for each in near)
         return SymmetryGroup("D∞h" if flips else "C∞v", centre, (identity,))

@@ -55,6 +55,12 @@ class Fit:
         self._x = np.stack([at_shares(part, True, self._shares) for part in self._parts])
         self._squares = float(np.square(self._x).sum())
 
+    @property
+    def coarseness(self) -> float:
+        """Half the distance of samples in radii of gyration, by which those of an alignment may miss each other."""
+        apart = np.linalg.norm(self._x - np.roll(self._x, 1, axis=1), axis=2).max()
+        return 0.5 * float(apart * np.sqrt(len(self._parts) * SAMPLES / self._squares))
+
     def __call__(self, near: Isometry) -> Isometry:
         matrix, shifts = near.matrix, near.shifts
         for _ in range(ROUNDS):

@@ -100,6 +100,16 @@ def test_curves_have_their_groups_wherever_they_lie(name: str) -> None:
     assert group.distance < 0.01
 
 
+@pytest.mark.parametrize("begin", [0.0, 0.2, 0.5, 0.8])
+def test_groups_are_found_wherever_samples_lie(begin: float) -> None:
+    """On long curves samples are far apart, and where a direction is turned none lies on the image of another."""
+    curve = torus_knot(3, 7, 210)
+    tail, head = curve.vertices[:2]
+    shifted = np.vstack([tail + begin * (head - tail), curve.vertices[1:], tail[None]])
+    shifted = shifted if begin else curve.vertices
+    assert symmetries(Curve(shifted), 1e-6).name == "D7"
+
+
 def test_the_mirror_image_of_a_chiral_knot_has_the_same_group() -> None:
     curve = torus_knot(2, 3)
     assert symmetries(curve.with_vertices(-curve.vertices)).name == "D3"
