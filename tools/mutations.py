@@ -13,6 +13,7 @@ MOTIONS, HOPS = "tests/core/test_hop_motions.py", "tests/core/test_hops.py"
 KNOT_TYPE, PASSES = "tests/core/knots/test_knot_type.py", "tests/core/passes"
 HIERARCHY, ENGINE = "tests/core/hierarchy", "tests/addon/engine"
 MORPHING, SMOOTH = "tests/core/morphing", "tests/core/smooth"
+SYMMETRY, SYMMETRIC = "tests/core/symmetry", "tests/core/test_symmetric_relaxations.py"
 UNTANGLING = "tests/core/test_untangling.py"
 CERTIFICATE, VERIFY, GROW = "tests/core/test_certificate.py", "tests/core/verify", "tests/core/test_grow.py"
 
@@ -987,5 +988,54 @@ MUTANTS = (
         "    vertices[ends] = there\n",
         "",
         "tests/addon/test_morph.py::test_ends_that_are_in_one_place_but_for_rounding_are_held_there",
+    ),
+    Mutant(
+        "symmetric curves drift off their orbits",
+        "core/descent/problem.py",
+        "vertices = self.constraints.symmetry.mean(vertices)",
+        "vertices = 1.0 * vertices",
+        f"{SYMMETRY}/test_action.py::test_points_are_put_on_their_orbits",
+    ),
+    Mutant(
+        "gradients break a symmetry that is to be kept",
+        "core/saddle/tangent_space.py",
+        "        return self.constraints.symmetry.mean(u), multipliers\n",
+        "        return u, multipliers\n",
+        f"{SYMMETRY}/test_action.py::test_gradients_and_projections_are_symmetric",
+    ),
+    Mutant(
+        "second derivatives see what breaks a symmetry",
+        "core/symmetry/action.py",
+        "        for _ in range(2):\n",
+        "        for _ in range(0):\n",
+        f"{SYMMETRY}/test_action.py::test_second_derivatives_are_those_of_symmetric_displacements",
+    ),
+    Mutant(
+        "edges of an orbit are split differently",
+        "core/driver/interventions/remesh.py",
+        "    pieces = problem.constraints.symmetry.most(pieces, curve.mesh)\n",
+        "",
+        f"{SYMMETRIC}::test_finer_meshes_and_second_derivatives_keep_a_rotary_reflection",
+    ),
+    Mutant(
+        "barycenters break a symmetry while lengths change",
+        "core/descent/problem.py",
+        "units = replace(units, offset=symmetry.centre)",
+        "units = replace(units)",
+        f"{SYMMETRIC}::test_lengths_reach_their_targets_where_the_barycenter_moves",
+    ),
+    Mutant(
+        "saddles are told by their symmetric index alone",
+        "core/driver/interventions/rest.py",
+        "whole = stability(self.run.point.changing(constraints=free)).index",
+        "whole = index",
+        f"{SYMMETRIC}::test_torus_knots_are_saddles_that_only_broken_symmetry_leaves",
+    ),
+    Mutant(
+        "samples of long curves hide their symmetry",
+        "core/symmetry/finding.py",
+        "tolerance + fit.coarseness",
+        "tolerance",
+        f"{SYMMETRY}/test_symmetries.py::test_groups_are_found_wherever_samples_lie",
     ),
 )
