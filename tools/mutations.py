@@ -1015,7 +1015,7 @@ MUTANTS = (
         "core/driver/interventions/remesh.py",
         "    pieces = problem.constraints.symmetry.most(pieces, curve.mesh)\n",
         "",
-        f"{SYMMETRIC}::test_finer_meshes_and_second_derivatives_keep_a_rotary_reflection",
+        f"{SYMMETRY}/test_action.py::test_where_an_edge_is_split_all_of_its_orbit_are",
     ),
     Mutant(
         "barycenters break a symmetry while lengths change",

@@ -69,6 +69,23 @@ class SymmetryGroup:
         symmetry = Symmetry(self.name, self.centre, self.matrices).on(curve)
         if symmetry.error(curve) < ROUNDING:
             return self._mean(curve, symmetry), symmetry, (0.0,) * len(sizes)
+        counts, begins, steps = self._spread(sizes)
+        mesh = Mesh(tuple(counts.tolist()))
+        parts = zip(curve.components, begins, counts, strict=True)
+        points = np.concatenate([at_shares(part, True, (b + np.arange(n) / n) % 1.0) for part, b, n in parts])
+        images = np.empty((len(self.elements), mesh.size), dtype=np.intp)
+        for row, each in zip(images, self.elements, strict=True):
+            turns = np.rint(steps * (each.signs * begins + each.shifts - begins[each.order])).astype(np.intp)
+            for c, (n, sign, turn) in enumerate(zip(counts, each.signs, turns * (counts // steps), strict=True)):
+                row[mesh.slices[c]] = mesh.offsets[each.order[c]] + (sign * np.arange(n) + turn) % n
+        symmetry = Symmetry(self.name, self.centre, self.matrices, images)
+        return self._mean(Curve(points, mesh), symmetry), symmetry, tuple(begins.tolist())
+
+    def _spread(self, sizes: Sequence[int]) -> tuple[IntArray, FloatArray, IntArray]:
+        """Numbers of vertices that the group permutes, where the first ones are, and how often components are turned.
+
+        Each is for each component, the places as shares of their lengths.
+        """
         counts, begins, steps = np.array(sizes), np.zeros(len(sizes)), np.ones(len(sizes), dtype=np.intp)
         orders, signs, shifts = (
             np.stack([getattr(each, name) for each in self.elements]) for name in ("order", "signs", "shifts")
@@ -81,22 +98,13 @@ class SymmetryGroup:
             rotations, reversals = own & (signs[:, c] > 0), np.flatnonzero(own & (signs[:, c] < 0))
             # rotations along the curve are by multiples of 1/k, but of a plane one reflections keep all points
             turns = np.abs((shifts[rotations, c] + 0.5) % 1.0 - 0.5)
-            k = np.count_nonzero(rotations) // np.count_nonzero(turns < 0.5 / np.count_nonzero(rotations))
+            k = len(turns) // np.count_nonzero(turns < 0.5 / len(turns))
             begins[c] = shifts[reversals[0], c] / 2.0 if len(reversals) else 0.0
-            for e in orbit:
+            for e in orbit[orbit > c]:
                 g = np.flatnonzero(orders[:, c] == e)[0]
-                begins[e] = begins[c] if e == c else (signs[g, c] * begins[c] + shifts[g, c]) % 1.0
+                begins[e] = (signs[g, c] * begins[c] + shifts[g, c]) % 1.0
             counts[orbit], steps[orbit] = -(-counts[orbit].max() // k) * k, k
-        mesh = Mesh(tuple(counts.tolist()))
-        parts = zip(curve.components, begins, counts, strict=True)
-        points = np.concatenate([at_shares(part, True, (b + np.arange(n) / n) % 1.0) for part, b, n in parts])
-        images = np.empty((len(self.elements), mesh.size), dtype=np.intp)
-        for g, c in np.ndindex(orders.shape):
-            n, e, k = counts[c], orders[g, c], steps[c]
-            turn = np.rint(k * (signs[g, c] * begins[c] + shifts[g, c] - begins[e])).astype(np.intp) * (n // k)
-            images[g, mesh.slices[c]] = mesh.offsets[e] + (signs[g, c] * np.arange(n) + turn) % n
-        symmetry = Symmetry(self.name, self.centre, self.matrices, images)
-        return self._mean(Curve(points, mesh), symmetry), symmetry, tuple(begins.tolist())
+        return counts, begins, steps
 
     def _mean(self, curve: Curve, symmetry: Symmetry) -> Curve:
         return curve.with_vertices(self.centre + symmetry.mean(curve.vertices - self.centre))

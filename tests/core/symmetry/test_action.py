@@ -10,6 +10,7 @@ from mobius_flow.core import Curve, RelaxOptions, minimize
 from mobius_flow.core.curve.refine import subdivide
 from mobius_flow.core.descent import Point
 from mobius_flow.core.descent.newton import Curvature
+from mobius_flow.core.driver.interventions.remesh import split_edges
 from mobius_flow.core.driver.interventions.saddle import stability
 from mobius_flow.core.knots import smooth_knot, torus_knot
 from mobius_flow.core.symmetry import NO_SYMMETRY, Symmetry, symmetries
@@ -54,6 +55,17 @@ def test_finer_meshes_keep_orbits_together(name: str) -> None:
     assert again.error(finer) < 1e-12
     assert all(sorted(image) == list(range(len(finer))) for image in again.images)
     np.testing.assert_array_equal(symmetry.on(curve).images, symmetry.images)
+
+
+def test_where_an_edge_is_split_all_of_its_orbit_are() -> None:
+    point = symmetric_point(torus_knot(3, 4, 72))
+    curve = Curve(point.placed, point.problem.mesh)
+    finer = split_edges(point.problem, curve, np.where(np.arange(72) == 5, 2, 1))
+    assert finer is not None
+    assert 72 + 4 <= len(finer.curve) <= 72 + 8
+    symmetry = finer.problem.constraints.symmetry
+    assert symmetry.error(Curve(finer.placed, finer.problem.mesh)) < 1e-12
+    assert len(set(symmetry.images[1])) == len(finer.curve)
 
 
 @pytest.mark.parametrize("solver", ["dense", "hierarchical"])
