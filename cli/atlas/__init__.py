@@ -5,11 +5,12 @@ import sys
 from pathlib import Path
 
 from ...addon.pictures.looks import DEFAULT
+from ...core.errors import counted
 from ..options import look
 from ..progress import bar
 from ..streams import emit
 from . import data, pages
-from .entry import entry
+from .entries import entry
 from .folder import Folder
 from .pictures import NO_LOOK, picture, usable
 from .runs import Runs
@@ -61,6 +62,6 @@ def _run(options: argparse.Namespace) -> int:
     data.write(folder, entries)
     pages.write(folder, entries)
     folder.close()
-    counted = sum(each["runs"] for each in entries)
-    emit(f"{len(entries)} types from {counted} runs" + (f"; left out: {runs.missing}" if runs.missing else ""))
+    total = f"{counted(len(entries), 'type')} from {counted(sum(each['runs'] for each in entries), 'run')}"
+    emit(total + (f"; left out: {runs.missing}" if runs.missing else ""))
     return 0

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 
 from ... import __version__
 from ...core.curve.io import FORMATS
-from .entry import Values, curve_of
+from .entries import Values, curve_of
 from .folder import Folder
 
 CURVES = (".vect", ".json")

@@ -23,19 +23,15 @@ class Folder:
         self.path, self._sums = path, path / SUMS
         self._ours: dict[str, set[str]] = {}  # hashes that files may have
         self._kept: dict[str, str] = {}  # those of this time
-        text = self._sums.read_text(encoding="utf-8") if self._sums.is_file() else ""
+        text = self._sums.read_text(encoding="utf-8", errors="replace") if self._sums.is_file() else ""
         if not text.startswith(_MARK) and (path.is_symlink() or (path.exists() and not path.is_dir()) or self._any()):
             raise _foreign(path)
         for line in text.splitlines()[1:]:
             digest, _, name = line.partition("  ")
-            self._ours.setdefault(name, set()).add(digest)
+            if not (Path(name).is_absolute() or ".." in Path(name).parts):  # what is elsewhere is not ours
+                self._ours.setdefault(name, set()).add(digest)
         for name in self._ours:  # before any work
             self._check(name)
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            self._write(SUMS, (text or _MARK).encode())
-        except OSError as error:
-            raise OutputError(path, error) from error
 
     def read(self, name: str) -> bytes | None:
         """A file of ours, of this time or before."""
@@ -56,10 +52,11 @@ class Folder:
         if there == digest:
             return
         try:
+            (self.path / name).parent.mkdir(parents=True, exist_ok=True)
             with self._sums.open("a", encoding="utf-8") as sums:
+                sums.write("" if sums.tell() else _MARK)
                 sums.write(f"{digest}  {name}\n")
             self._ours.setdefault(name, set()).add(digest)
-            (self.path / name).parent.mkdir(parents=True, exist_ok=True)
             self._write(name, data)
         except OSError as error:
             raise OutputError(self.path / name, error) from error

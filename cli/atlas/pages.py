@@ -7,7 +7,7 @@ from importlib.resources import files
 
 from ... import __version__
 from .data import CURVES, curve_path, rounded
-from .entry import Values
+from .entries import Values
 from .folder import Folder
 
 _ASSETS = ("style.css", "sort.js")

@@ -9,7 +9,7 @@ from typing import Any
 
 from ...addon.pictures import export, looks
 from ...core import MobiusFlowError
-from .entry import curve_of
+from .entries import curve_of
 from .folder import Folder
 
 LARGE, SMALL = (640, 480), (240, 180)

@@ -1,0 +1,222 @@
+"""An atlas of what batches found."""
+
+import csv
+import hashlib
+import json
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from batch_results import write_run
+from mobius_flow.addon.pictures import export
+from mobius_flow.cli.atlas import data, entries, pages, pictures
+from mobius_flow.core import MobiusFlowError, RelaxOptions, minimize, read_curve
+from mobius_flow.core.knots import knot, knot_type
+from mobius_flow.core.smooth.rest import Rest, at_rest
+
+HIGHER = 2.0  # energy above the least
+
+
+@pytest.fixture(scope="module")
+def trefoil() -> Rest:
+    found = at_rest(minimize(knot("3_1", 90), RelaxOptions(vertices=90)).curve)
+    assert found is not None
+    return found
+
+
+@pytest.fixture
+def results(tmp_path: Path, trefoil: Rest) -> Path:
+    """Two runs to the trefoil, one of them turned and mirrored, one higher; and two that do not count."""
+    place = tmp_path / "results"
+    turned = replace(trefoil.curve, coefficients=tuple(np.roll(c, 1, axis=1) for c in trefoil.curve.coefficients))
+    for start, curve, columns in (
+        (1, trefoil.curve, {"type_after": "3_1", "kind": "named"}),
+        (2, turned.mirrored, {"type_after": "m3_1", "kind": "drawn", "seed": 7}),
+        (3, trefoil.curve, {"type_after": "3_1", "kind": "drawn", "extrapolated_energy": trefoil.energy + HIGHER}),
+        (4, trefoil.curve, {"type_after": "3_1", "proved": False}),
+        (5, None, {"type_after": "3_1"}),
+    ):
+        known = {"extrapolated_energy": trefoil.energy, "extrapolated_energy_error": trefoil.error, "proved": True}
+        write_run(place, "3_1", start, trefoil.curve.polygon([100]), curve, **known | {"index": 0} | columns)
+    return place
+
+
+@pytest.fixture
+def atlas(run, results: Path, tmp_path: Path):
+    """Make it without pictures; what is said."""
+
+    def make(*words: str, status: int = 0) -> str:
+        code, out, err = run("atlas", results, "-o", tmp_path / "atlas", "--look", "none", *words)
+        assert code == status
+        return out + err
+
+    return make
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_minima_are_counted_measured_and_described(atlas, tmp_path: Path, trefoil: Rest) -> None:
+    told = atlas()
+    assert told.startswith(
+        "1 type from 3 runs; left out: 1 run whose type is not proved to be one of the table: 3_1-4;"
+    )
+    assert "1 run without a smooth shape (run batch with --extrapolate): 3_1-5" in told
+    place = tmp_path / "atlas"
+    least, higher = table(place / "data/minima.csv")
+    assert least["type"] == higher["type"] == "3_1"
+    assert float(least["energy"]) == trefoil.energy
+    assert [each["met"] for each in (least, higher)] == ["2", "1"]
+    assert least["kinds"] == "named 1, drawn 1"
+    assert float(least["writhe"]) > 3.3  # right-handed
+    assert float(least["lower_bound"]) == pytest.approx(6.0 * np.pi + 4.0)
+    assert least["command"] == "mobius-flow batch 3_1 --starts 1 --extrapolate -o results"
+    (short,) = table(place / "data/atlas.csv")
+    assert short["energy"] == data.rounded(trefoil.energy, trefoil.error)
+    for suffix in (".vect", ".json"):
+        assert knot_type(read_curve(place / f"data/curves/3_1-1{suffix}")).names == ("3_1",)
+    fourier = entries.curve_of(json.loads((place / "data/fourier/3_1.json").read_text())["minima"][0])
+    assert fourier.modes == trefoil.curve.modes
+    package = json.loads((place / "data/datapackage.json").read_text())
+    for resource in package["resources"]:
+        described = [field["name"] for field in resource["schema"]["fields"]]
+        assert described == [*table(place / "data" / resource["path"])[0]]
+    index, page = ((place / name).read_text() for name in ("index.html", "knots/3_1.html"))
+    assert 'data-name="3_1"' in index
+    assert page.count("<tr><td>") == 2
+    assert f"{100 * HIGHER / trefoil.energy:.3f} %" in page
+
+
+def test_the_second_time_nothing_is_made(atlas, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    atlas()
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.glob("atlas/**/*") if path.is_file()}
+    monkeypatch.setattr(entries, "_made", None)
+    atlas()
+    after = {path: path.stat().st_mtime_ns for path in before}
+    assert [path.name for path in before if before[path] != after[path]] == ["SHA256SUMS"]
+
+
+def test_checksums_are_those_of_all_files(atlas, tmp_path: Path) -> None:
+    atlas()
+    lines = (tmp_path / "atlas/SHA256SUMS").read_text().splitlines()[1:]
+    listed = {name: digest for digest, name in (line.split("  ") for line in lines)}
+    there = {path.relative_to(tmp_path / "atlas").as_posix(): path for path in tmp_path.glob("atlas/**/*.*")}
+    assert listed == {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in there.items()}
+
+
+def test_what_is_new_is_added_and_what_is_gone_is_removed(atlas, results: Path, tmp_path: Path) -> None:
+    atlas()
+    shutil.rmtree(results / "3_1-3")
+    (tmp_path / "atlas/mine.txt").write_text("of somebody else")
+    assert atlas().startswith("1 type from 2 runs")
+    assert not (tmp_path / "atlas/data/curves/3_1-2.vect").exists()
+    assert (tmp_path / "atlas/mine.txt").exists()
+
+
+def test_interrupted_it_goes_on(atlas, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(pages, "write", interrupt)
+        atlas(status=130)
+    assert (tmp_path / "atlas/data/minima.csv").exists()
+    monkeypatch.setattr(entries, "_made", None)
+    atlas()
+    assert (tmp_path / "atlas/index.html").exists()
+
+
+@pytest.mark.parametrize("changed", ["data/minima.csv", "style.css"])
+def test_files_that_are_changed_are_kept(atlas, tmp_path: Path, changed: str) -> None:
+    atlas()
+    file = tmp_path / "atlas" / changed
+    file.write_text("mine")
+    told = atlas(status=2)
+    assert "was not written by mobius-flow atlas, or has been changed since" in told
+    assert str(file) in told
+    assert file.read_text() == "mine"
+
+
+def test_other_directories_are_left_alone(atlas, tmp_path: Path) -> None:
+    (tmp_path / "atlas").mkdir()
+    (tmp_path / "atlas/letter.txt").write_text("dear")
+    assert "move it, or name another directory" in atlas(status=2)
+    assert [path.name for path in (tmp_path / "atlas").iterdir()] == ["letter.txt"]
+
+
+@pytest.mark.parametrize("case", ["none", "empty", "without", "unproved", "edited"])
+def test_results_that_are_none(run, results: Path, tmp_path: Path, trefoil: Rest, case: str) -> None:
+    place = tmp_path / case
+    if case != "none":
+        place.mkdir()
+    if case == "without":
+        write_run(place, "a", 1, trefoil.curve.polygon([100]), type_after="3_1", proved=True)
+    if case == "unproved":
+        write_run(place, "a", 1, trefoil.curve.polygon([100]), trefoil.curve, type_after="3_1 or 9_1", proved=True)
+    if case == "edited":
+        report = write_run(place, "a", 1, trefoil.curve.polygon([100]), trefoil.curve) / "report.json"
+        report.write_text(report.read_text().replace('"name": "a"', '"name": "b"'))
+    status, out, err = run("atlas", place, "-o", tmp_path / "atlas")
+    told = {
+        "without": "there is nothing for an atlas: 1 run without a smooth shape (run batch with --extrapolate): a",
+        "unproved": "there is nothing for an atlas: 1 run whose type is not proved to be one of the table: a",
+    }.get(case, f"{place}: holds no results of mobius-flow batch")
+    assert (status, out, err) == (2, "", f"mobius-flow: {told}\n")
+    assert not (tmp_path / "atlas").exists()
+
+
+def test_pictures_are_rendered_once(run, results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("bpy")
+    monkeypatch.setattr(pictures, "LARGE", (48, 36))
+    monkeypatch.setattr(pictures, "SMALL", (32, 24))
+    words = "atlas", results, "-o", tmp_path / "atlas", "--look", "studio"
+    assert run(*words)[0] == 0
+    shown = sorted(path.name for path in (tmp_path / "atlas/pictures").iterdir())
+    assert [name[:6] for name in shown] == ["3_1-1-", "3_1-2-"]
+    assert all(f'src="pictures/{name}"' in (tmp_path / "atlas/index.html").read_text() for name in shown[:1])
+    monkeypatch.setattr(export, "write_picture", None)
+    assert run(*words)[0] == 0
+
+
+def test_without_blender_there_are_no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing() -> None:
+        raise MobiusFlowError("not installed")
+
+    monkeypatch.setattr(export, "require_blender", missing)
+    assert pictures.usable(None) == pictures.NO_LOOK
+    with pytest.raises(MobiusFlowError, match="not installed"):
+        pictures.usable("STUDIO")
+
+
+def test_energies_are_rounded_to_their_errors() -> None:
+    assert [data.rounded(74.4120429, error) for error in (3e-8, 2e-3, 0.3, 1e-15)] == [
+        *("74.41204290", "74.412", "74.4", "74.412042900")
+    ]
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="a browser")
+def test_the_index_is_sorted_and_filtered_in_a_browser(tmp_path: Path) -> None:
+    rows = "".join(f'<tr data-name="{name}"><td data-value="{value}"></td></tr>' for name, value in ORDER)
+    script = (Path(pages.__file__).parent / "sort.js").read_text(encoding="utf-8")
+    done = """
+        document.querySelector("button").click();
+        const filter = document.getElementById("filter");
+        filter.value = "7_, l6";
+        filter.dispatchEvent(new Event("input"));"""
+    head = '<input id="filter"><table class="sortable"><thead><tr><th><button>a</button></th></tr></thead><tbody>'
+    page = tmp_path / "page.html"
+    page.write_text(f"<meta charset=utf-8>{head}{rows}</tbody></table><script>{script}{done}</script>")
+    options = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking --disable-sync"
+    command = ["chromium", *options.split(), f"--user-data-dir={tmp_path}/profile", "--dump-dom", page.as_uri()]
+    shown = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
+    found = [part.split('"')[0] for part in shown.split('data-name="')[1:]]
+    assert found == ["7_1", "3_1", "L6a4", "10_1"]
+    assert [f'data-name="{name}" hidden' in shown for name in found] == [False, True, False, True]
+
+
+ORDER = (("3_1", 2), ("7_1", -1), ("10_1", 30), ("L6a4", 4.5))
