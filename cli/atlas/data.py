@@ -4,7 +4,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 
 from ... import __version__
@@ -19,11 +19,13 @@ COLUMNS = (
     ("number", "integer", "of the curve at rest, by energy; 1 is the least known"),
     ("energy", "number", "Möbius energy of the smooth curve, 4 for the circle"),
     ("error", "number", "how far that may be off: what fewer modes and fewer points change"),
+    ("upper_bound", "number", "of that energy, and so of the least of the type; proved, as is the type; or empty"),
     ("lower_bound", "number", "of all curves of the type: 4, 6π + 4 or 2πc + 4 with c crossings; empty for links"),
     ("index", "integer", "independent directions in which the energy falls: 0 at a minimum, more at a saddle"),
     ("met", "integer", "runs that ended there"),
     ("runs", "integer", "all runs that ended as this type"),
-    ("ropelength", "number", "length over thickness of the Möbius image that bends least"),
+    ("symmetry", "string", "group of the Möbius image that bends least, after Schoenflies"),
+    ("ropelength", "number", "length over thickness of that image"),
     ("writhe", "number", "of that image"),
     ("average_crossing_number", "number", "of that image"),
     ("modes", "string", "frequencies of its Fourier series, by component"),
@@ -119,7 +121,8 @@ def _row(entry: Values, minimum: Values) -> Values:
     """A row of the tables."""
     kinds = ", ".join(f"{kind} {count}" for kind, count in minimum["kinds"].items())
     modes = " ".join(map(str, minimum["modes"]))
-    known = entry | minimum | {"type": entry["name"], "kinds": kinds, "modes": modes}
+    upper = minimum["proved_energy"] and minimum["proved_energy"][1]
+    known = entry | minimum | {"type": entry["name"], "kinds": kinds, "modes": modes, "upper_bound": upper}
     return {name: known[name] for name, _, _ in COLUMNS}
 
 
@@ -129,7 +132,13 @@ def _without_curve(minimum: Values) -> Values:
 
 def _short(row: Values) -> Values:
     short = {name: f"{row[name]:.4f}" if isinstance(row[name], float) else row[name] for name in SHORT}
+    short |= {"upper_bound": bound(row["upper_bound"], math.ceil), "lower_bound": bound(row["lower_bound"], math.floor)}
     return short | {"energy": rounded(row["energy"], row["error"]), "error": f"{row['error']:.0e}"}
+
+
+def bound(value: float | None, towards: Callable[[float], int]) -> str:
+    """A bound to six decimals, which is one still."""
+    return "" if value is None else f"{towards(1e6 * value) / 1e6:.6f}"
 
 
 def rounded(energy: float, error: float) -> str:

@@ -6,16 +6,20 @@ import math
 import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
 from typing import Any
 
 from ... import __version__
 from ...core.collision.gap import thickness
 from ...core.curve.fourier import FourierCurve
 from ...core.curve.measures import writhe_and_crossings
+from ...core.errors import CurveError
+from ...core.knots import knot_type
 from ...core.knots.catalogue import crossing_number
 from ...core.knots.table import AMPHICHEIRAL, KNOTS
 from ...core.smooth.minima import balanced, distinct
 from ...core.smooth.rest import Rest, index_of
+from ...core.symmetry import symmetries
 from ..batch.job import folder_name
 from ..batch.table import Row
 from ..options import flags
@@ -30,7 +34,7 @@ _KNOTTED = 6.0 * math.pi + 4.0
 def entry(folder: Folder, name: str, runs: Sequence[Run]) -> Values:
     """The entry of a type, made anew unless it is there, of the same runs by the same version."""
     file = f"data/fourier/{name}.json"
-    text = "\n".join([__version__, *(run.mark for run in runs)])
+    text = "\n".join([__version__, str(_proves()), *(run.mark for run in runs)])
     made_from = hashlib.sha256(text.encode()).hexdigest()
     known = json.loads(folder.read(file) or "{}")
     found: Values = known if known.get("made_from") == made_from else _made(name, runs) | {"made_from": made_from}
@@ -47,7 +51,7 @@ def _made(name: str, runs: Sequence[Run]) -> Values:
     ends = [balanced(run.rest) for run in runs]
     groups = distinct(ends, name in AMPHICHEIRAL)
     minima = [
-        {"number": number} | _described(ends[group[0]], [runs[k] for k in group])
+        {"number": number} | _described(name, ends[group[0]], [runs[k] for k in group])
         for number, group in enumerate(groups, start=1)
     ]
     return {
@@ -59,7 +63,7 @@ def _made(name: str, runs: Sequence[Run]) -> Values:
     }
 
 
-def _described(rest: Rest, runs: Sequence[Run]) -> Values:
+def _described(name: str, rest: Rest, runs: Sequence[Run]) -> Values:
     """What is known of a curve, by the names of the tables' columns; it is an image of what the first run led to."""
     curve = rest.curve
     fine = curve.polygon([_FINER * size for size in curve.sizes])
@@ -70,6 +74,8 @@ def _described(rest: Rest, runs: Sequence[Run]) -> Values:
         "error": rest.error,
         "index": index_of(runs[0].curve),  # which is at rest but for rounding
         "mesh_index": row.index,
+        "proved_energy": _proved(name, curve),
+        "symmetry": symmetries(curve.polygon(curve.sizes)).name,
         "met": len(runs),
         "kinds": dict(Counter(run.row.kind or "named" for run in runs).most_common()),
         "modes": curve.modes,
@@ -81,6 +87,25 @@ def _described(rest: Rest, runs: Sequence[Run]) -> Values:
         "folder": folder_name(row.name, row.start),
         "coefficients": curve.as_lists,
     }
+
+
+def _proves() -> bool:
+    """Whether ball arithmetic is installed."""
+    return find_spec("flint") is not None
+
+
+def _proved(name: str, curve: FourierCurve) -> tuple[float, float] | None:
+    """Bounds of a curve's energy that are proved, as its type is; None where one of them is not."""
+    if not _proves():
+        return None
+    from ...core.smooth.bounds import energy_bounds
+    from ...core.smooth.isotopy import inscribed
+
+    try:
+        kind = knot_type(inscribed(curve.coefficients))  # at first: it takes less time, in vain too
+        return energy_bounds(curve.coefficients) if kind.proved and kind.names == (name,) else None
+    except CurveError:
+        return None
 
 
 def _lower_bound(name: str) -> float | None:

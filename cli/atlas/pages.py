@@ -1,30 +1,21 @@
 """The pages: an index that can be sorted and filtered, and one for each knot or link."""
 
+import math
 import re
 from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 
 from ... import __version__
-from .data import CURVES, curve_path, rounded
+from .data import CURVES, bound, curve_path, rounded
 from .entries import Values
 from .folder import Folder
 
 _ASSETS = ("style.css", "sort.js")
 _TITLE = "Curves at rest under the Möbius energy"
-_HEADS = (
-    "",
-    "type",
-    "least energy known",
-    "proved from below",
-    "minima",
-    "saddles",
-    "met",
-    "ropelength",
-    "writhe",
-    "crossings",
-)
-_KINDS = ("", "energy", "above the least", "index", "met", "from", "ropelength", "writhe", "crossings", "curve")
+_MEASURES = ("symmetry", "ropelength", "writhe", "crossings")
+_HEADS = ("", "type", "least energy known", "proved ≤", "proved ≥", "minima", "saddles", "met", *_MEASURES)
+_KINDS = ("", "energy", "above the least", "index", "met", "from", *_MEASURES, "curve")
 _PAGE = """\
 <!doctype html>
 <html lang="en">
@@ -91,15 +82,18 @@ def _put(folder: Folder, path: str, title: str, body: str) -> None:
 def _index_row(entry: Values) -> str:
     least = entry["minima"][0]
     saddles = sum(each["index"] > 0 for each in entry["minima"])
+    upper, lower = bounds(entry)
     link = f'<a href="knots/{entry["name"]}.html">'
     cells = [
         _cell(f"{link}{_picture(least, '', 'lazy')}</a>"),
         f'<th scope="row" data-value="{entry["position"]}">{link}{typeset(entry["name"])}</a></th>',
         _cell(_energy(least), least["energy"]),
-        _cell(*_number(entry["lower_bound"], 2)),
+        _cell(upper, float(upper) if upper else None),
+        _cell(lower, float(lower) if lower else None),
         _cell(*_number(len(entry["minima"]) - saddles, 0)),
         _cell(*_number(saddles, 0)),
         _cell(f"{least['met']} of {entry['runs']}", least["met"] / entry["runs"]),
+        _cell(_group(least)),
         *(_cell(*_number(least[name], 2)) for name in ("ropelength", "writhe", "average_crossing_number")),
     ]
     return f'<tr data-name="{entry["name"]}">{"".join(cells)}</tr>'
@@ -107,10 +101,13 @@ def _index_row(entry: Values) -> str:
 
 def _knot(entry: Values, before: Values | None, after: Values | None) -> str:
     least, name = entry["minima"][0], entry["name"]
+    upper, lower = bounds(entry)
     facts = {
         "Möbius energy": _energy(least),
-        "lower bound, proved, of all such curves": _number(entry["lower_bound"], 4)[0],
+        "least energy of the type, proved to be below": upper,
+        "and above": lower,
         "at rest": _index(least),
+        "symmetry": _group(least),
         "met by": f"{least['met']} of {entry['runs']} runs",
         "ropelength": _number(least["ropelength"], 3)[0],
         "writhe": _number(least["writhe"], 4)[0],
@@ -122,7 +119,7 @@ def _knot(entry: Values, before: Values | None, after: Values | None) -> str:
         before="<span></span>" if before is None else _link(before["name"], "← "),
         after="<span></span>" if after is None else _link(after["name"], "", " →"),
         picture=_picture(least, "../"),
-        facts="".join(f"<div><dt>{term}</dt><dd>{text}</dd></div>" for term, text in facts.items()),
+        facts="".join(f"<div><dt>{term}</dt><dd>{text}</dd></div>" for term, text in facts.items() if text),
         heads="".join(f'<th scope="col">{head}</th>' for head in _KINDS),
         rows="\n".join(_knot_row(entry, minimum) for minimum in entry["minima"]),
         command=escape(least["command"]),
@@ -143,10 +140,22 @@ def _knot_row(entry: Values, minimum: Values) -> str:
         _index(minimum),
         f'<span class="bar" style="--share: {share}%">{minimum["met"]}</span>',
         f'<span class="kinds">{escape(kinds)}</span>',
+        _group(minimum),
         *(_number(minimum[name], 2)[0] for name in ("ropelength", "writhe", "average_crossing_number")),
         " ".join(curves),
     ]
     return f"<tr>{''.join(map(_cell, cells))}</tr>"
+
+
+def bounds(entry: Values) -> tuple[str, str]:
+    """What is proved of the least energy of a type, from above and from below; empty where nothing is."""
+    proved = entry["minima"][0]["proved_energy"]
+    return bound(proved and proved[1], math.ceil), bound(entry["lower_bound"], math.floor)
+
+
+def _group(minimum: Values) -> str:
+    """A group's name: D3, C∞v."""
+    return re.sub(r"(?<=^[CDS])(\w*)", r"<sub>\1</sub>", minimum["symmetry"])
 
 
 def typeset(name: str) -> str:
