@@ -19,6 +19,7 @@ from ..core.errors import wrong_suffix
 from . import options as relax_options
 from .atlas.data import curve_path
 from .atlas.folder import SUMS
+from .atlas.pictures import SAMPLES
 from .batch.folder import results
 from .batch.job import CURVE
 from .batch.table import Row
@@ -39,7 +40,7 @@ examples:
   mobius-flow gallery atlas -o poster.png --only 3_1,4_1,5_1,7_4,8_18,L6a4 --look studio --size 1200
 
 Converged curves are shown as the Möbius image, of the same energy, that bends least, but for open ones and those that
-were pinned or had obstacles. A picture takes some three seconds of processor time, and more if it is larger. The energy
+were pinned or had obstacles. A picture takes some two seconds of processor time, and more if it is larger. The energy
 is that of the smooth curve, with its error, where batch was told to --extrapolate it.
 
 exit status: 0; 2 where there are no results, something is not installed, or OUT cannot be written; 130 interrupted
@@ -87,7 +88,7 @@ def _run(options: argparse.Namespace) -> int:
         pictures = [Path(room, f"{k}.png") for k in range(len(shown))]
         with bar(sys.stderr.isatty(), total=len(shown), unit=" pictures") as progress:
             for each, picture in zip(shown, pictures, strict=True):
-                export.write_picture(picture, each.look(), options.size, options.size, options.look)
+                export.write_picture(picture, each.look(), options.size, options.size, options.look, SAMPLES)
                 if progress is not None:
                     progress.update()
         _write_page(options.output, [each.title for each in shown], pictures, options.size)

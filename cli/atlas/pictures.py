@@ -13,7 +13,7 @@ from .entries import curve_of
 from .folder import Folder
 
 LARGE, SMALL = (640, 480), (240, 180)
-_SAMPLES = 8  # of a pixel: more are not seen once noise is taken off
+SAMPLES = 8  # of a pixel: more are not seen once noise is taken off
 NO_LOOK = "none"
 
 
@@ -25,14 +25,14 @@ def picture(folder: Folder, name: str, minimum: Mapping[str, Any], look: str) ->
     if look == NO_LOOK:
         return None
     size = LARGE if minimum["number"] == 1 else SMALL
-    shown = json.dumps([minimum["coefficients"], look, size, _SAMPLES])
+    shown = json.dumps([minimum["coefficients"], look, size, SAMPLES])
     path = f"pictures/{name}-{minimum['number']}-{hashlib.sha256(shown.encode()).hexdigest()[:10]}.jpg"
     if not folder.keep(path):
         curve = curve_of(minimum)
         with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
             made = Path(room, "picture.jpg")
             smooth = curve.polygon([2 * n for n in curve.sizes])
-            export.write_picture(made, smooth, *size, look, _SAMPLES)
+            export.write_picture(made, smooth, *size, look, SAMPLES)
             folder.put(path, made.read_bytes())
     return path
 

@@ -36,7 +36,7 @@ def test_every_result_has_its_picture_name_and_energy(
     titles: list[str] = []
     write_page = gallery._write_page
 
-    def draw(path: Path, curve: Curve, width: int, height: int, look: str | None) -> None:
+    def draw(path: Path, curve: Curve, width: int, height: int, look: str | None, samples: int) -> None:
         drawn.append(curve)
         image.imsave(path, np.full((height, width, 3), 0.1 * len(drawn)))
 
