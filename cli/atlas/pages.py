@@ -104,8 +104,8 @@ def _knot(entry: Values, before: Values | None, after: Values | None) -> str:
     upper, lower = bounds(entry)
     facts = {
         "Möbius energy": _energy(least),
-        "least energy of the type, proved to be below": upper,
-        "and above": lower,
+        "proved: least energy of the type ≤": upper,
+        "proved: least energy of the type ≥": lower,
         "at rest": _index(least),
         "symmetry": _group(least),
         "met by": f"{least['met']} of {entry['runs']} runs",
@@ -177,7 +177,7 @@ def _cell(text: str, value: float | None = None) -> str:
 
 
 def _number(value: float | None, decimals: int) -> tuple[str, float | None]:
-    return ("", None) if value is None else (f"{value:.{decimals}f}".replace("-", "−"), value)
+    return ("", None) if value is None else (f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−"), value)
 
 
 def _energy(minimum: Values) -> str:
