@@ -47,8 +47,8 @@ def messy(name: str) -> Curve:
 
 KINDS: Mapping[str, Callable[[str], Curve]] = {
     "lattice": lattice_knot, "braid": knot, "diagram": diagram, "messy": messy, "smooth": smooth_knot,
-    "unknot": knot, "code": coded_knot, "random": lambda size: hard_unknot(int(size), seed=7),
-    "steps": lambda size: lattice_unknot(int(size), seed=3),
+    "plat": lambda word: knot(f"plat({word})"), "unknot": knot, "code": coded_knot,
+    "random": lambda size: hard_unknot(int(size), seed=7), "steps": lambda size: lattice_unknot(int(size), seed=3),
 }  # fmt: skip
 PAIRS = {
     "ochiai": "unknot ochiai-1 / unknot thistlethwaite",
@@ -60,7 +60,7 @@ PAIRS = {
     "3_1": "lattice 3_1 / messy 3_1",
     "4_1": "lattice 4_1 / braid m4_1",
     "5_1": "braid 5_1 / diagram 5_1",
-    "5_2": "lattice 5_2 / messy 5_2",
+    "5_2": "plat 2,2,-1,-1,2 / messy 5_2",
     "6_1": "lattice 6_1 / diagram 6_1",
     "6_2": "braid 6_2 / messy 6_2",
     "6_3": "lattice 6_3 / braid m6_3",
@@ -78,7 +78,7 @@ PAIRS = {
     "10_124": "lattice 10_124 / diagram 10_124",
     "perko": f"code {PERKO[0]} / code {PERKO[1]}",
     "hopf": "lattice L2a1 / messy L2a1",
-    "L5a1": "lattice L5a1 / diagram L5a1",
+    "L5a1": "lattice L5a1 / plat 2,-1,2,-1,2",
     "L6a4": "lattice L6a4 / diagram L6a4",
     "L6n1": "braid L6n1 / diagram L6n1",
 }

@@ -16,10 +16,12 @@ from mobius_flow.core import (
     RelaxOptions,
     Result,
     Status,
+    Task,
     Trajectory,
     minimize,
     relax,
 )
+from mobius_flow.core.curve import Mesh
 from mobius_flow.core.curve.refine import Resolution, subdivide, target_spacing
 from mobius_flow.core.driver.interventions import FinerMesh
 from mobius_flow.core.energies import ENERGIES
@@ -171,6 +173,17 @@ def test_there_are_never_more_than_there_is_time_for(finest, count, monkeypatch)
     assert result.status is Status.CONVERGED
     unresolved = Objective().barrier.value(result.curve) < -1e-3
     assert ("closer than this mesh resolves" in result.message) == unresolved == (count == 40)
+
+
+@pytest.mark.parametrize("gap", [1e-4, 1e-9])
+def test_ends_that_nearly_touch_are_held_with_few_vertices(gap):
+    """No mesh resolves the gap between two pins; thousands of vertices were put around it, and memory ran out."""
+    arc = regular_polygon(24).vertices
+    arc = Curve(np.vstack([arc, arc[0] + [0.0, 0.0, gap]]), Mesh((25,), (False,)))
+    result = minimize(Task(curve=arc, pins=(0, 24)), RelaxOptions(vertices=100, tolerance=1e-3))
+    assert result.status is Status.CONVERGED
+    assert "closer than this mesh resolves" in result.message
+    assert len(result.curve) < 1000
 
 
 def test_edges_per_gap():

@@ -116,6 +116,7 @@ class FinerMesh(Intervention):
     accuracy: float = number(9.5e-4)
     aim: float = number(0.9, most=1)  # part of that error that they are to leave
     affordable: int = number(1000)  # vertices for that: what second derivatives are factorised for
+    pieces: int = number(16)  # of an edge: where pins nearly touch, no number of vertices resolves the gap between them
     recent: float = number(0.8, most=1)  # part of the steps on this mesh after which gains count
     pause: float = number(1.1, above=1)  # factor of the number of steps on this mesh from one look to the next
 
@@ -162,7 +163,10 @@ class FinerMesh(Intervention):
         curve = self.run.iterate.curve
         if not (self.run.options.ends_finer and is_unresolved(curve)):
             return None
-        pieces = affordable_pieces(curve, graded_spacing(curve, self._resolution), self.most)
+        spacing = graded_spacing(curve, self._resolution)
+        if len(self.run.problem.constraints.pins) and (curve.edge_lengths / spacing).max() > self.pieces:
+            return None
+        pieces = affordable_pieces(curve, spacing, self.most)
         return split_edges(self.run.problem, curve, pieces) if pieces.max() > 1 else None
 
     def _more_exact(self) -> Point | None:

@@ -19,6 +19,7 @@ def case() -> Steps:
     settings = window().scene.mobius_flow
     settings.vertices, settings.tolerance, settings.untangle = 100, 1e-3, "never"
     settings.loop, settings.length = True, LENGTH
+    window().scene.eevee.taa_samples = 1  # materials are drawn by the processor here
     woven, smooth = core("knots").knot("3_1", 60).vertices, core("knots").smooth_knot("3_1", 50).vertices
     add("Moving", woven, (0.75, 0.03, 0.02))
     goal = add("There", 0.4 * smooth, (0.02, 0.1, 0.7))
@@ -65,7 +66,7 @@ def colours(name: str) -> Steps:
         space.shading.type, before = kind, ""
         for frame in (1, 1 + LENGTH // 4, 1 + LENGTH // 2):
             window().scene.frame_set(frame)
-            for _ in range(10 if before else 100):  # shaders are compiled at first
+            for _ in range(5 if before else 40):  # shaders are compiled at first
                 yield
             yield from picture(f"{name}-{kind.lower()}-{frame}", differs_from=before)
             before = f"{name}-{kind.lower()}-{frame}"
