@@ -75,7 +75,8 @@ def output_for(path: str, name: str | None = None, look: str | None = None, play
         raise OptionError(f"--loop and --constant-radius are for {films}")
     if suffix not in OUTPUTS:
         if name is None and path != curves.STREAM and suffix not in FORMATS:
-            raise MobiusFlowError(f"{path}: {wrong_suffix(path, OUTPUTS, 'outputs')}{curves.or_format(path)}")
+            more = "; --trajectory writes motions" if suffix == ".npz" else curves.or_format(path)
+            raise MobiusFlowError(f"{path}: {wrong_suffix(path, OUTPUTS, 'outputs')}{more}")
         return _curve_output(curves.format_for(path, name), name)
     if OUTPUTS[suffix].is_scene:
         export.require_blender()

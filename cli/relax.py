@@ -147,7 +147,7 @@ def write_results(
     """Write every requested output, and say on standard error how the run ended, unless it is to be quiet."""
     _write_all(_jobs(options, output, result, iterates, origin))
     if not options.quiet:
-        print(_summary(result), file=sys.stderr)
+        print(_summary(result, falls="to" not in origin), file=sys.stderr)
 
 
 def _write_all(jobs: Iterable[_Job]) -> None:
@@ -199,11 +199,14 @@ def _write_report(result: Result, origin: Mapping[str, object], path: str) -> No
         temporary.write_text(text, encoding="utf-8")
 
 
-def _summary(result: Result) -> str:
+def _summary(result: Result, falls: bool) -> str:
+    """How a run ended; energies of a motion that does not fall are those of its ends, which it did not choose."""
     certified = "certified free of contact" if result.certified else "NOT certified"
     error = f" ± {result.final_energy_error * result.final_energy:.1g}" if result.final_energy_error else ""
     energy = f"Möbius energy {result.final_energy:.9g}{error}"
     iterations = counted(result.iterations, "iteration")
+    if not falls:
+        return f"{result.message}; {iterations}, {result.seconds:.1f} s, {certified}"
     return (
         f"{result.message}; objective {result.energies[0]:.6g} → {result.energies[-1]:.9g} in "
         f"{iterations}, {result.seconds:.1f} s{_phases(result)}, {energy}, {certified}"

@@ -169,7 +169,7 @@ def _layout(shown: Motion, radius: float, title: str) -> dict[str, Any]:
         f"{name}axis": {"visible": False, "range": [float(c) - half, float(c) + half]}
         for name, c in zip("xyz", middle, strict=True)
     }
-    camera = {"eye": {"x": 0.3, "y": -0.5, "z": 1.6}, "up": {"x": 0, "y": 1, "z": 0}}
+    camera = {"eye": {"x": 0.26, "y": -0.42, "z": 1.36}, "up": {"x": 0, "y": 1, "z": 0}}
     scene |= {"aspectmode": "cube", "camera": camera, "domain": {"x": [0.0, 0.74 if shown.energies else 1.0]}}
     layout = {"scene": scene, "title": {"text": title}, "template": "plotly_white", "showlegend": False}
     layout["margin"] = {"l": 10, "r": 20, "t": 40, "b": 10}

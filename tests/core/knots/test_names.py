@@ -205,7 +205,15 @@ def test_rational_knots_are_plats(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("plat", "names", "parts"),
-    [("plat()", ("0_1",), 1), ("plat(1,1)", ("0_1",), 1), ("plat(3,-3)", ("0_1 ⊔ 0_1",), 2), ("plat(4,4,4)", None, 2)],
+    [
+        ("plat()", ("0_1",), 1),
+        ("plat(1,1)", ("0_1",), 1),
+        ("plat(3,-3)", ("0_1 ⊔ 0_1",), 2),
+        ("plat(4,4,4)", None, 2),
+        ("plat(2,2)", ("L2a1",), 2),
+        ("plat(2,-1,2,-1,2)", ("L5a1",), 2),
+        ("plat(2,2,4,4)", ("L2a1#L2a1",), 3),
+    ],
 )
 def test_plats_of_few_letters(plat: str, names: tuple[str, ...] | None, parts: int) -> None:
     curve = knot(plat)

@@ -135,7 +135,7 @@ def select(*names: str) -> None:
 
 
 def choose(operator: str) -> Steps:
-    """Click an entry of the menu, which is found with the mouse: Ctrl-C copies its command."""
+    """Choose an entry of the menu, which is found with the mouse: Ctrl-C copies the active one's command."""
     main = region("WINDOW")
     x, top = main.x + 200, main.y + main.height - 40
     yield from move(x, top)
@@ -152,9 +152,7 @@ def choose(operator: str) -> Steps:
         window().event_simulate(type="C", value="RELEASE", ctrl=True, x=x + 40, y=y)
         yield
         if operator in manager.clipboard:
-            for value in ("PRESS", "RELEASE"):
-                window().event_simulate(type="LEFTMOUSE", value=value, x=x + 40, y=y)
-                yield
+            yield from key("RET", over=(x + 40, y))  # opened again, the last entry is active, not that here
             return
     raise AssertionError(f"no entry for {operator}")
 
