@@ -90,7 +90,7 @@ def refused() -> Steps:
     yield from until(lambda: addon("live.registry").latest() is not last, "the refused run")
     yield from over("the mirror image")
     said = str(addon("live.registry").latest().message)
-    assert said.startswith("the curve that moves is 3_1, 'Mirrored' its mirror image m3_1"), said
+    assert said.startswith("The curve that moves is 3_1, 'Mirrored' its mirror image m3_1"), said
     assert np.array_equal(in_world("Moving"), before)
     yield from picture("morph-3-refused")
 
