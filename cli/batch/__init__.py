@@ -11,7 +11,8 @@ examples:
   mobius-flow batch 3_1..10_165 -o /shared/results --scheduler tcp://head:8786 --extrapolate
 
 Start 1 is the input. Start k above 1 is the same knot, scrambled with seed S + k by random moves that are each checked
-to be an isotopy. A run that is refused, killed or too slow gets a row that says why; the others go on.
+to be an isotopy; knots of the table have starts of several kinds. A run that is refused, killed or too slow gets a row
+that says why; the others go on.
 
 DIR/NAME, or DIR/NAME-k for start k above 1, holds curve.txt, report.json and trajectory.npz, and appears whole or not
 at all. The table, DIR/results.csv and DIR/results.parquet, has a row for each run of the command. The same command
@@ -35,7 +36,7 @@ def add_batch(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("inputs", metavar="INPUT", nargs="+", help=text)
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="directory of the results")
     parser.add_argument("--starts", type=int, default=1, metavar="K", help="runs per input (default: 1)")
-    text = "also estimate the smooth curve's energy, from two more runs, with edges halved twice: as much work again"
+    text = "also tell the energy of the smooth curve that finer meshes lead to"
     parser.add_argument("--extrapolate", action="store_true", help=text)
     text = "address of a running Dask scheduler (default: use all cores of this machine)"
     parser.add_argument("--scheduler", metavar="ADDRESS", help=text)

@@ -11,7 +11,6 @@ from scipy.linalg import eigh, null_space
 from ..arguments import checked
 from ..curve import Curve, check_closed
 from ..curve.fourier import FourierCurve
-from ..driver.interventions.balance import balanced
 from ..energies import MoebiusEnergy
 from ..errors import CurveError
 from ..types import FloatArray
@@ -20,13 +19,14 @@ from .energy import Pairs
 from .pace import parameters, sliding
 
 MODES = (24, 36, 54, 80, 120, 180)  # of a component of average length
-ACCURACY = 1e-7  # of the energy: how much half as many modes again may change it
+ACCURACY = 1e-6  # of the energy: how much half as many modes again may change it
 _PER_MODE = 4  # points of the trapezoidal rule
-_FOLLOWS = 0.01  # of the energy: how far that of a first fit may be from the polygon's
-_STEPS, _REACH = 20, 0.02  # Newton steps, and how far they move points, in units of the curve's radius
-_GAIN = 1e-8  # of the energy: what a next step would gain at most, where more modes do better
-_LEAST = 1e-11  # the same in the end
+_FOLLOWS = 0.03  # of the energy: how far that of a first fit may be from the polygon's
+_REACH = 0.3  # of their distance: how far a Newton step moves points towards each other, or away
+_ROUGHLY = 1e-8, 20  # of the energy, what a next step would gain, and steps, after which more modes do better
+_FINALLY = 1e-11, 4  # the same in the end
 _STIFFNESS = 2.0  # against sliding
+_NEAR = 1e-7  # of the energy
 _SOFT = 1e-9  # of the largest eigenvalue: the sign of smaller ones is not known
 
 
@@ -42,21 +42,21 @@ class Rest:
 
 @checked
 def at_rest(polygon: Curve) -> Rest | None:
-    """The smooth curve that a relaxed polygon stands for, balanced; None if none is found.
+    """The smooth curve that a relaxed polygon stands for; None if none is found.
 
     Raises CurveError for arcs and for curves that are not in space.
     """
     check_closed(polygon, "smooth curves at rest")
     if polygon.dimension != 3:
         raise CurveError(f"the curve has dimension {polygon.dimension}; smooth curves at rest are found in space")
-    given, energy = _normalized(balanced(polygon)), MoebiusEnergy().value(polygon)
+    given, energy = _normalized(polygon), MoebiusEnergy().value(polygon)
     at, last = parameters(given), None
     for most in MODES:
         modes = _shared(most, given)
         start = last.curve.with_modes(modes) if last else FourierCurve.of(given, at, modes)
-        found = _stationary(start, last.energy if last else energy, _GAIN)
+        found = _stationary(start, last.energy if last else energy, _ROUGHLY)
         if found and last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
-            polished = _stationary(found.curve, found.energy, _LEAST)
+            polished = _stationary(found.curve, found.energy, _FINALLY)
             return polished and replace(polished, error=error)
         last = found or last
     return None
@@ -87,14 +87,14 @@ def _shared(modes: int, curve: Curve) -> list[int]:
     return [max(MODES[0] // 2, round(modes * length / lengths.mean())) for length in lengths]
 
 
-def _stationary(start: FourierCurve, energy: float, gain: float) -> Rest | None:
+def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -> Rest | None:
     """Where Newton's method leads from a curve of about an energy; None if the curve does not have it."""
     basis, finer = (Basis.of(start.modes, points) for points in (_PER_MODE, 2 * _PER_MODE))
     z = basis.unknowns(start)
     if abs(Pairs.of(basis, z).energy - energy) > _FOLLOWS * energy:
         return None
-    model = Model.of(basis, z)
-    for _ in range(_STEPS):
+    model, (gain, steps) = Model.of(basis, z), enough
+    for _ in range(steps):
         better = None if model.gain < gain * model.energy else _searched(basis, z, model)
         if better is None:
             break
@@ -127,8 +127,14 @@ class Model:
 
     @property
     def step(self) -> FloatArray:
-        """Newton's step, downhill also where the energy is not convex; shape (N, 3)."""
-        return np.asarray(-self.eigenvectors @ (self.slopes / self._stiffness)).reshape(-1, 3)
+        """Newton's step, but downhill where the energy is not convex, unless a saddle is near; shape (N, 3)."""
+        signs = np.sign(self.eigenvalues) if self.is_near else 1.0
+        return np.asarray(-self.eigenvectors @ (signs * self.slopes / self._stiffness)).reshape(-1, 3)
+
+    @property
+    def is_near(self) -> bool:
+        """Whether so little is left to gain that the next point at rest is where Newton's step leads."""
+        return self.gain < _NEAR * self.energy
 
     @property
     def gain(self) -> float:
@@ -143,14 +149,21 @@ class Model:
 def _searched(basis: Basis, z: FloatArray, model: Model) -> FloatArray | None:
     """Unknowns of lower energy along the step, which is short beside strands' distances; None if there are none."""
     step = model.step
-    share = min(1.0, _REACH / np.abs(basis.values @ step).max())
+    share = min(1.0, _REACH / _strain(basis.values @ z, basis.values @ step))
     while share > 1e-6:
         trial: FloatArray = z + share * step
         energy = Pairs.of(basis, trial).energy
-        if energy <= model.energy - 1e-4 * share * model.gain:
+        if model.is_near or energy <= model.energy - 1e-4 * share * model.gain:
             return trial
         share *= 0.5
     return None
+
+
+def _strain(points: FloatArray, shifts: FloatArray) -> float:
+    """The largest change of a vector between two points, in units of its length."""
+    changes, vectors = (np.sum((each[:, None] - each) ** 2, axis=2) for each in (shifts, points))
+    np.fill_diagonal(vectors, 1.0)
+    return float(np.sqrt(np.max(changes / vectors)))
 
 
 def invariant(basis: Basis, z: FloatArray) -> FloatArray:

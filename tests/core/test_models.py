@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from hard_curves import hard_unknot, lattice_closure, unknot_word
+from hard_curves import hard_unknot, unknot_word
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.constraints import ConstraintDerivative
 from mobius_flow.core.curve import refine
 from mobius_flow.core.hierarchy.inner_product import moebius_inner_product
 from mobius_flow.core.knots import knot
+from mobius_flow.core.knots.lattice import lattice_closure
 from mobius_flow.core.metrics import MoebiusMetric
 from mobius_flow.core.saddle.krylov import conjugate_gradients, relative
 from mobius_flow.core.saddle.resolvent import Resolvents

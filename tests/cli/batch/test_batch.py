@@ -18,6 +18,7 @@ from mobius_flow.cli.batch.job import Job
 from mobius_flow.cli.batch.table import Row
 from mobius_flow.core import MobiusFlowError, read_curve, write_curve
 from mobius_flow.core.collision.gap import thickness
+from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.curve.measures import writhe_and_crossings
 from mobius_flow.core.knots import knot
 from mobius_flow.core.verify import verify
@@ -98,7 +99,18 @@ def test_extrapolated_energy_and_index(batch: Batch, tmp_path: Path) -> None:
     (row,) = batch("3_1", "--vertices", 90, "--extrapolate", "--stability")
     report = json.loads((tmp_path / "out/3_1/report.json").read_text())
     assert row["index"] == str(report["negative_eigenvalues"])
-    assert abs(float(row["extrapolated_energy"]) - 74.41204) < float(row["extrapolated_energy_error"]) < 1e-3
+    assert float(row["extrapolated_energy"]) == pytest.approx(74.4120428860, abs=1e-8)
+    assert 0.0 < float(row["extrapolated_energy_error"]) < 1e-6
+    assert FourierCurve.of_lists(report["smooth"]).modes == [36]
+
+
+def test_starts_of_knots_of_the_table_are_of_several_kinds(batch: Batch, tmp_path: Path) -> None:
+    rows = batch("m3_1", "T(2,3)", "--starts", 5, "--max-iterations", 0)
+    kinds = {name: [kind for each, kind in pick(rows, "name", "kind") if each == name] for name in ("m3_1", "T(2,3)")}
+    assert kinds["m3_1"] == ["named", "smooth", "lattice", "drawn", "scrambled"]
+    assert kinds["T(2,3)"] == ["named", *["scrambled"] * 4]
+    assert {row["type_before"] for row in rows if row["name"] == "m3_1"} == {"m3_1"}
+    assert len({row["energy"] for row in rows}) == len(rows)
 
 
 def test_what_is_finished_is_not_repeated(

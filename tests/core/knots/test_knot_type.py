@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from families import family
-from hard_curves import hard_unknot, lattice_closure
+from hard_curves import hard_unknot
 from mobius_flow.core import Curve, Mesh
 from mobius_flow.core.diagrams.codes import diagram_from_code
 from mobius_flow.core.knots import (
@@ -19,6 +19,7 @@ from mobius_flow.core.knots import (
 )
 from mobius_flow.core.knots.catalogue import crossing_number
 from mobius_flow.core.knots.knot_type import ALEXANDER, DOUBLED, JONES, Effort, type_of_diagram
+from mobius_flow.core.knots.lattice import lattice_closure
 from mobius_flow.core.knots.table import AMPHICHEIRAL, ROLFSEN
 
 # The one prime knot to ten crossings whose mirror image has the same invariants of all those that are computed.
