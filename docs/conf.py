@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from sphinx.application import Sphinx
+from sphinx.ext.autodoc.mock import _MockObject
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "docs" / "_extensions"))
@@ -44,6 +45,8 @@ python_maximum_signature_line_length = 100
 python_use_unqualified_type_names = True
 # Blender's modules are there where the extra "blender" is installed
 _BLENDER = ["bl_operators", "bl_ui", "blf", "bpy", "bpy_extras", "gpu", "gpu_extras", "mathutils"]
+# annotations such as bpy.types.Object | None are computed
+_MockObject.__or__ = _MockObject.__ror__ = lambda one, other: one
 autodoc_mock_imports = [] if find_spec("bpy") else _BLENDER
 napoleon_google_docstring = False
 napoleon_attr_annotations = False
