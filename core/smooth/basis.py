@@ -21,7 +21,6 @@ class Basis:
     scale: FloatArray  # k^{-3/2}, or 1 for k = 0; shape (N,)
     values: FloatArray  # points are ``values @ z``; shape (n, N)
     slopes: FloatArray  # their derivatives by t are ``slopes @ z``; shape (n, N)
-    t: FloatArray  # of each point; shape (n,)
     component: IntArray  # of each point; shape (n,)
     weights: FloatArray  # of the trapezoidal rule, 1 in all for a component; shape (n,)
 
@@ -37,11 +36,8 @@ class Basis:
             values.append(np.where(turned, -np.sin(angles), np.cos(angles)) * scales[-1])
             slopes.append(np.where(turned, -np.cos(angles), -np.sin(angles)) * (2.0 * np.pi * k * scales[-1]))
         counts = [per_mode * most for most in modes]
-        t = np.concatenate([np.arange(count) / count for count in counts])
         component, weights = np.repeat(np.arange(len(counts)), counts), 1.0 / np.repeat(counts, counts)
-        return cls(
-            tuple(modes), np.concatenate(scales), block_diag(*values), block_diag(*slopes), t, component, weights
-        )
+        return cls(tuple(modes), np.concatenate(scales), block_diag(*values), block_diag(*slopes), component, weights)
 
     def unknowns(self, curve: FourierCurve) -> FloatArray:
         """Those of a curve with these modes; shape (N, 3)."""

@@ -3,6 +3,7 @@
 Newton's method for the coefficients of Fourier series, whose number grows until the energy stays what it is.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from ..curve import Curve, check_closed
 from ..curve.fourier import FourierCurve
 from ..energies import MoebiusEnergy
 from ..errors import CurveError
+from ..knots.inscribed import equal_steps, is_isotopic
 from ..types import FloatArray
 from .basis import Basis
 from .energy import Pairs
@@ -20,13 +22,14 @@ from .pace import parameters, sliding
 
 MODES = (24, 36, 54, 80, 120, 180)  # of a component of average length
 ACCURACY = 1e-6  # of the energy: how much half as many modes again may change it
+MOST = 720  # modes of all components: some gigabytes and seconds a step
 _PER_MODE = 4  # points of the trapezoidal rule
 _FOLLOWS = 0.03  # of the energy: how far that of a first fit may be from the polygon's
 _REACH = 0.3  # of their distance: how far a Newton step moves points towards each other, or away
 _ROUGHLY = 1e-8, 20  # of the energy, what a next step would gain, and steps, after which more modes do better
 _FINALLY = 1e-11, 4  # the same in the end
 _STIFFNESS = 2.0  # against sliding
-_NEAR = 1e-7  # of the energy
+_NEAR = 1e-7  # of the energy, that a step may gain where Newton's own is taken
 _SOFT = 1e-9  # of the largest eigenvalue: the sign of smaller ones is not known
 
 
@@ -42,7 +45,7 @@ class Rest:
 
 @checked
 def at_rest(polygon: Curve) -> Rest | None:
-    """The smooth curve that a relaxed polygon stands for; None if none is found.
+    """The smooth curve that a relaxed polygon stands for; None if none is found, of which a polygon has its type.
 
     Raises CurveError for arcs and for curves that are not in space.
     """
@@ -52,12 +55,13 @@ def at_rest(polygon: Curve) -> Rest | None:
     given, energy = _normalized(polygon), MoebiusEnergy().value(polygon)
     at, last = parameters(given), None
     for most in MODES:
-        modes = _shared(most, given)
+        if sum(modes := _shared(most, given)) > MOST:
+            break
         start = last.curve.with_modes(modes) if last else FourierCurve.of(given, at, modes)
         found = _stationary(start, last.energy if last else energy, _ROUGHLY)
         if found and last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
             polished = _stationary(found.curve, found.energy, _FINALLY)
-            return polished and replace(polished, error=error)
+            return replace(polished, error=error) if polished and _is_isotopic(given, at, polished.curve) else None
         last = found or last
     return None
 
@@ -85,6 +89,12 @@ def _shared(modes: int, curve: Curve) -> list[int]:
     """Modes of components in proportion to their lengths."""
     lengths = curve.component_lengths
     return [max(MODES[0] // 2, round(modes * length / lengths.mean())) for length in lengths]
+
+
+def _is_isotopic(polygon: Curve, at: Sequence[FloatArray], curve: FourierCurve) -> bool:
+    """Whether the motion from a polygon to the one inscribed in a smooth curve is proved free of contact."""
+    end = curve.polygon(curve.sizes)
+    return is_isotopic(polygon, at, end, equal_steps(end))
 
 
 def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -> Rest | None:
@@ -152,8 +162,7 @@ def _searched(basis: Basis, z: FloatArray, model: Model) -> FloatArray | None:
     share = min(1.0, _REACH / _strain(basis.values @ z, basis.values @ step))
     while share > 1e-6:
         trial: FloatArray = z + share * step
-        energy = Pairs.of(basis, trial).energy
-        if model.is_near or energy <= model.energy - 1e-4 * share * model.gain:
+        if model.is_near or Pairs.of(basis, trial).energy <= model.energy - 1e-4 * share * model.gain:
             return trial
         share *= 0.5
     return None

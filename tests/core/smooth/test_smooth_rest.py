@@ -66,6 +66,19 @@ def test_a_fit_that_does_not_follow_the_polygon_is_not_taken(monkeypatch: pytest
     assert at_rest(torus_trefoil(120)) is None
 
 
+def test_curves_that_would_take_too_much_memory_are_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = minimize(knot("3_1", 90), RelaxOptions(vertices=90)).curve
+    assert at_rest(curve) is not None
+    monkeypatch.setattr(rest, "MOST", 30)
+    assert at_rest(curve) is None
+
+
+def test_a_curve_that_the_polygon_is_not_proved_to_become_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = minimize(knot("3_1", 90), RelaxOptions(vertices=90)).curve
+    monkeypatch.setattr(rest, "is_isotopic", lambda *_: False)
+    assert at_rest(curve) is None
+
+
 @pytest.mark.parametrize(
     ("curve", "told"),
     [(overhand(), "open"), (Curve(np.random.default_rng(0).normal(size=(9, 4))), "dimension 4")],
