@@ -46,9 +46,9 @@ class Runs:
 
     @classmethod
     def of(cls, directories: Iterable[Path]) -> "Runs":
-        """Those of directories that batches wrote to; a MobiusFlowError tells where there is none."""
+        """Those of directories that batches wrote to, each once; a MobiusFlowError tells where there is none."""
         found = cls()
-        for directory in directories:
+        for directory in {directory.resolve(): directory for directory in directories}.values():
             for folder, report, row in results(directory):
                 found._add(folder, report, row)
         if not found.by_type:
