@@ -97,8 +97,8 @@ class Job:
     """One run, in plain values, which travel to other machines; its folder tells it from others."""
 
     name: str  # of the input
-    start: int  # 1 for the input itself; above that it is scrambled
-    seed: int | None  # that it is scrambled by
+    start: int  # 1 for the input itself
+    seed: int | None  # of random starts
     file: str | None  # absolute path of the input; None for a knot that is made by its name
     sha256: str | None  # of the file when the job was made; None where there is nothing to read
     folder: str  # absolute path of the results
@@ -145,18 +145,18 @@ def jobs(
     still: Mapping[str, Any],
     extrapolate: bool,
 ) -> list[Job]:
-    """The runs of a batch; a MobiusFlowError tells where two would share a folder.
+    """The runs of a batch, first starts first; a MobiusFlowError tells where two would share a folder.
 
     ``still`` are the obstacles' files, pins and pin_tangents of all of them.
     """
     made = []
     obstacles = {str(Path(path).resolve()): _hash(Path(path)) for path in still["avoid"]}
     values = {**vars(options), **still, "avoid": obstacles}
-    for name, path in inputs:
-        sha256, file = (None, None) if path is None else (_hash(path), str(path))
-        for start in range(1, starts + 1):
+    hashed = [(name, path and str(path), path and _hash(path)) for name, path in inputs]
+    for start in range(1, starts + 1):
+        seed = None if start == 1 else options.seed + start
+        for name, file, sha256 in hashed:
             folder = str(directory / folder_name(name, start))
-            seed = None if start == 1 else options.seed + start
             made.append(Job(name, start, seed, file, sha256, folder, values, extrapolate))
     count = Counter(job.folder.casefold() for job in made)  # case does not tell folders apart everywhere
     for job in made:

@@ -12,11 +12,11 @@ from ...core.collision import check_embedded
 from ...core.collision.gap import thickness
 from ...core.curve.io import FORMATS, CurveFile, load_curve
 from ...core.curve.measures import writhe_and_crossings
+from ...core.driver.starts import scrambled, start
 from ...core.errors import OutputError
 from ...core.extrapolation import Extrapolation, extrapolated
 from ...core.info import PAIRS_UP_TO
 from ...core.knots import knot_type
-from ...core.knots.starts import scrambled, start
 from ...core.smooth.rest import Rest, at_rest
 from ...core.units import check_units
 from ...core.verify import verify

@@ -105,10 +105,10 @@ def test_extrapolated_energy_and_index(batch: Batch, tmp_path: Path) -> None:
 
 
 def test_starts_of_knots_of_the_table_are_of_several_kinds(batch: Batch, tmp_path: Path) -> None:
-    rows = batch("m3_1", "T(2,3)", "--starts", 5, "--max-iterations", 0)
+    rows = batch("m3_1", "T(2,3)", "--starts", 6, "--max-iterations", 0)
     kinds = {name: [kind for each, kind in pick(rows, "name", "kind") if each == name] for name in ("m3_1", "T(2,3)")}
-    assert kinds["m3_1"] == ["named", "smooth", "lattice", "drawn", "scrambled"]
-    assert kinds["T(2,3)"] == ["named", *["scrambled"] * 4]
+    assert kinds["m3_1"] == ["named", "smooth", "lattice", "drawn", "hopped", "drawn"]
+    assert kinds["T(2,3)"] == ["named", *["scrambled"] * 5]
     assert {row["type_before"] for row in rows if row["name"] == "m3_1"} == {"m3_1"}
     assert len({row["energy"] for row in rows}) == len(rows)
 

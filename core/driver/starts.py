@@ -1,0 +1,56 @@
+"""Different curves of one knot type, to look for its minima from."""
+
+import numpy as np
+
+from ..curve import Curve
+from ..diagrams.projection import views
+from ..errors import MobiusFlowError
+from ..knots.lattice import lattice_closure
+from ..knots.names import braid_word, knot, table_name
+from ..knots.planar import drawn
+from ..knots.scrambles import scramble
+from ..knots.shapes import smooth_knot
+from .motions import MOTIONS
+from .options import RelaxOptions
+from .prepare import start_problem
+from .run import Run
+
+GAP = 0.5  # of the mean edge length that scrambled strands keep: nearer ones would need thousands of vertices
+
+
+def start(name: str, number: int, seed: int) -> tuple[str, Curve]:
+    """The start of a number, from 1, for a knot's name, and of which kind it is.
+
+    Knots and links of the table begin as what :func:`knot` makes, a closed braid ("named"), "smooth", and on the cubic
+    "lattice"; from then on they are "drawn" anew from a random projection and "hopped" out of the smooth shape in turn.
+    All others are "scrambled" from the second one on.  The same ``seed`` gives the same curve.  Raises
+    UnknownKnotError, and CurveError for arcs that are to be scrambled.
+    """
+    given = knot(name)
+    if number == 1:
+        return "named", given
+    try:
+        table_name(name)
+    except MobiusFlowError:
+        return scrambled(given, seed)
+    if number == 2:
+        return "smooth", smooth_knot(name)
+    if number == 3:
+        return "lattice", lattice_closure(braid_word(name))
+    if number % 2:
+        return "hopped", hopped(smooth_knot(name), seed)
+    return "drawn", drawn([*views(smooth_knot(name), 2, seed)][-1])
+
+
+def hopped(curve: Curve, seed: int) -> Curve:
+    """A curve after one of the motions that hops begin with."""
+    options = RelaxOptions()
+    point = Run(start_problem(curve, options), curve, options).point
+    steps = MOTIONS[seed % len(MOTIONS)](point, np.random.default_rng(seed))
+    path = [leg.end.placed for step in steps for leg in step.legs]
+    return curve.with_vertices(path[-1]) if path else curve
+
+
+def scrambled(curve: Curve, seed: int) -> tuple[str, Curve]:
+    """A curve after random moves."""
+    return "scrambled", scramble(curve, seed, gap=GAP * float(curve.edge_lengths.mean()))
