@@ -7,8 +7,8 @@
 ``knots`` are hard curves of all kinds, unknots of up to 141 crossings among them; ``primes`` are the knots to ten
 crossings and the links of the table, as coarse lattice polygons; ``woven`` are the 249 prime knots as mobius-flow knot
 draws them. The column "energy" is the Möbius energy of the result, as mobius-flow energy prints it, "above" how far in
-per cent that is above the smooth curve's in docs/least-energies.csv, and "dgemms" is processor time in products of two
-1000 × 1000 matrices. Exit status 1: a type changed, an unknot is no circle, or a proof is missing.
+per cent that is above the smooth curve's in core/knots/least_energies.csv, and "dgemms" is processor time in products
+of two 1000 × 1000 matrices. Exit status 1: a type changed, an unknot is no circle, or a proof is missing.
 """
 
 import argparse
@@ -49,7 +49,7 @@ HARD: Curves = {
 PRIMES: Curves = {name: partial(lattice_knot, name) for name in KNOTS if name != "0_1"}
 WOVEN: Curves = {name: partial(knot, name) for name in KNOTS if "_" in name and name != "0_1"}
 SETS = {"knots": HARD, "primes": PRIMES, "woven": WOVEN}
-TABLE = Path(__file__).resolve().parents[1] / "docs" / "least-energies.csv"
+TABLE = Path(__file__).resolve().parents[1] / "core" / "knots" / "least_energies.csv"
 LEAST = {row["type"]: float(row["energy"]) for row in csv.DictReader(TABLE.read_text(encoding="utf-8").splitlines())}
 
 

@@ -32,9 +32,10 @@ The type is identified by simplifying a diagram and computing polynomial invaria
 m3_1 its mirror image, # stands for a sum, and ⊔ separates parts that come apart.  Thickness is the smaller of the least
 radius of curvature and half the least distance between strands; ropelength is length over thickness.  A curve is at
 rest where the projected gradient is within the default tolerance of relax; pins and obstacles are not known here.  The
-index is the number of independent directions downhill, 0 at a minimum.  Symmetry, after Schoenflies, is that of the
-curve as it lies, within 0.02 radii of gyration; Möbius images of symmetric curves have it when they are balanced (see
-relax --balance).  Knots are numbered as in KnotInfo (see mobius-flow knot --help).
+index is the number of independent directions downhill, 0 at a minimum.  Of curves at rest the energy of the smooth
+curve is told that finer meshes lead to, beside the least known one of its type.  Symmetry, after Schoenflies, is that
+of the curve as it lies, within 0.02 radii of gyration; Möbius images of symmetric curves have it when they are balanced
+(see relax --balance).  Knots are numbered as in KnotInfo (see mobius-flow knot --help).
 
 exit status: 0, or 2 on bad input or bad options
 """
@@ -118,6 +119,12 @@ def _as_json(path: str, found: Info) -> Mapping[str, object]:
         "gradient_norm": rest and rest.gradient_norm,
         "at_rest": rest and rest.at_rest,
         "index": rest and rest.index,
+        "smooth": found.smooth
+        and {
+            "energy": found.smooth.energy,
+            "error": found.smooth.error,
+            "least_known": found.smooth.least and found.smooth.least[0],
+        },
     }
 
 
@@ -136,6 +143,8 @@ def _rows(found: Info) -> Iterator[tuple[str, str]]:
     if found.rest is not None:
         yield "objective", _number(found.rest.objective)
         yield "gradient", f"{found.rest.gradient_norm:.3g} ({found.rest.sentence})"
+    if found.smooth is not None:
+        yield "smooth curve's energy", found.smooth.sentence
     for name in _MEASURES:
         yield name.replace("_", " "), _number(getattr(found, name))
     longest, shortest = found.longest_edge, found.shortest_edge

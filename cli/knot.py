@@ -50,8 +50,8 @@ def add_knot(parser: argparse.ArgumentParser) -> None:
     text = f"number of vertices, at most {curves.MAX_VERTICES} (default: {default})"
     parser.add_argument("--vertices", type=int, metavar="N", help=text)
     text = (
-        "a smooth curve for a knot of the table, with strands evenly spread by the tangent-point energy: a start near "
-        "a minimum of the Möbius energy, but not a minimum (default: woven)"
+        "a smooth curve for a knot of the table: the shape of least Möbius energy, but with strands far enough apart "
+        "to see (default: a closed braid)"
     )
     parser.add_argument("--smooth", action="store_true", help=text)
     # like --version, it ends the command whatever else is missing

@@ -1,5 +1,6 @@
 """What there is to say about a curve as it stands: what ``mobius-flow energy`` and ``mobius-flow info`` print."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -14,15 +15,19 @@ from .driver.prepare import start_problem
 from .driver.run import gradient_bound
 from .energies import ENERGIES as KNOWN
 from .energies import MoebiusEnergy
-from .errors import CurveError
+from .errors import CurveError, MobiusFlowError
 from .hierarchy import moebius_energy
 from .knots import KnotType, knot_type
+from .knots.names import table_name
+from .knots.shapes import least_energies
+from .smooth.rest import at_rest
 from .symmetry import SymmetryGroup, symmetries
 from .threads import BLAS
 from .units import centred, check_units
 
 ENERGIES = ("moebius", "edge", "vertex")
 PAIRS_UP_TO = 50_000  # vertices, where all pairs of edges are summed: a minute or so, growing with the square
+SAME = 1e-6  # of the energy, by which those of one minimum differ beside their errors
 REST_UP_TO = 12_000  # vertices: some minutes where curves are at rest
 
 
@@ -69,6 +74,28 @@ class Rest:
 
 
 @dataclass(frozen=True)
+class Smooth:
+    """The smooth curve at rest that a polygon at rest stands for."""
+
+    energy: float
+    error: float  #: how far the energy may be off
+    name: str | None  #: of the table's knot or link that it is
+    least: tuple[float, float] | None  #: the least energy known of that type, and its error
+
+    @property
+    def sentence(self) -> str:
+        energy = f"{self.energy:.{max(1 - math.floor(math.log10(self.error)), 1)}f} ± {self.error:.1g}"
+        if self.least is None:
+            return energy
+        least, error = self.least
+        excess, known = self.energy - least, f"the least known of {self.name}"
+        if abs(excess) <= self.error + error + SAME * least:
+            return f"{energy}, {known}"
+        side = "above" if excess > 0.0 else "below"
+        return f"{energy}, {abs(100.0 * excess / least):.2g} % {side} {known}, {least:.9g}"
+
+
+@dataclass(frozen=True)
 class Info:
     """Measures of a curve, in its own units; None where the number of vertices or the dimension forbids it."""
 
@@ -77,6 +104,7 @@ class Info:
     type: KnotType
     energies: Mapping[str, float | None]  #: by the names of `ENERGIES`
     rest: Rest | None
+    smooth: Smooth | None  #: None away from rest, for arcs, and if it is not found
     length: float
     thickness: float | None  #: radius of the thickest tube around it
     writhe: float | None
@@ -103,12 +131,14 @@ def info(curve: Curve) -> Info:
     check_gap(curve)
     in_space, few = curve.dimension == 3, len(curve) <= PAIRS_UP_TO
     writhe, crossings = writhe_and_crossings(curve) if in_space and few else (None, None)
+    kind, rest = knot_type(curve), _rest(curve) if len(curve) <= REST_UP_TO else None
     return Info(
         components=curve.mesh.component_sizes,
         dimension=curve.dimension,
-        type=knot_type(curve),
+        type=kind,
         energies={name: measure(curve, name) if few or name == "moebius" else None for name in ENERGIES},
-        rest=_rest(curve) if len(curve) <= REST_UP_TO else None,
+        rest=rest,
+        smooth=_smooth(curve, kind) if in_space and rest is not None and rest.at_rest else None,
         length=curve.length,
         thickness=thickness(curve) if few else None,
         writhe=writhe,
@@ -132,3 +162,14 @@ def _rest(curve: Curve) -> Rest:
     bound = gradient_bound(RelaxOptions(), curve.mesh, point.energy)
     index = stability(point).index if point.gradient_norm <= bound else None
     return Rest(point.energy, point.gradient_norm, bound, index)
+
+
+def _smooth(curve: Curve, kind: KnotType) -> Smooth | None:
+    found = None if len(curve.mesh.ends) else at_rest(curve)
+    if found is None:
+        return None
+    try:
+        name = table_name("0_1" if str(kind) == "unknot" else str(kind))[0]
+    except MobiusFlowError:
+        name = None
+    return Smooth(found.energy, found.error, name, least_energies().get(name or ""))

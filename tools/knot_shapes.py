@@ -3,10 +3,10 @@
 
     tools/knot_shapes.py [NAME ...]
 
-Each knot is relaxed from its closed braid on the tangent-point energy, turned so that it faces +z with little hidden,
-and fitted by Fourier series. What is not proved is an error: that the relaxation kept the type, and that the straight
-motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Strands nearer than edges are
-long are an error too: the polygon does not resolve them, and its energy is not the curve's. Relaxations take eleven
+Each closed braid is relaxed as a polygon of few equal edges, which keeps its strands so far apart that they can be
+seen: smooth minima have some at a hundredth of that distance. It is balanced, turned so that it faces +z with little
+hidden, and fitted by Fourier series. What is not proved is an error: that the relaxation kept the type, and that the
+straight motion from the relaxed polygon to the one inscribed in the stored, rounded shape does. Relaxations take eleven
 minutes of processor time in all; they are kept in build/knot_shapes, and those that are there are not done again.
 """
 
@@ -20,15 +20,14 @@ from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
 from mobius_flow.core.curve.fourier import FourierCurve
 from mobius_flow.core.diagrams import quick_invariants
 from mobius_flow.core.knots import KNOTS, knot
-from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic, strand_gap
+from mobius_flow.core.knots.inscribed import arc_steps, equal_steps, is_isotopic
 from mobius_flow.core.knots.shapes import FILE, QUANTUM, shapes, smooth_knot
 from mobius_flow.core.types import ComplexArray, FloatArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 KEPT = Path(__file__).resolve().parents[1] / "build" / "knot_shapes"
-VERTICES = 160  # at least: sums over edges longer than strands are apart have false minima, with strands in contact
-ITERATIONS = 100  # of L-BFGS: afterwards little is seen to move
+VERTICES = 160  # at least
 MODES = range(1, 60)
 TOLERANCES = (0.004, 0.002, 0.001)  # of the half-width, between relaxed and stored curve
 VIEWS = 400
@@ -76,14 +75,9 @@ def relaxed(name: str) -> Curve:
     path = KEPT / f"{name}.npz"
     if not path.exists():
         start = max(knot(name), knot(name, VERTICES), key=len)
-        options = RelaxOptions(
-            energy="tangent-point", vertices=len(start), max_iterations=ITERATIONS, tolerance=1e-3, mesh="fixed"
-        )
-        result = minimize(start, options)
-        if not result.certified:
-            sys.exit(f"{name}: the relaxation is not certified")
-        if strand_gap(result.curve) < result.curve.edge_lengths.max():
-            sys.exit(f"{name}: strands are nearer than edges are long; relax on more vertices")
+        result = minimize(start, RelaxOptions(vertices=len(start), mesh="fixed", balance=True))
+        if not (result.certified and result.outcome.converged):
+            sys.exit(f"{name}: the relaxation ended, {result.message}")
         path.parent.mkdir(parents=True, exist_ok=True)
         np.savez(path, vertices=result.curve.vertices, sizes=result.curve.mesh.component_sizes)
     with np.load(path) as kept:

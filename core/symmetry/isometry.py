@@ -12,6 +12,7 @@ from ..curve.smooth import at_shares
 from ..types import FloatArray, IntArray
 
 ROUNDS = 4
+_ARC = SAMPLES // 32  # over which tangents are taken, so that polygons of many edges are as good as round
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +81,7 @@ class Fit:
 
         That is in radii of gyration; None if there is no such axis.
         """
-        tangents = np.roll(self._x, -1, axis=1) - np.roll(self._x, 1, axis=1)
+        tangents = np.roll(self._x, -_ARC, axis=1) - np.roll(self._x, _ARC, axis=1)
         tangents /= np.linalg.norm(tangents, axis=2)[:, :, None]
         fields = np.cross(np.eye(3), self._x[:, :, None])  # a × x for the axes a
         fields -= np.einsum("ckai,cki->cka", fields, tangents)[..., None] * tangents[:, :, None]

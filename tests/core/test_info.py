@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mobius_flow.core import Curve, CurveError, RelaxOptions, minimize
-from mobius_flow.core.info import info, measure
+from mobius_flow.core.info import Smooth, info, measure
 from mobius_flow.core.knots import knot, torus_knot
 from shapes import half_circle
 
@@ -91,3 +91,33 @@ def test_other_dimensions() -> None:
 def test_curves_that_touch_themselves_are_refused() -> None:
     with pytest.raises(CurveError):
         info(Curve([[0.0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]))
+
+
+def test_a_curve_at_rest_is_told_which_minimum_it_stands_for() -> None:
+    smooth = info(minimize(knot("m3_1", 60), RelaxOptions(vertices=60)).curve).smooth
+    assert smooth is not None
+    assert smooth.sentence.startswith("74.41204")
+    assert smooth.sentence.endswith("the least known of 3_1")
+    assert info(knot("3_1", 60)).smooth is None  # which is not at rest
+
+
+def test_a_circle_is_the_least_known_unknot() -> None:
+    smooth = info(knot("0_1", 40)).smooth
+    assert smooth is not None
+    assert smooth.sentence.endswith("the least known of 0_1")
+
+
+@pytest.mark.parametrize(
+    ("energy", "error", "told"),
+    [
+        (100.0, 1e-4, "100.00000 ± 0.0001, the least known of 9_9"),
+        (101.0, 1e-4, "101.00000 ± 0.0001, 1 % above the least known of 9_9, 100"),
+        (99.0, 0.01, "99.000 ± 0.01, 1 % below the least known of 9_9, 100"),
+    ],
+)
+def test_other_minima_are_told_apart_from_the_least_known(energy: float, error: float, told: str) -> None:
+    assert Smooth(energy, error, "9_9", (100.0, 1e-5)).sentence == told
+
+
+def test_smooth_curves_of_no_type_in_the_table() -> None:
+    assert Smooth(147.3, 0.01, None, None).sentence == "147.300 ± 0.01"

@@ -170,11 +170,13 @@ def test_balanced_images_have_the_symmetry_that_others_hide() -> None:
     assert symmetries(balanced(image)).name == "D3"
 
 
-RING, UP = regular_polygon(80).vertices, np.array([0.0, 0.0, 1.0])
+RING, COARSE = (regular_polygon(n).vertices for n in (80, 20))
+UP = np.array([0.0, 0.0, 1.0])
 
 
 @pytest.mark.parametrize(
-    ("rings", "name"), [([RING], "D∞h"), ([RING, RING + UP], "D∞h"), ([RING, 0.5 * RING + UP], "C∞v")]
+    ("rings", "name"),
+    [([RING], "D∞h"), ([COARSE], "D∞h"), ([RING, RING + UP], "D∞h"), ([RING, 0.5 * RING + UP], "C∞v")],
 )
 def test_what_is_round_has_a_name_but_no_elements(rings: list[np.ndarray], name: str) -> None:
     group = symmetries(Curve.from_components(rings))
