@@ -25,12 +25,16 @@ ACCURACY = 1e-6  # of the energy: how much half as many modes again may change i
 MOST = 720  # modes of all components: some gigabytes and seconds a step
 _PER_MODE = 4  # points of the trapezoidal rule
 _FOLLOWS = 0.03  # of the energy: how far that of a first fit may be from the polygon's
+_RESOLVED = 1e-3  # of the energy: the error up to which more modes go on where fewer ended
 _REACH = 0.3  # of their distance: how far a Newton step moves points towards each other, or away
 _ROUGHLY = 1e-8, 20  # of the energy, what a next step would gain, and steps, after which more modes do better
 _FINALLY = 1e-11, 4  # the same in the end
 _STIFFNESS = 2.0  # against sliding
 _NEAR = 1e-7  # of the energy, that a step may gain where Newton's own is taken
 _SOFT = 1e-9  # of the largest eigenvalue: the sign of smaller ones is not known
+
+Placed = tuple[Curve, Sequence[FloatArray]]
+"""A polygon and the parameters of its components' vertices."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,16 +57,18 @@ def at_rest(polygon: Curve) -> Rest | None:
     if polygon.dimension != 3:
         raise CurveError(f"the curve has dimension {polygon.dimension}; smooth curves at rest are found in space")
     given, energy = _normalized(polygon), MoebiusEnergy().value(polygon)
-    at, last = parameters(given), None
+    at, last, way = parameters(given), None, []
     for most in MODES:
         if sum(modes := _shared(most, given)) > MOST:
             break
         start = last.curve.with_modes(modes) if last else FourierCurve.of(given, at, modes)
-        found = _stationary(start, last.energy if last else energy, _ROUGHLY)
+        found = _stationary(start, last.energy if last else energy, _ROUGHLY, way)
         if found and last and (error := found.error + abs(found.energy - last.energy)) <= ACCURACY * found.energy:
-            polished = _stationary(found.curve, found.energy, _FINALLY)
-            return replace(polished, error=error) if polished and _is_isotopic(given, at, polished.curve) else None
-        last = found or last
+            polished = _stationary(found.curve, found.energy, _FINALLY, way)
+            proved = polished and _is_isotopic([(given, at), *map(_inscribed, way)])
+            return replace(polished, error=error) if polished and proved else None
+        if found and found.error <= _RESOLVED * energy:
+            last = found
     return None
 
 
@@ -91,24 +97,33 @@ def _shared(modes: int, curve: Curve) -> list[int]:
     return [max(MODES[0] // 2, round(modes * length / lengths.mean())) for length in lengths]
 
 
-def _is_isotopic(polygon: Curve, at: Sequence[FloatArray], curve: FourierCurve) -> bool:
-    """Whether the motion from a polygon to the one inscribed in a smooth curve is proved free of contact."""
-    end = curve.polygon(curve.sizes)
-    return is_isotopic(polygon, at, end, equal_steps(end))
+def _inscribed(curve: FourierCurve) -> Placed:
+    polygon = curve.polygon(curve.sizes)
+    return polygon, equal_steps(polygon)
 
 
-def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int]) -> Rest | None:
-    """Where Newton's method leads from a curve of about an energy; None if the curve does not have it."""
+def _is_isotopic(way: Sequence[Placed]) -> bool:
+    """Whether straight motions from the first polygon to the last, or by way of others, are proved free of contact."""
+    if is_isotopic(*way[0], *way[-1]):
+        return True
+    half = len(way) // 2
+    return len(way) > 2 and _is_isotopic(way[: half + 1]) and _is_isotopic(way[half:])
+
+
+def _stationary(start: FourierCurve, energy: float, enough: tuple[float, int], way: list[FourierCurve]) -> Rest | None:
+    """Where Newton's method leads from a curve of about an energy, and its way; None if it does not have that."""
     basis, finer = (Basis.of(start.modes, points) for points in (_PER_MODE, 2 * _PER_MODE))
     z = basis.unknowns(start)
     if abs(Pairs.of(basis, z).energy - energy) > _FOLLOWS * energy:
         return None
+    way.append(start)
     model, (gain, steps) = Model.of(basis, z), enough
     for _ in range(steps):
         better = None if model.gain < gain * model.energy else _searched(basis, z, model)
         if better is None:
             break
         z, model = better, Model.of(basis, better)
+        way.append(basis.curve(z))
     found = Pairs.of(finer, z).energy
     return Rest(basis.curve(z), found, model.gain + abs(found - Pairs.of(basis, z).energy), model.index)
 
