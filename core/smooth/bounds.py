@@ -1,4 +1,4 @@
-"""Proved bounds of the Möbius energies of smooth knots and links, by ball arithmetic (docs/bounds.md has the proofs).
+"""Proved bounds of the Möbius energies of smooth knots and links (docs/bounds.md has the proofs).
 
 The energy of components γᵢ of period 1 is 4 for each, and ∬ f ds dt for each ordered pair of them, with
 
@@ -11,26 +11,29 @@ which is on the diagonal, converges like e^{−2πan}.  That of π²/sin² is π
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import permutations
+
+import numpy as np
 
 from ..arguments import checked
 from ..errors import CurveError, OptionError
 from ..types import ComplexArray
-from .balls import Loop, arb, coarsely, floor, precise, separations, squared_chords
+from .balls import arb, points, precise
+from .covering import Arcs, cover
 
-_HEIGHTS = tuple(0.25 * 0.8**k for k in range(25))  # of strips, which are tried in turn
-_SHARE = 1 / 3  # of the least separation and squared speed that is left on the edge of a good strip
-_FINEST = 1e-12
+_LOWER, _LOWEST = 0.85, 1.5e-4  # than the strip before; of all strips
+_FINEST = 1e-10
+_TERMS = 64  # that are added up before they are added exactly
+_BLOCK = 1 << 18  # pairs of nodes at once
 
 
 @checked
 def energy_bounds(coefficients: Sequence[ComplexArray], tolerance: float = 1e-8) -> tuple[float, float]:
     """Bounds of the Möbius energy of a smooth knot or link that are proved, and no further apart than ``tolerance``.
 
-    ``coefficients`` has an array for each component, shape (modes + 1, 3), as in `FourierCurve`.  The last places of
-    doubles come on top of the tolerance.  Raises CurveError where no bound is found because the curve meets itself or
-    has a cusp, or nearly so, and OptionError for a tolerance below 1e-12.
+    ``coefficients`` has an array for each component, shape (modes + 1, 3), as in `FourierCurve`.  Rounding comes on top
+    of the tolerance, 1e-8 at most.  Raises CurveError where no bound is found because the curve meets itself or has a
+    cusp, or nearly so, and OptionError for a tolerance below 1e-10.
 
     >>> import numpy as np
     >>> lower, upper = energy_bounds([np.array([[0, 0, 0], [1, -1j, 0]])])
@@ -40,12 +43,14 @@ def energy_bounds(coefficients: Sequence[ComplexArray], tolerance: float = 1e-8)
     if not _FINEST <= tolerance < math.inf:
         raise OptionError(f"tolerance is {tolerance}; give a number from {_FINEST:g} on")
     with precise():
-        loops = [Loop(c) for c in coefficients]
-        pairs = [*((i, i) for i in range(len(loops))), *permutations(range(len(loops)), 2)]
-        strips = [_strip(loops, i, j) for i, j in pairs]
-        nodes = max((strip.nodes(tolerance / (2 * len(strips))) for strip in strips), default=1)
-        value = sum((_mean(loops[i], loops[j], nodes) for i, j in pairs), len(loops) * (4 - nodes * arb.pi() ** 2))
-        ball = value + arb(0, sum((strip.error(nodes) for strip in strips), arb(0)).upper())
+        arcs = [Arcs.of(c) for c in coefficients]
+        strips = {(i, i): _strip(arcs, i, i) for i in range(len(arcs))}
+        for i, j in permutations(range(len(arcs)), 2):
+            strips[i, j] = _strip(arcs, i, j, strips[i, i].height)
+        nodes = max((strip.nodes(tolerance / (2 * len(strips))) for strip in strips.values()), default=1)
+        ball = len(arcs) * (4 - nodes * arb.pi() ** 2)
+        for (i, j), strip in strips.items():
+            ball += _mean(coefficients[i], coefficients[j], nodes) + arb(0, strip.error(nodes).upper())
         return math.nextafter(float(ball.lower()), -math.inf), math.nextafter(float(ball.upper()), math.inf)
 
 
@@ -74,33 +79,37 @@ class _Strip:
         return max(1, math.ceil(math.log1p(float(4 * self.bound) / error) / (2 * math.pi * self.height)))
 
 
-def _strip(loops: Sequence[Loop], i: int, j: int) -> _Strip:
-    """A strip about as high as can be; CurveError if none is found.
-
-    Real parts are harmonic in s, so they are least on the edges of a strip, which are alike by conjugation: where those
-    of q and γ₁'² are positive there, r² has no zeros but those of sin², and |γ₁'| is the root of what has none.
-    """
-    first, second = loops[i], loops[j]
-    samples = first.speeds, partial(separations, first, second)
-    degree = 2 * max(first.modes, second.modes)
-    shares = [_SHARE * coarsely(partial(sample, 0.0)) for sample in samples]
-    for height in _HEIGHTS:
-        edges = [partial(sample, height) for sample in samples]
-        if all(coarsely(edge) > share for edge, share in zip(edges, shares, strict=True)):
-            speed, separation = (floor(edge, degree) for edge in edges)
-            if speed is not None and separation is not None:
-                bound = first.majorant(1, height) * second.majorant(1) / separation
-                if first is second:
-                    bound = (bound + arb.pi() ** 2) / (arb.pi() * height).sinh() ** 2
+def _strip(arcs: Sequence[Arcs], i: int, j: int, highest: float = math.inf) -> _Strip:
+    """A strip about as high as can be, but no higher than ``highest``; CurveError if none is found."""
+    if cover(arcs[i], arcs[j]) is not None:
+        height = min(highest, arcs[i].height)
+        while height >= _LOWEST:
+            ratio = cover(arcs[i], arcs[j], height)
+            if ratio is not None:
+                bound = 1.0001 * arb(ratio)
+                if i == j:
+                    bound = bound.max(400 / arb(height) ** 2) + (arb.pi() / (arb.pi() * height).sinh()) ** 2
                 return _Strip(height, bound)
+            height *= _LOWER
     which = f"component {i + 1} meets itself or has a cusp" if i == j else f"components {i + 1} and {j + 1} meet"
     raise CurveError(f"{which}, or nearly so: no bound of the energy can be proved")
 
 
-def _mean(first: Loop, second: Loop, nodes: int) -> arb:
-    """The mean of |γ₁'| |γ₂'|/r² over nodes (k/n, (l + ½)/n)."""
-    speeds = [[x.sqrt() for (x,) in loop.speeds(0.0, nodes, shift)] for shift, loop in enumerate((first, second))]
-    total = arb(0)
-    for v, row in zip(speeds[0], squared_chords(first.points(nodes), second.points(nodes, shift=1)), strict=True):
-        total += v * sum((w / z.real for w, z in zip(speeds[1], row, strict=True)), arb(0))
-    return total / nodes**2
+def _mean(first: ComplexArray, second: ComplexArray, nodes: int) -> arb:
+    """The mean of |γ₁'| |γ₂'|/r² over nodes (k/n, (l + ½)/n).
+
+    Points are sums of two doubles, so that differences lose no digits, and all terms are positive.
+    """
+    (x, low_x), (y, low_y) = points(first, nodes), points(second, nodes, shift=1)
+    v, w = (np.linalg.norm(points(c, nodes, 1, shift)[0], axis=0) for shift, c in enumerate((first, second)))
+    sums, nearest, rows = [], math.inf, max(1, _BLOCK // nodes)
+    for k in range(0, nodes, rows):
+        some = slice(k, k + rows)
+        square = np.zeros((len(v[some]), nodes))
+        for a in range(3):
+            square += (np.subtract.outer(x[a, some], y[a]) + np.subtract.outer(low_x[a, some], low_y[a])) ** 2
+        terms = np.multiply.outer(v[some], w) / square
+        sums.append(math.fsum(np.add.reduceat(terms, range(0, nodes, _TERMS), axis=1).ravel().tolist()))
+        nearest = min(nearest, square.min())
+    error = (_TERMS + 32) * 2.0**-53 + 2.0**-98 * max(np.abs(x).max(), np.abs(y).max()) / math.sqrt(nearest)
+    return arb(math.fsum(sums)) * arb(1, error) / nodes**2

@@ -34,20 +34,20 @@ def test_another_formula_in_doubles(name):
     assert lower - 1e-6 < Pairs.of(basis, basis.unknowns(curve)).energy < upper + 1e-6
 
 
-@pytest.mark.parametrize("tolerance", [1e6, 1e3, 1.0, 1e-4, 1e-12])
+@pytest.mark.parametrize("tolerance", [1e7, 1e3, 1.0, 1e-4, 1e-10])
 def test_wide_bounds_are_right_too(tolerance):
     exact = 81.840852989
     c = fitted(SMOOTH_CURVES["trefoil"].polygon(32).vertices, 15)
-    for curves, energy, slack in ([c], exact, 1e-9), ([CIRCLE], 4.0, 1e-13), (HOPF, 8.0 + 4.0 * np.pi**2, 1e-13):
+    for curves, energy, slack in ([c], exact, 1e-9), ([CIRCLE], 4.0, 0.0), (HOPF, 8.0 + 4.0 * np.pi**2, 0.0):
         lower, upper = bounds.energy_bounds(curves, tolerance)
         assert lower - slack <= energy <= upper + slack
-        assert upper - lower <= tolerance + 1e-13
+        assert upper - lower <= tolerance + 1e-9
 
 
 def test_few_nodes_err_more_than_rounding():
     """Or else the bounds above would hold without any error term."""
     c = fitted(SMOOTH_CURVES["trefoil"].polygon(32).vertices, 15)
-    lower, upper = bounds.energy_bounds([c], 1e6)
+    lower, upper = bounds.energy_bounds([c], 1e7)
     assert abs(0.5 * (lower + upper) - 81.840852989) > 0.01
 
 
@@ -66,30 +66,48 @@ def test_a_fit_to_a_polygon_at_rest_is_above_the_minimum_by_little():
     assert lower < 108.8237248 * (1 + 1e-4)
 
 
+def test_strands_far_nearer_than_the_curve_is_long():
+    """An inversion keeps the energy, which is known, and draws all strands together that are far from its centre."""
+    relative = torus_knot(2, 3, 0.8804855, 2048)
+    relative -= relative[0] + np.array([0.0, 0.0, 0.3])
+    c = fitted(relative / np.sum(relative**2, axis=1)[:, None], 160)
+    lower, upper = bounds.energy_bounds([c], 1e-7)
+    assert lower - 2e-8 <= 74.4120428860 <= upper + 2e-8
+
+
 @pytest.mark.parametrize("curves", [[ELLIPSE], HOPF, shapes()["5_2"].coefficients, shapes()["L6a4"].coefficients])
-def test_the_integrand_is_bounded_in_the_strip_and_analytic(curves):
-    loops = [bounds.Loop(c) for c in curves]
-    for i, j in {(0, 0), (0, len(loops) - 1)}:
-        strip = bounds._strip(loops, i, j)
+def test_the_integrand_is_bounded_in_the_strip(curves):
+    arcs = [bounds.Arcs.of(c) for c in curves]
+    for i, j in {(0, 0), (0, len(arcs) - 1)}:
+        strip = bounds._strip(arcs, i, j)
         s, t = np.arange(400) / 400, (np.arange(400) + 0.5) / 400
         for y in np.linspace(0.0, strip.height, 4):
-            tangents = values(curves[i], s + 1j * y, 1)
-            squares = (tangents**2).sum(axis=1)
+            squares = (values(curves[i], s + 1j * y, 1) ** 2).sum(axis=1)
             chords = ((values(curves[i], s + 1j * y)[:, None] - values(curves[j], t)) ** 2).sum(axis=2)
             speeds = np.linalg.norm(values(curves[j], t, 1), axis=1)
             density = np.sqrt(squares)[:, None] * speeds / chords
             if i == j:
-                sines = np.sin(np.pi * (s[:, None] + 1j * y - t)) ** 2
-                density, chords = density - np.pi**2 / sines, chords / sines
+                density -= np.pi**2 / np.sin(np.pi * (s[:, None] + 1j * y - t)) ** 2
             assert np.abs(density).max() <= float(strip.bound)
-            factors = (
-                np.abs(tangents).max() * speeds.max() / np.abs(chords).min()
-            )  # also if each was worst at one point
-            if i == j:
-                factors = (factors + np.pi**2) / np.sinh(np.pi * strip.height) ** 2
-            assert factors <= float(strip.bound)
             assert squares.real.min() > 0.0
-            assert chords.real.min() > 0.0
+        if i == j:  # also if both parts were worst at one point
+            sines = np.sin(np.pi * (s[:, None] + 1j * y - t)) ** 2
+            assert np.abs(density + np.pi**2 / sines).max() + np.abs(np.pi**2 / sines).max() <= float(strip.bound)
+
+
+@pytest.mark.parametrize("away", [0.0, 1e8])
+def test_sums_in_doubles_are_those_of_many_digits(away):
+    c, nodes, sides = shapes()["5_2"].coefficients[0].copy(), 60, []
+    c[0, 0] = away
+    with bounds.precise():
+        for shift in (0, 1):
+            x, v = (np.vectorize(bounds.arb)(bounds.points(c, nodes, order, shift)).sum(axis=0).T for order in (0, 1))
+            sides.append((x, [sum(row**2).sqrt() for row in v]))
+        (x, v), (y, w) = sides
+        total = sum(v[k] * w[m] / sum((x[k] - y[m]) ** 2) for k in range(nodes) for m in range(nodes))
+        found = bounds._mean(c, c, nodes)
+        assert found.contains(total / nodes**2)
+        assert float(found.rad() / found) < 2e-14
 
 
 @pytest.mark.parametrize("nodes", [1, 2, 5, 12])
@@ -117,9 +135,9 @@ def test_curves_without_energy(curves, message):
         bounds.energy_bounds(curves)
 
 
-@pytest.mark.parametrize("tolerance", [0.0, -1.0, 1e-13, math.nan, math.inf])
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, 1e-11, math.nan, math.inf])
 def test_tolerances_that_there_are_not(tolerance):
-    with pytest.raises(OptionError, match="give a number from 1e-12 on"):
+    with pytest.raises(OptionError, match="give a number from 1e-10 on"):
         bounds.energy_bounds([CIRCLE], tolerance)
 
 
