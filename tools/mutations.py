@@ -955,13 +955,6 @@ MUTANTS = (
         f"{SMOOTH}/test_bounds.py::test_wide_bounds_are_right_too",
     ),
     Mutant(
-        "near the diagonal the integrand is as anywhere",
-        "core/smooth/bounds.py",
-        "bound.max(400 / arb(height) ** 2) + (arb.pi() / (arb.pi() * height).sinh()) ** 2",
-        "bound",
-        f"{SMOOTH}/test_bounds.py::test_the_integrand_is_bounded_in_the_strip",
-    ),
-    Mutant(
         "polygons that turn back have the curve's type",
         "core/smooth/isotopy.py",
         "len(vertices) * (turn + rounding)",

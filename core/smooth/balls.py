@@ -4,7 +4,7 @@ A component is γ(t) = Re Σₖ cₖ e^{2πikt}, 0 ≤ t < 1, with coefficients 
 they are: an entire function of t.
 """
 
-from contextlib import AbstractContextManager
+from functools import partial
 
 import numpy as np
 
@@ -18,18 +18,14 @@ try:
 except ImportError as error:
     raise MobiusFlowError('ball arithmetic needs python-flint: pip install python-flint (the extra "atlas")') from error
 
-_PRECISION = 128  # bits, more than cancellation here takes from those of two doubles
-
-
-def precise() -> AbstractContextManager[None]:
-    """Compute with balls of enough digits."""
-    return ctx.workprec(_PRECISION)
+precise = partial(ctx.workprec, 128)  # bits, more than cancellation here takes from those of two doubles
 
 
 def points(coefficients: ComplexArray, nodes: int, order: int = 0, shift: int = 0) -> tuple[FloatArray, FloatArray]:
     """A component's derivative at (j + shift/2)/nodes, and what these doubles leave; shapes (3, nodes).
 
-    Of their sum 100 bits are right.  It is a discrete Fourier transform, where frequencies are folded.
+    Both together err by 2⁻¹⁰⁰ of the sum of all |(2πk)ʳ cₖ|, r the order, at most.  It is a discrete Fourier transform,
+    where frequencies are folded.
     """
     with precise():
         spectra = [[acb(0)] * nodes for _ in range(3)]

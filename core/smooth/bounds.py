@@ -111,5 +111,6 @@ def _mean(first: ComplexArray, second: ComplexArray, nodes: int) -> arb:
         terms = np.multiply.outer(v[some], w) / square
         sums.append(math.fsum(np.add.reduceat(terms, range(0, nodes, _TERMS), axis=1).ravel().tolist()))
         nearest = min(nearest, square.min())
-    error = (_TERMS + 32) * 2.0**-53 + 2.0**-98 * max(np.abs(x).max(), np.abs(y).max()) / math.sqrt(nearest)
+    coordinates = max(np.abs(c).sum() for c in (first, second))
+    error = (_TERMS + 32) * 2.0**-53 + 2.0**-98 * coordinates / math.sqrt(nearest)
     return arb(math.fsum(sums)) * arb(1, error) / nodes**2

@@ -71,5 +71,5 @@ def _edges(coefficients: ComplexArray, vertices: FloatArray) -> Edges:
     high, low = points(coefficients, len(vertices))
     off = (vertices.T - high) - low
     sup, turn = (float(np.linalg.norm(a, axis=0).max()) for a in (off, off - np.roll(off, 1, axis=1)))
-    rounding = 2.0**-40 * sup + 2.0**-90 * float(np.abs(high).max())
+    rounding = 2.0**-40 * sup + 2.0**-90 * float(np.abs(coefficients).sum())
     return Edges(len(vertices), sup + rounding, len(vertices) * (turn + rounding))
