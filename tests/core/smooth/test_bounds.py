@@ -121,11 +121,15 @@ def test_the_error_of_the_trapezoidal_rule_for_a_pole(nodes):
     [
         ([DOUBLE_POINT], "component 1 meets itself or has a cusp, or nearly so"),
         ([CIRCLE, CUSPS + np.outer([1, 0, 0, 0], [0, 0, 5])], "component 2 meets itself or has a cusp, or nearly so"),
+        (
+            [DOUBLE_POINT + 1e-6 * np.outer([0, 1, 0], [0, 0, 1j])],
+            "component 1 meets itself or has a cusp, or nearly so",
+        ),
         ([np.zeros((3, 3))], "component 1 meets itself"),
         ([CIRCLE[[0, 0, 1]]], "component 1 meets itself"),
         ([CIRCLE, CIRCLE], "components 1 and 2 meet, or nearly so: no bound of the energy can be proved"),
     ],
-    ids=["double point", "cusps", "point", "twice round", "twice the same"],
+    ids=["double point", "cusps", "nearly a double point", "point", "twice round", "twice the same"],
 )
 def test_curves_without_energy(curves, message):
     with pytest.raises(CurveError, match=message):
