@@ -152,7 +152,7 @@ def jobs(
     made = []
     obstacles = {str(Path(path).resolve()): _hash(Path(path)) for path in still["avoid"]}
     values = {**vars(options), **still, "avoid": obstacles}
-    hashed = [(name, path and str(path), path and _hash(path)) for name, path in inputs]
+    hashed = [(name, *((None, None) if path is None else (str(path), _hash(path)))) for name, path in inputs]
     for start in range(1, starts + 1):
         seed = None if start == 1 else options.seed + start
         for name, file, sha256 in hashed:

@@ -57,7 +57,7 @@ def at_rest(polygon: Curve) -> Rest | None:
     if polygon.dimension != 3:
         raise CurveError(f"the curve has dimension {polygon.dimension}; smooth curves at rest are found in space")
     given, energy = _normalized(polygon), MoebiusEnergy().value(polygon)
-    at, last, way = parameters(given), None, []
+    at, last, way = parameters(given), None, list[FourierCurve]()
     for most in MODES:
         if sum(modes := _shared(most, given)) > MOST:
             break
