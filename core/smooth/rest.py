@@ -20,12 +20,12 @@ from .basis import Basis
 from .energy import Pairs
 from .pace import parameters, sliding
 
-MODES = (24, 36, 54, 80, 120, 180)  # of a component of average length
+MODES = (24, 36, 54, 80, 120, 180, 270)  # of a component of average length
 ACCURACY = 1e-6  # of the energy: how much half as many modes again may change it
 MOST = 720  # modes of all components: some gigabytes and seconds a step
 _PER_MODE = 4  # points of the trapezoidal rule
 _FOLLOWS = 0.03  # of the energy: how far that of a first fit may be from the polygon's
-_RESOLVED = 1e-3  # of the energy: the error up to which more modes go on where fewer ended
+_RESOLVED = 1e-4  # of the energy: the error up to which more modes go on where fewer ended
 _REACH = 0.3  # of their distance: how far a Newton step moves points towards each other, or away
 _ROUGHLY = 1e-8, 20  # of the energy, what a next step would gain, and steps, after which more modes do better
 _FINALLY = 1e-11, 4  # the same in the end
