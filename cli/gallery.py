@@ -13,13 +13,14 @@ from pathlib import Path
 import numpy as np
 
 from ..addon.pictures import export
+from ..addon.pictures.looks import DEFAULT, LOOKS
 from ..core import Curve, MobiusFlowError, Status, read_curve
 from ..core.driver.interventions.balance import balanced
 from ..core.errors import wrong_suffix
+from ..core.types import FloatArray
 from . import options as relax_options
-from .atlas.data import curve_path
+from .atlas.data import TITLE, curve_path
 from .atlas.folder import SUMS
-from .atlas.pictures import SAMPLES
 from .batch.folder import results
 from .batch.job import CURVE
 from .batch.table import Row
@@ -30,10 +31,12 @@ from .progress import bar
 
 SIZE = 300  # pixels of a picture's side
 LARGEST = 4000
-INCHES, HEAD = 2.4, 0.45  # of a picture's side, and of the lines above it
-ASPECT = 1.4  # of the page, about
+INCHES, FOOT = 2.4, 0.4  # of a picture's side, and of the lines below it
+MARGIN, HEAD = 0.8, 0.6  # inches around all, and of the line above it
+ASPECT = 0.75  # of the page, about
+FADED = 0.1  # of a picture's side
 HOLDING = {"avoid", "pins"}  # options that Möbius images do not keep
-_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_INKS = (("#e7e3da", "#9a958b"), ("#1d1c1a", "#6d6a64"))  # on dark and on light ground
 _EPILOG = """\
 examples:
   mobius-flow batch 3_1..7_7 -o results && mobius-flow gallery results -o gallery.png
@@ -83,28 +86,34 @@ def _run(options: argparse.Namespace) -> int:
     export.require_blender()
     figure_class()
     check_place(options.output)
-    shown = _chosen(_found(Path(options.results)), options)
+    place, look, size = Path(options.results), options.look or DEFAULT, options.size
+    shown = _chosen(_found(place), options)
     with tempfile.TemporaryDirectory(prefix="mobius-flow-") as room:
         pictures = [Path(room, f"{k}.png") for k in range(len(shown))]
         with bar(sys.stderr.isatty(), total=len(shown), unit=" pictures") as progress:
             for each, picture in zip(shown, pictures, strict=True):
-                export.write_picture(picture, each.look(), options.size, options.size, options.look, SAMPLES)
+                export.write_picture(picture, each.look(), size, size, look, cut_out=True)
                 if progress is not None:
                     progress.update()
-        _write_page(options.output, [each.title for each in shown], pictures, options.size)
+        head = TITLE if _is_atlas(place) else ""
+        _write_page(options.output, [each.title for each in shown], pictures, look, size, head)
     return 0
+
+
+def _is_atlas(directory: Path) -> bool:
+    return (directory / SUMS).is_file()
 
 
 def _found(directory: Path) -> list[Shown]:
     """What a directory holds; a MobiusFlowError tells where that is nothing."""
-    of = _of_atlas if (directory / SUMS).is_file() else _of_batch
-    return list(of(directory))
+    return list(_of_atlas(directory) if _is_atlas(directory) else _of_batch(directory))
 
 
 def _of_batch(directory: Path) -> Iterator[Shown]:
     for folder, _, row in sorted(results(directory), key=lambda each: (each[2].name, each[2].start)):
         free = row.status == Status.CONVERGED.value and HOLDING.isdisjoint(json.loads(row.options))
-        yield Shown(folder.name, folder / CURVE, f"{folder.name}\n{_energy(row)}", free)
+        name = folder.name.replace("$", r"\$")  # which would begin a formula
+        yield Shown(folder.name, folder / CURVE, f"{name}\n{_energy(row)}", free)
 
 
 def _energy(row: Row) -> str:
@@ -114,14 +123,15 @@ def _energy(row: Row) -> str:
 
 
 def _of_atlas(directory: Path) -> Iterator[Shown]:
-    """The least curves, balanced as they are."""
+    """The least curves, balanced and upright as they are."""
     try:
         entries = json.loads((directory / "data/atlas.json").read_text(encoding="utf-8"))
         for entry in entries:
             least = entry["minima"][0]
-            title = re.sub(r"_(\d+)", lambda found: found[1].translate(_BELOW), entry["name"])
-            place = directory / curve_path(entry, least, ".json")
-            yield Shown(entry["name"], place, f"{title}\n{least['energy']:.4f}", False)
+            name = re.sub(r"_(\d+)", r"$_{\1}$", entry["type"])
+            group = re.sub(r"(?<=^[A-Z])(.+)", r"$_{\\mathrm{\1}}$", least["symmetry"])
+            place = directory / "data" / curve_path(entry, least, ".json")
+            yield Shown(entry["type"], place, f"{name}\n{least['energy']:.4f}   {group}", False)
     except (OSError, ValueError, LookupError, TypeError) as error:
         raise MobiusFlowError(f"{directory}: holds no atlas that is whole; repeat mobius-flow atlas") from error
 
@@ -137,22 +147,35 @@ def _chosen(found: Sequence[Shown], options: argparse.Namespace) -> list[Shown]:
     return [by_name[name] for name in wanted]
 
 
-def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], size: int = SIZE) -> None:
-    """Put pictures side by side on a ground of their own colour."""
+def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look: str, size: int, head: str) -> None:
+    """Put pictures side by side on one ground, with the first line of each title large below it."""
     from matplotlib.image import imread
 
     columns = round(math.sqrt(ASPECT * len(pictures))) or 1
-    rows = math.ceil(len(pictures) / columns)
-    figure = figure_class()(figsize=(INCHES * columns, (INCHES + HEAD) * rows), layout="constrained")
-    grid = figure.subplots(rows, columns, squeeze=False).ravel()
-    images = [imread(picture)[..., :3] for picture in pictures]
-    ground = np.median(np.concatenate([image[0] for image in images]), axis=0)
-    figure.set_facecolor(ground.tolist())
-    ink = "#1d1c1a" if ground.mean() > 0.5 else "#e7e3da"
-    for axes in grid:
+    width = INCHES * columns + 2.0 * MARGIN
+    height = (INCHES + FOOT) * math.ceil(len(pictures) / columns) + (2.0 * MARGIN + HEAD if head else MARGIN)
+    ground = [1.055 * value ** (1.0 / 2.4) - 0.055 for value in LOOKS[look].floor]  # in the standard's colours
+    figure = figure_class()(figsize=(width, height), facecolor=ground)
+    ink, faint = _INKS[min(ground) > 0.5]
+    words = {"ha": "center", "family": ["STIXGeneral", "DejaVu Sans"], "math_fontfamily": "stix"}
+    if head:
+        figure.text(0.5, 1.0 - (MARGIN + 0.5 * HEAD) / height, head, fontsize=24, color=ink, va="center", **words)
+    for k, (title, picture) in enumerate(zip(titles, pictures, strict=True)):
+        x, y = MARGIN + INCHES * (k % columns), height - MARGIN - HEAD * bool(head) - (INCHES + FOOT) * (k // columns)
+        axes = figure.add_axes((x / width, (y - INCHES) / height, INCHES / width, INCHES / height))
         axes.set_axis_off()
-    for axes, title, image in zip(grid, titles, images, strict=False):
-        axes.imshow(image)
-        axes.set_title(title, fontsize=10, color=ink, family=["STIXGeneral", "DejaVu Sans"], parse_math=False)
+        axes.imshow(_faded(imread(picture)))
+        for line, down, points, colour in zip(title.split("\n"), (0.08, 0.28), (15, 9.5), (ink, faint), strict=False):
+            figure.text(
+                (x + 0.5 * INCHES) / width, (y - INCHES - down) / height, line, fontsize=points, color=colour, **words
+            )
     with writing(path) as temporary:
-        figure.savefig(temporary, dpi=size / INCHES, bbox_inches="tight")
+        figure.savefig(temporary, dpi=size / INCHES)
+
+
+def _faded(image: FloatArray) -> FloatArray:
+    """A picture, of shape (n, n, 4), whose shadows end before it does."""
+    n = len(image)
+    inside = np.clip(np.minimum(np.arange(n), np.arange(n)[::-1]) / (FADED * n), 0.0, 1.0)
+    window = inside**2 * (3.0 - 2.0 * inside)
+    return np.concatenate([image[..., :3], image[..., 3:] * (window[:, None] * window)[..., None]], axis=2)

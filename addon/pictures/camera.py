@@ -16,7 +16,6 @@ from .stage import Stage, add
 
 _LENS = 60.0  # mm
 _SENSOR = 36.0  # mm
-_MARGIN = 1.14
 _CALM = 25  # frames over which the camera's way is smoothed
 _LIFT = 1.02  # of the tube's radius: how far the lowest point stays above the floor
 _ORBIT = np.radians(24.0)  # to either side, once in a film
@@ -45,7 +44,7 @@ def follow(
     stacked, places = np.stack(points).astype(np.float64), np.interp(every, frames, np.arange(len(frames)))
     shapes = [(interpolated(stacked, at[None])[0] - stage.middle) @ stage.axes.T for at in places]
     views = [_view(stage.elevation, turn) for turn in _ORBIT * np.sin(np.linspace(0.0, 2.0 * np.pi, len(every)))]
-    targets, distances = _targets(shapes, np.interp(every, frames, radii), slopes / _MARGIN, views)
+    targets, distances = _targets(shapes, np.interp(every, frames, radii), slopes / stage.margin, views)
     heights = np.array([((p - stage.middle) @ stage.axes[2]).min() for p in points]) - _LIFT * radii
     lows = -_calm(-np.interp(every, frames, heights))
     _move(focus, stage.middle + targets @ stage.axes, every)

@@ -119,20 +119,33 @@ def write_still(path: Target, iterates: Sequence[Iterate], look: str | None = No
 
 
 def write_picture(
-    path: Target, curve: Curve, width: int, height: int, look: str | None = None, samples: int | None = None
+    path: Target,
+    curve: Curve,
+    width: int,
+    height: int,
+    look: str | None = None,
+    samples: int | None = None,
+    cut_out: bool = False,
 ) -> None:
     """Render a curve to a .png or .jpg of so many pixels; raises as `write_blend` does.
 
-    ``samples`` of each pixel, by default the look's: fewer are denoised less well, in less time.
+    ``samples`` of each pixel, by default the look's: fewer are denoised less well, in less time.  ``cut_out``: a .png
+    with the curve, seen down its third axis, and its shadow, and nothing behind them.
     """
     check_dimension(curve)
     link = Origin.of(spatial(curve.vertices)).link(curve.mesh)
     points = link.to_stored(curve.mesh, curve.vertices).astype(np.float32)
-    _render(path, Keys((Key(0.0, points),), 0), curve.mesh, (width, height), look, samples)
+    _render(path, Keys((Key(0.0, points),), 0), curve.mesh, (width, height), look, samples, cut_out)
 
 
 def _render(
-    path: Target, keys: Keys, mesh: Mesh, size: tuple[int, int], look: str | None, samples: int | None = None
+    path: Target,
+    keys: Keys,
+    mesh: Mesh,
+    size: tuple[int, int],
+    look: str | None,
+    samples: int | None = None,
+    cut_out: bool = False,
 ) -> bool:
     require_blender()
     from . import film, rendering
@@ -140,7 +153,7 @@ def _render(
     mesh, keys = rounded(mesh, keys, is_free)
     scene = film.empty_scene()
     rendering.use_cycles(scene, LOOKS[look or DEFAULT], *size, samples)
-    film.compose(scene, keys, np.ones(1), mesh, Playing(look))
+    film.compose(scene, keys, np.ones(1), mesh, Playing(look), cut_out=cut_out)
     _make(path, lambda temporary: rendering.render_still(scene, temporary))
     return keys.certified
 

@@ -37,9 +37,18 @@ def save(path: Path) -> None:
 
 
 def compose(
-    scene: bpy.types.Scene, keys: Keys, frames: FloatArray, mesh: Mesh, playing: Playing, origin: Origin | None = None
+    scene: bpy.types.Scene,
+    keys: Keys,
+    frames: FloatArray,
+    mesh: Mesh,
+    playing: Playing,
+    origin: Origin | None = None,
+    cut_out: bool = False,
 ) -> None:
-    """Put a keyed curve on a look's stage, by default near the scene's origin, and fit the scene's frames to it."""
+    """Put a keyed curve on a look's stage, by default near the scene's origin, and fit the scene's frames to it.
+
+    ``cut_out``: it is seen down the third axis, and of the floor there is nothing in the picture but shadows.
+    """
     points, look = [key.points for key in keys.keys], playing.look or DEFAULT
     radii = tube_radii(mesh, [each.astype(np.float64) for each in points], frames)
     radii = np.full_like(radii, radii.min()) if playing.constant_radius else radii
@@ -54,9 +63,13 @@ def compose(
         pass
     alone = len(mesh.component_sizes) == 1
     colour_components(data, look=look, along=_mean_shares(mesh, points) if alone else None)
-    ground = stage.Stage.around(points, stage.flat_up(points[-1].astype(np.float64)))
+    if cut_out:
+        ground = stage.Stage.from_above(points)
+    else:
+        ground = stage.Stage.around(points, stage.flat_up(points[-1].astype(np.float64)))
     size = scene.render.resolution_x, scene.render.resolution_y
     floor = stage.build(scene.collection, ground, LOOKS[look])
+    floor.is_shadow_catcher = scene.render.film_transparent = cut_out
     scene.camera = camera.follow(scene.collection, size, ground, floor, points, radii.max(axis=1), frames)
     if playing.timing.loop:
         for curve in all_fcurves():

@@ -108,7 +108,7 @@ def render_still(scene: bpy.types.Scene, path: Path) -> None:
     if hasattr(settings, "media_type"):  # Blender 5.0 and later
         settings.media_type = "IMAGE"
     settings.file_format, end = ("JPEG", b"\xff\xd9") if path.suffix == ".jpg" else ("PNG", b"IEND\xaeB`\x82")
-    settings.color_mode, settings.quality = "RGB", 100
+    settings.color_mode, settings.quality = "RGBA" if scene.render.film_transparent else "RGB", 100
     scene.render.filepath = str(path)
     scene.render.use_file_extension = False
     with quiet():

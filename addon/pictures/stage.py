@@ -1,7 +1,7 @@
 """A scene to show a curve in: camera, lights, floor and materials."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -15,6 +15,8 @@ from .materials import material
 
 _WIDTH = 60.0  # of the floor: the camera sees no end of it
 _ELEVATIONS = np.arange(36.0, 69.0, 4.0)  # degrees: over the horizon, and not so steep that shadows hide
+_ABOVE = np.radians(89.5)  # a camera at 90 would not know what is upright
+_WIDE = 1.4  # for shadows
 _STEP = 10.0  # degrees, from one direction that is tried to the next
 _ACROSS = 0.2  # what it is worth that a motion is wide in the picture
 _TINY = 1e-300
@@ -28,11 +30,20 @@ class Stage:
     middle: FloatArray
     size: float  # largest distance of what is shown from the middle
     elevation: float  # of the camera over the floor, in radians
+    margin: float = 1.14  # how much more than the tube the camera sees
 
     @classmethod
     def around(cls, shown: Sequence[Frame | FloatArray], up: FloatArray) -> "Stage":
         """Take in everything shown, arrays of shape (n, 3), to be seen well; ``up``: a direction, (3,)."""
-        axes, elevation = facing(shown, up)
+        return cls._around(shown, *facing(shown, up))
+
+    @classmethod
+    def from_above(cls, shown: Sequence[Frame | FloatArray]) -> "Stage":
+        """Take in everything shown as it lies, seen down the third axis."""
+        return replace(cls._around(shown, np.eye(3), _ABOVE), margin=_WIDE)
+
+    @classmethod
+    def _around(cls, shown: Sequence[Frame | FloatArray], axes: FloatArray, elevation: float) -> "Stage":
         along = [points @ axes.T for points in shown]
         low = np.min([each.min(axis=0) for each in along], axis=0)
         middle = 0.5 * (low + np.max([each.max(axis=0) for each in along], axis=0))

@@ -16,10 +16,10 @@ from ...core.curve.measures import writhe_and_crossings
 from ...core.errors import CurveError
 from ...core.knots import knot_type
 from ...core.knots.catalogue import crossing_number
-from ...core.knots.table import AMPHICHEIRAL, KNOTS
+from ...core.knots.table import AMPHICHEIRAL
 from ...core.smooth.minima import balanced, distinct
 from ...core.smooth.rest import Rest, index_of
-from ...core.symmetry import symmetries
+from ...core.symmetry import standing, symmetries
 from ..batch.job import folder_name
 from ..batch.table import Row
 from ..options import flags
@@ -33,18 +33,20 @@ _KNOTTED = 6.0 * math.pi + 4.0
 
 def entry(folder: Folder, name: str, runs: Sequence[Run]) -> Values:
     """The entry of a type, made anew unless it is there, of the same runs by the same version."""
-    file = f"data/fourier/{name}.json"
+    file = f"entries/{name}.json"
     text = "\n".join([__version__, str(_proves()), *(run.mark for run in runs)])
     made_from = hashlib.sha256(text.encode()).hexdigest()
     known = json.loads(folder.read(file) or "{}")
-    found: Values = known if known.get("made_from") == made_from else _made(name, runs) | {"made_from": made_from}
-    folder.put(file, json.dumps(found, indent=1) + "\n")
+    if known.get("made_from") != made_from:
+        known = {"made_from": made_from, "entry": _made(name, runs)}
+    folder.put(file, json.dumps(known) + "\n")
+    found: Values = known["entry"]
     return found
 
 
 def curve_of(minimum: Mapping[str, Any]) -> FourierCurve:
     """The smooth curve of an entry's minimum."""
-    return FourierCurve.of_lists(minimum["coefficients"])
+    return FourierCurve.of_lists(minimum["fourier"])
 
 
 def _made(name: str, runs: Sequence[Run]) -> Values:
@@ -54,38 +56,34 @@ def _made(name: str, runs: Sequence[Run]) -> Values:
         {"number": number} | _described(name, ends[group[0]], [runs[k] for k in group])
         for number, group in enumerate(groups, start=1)
     ]
-    return {
-        "name": name,
-        "position": [*KNOTS].index(name),
-        "lower_bound": _lower_bound(name),
-        "runs": len(runs),
-        "minima": minima,
-    }
+    return {"type": name, "lower_bound": _lower_bound(name), "runs": len(runs), "minima": minima}
 
 
 def _described(name: str, rest: Rest, runs: Sequence[Run]) -> Values:
     """What is known of a curve, by the names of the tables' columns; it is an image of what the first run led to."""
-    curve = rest.curve
-    fine = curve.polygon([_FINER * size for size in curve.sizes])
+    curve, polygon = rest.curve, rest.curve.polygon(rest.curve.sizes)
+    group = symmetries(polygon)
+    upright = FourierCurve(tuple(c @ standing(polygon, group).T for c in curve.coefficients))
+    fine = upright.polygon([_FINER * size for size in upright.sizes])
     writhe, crossings = writhe_and_crossings(fine)
+    bounds = _proved(name, upright)
     row = runs[0].row
     return {
         "energy": rest.energy,
         "error": rest.error,
+        "upper_bound": bounds and bounds[1],
         "index": index_of(runs[0].curve),  # which is at rest but for rounding
-        "mesh_index": row.index,
-        "proved_energy": _proved(name, curve),
-        "symmetry": symmetries(curve.polygon(curve.sizes)).name,
+        "symmetry": group.name,
         "met": len(runs),
         "kinds": dict(Counter(run.row.kind or "named" for run in runs).most_common()),
-        "modes": curve.modes,
+        "modes": upright.modes,
         "ropelength": fine.length / thickness(fine),
         "writhe": writhe,
         "average_crossing_number": crossings,
         "version": row.version,
         "command": _command(row),
         "folder": folder_name(row.name, row.start),
-        "coefficients": curve.as_lists,
+        "fourier": upright.as_lists,
     }
 
 

@@ -25,7 +25,7 @@ def picture(folder: Folder, name: str, minimum: Mapping[str, Any], look: str) ->
     if look == NO_LOOK:
         return None
     size = LARGE if minimum["number"] == 1 else SMALL
-    shown = json.dumps([minimum["coefficients"], look, size, SAMPLES])
+    shown = json.dumps([minimum["fourier"], look, size, SAMPLES])
     path = f"pictures/{name}-{minimum['number']}-{hashlib.sha256(shown.encode()).hexdigest()[:10]}.jpg"
     if not folder.keep(path):
         curve = curve_of(minimum)

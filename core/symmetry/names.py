@@ -23,8 +23,9 @@ def schoenflies(matrices: FloatArray) -> str:
     """
     table = multiplication(matrices)
     proper = np.linalg.det(matrices) > 0.0
-    count, n = int(np.count_nonzero(proper)), max(_order(table, g) for g in np.flatnonzero(proper).tolist())
-    mirrors = int(np.count_nonzero(~proper & (np.trace(matrices, axis1=1, axis2=2) > 0.5)))
+    count, n = int(np.count_nonzero(proper)), max(order_of(table, g) for g in np.flatnonzero(proper).tolist())
+    improper = zip(np.flatnonzero(~proper).tolist(), np.trace(matrices[~proper], axis1=1, axis2=2), strict=True)
+    mirrors = sum(trace > 0.0 and order_of(table, g) == 2 for g, trace in improper)  # an inversion has -3
     if (count, n) in _POLYHEDRAL:
         more = "" if proper.all() else "h" if (count, mirrors) != (12, 6) else "d"
         return _POLYHEDRAL[count, n] + more
@@ -37,7 +38,7 @@ def schoenflies(matrices: FloatArray) -> str:
     return f"C{n}v" if mirrors == n else f"C{n}h" if mirrors else f"S{2 * n}"
 
 
-def _order(table: IntArray, element: int) -> int:
+def order_of(table: IntArray, element: int) -> int:
     power, order = element, 1
     while power:
         power, order = int(table[power, element]), order + 1

@@ -3,19 +3,23 @@
 import csv
 import hashlib
 import json
+import re
 import shutil
 import subprocess
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from batch_results import write_run
 from mobius_flow.addon.pictures import export
 from mobius_flow.cli.atlas import data, entries, pages, pictures
 from mobius_flow.core import MobiusFlowError, RelaxOptions, minimize, read_curve
 from mobius_flow.core.knots import knot, knot_type
-from mobius_flow.core.smooth.rest import Rest, at_rest
+from mobius_flow.core.smooth.rest import Rest, at_rest, energy_of
+from mobius_flow.core.symmetry import symmetries
 
 HIGHER = 2.0  # energy above the least
 
@@ -80,16 +84,34 @@ def test_minima_are_counted_measured_and_described(atlas, tmp_path: Path, trefoi
     assert short["energy"] == data.rounded(trefoil.energy, trefoil.error)
     for suffix in (".vect", ".json"):
         assert knot_type(read_curve(place / f"data/curves/3_1-1{suffix}")).names == ("3_1",)
-    fourier = entries.curve_of(json.loads((place / "data/fourier/3_1.json").read_text())["minima"][0])
+    downloaded = json.loads((place / "data/curves/3_1-1.json").read_text())
+    fourier = entries.curve_of(downloaded)
     assert fourier.modes == trefoil.curve.modes
+    assert energy_of(fourier, 8) == pytest.approx(downloaded["energy"])
+    upright = symmetries(fourier.polygon(fourier.sizes))
+    assert max(np.abs(each @ [0.0, 0.0, 1.0])[2] for each in upright.matrices[1:]) == pytest.approx(1.0)
     package = json.loads((place / "data/datapackage.json").read_text())
     for resource in package["resources"]:
         described = [field["name"] for field in resource["schema"]["fields"]]
         assert described == [*table(place / "data" / resource["path"])[0]]
+    with zipfile.ZipFile(place / data.ARCHIVE) as archive:
+        packed = {name.partition("/")[2]: archive.read(name) for name in archive.namelist()}
+    there = [path for path in place.glob("data/**/*.*") if path != place / data.ARCHIVE]
+    assert packed == {path.relative_to(place / "data").as_posix(): path.read_bytes() for path in there}
+    citation = yaml.safe_load(packed["CITATION.cff"])
+    assert (citation["type"], citation["license"]) == ("dataset", package["licenses"][0]["name"])
     index, page = ((place / name).read_text() for name in ("index.html", "knots/3_1.html"))
     assert 'data-name="3_1"' in index
-    assert page.count("<tr><td>") == 2
+    assert page.count('class="bar"') == 2
     assert f"{100 * HIGHER / trefoil.energy:.3f} %" in page
+
+
+def test_links_lead_to_files(atlas, tmp_path: Path) -> None:
+    atlas()
+    for page in tmp_path.glob("atlas/**/*.html"):
+        links = re.findall(r'(?:href|src)="(.*?)"', page.read_text())
+        assert len(links) > 5
+        assert [link for link in links if not (page.parent / link).is_file()] == []
 
 
 def test_the_second_time_nothing_is_made(atlas, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -206,9 +228,10 @@ def test_energies_are_rounded_to_their_errors() -> None:
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="a browser")
 def test_the_index_is_sorted_and_filtered_in_a_browser(tmp_path: Path) -> None:
-    rows = "".join(f'<tr data-name="{name}"><td data-value="{value}"></td></tr>' for name, value in ORDER)
+    rows = "".join(f'<tr data-name="{name}"><td {value}></td></tr>' for name, value in ORDER)
     script = (Path(pages.__file__).parent / "sort.js").read_text(encoding="utf-8")
     done = """
+        document.querySelector("button").click();
         document.querySelector("button").click();
         const filter = document.getElementById("filter");
         filter.value = "7_, l6";
@@ -220,8 +243,9 @@ def test_the_index_is_sorted_and_filtered_in_a_browser(tmp_path: Path) -> None:
     command = ["chromium", *options.split(), f"--user-data-dir={tmp_path}/profile", "--dump-dom", page.as_uri()]
     shown = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
     found = [part.split('"')[0] for part in shown.split('data-name="')[1:]]
-    assert found == ["7_1", "3_1", "L6a4", "10_1"]
-    assert [f'data-name="{name}" hidden' in shown for name in found] == [False, True, False, True]
+    assert found == ["10_1", "L6a4", "3_1", "7_1", "9_1"]  # falling, and what is empty at the end
+    assert [f'data-name="{name}" hidden' in shown for name in found] == [True, False, True, False, True]
 
 
-ORDER = (("3_1", 2), ("7_1", -1), ("10_1", 30), ("L6a4", 4.5))
+VALUES = {"3_1": 2, "9_1": None, "7_1": -1, "10_1": 30, "L6a4": 4.5}
+ORDER = [(name, "" if value is None else f'data-value="{value}"') for name, value in VALUES.items()]

@@ -4,6 +4,7 @@ import argparse
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,13 +37,14 @@ def test_every_result_has_its_picture_name_and_energy(
     titles: list[str] = []
     write_page = gallery._write_page
 
-    def draw(path: Path, curve: Curve, width: int, height: int, look: str | None, samples: int) -> None:
+    def draw(path: Path, curve: Curve, width: int, height: int, look: str, *, cut_out: bool) -> None:
+        assert cut_out
         drawn.append(curve)
-        image.imsave(path, np.full((height, width, 3), 0.1 * len(drawn)))
+        image.imsave(path, np.dstack([np.full((height, width, 3), 0.1 * len(drawn)), np.ones((height, width))]))
 
-    def spied(path: str, given: list[str], pictures: list[Path], size: int) -> None:
+    def spied(path: str, given: list[str], *more: Any) -> None:
         titles.extend(given)
-        write_page(path, given, pictures, size)
+        write_page(path, given, *more)
 
     monkeypatch.setattr(export, "require_blender", lambda: None)
     monkeypatch.setattr(export, "write_picture", draw)
@@ -54,6 +56,8 @@ def test_every_result_has_its_picture_name_and_energy(
     assert np.array_equal(drawn[1].vertices, CURVES["knot-2"].vertices)
     page = image.imread(tmp_path / "page.png")
     assert [np.isclose(page[..., :3], 0.1 * k, atol=0.01).all(axis=2).sum() > 20_000 for k in (1, 2, 3)] == [True] * 3
+    edge = np.concatenate([page[0], page[-1], page[:, 0], page[:, -1]])
+    assert np.ptp(edge, axis=0).max() == 0.0  # pictures fade into one ground
 
 
 def test_only_what_is_named_is_shown_in_that_order(results: Path) -> None:

@@ -33,6 +33,7 @@ GENERATORS = {
     "C2h": [Z, FLAT],
     "S4": [FLAT @ about_z(1 / 4)],
     "S6": [FLAT @ about_z(1 / 6)],
+    "S10": [FLAT @ about_z(1 / 10)],
     "D2": [Z, X],
     "D7": [about_z(1 / 7), X],
     "D2h": [Z, X, INVERSION],
@@ -82,7 +83,7 @@ CURVES = {
     "D3": lambda: torus_knot(2, 3, 100),  # not a multiple of three
     "D9": lambda: torus_knot(2, 9),
     "S4": lambda: smooth_knot("4_1"),
-    "C5h": lambda: smooth_knot("10_123"),
+    "S10": lambda: smooth_knot("10_123"),
     "D2d": lambda: smooth_knot("L2a1"),
     "Th": lambda: ellipses(50),
     "D2h": lambda: Curve(regular_polygon(40).vertices * [1.0, 0.5, 0.0]),
