@@ -31,11 +31,16 @@ from .progress import bar
 
 SIZE = 300  # pixels of a picture's side
 LARGEST = 4000
-INCHES, FOOT = 2.4, 0.4  # of a picture's side, and of the lines below it
+INCHES, CELL, FOOT = (
+    2.9,
+    2.4,
+    0.4,
+)  # of a picture's side, of its place, which it overlaps, and of the lines below
 MARGIN, HEAD = 0.8, 0.6  # inches around all, and of the line above it
 ASPECT = 0.75  # of the page, about
-FADED = 0.1  # of a picture's side
+FADED = 0.34  # of a picture's side: from there shadows fade, to its end
 HOLDING = {"avoid", "pins"}  # options that Möbius images do not keep
+_ENERGY = r"$\iint\,\frac{1}{|\gamma(s)-\gamma(t)|^2}-\frac{1}{d(s,t)^2}\;\mathrm{d}s\,\mathrm{d}t$"
 _INKS = (("#e7e3da", "#9a958b"), ("#1d1c1a", "#6d6a64"))  # on dark and on light ground
 _EPILOG = """\
 examples:
@@ -152,23 +157,29 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
     from matplotlib.image import imread
 
     columns = round(math.sqrt(ASPECT * len(pictures))) or 1
-    width = INCHES * columns + 2.0 * MARGIN
-    height = (INCHES + FOOT) * math.ceil(len(pictures) / columns) + (2.0 * MARGIN + HEAD if head else MARGIN)
+    above = MARGIN + (HEAD if head else 0.0)
+    width = CELL * columns + 2.0 * MARGIN
+    height = (CELL + FOOT) * math.ceil(len(pictures) / columns) + above + MARGIN
     ground = [1.055 * value ** (1.0 / 2.4) - 0.055 for value in LOOKS[look].floor]  # in the standard's colours
     figure = figure_class()(figsize=(width, height), facecolor=ground)
     ink, faint = _INKS[min(ground) > 0.5]
-    words = {"ha": "center", "family": ["STIXGeneral", "DejaVu Sans"], "math_fontfamily": "stix"}
+
+    def write(x: float, y: float, text: str, points: float, color: str) -> None:
+        family = ["STIXGeneral", "DejaVu Sans"]
+        figure.text(x / width, y / height, text, None, size=points, color=color, ha="center", family=family)
+
     if head:
-        figure.text(0.5, 1.0 - (MARGIN + 0.5 * HEAD) / height, head, fontsize=24, color=ink, va="center", **words)
+        write(0.5 * width, height - MARGIN, head, 24.0, ink)
+        write(0.5 * width, 0.6 * MARGIN, _ENERGY, 11.0, faint)
     for k, (title, picture) in enumerate(zip(titles, pictures, strict=True)):
-        x, y = MARGIN + INCHES * (k % columns), height - MARGIN - HEAD * bool(head) - (INCHES + FOOT) * (k // columns)
-        axes = figure.add_axes((x / width, (y - INCHES) / height, INCHES / width, INCHES / height))
+        x, y = MARGIN + CELL * (k % columns + 0.5), height - above - CELL * 0.5 - (CELL + FOOT) * (k // columns)
+        corner = (x - 0.5 * INCHES) / width, (y - 0.5 * INCHES) / height
+        axes = figure.add_axes((*corner, INCHES / width, INCHES / height))
         axes.set_axis_off()
         axes.imshow(_faded(imread(picture)))
-        for line, down, points, colour in zip(title.split("\n"), (0.08, 0.28), (15, 9.5), (ink, faint), strict=False):
-            figure.text(
-                (x + 0.5 * INCHES) / width, (y - INCHES - down) / height, line, fontsize=points, color=colour, **words
-            )
+        name, _, more = title.partition("\n")
+        write(x, y - 0.5 * CELL - 0.08, name, 15.0, ink)
+        write(x, y - 0.5 * CELL - 0.28, more, 9.5, faint)
     with writing(path) as temporary:
         figure.savefig(temporary, dpi=size / INCHES)
 
@@ -176,6 +187,9 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
 def _faded(image: FloatArray) -> FloatArray:
     """A picture, of shape (n, n, 4), whose shadows end before it does."""
     n = len(image)
-    inside = np.clip(np.minimum(np.arange(n), np.arange(n)[::-1]) / (FADED * n), 0.0, 1.0)
-    window = inside**2 * (3.0 - 2.0 * inside)
-    return np.concatenate([image[..., :3], image[..., 3:] * (window[:, None] * window)[..., None]], axis=2)
+    x = (np.arange(n) + 0.5) / n - 0.5
+    inside = np.clip((0.5 - np.hypot(x, x[:, None])) / (0.5 - FADED), 0.0, 1.0)
+    alpha = image[..., 3]
+    around = np.median(np.concatenate([alpha[0], alpha[-1], alpha[:, 0], alpha[:, -1]]))
+    alpha = (alpha - around).clip(0.0) / max(1.0 - around, 1e-9) * inside**2 * (3.0 - 2.0 * inside)
+    return np.concatenate([image[..., :3], alpha[..., None]], axis=2)

@@ -76,3 +76,19 @@ def termination_raises(error: BaseException) -> Iterator[None]:
     finally:
         for number in ours:
             signal.signal(number, signal.SIG_DFL)
+
+
+@contextmanager
+def signals_wait() -> Iterator[None]:
+    """Let signals wait until the end of a block in which others lose what handlers raise."""
+    here = threading.current_thread() is threading.main_thread()
+    numbers = [number for number in (signal.SIGINT, *_SIGNALS) if here and callable(signal.getsignal(number))]
+    waiting: list[int] = []
+    handlers = {number: signal.signal(number, lambda number, _: waiting.append(number)) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        for number in waiting:
+            signal.raise_signal(number)

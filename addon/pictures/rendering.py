@@ -10,6 +10,7 @@ from pathlib import Path
 
 import bpy
 
+from ...core.deadline import signals_wait
 from .looks import Look
 
 FRAME_RATE = 24
@@ -124,7 +125,10 @@ def is_rendering() -> bool:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep the lines that Blender and graphics drivers print, past Python, out of standard output and error."""
+    """Keep the lines that Blender and graphics drivers print, past Python, out of standard output and error.
+
+    Signals wait: what their handlers raise is lost in Cycles' own Python.
+    """
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.flush()
@@ -133,7 +137,8 @@ def quiet() -> Iterator[None]:
     try:
         for number in (1, 2):
             os.dup2(sink, number)
-        yield
+        with signals_wait():
+            yield
     finally:
         for number, descriptor in zip((1, 2), saved, strict=True):
             os.dup2(descriptor, number)

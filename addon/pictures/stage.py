@@ -16,7 +16,7 @@ from .materials import material
 _WIDTH = 60.0  # of the floor: the camera sees no end of it
 _ELEVATIONS = np.arange(36.0, 69.0, 4.0)  # degrees: over the horizon, and not so steep that shadows hide
 _ABOVE = np.radians(89.5)  # a camera at 90 would not know what is upright
-_WIDE = 1.4  # for shadows
+_WIDE = 1.7  # for shadows
 _STEP = 10.0  # degrees, from one direction that is tried to the next
 _ACROSS = 0.2  # what it is worth that a motion is wide in the picture
 _TINY = 1e-300

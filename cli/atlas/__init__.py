@@ -21,13 +21,13 @@ examples:
   mobius-flow atlas results -o atlas
   mobius-flow gallery atlas -o poster.png --only 3_1,4_1,5_1,5_2
 
-Runs count that ended, by a trajectory that verify accepts, as a proved knot or link of the table, of whatever kind they
-began as, and whose smooth shape batch found; mirror images are turned over. Those of equal energy, whose shapes are the
-same up to Möbius maps and isometries, have met the same minimum.
+Runs count that ended, by a trajectory that verify accepts, as a knot or link of the table, which is proved or was made
+by that name, and whose smooth shape batch found; mirror images are turned over. Those of equal energy, whose shapes are
+the same up to Möbius maps and isometries, have met the same minimum.
 
-DIR has pages (index.html), and in DIR/data tables, curves and their description. The same command again does what is
-new. Only what atlas wrote is replaced or removed; DIR/SHA256SUMS lists it. Pictures need Blender's Python module, and
-take some ten seconds of processor time each.
+DIR has pages (index.html), and in DIR/data tables, curves and their description, also as one archive to be deposited.
+The same command again does what is new. Only what atlas wrote is replaced or removed; DIR/SHA256SUMS lists it. Pictures
+need Blender's Python module, and take some ten seconds of processor time each.
 
 exit status: 0; 2 where no run counts, files of others are in the way, or DIR cannot be written; 130 interrupted
 """

@@ -73,11 +73,16 @@ class Runs:
             return
         if not (row.certified and row.verified):
             self.left_out[CHECKED].append(folder.name)
-        elif not (name and row.proved):
+        elif not name or not (row.proved or _as_it_began(row)):
             self.left_out[PROVED].append(folder.name)
         else:
             curve = curve.mirrored if mirrored else curve
             self.by_type[name].append(Run(row, curve, json.dumps(report["files"])))
+
+
+def _as_it_began(row: Row) -> bool:
+    """Whether a run, which is proved to keep its type, began as the curve that the table makes of that type's name."""
+    return row.kind != "file" and row.name == row.type_before == row.type_after
 
 
 def _order(run: Run) -> tuple[str, int, str]:

@@ -40,7 +40,10 @@ def test_every_result_has_its_picture_name_and_energy(
     def draw(path: Path, curve: Curve, width: int, height: int, look: str, *, cut_out: bool) -> None:
         assert cut_out
         drawn.append(curve)
-        image.imsave(path, np.dstack([np.full((height, width, 3), 0.1 * len(drawn)), np.ones((height, width))]))
+        picture = np.full((height, width, 4), 0.1 * len(drawn))
+        picture[..., 3] = 0.1  # the faintest shadow
+        picture[height // 4 : -height // 4, width // 4 : -width // 4, 3] = 1.0
+        image.imsave(path, picture)
 
     def spied(path: str, given: list[str], *more: Any) -> None:
         titles.extend(given)
@@ -55,7 +58,7 @@ def test_every_result_has_its_picture_name_and_energy(
     assert bending(drawn[0]) < bending(CURVES["knot"])  # balanced, as it has converged
     assert np.array_equal(drawn[1].vertices, CURVES["knot-2"].vertices)
     page = image.imread(tmp_path / "page.png")
-    assert [np.isclose(page[..., :3], 0.1 * k, atol=0.01).all(axis=2).sum() > 20_000 for k in (1, 2, 3)] == [True] * 3
+    assert [np.isclose(page[..., :3], 0.1 * k, atol=0.01).all(axis=2).sum() > 15_000 for k in (1, 2, 3)] == [True] * 3
     edge = np.concatenate([page[0], page[-1], page[:, 0], page[:, -1]])
     assert np.ptp(edge, axis=0).max() == 0.0  # pictures fade into one ground
 

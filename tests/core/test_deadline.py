@@ -1,10 +1,13 @@
 """Time limits: they are kept in the middle of steps, and what was reached is kept too."""
 
 import itertools
+import os
+import signal
+from contextlib import suppress
 
 import pytest
 from mobius_flow.core import RelaxOptions, Status, WithOutcome, minimize, relax
-from mobius_flow.core.deadline import TimeIsUp, TimeLimit, check_time
+from mobius_flow.core.deadline import TimeIsUp, TimeLimit, check_time, signals_wait
 from mobius_flow.core.driver.loop import within
 from shapes import torus_trefoil
 
@@ -78,3 +81,22 @@ def test_a_generous_limit_changes_nothing():
     assert minimize(TREFOIL, RelaxOptions(time_limit=1e9, **options)).energies == (
         minimize(TREFOIL, RelaxOptions(**options)).energies
     )
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_waits_where_what_it_raises_would_be_lost(number: signal.Signals) -> None:
+    def leave(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(number, leave)
+    passed = []
+    try:
+        with pytest.raises(KeyboardInterrupt), signals_wait():  # noqa: PT012
+            with suppress(KeyboardInterrupt):  # as Blender does
+                signal.raise_signal(number)
+            passed.append("rendered")
+        assert passed == ["rendered"]
+        assert signal.getsignal(number) is leave
+    finally:
+        signal.signal(number, before)

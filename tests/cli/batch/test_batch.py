@@ -71,6 +71,16 @@ def test_rows_and_folders(batch: Batch, ring: Path, tmp_path: Path, capsys: pyte
     }
 
 
+def test_what_another_batch_has_done_meanwhile_is_not_done_again(
+    batch: Batch, ring: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (row,) = batch(ring, *TINY)
+    made = json.loads((tmp_path / "out/ring/report.json").read_text())["recipe"]
+    monkeypatch.setattr(single, "_relaxed", None)
+    found = single.relaxed(Job(file=str(ring), folder=str(tmp_path / "out/ring"), **made))
+    assert str(found.energy) == row["energy"]
+
+
 def test_the_first_start_is_the_input_and_others_are_scrambled(batch: Batch, ring: Path, tmp_path: Path) -> None:
     batch(ring, "--starts", 3, "--vertices", 12, "--max-iterations", 0)
     given, *starts = (read_curve(tmp_path / f"out/{name}/curve.txt").vertices for name in ("ring", "ring-2", "ring-3"))
