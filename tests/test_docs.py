@@ -3,6 +3,8 @@
 import doctest
 import importlib
 import re
+import runpy
+import shutil
 import sys
 import tomllib
 from pathlib import Path
@@ -130,3 +132,18 @@ def test_the_readme_has_both_commands():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     for marker in ("main command", "test command"):
         assert re.search(rf"<!-- {marker} -->\n\n    \S", readme)
+
+
+@pytest.mark.parametrize("made", [True, False])
+def test_the_site_takes_in_the_pages_of_an_atlas(made, tmp_path):
+    pytest.importorskip("sphinx")
+    for name in ("docs/conf.py", "blender_manifest.toml"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    if made:
+        (tmp_path / "build/site/atlas").mkdir(parents=True)
+    tags = set()
+    found = runpy.run_path(str(tmp_path / "docs/conf.py"), {"tags": tags})
+    assert (found.get("html_extra_path"), tags) == (
+        ([str(tmp_path / "build/site")], {"atlas"}) if made else (None, set())
+    )

@@ -16,7 +16,7 @@ from .entries import Values, curve_of
 from .folder import Folder
 
 TITLE = "Curves at rest under the Möbius energy"
-CURVES = {".json": "JSON with Fourier series", ".vect": "VECT"}
+CURVES = (".json", ".vect")
 ARCHIVE = "data/moebius-energy-atlas.zip"
 _FROM = ("number", "modes", "kinds", "version", "command", "folder")  # columns that atlas.csv leaves out
 _ABSTRACT = """\

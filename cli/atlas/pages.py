@@ -15,20 +15,20 @@ from .folder import Folder
 
 _ASSETS = ("style.css", "sort.js")
 _MEASURES = {"ropelength": "ropelength", "writhe": "writhe", "average_crossing_number": "average crossing number"}
-_HEADS = ("", "type", "least energy known", "proved ≤", "proved ≥", "minima", "saddles", "met", "symmetry")
-_KINDS = ("", "energy", "above the least", "at rest", "met", "from", "symmetry", *_MEASURES.values(), "curve")
+_SHORT = ("symmetry", "ropelength", "writhe", "crossings")
+_HEADS = ("", "type", "least energy known", "proved ≤", "proved ≥", "minima", "saddles", "met", *_SHORT)
+_KINDS = ("", "energy", "above the least", "at rest", "met", "from", *_SHORT, "curve")
 
 
 def write(folder: Folder, entries: Sequence[Values]) -> None:
     """Write the index and the page of each entry."""
     for asset in _ASSETS:
         folder.put(asset, files(__package__).joinpath(asset).read_text(encoding="utf-8"))
-    words = [*_HEADS, *_MEASURES.values()]
     index = template("index.html").format(
         title=TITLE,
         types=len(entries),
         runs=sum(entry["runs"] for entry in entries),
-        heads=_heads(f"<button>{word}</button>" if word else "" for word in words),
+        heads=_heads(f"<button>{word}</button>" if word else "" for word in _HEADS),
         rows="\n".join(_index_row(entry, place) for place, entry in enumerate(entries)),
     )
     _put(folder, "index.html", TITLE, index)
@@ -89,7 +89,7 @@ def _knot_row(entry: Values, minimum: Values) -> str:
     least = entry["minima"][0]["energy"]
     kinds = ", ".join(f"{count} {kind}" for kind, count in minimum["kinds"].items())
     share = round(100 * minimum["met"] / entry["runs"])
-    curves = (f'<a href="../data/{curve_path(entry, minimum, suffix)}">{word}</a>' for suffix, word in CURVES.items())
+    curves = (f'<a href="../data/{curve_path(entry, minimum, suffix)}">{suffix[1:].upper()}</a>' for suffix in CURVES)
     cells = [
         _picture(minimum, "../"),
         _energy(minimum),
