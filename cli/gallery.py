@@ -36,7 +36,7 @@ INCHES, CELL, FOOT = (
     2.4,
     0.4,
 )  # of a picture's side, of its place, which it overlaps, and of the lines below
-MARGIN, HEAD = 0.8, 0.6  # inches around all, and of the line above it
+MARGIN, HEAD = 0.8, 0.6  # inches around all, and of a line above and one below
 ASPECT = 0.75  # of the page, about
 FADED = 0.34  # of a picture's side: from there shadows fade, to its end
 HOLDING = {"avoid", "pins"}  # options that Möbius images do not keep
@@ -157,22 +157,22 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
     from matplotlib.image import imread
 
     columns = round(math.sqrt(ASPECT * len(pictures))) or 1
-    above = MARGIN + (HEAD if head else 0.0)
+    outside = MARGIN + (HEAD if head else 0.0)
     width = CELL * columns + 2.0 * MARGIN
-    height = (CELL + FOOT) * math.ceil(len(pictures) / columns) + above + MARGIN
+    height = (CELL + FOOT) * math.ceil(len(pictures) / columns) + 2.0 * outside
     ground = [1.055 * value ** (1.0 / 2.4) - 0.055 for value in LOOKS[look].floor]  # in the standard's colours
     figure = figure_class()(figsize=(width, height), facecolor=ground)
     ink, faint = _INKS[min(ground) > 0.5]
 
     def write(x: float, y: float, text: str, points: float, color: str) -> None:
-        family = ["STIXGeneral", "DejaVu Sans"]
-        figure.text(x / width, y / height, text, None, size=points, color=color, ha="center", family=family)
+        words = {"size": points, "color": color, "ha": "center", "family": ["STIXGeneral", "DejaVu Sans"]}
+        figure.text(x / width, y / height, text, math_fontfamily="stix", **words)
 
     if head:
-        write(0.5 * width, height - MARGIN, head, 24.0, ink)
-        write(0.5 * width, 0.6 * MARGIN, _ENERGY, 11.0, faint)
+        write(0.5 * width, height - MARGIN - 0.3, head, 24.0, ink)
+        write(0.5 * width, MARGIN, _ENERGY, 14.0, faint)
     for k, (title, picture) in enumerate(zip(titles, pictures, strict=True)):
-        x, y = MARGIN + CELL * (k % columns + 0.5), height - above - CELL * 0.5 - (CELL + FOOT) * (k // columns)
+        x, y = MARGIN + CELL * (k % columns + 0.5), height - outside - CELL * 0.5 - (CELL + FOOT) * (k // columns)
         corner = (x - 0.5 * INCHES) / width, (y - 0.5 * INCHES) / height
         axes = figure.add_axes((*corner, INCHES / width, INCHES / height))
         axes.set_axis_off()
