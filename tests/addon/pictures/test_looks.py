@@ -8,7 +8,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 from mobius_flow.addon.engine import playing
 from mobius_flow.addon.engine.motion import Key, Keys
-from mobius_flow.addon.pictures import film, rendering, staging
+from mobius_flow.addon.pictures import export, film, rendering, staging
 from mobius_flow.addon.pictures.looks import LOOKS
 from mobius_flow.core import Curve
 from shapes import hopf_link, regular_polygon, torus_trefoil
@@ -103,3 +103,17 @@ def test_a_shape_that_stands_upright_is_not_seen_from_its_edge():
     bpy.context.view_layer.update()
     backward = np.array(scene.camera.matrix_world.col[2][:3])
     assert abs(backward[1]) > 0.7
+
+
+@pytest.mark.parametrize("look", ["PAPER", "STUDIO"])
+def test_cut_out_there_is_nothing_but_the_curve_from_above_and_its_shadow(look, tmp_path):
+    export.write_picture(tmp_path / "a.png", regular_polygon(40), 64, 64, look, 4, cut_out=True)
+    image = bpy.data.images.load(str(tmp_path / "a.png"))
+    picture = np.array(image.pixels[:]).reshape(64, 64, 4)
+    distance = np.hypot(*(np.indices((64, 64)) - 31.5))
+    tube = picture[..., 3] > 0.98
+    assert 0.8 < distance[tube].min() / distance[tube].max() < 1.0  # a circle, and in the middle
+    assert picture[[0, 0, -1, -1], [0, -1, 0, -1], 3].max() < 0.2
+    shadow = picture[~tube & (distance < 0.8 * distance[tube].min())]
+    assert shadow[:, :3].max() < 0.02
+    assert shadow[:, 3].min() < 0.9

@@ -6,7 +6,7 @@ from mobius_flow.core import Curve, CurveError, OptionError, RelaxOptions, minim
 from mobius_flow.core.curve.moebius_map import moebius_image
 from mobius_flow.core.driver.interventions.balance import balanced
 from mobius_flow.core.knots import smooth_knot, torus_knot
-from mobius_flow.core.symmetry import SymmetryGroup, symmetries
+from mobius_flow.core.symmetry import SymmetryGroup, standing, symmetries
 from mobius_flow.core.symmetry.names import schoenflies
 from scipy.spatial.transform import Rotation
 from shapes import chain_of_rings, half_circle, regular_polygon
@@ -211,3 +211,24 @@ def test_curves_without_groups_are_refused(curve: Curve, said: str) -> None:
 def test_tolerances_are_checked() -> None:
     with pytest.raises(OptionError, match="tolerance is 0"):
         symmetries(torus_knot(2, 3), 0.0)
+
+
+UPRIGHT_ELEMENTS = {"D3": 6, "S4": 4, "Th": 6, "D4h": 16}  # that keep the third axis, either way up
+
+
+@pytest.mark.parametrize("name", [*UPRIGHT_ELEMENTS, "D2", "D2h", "C1"])
+def test_curves_stand_on_their_axis_of_highest_order(name: str) -> None:
+    curve = hidden(CURVES[name]())
+    group = symmetries(curve)
+    turn = standing(curve, group)
+    assert turn @ turn.T == pytest.approx(np.eye(3), abs=1e-9)
+    assert np.linalg.det(turn) > 0.0
+    stood = turn @ group.matrices @ turn.T
+    points = (curve.vertices - group.centre) @ turn.T
+    if name in UPRIGHT_ELEMENTS:
+        assert np.count_nonzero(np.abs(stood[:, 2, 2]) > 0.99) == UPRIGHT_ELEMENTS[name]
+    else:
+        assert np.square(points).sum(axis=0).argmin() == 2
+    if name.startswith("D"):  # one of order two is upwards
+        assert any(np.allclose(each, np.diag([-1.0, 1.0, -1.0]), atol=0.05) for each in stood)
+        assert points[:, 1].max() > -points[:, 1].min() - 1e-6
