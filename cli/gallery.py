@@ -160,13 +160,13 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
     outside = MARGIN + (HEAD if head else 0.0)
     width = CELL * columns + 2.0 * MARGIN
     height = (CELL + FOOT) * math.ceil(len(pictures) / columns) + 2.0 * outside
-    ground = [1.055 * value ** (1.0 / 2.4) - 0.055 for value in LOOKS[look].floor]  # in the standard's colours
-    figure = figure_class()(figsize=(width, height), facecolor=ground)
-    ink, faint = _INKS[min(ground) > 0.5]
+    red, green, blue = (1.055 * value ** (1.0 / 2.4) - 0.055 for value in LOOKS[look].floor)  # as screens count
+    figure = figure_class()(figsize=(width, height), facecolor=(red, green, blue))
+    ink, faint = _INKS[green > 0.5]
 
     def write(x: float, y: float, text: str, points: float, color: str) -> None:
-        words = {"size": points, "color": color, "ha": "center", "family": ["STIXGeneral", "DejaVu Sans"]}
-        figure.text(x / width, y / height, text, math_fontfamily="stix", **words)
+        shown = figure.text(x / width, y / height, text, size=points, color=color, ha="center", math_fontfamily="stix")
+        shown.set_family(["STIXGeneral", "DejaVu Sans"])
 
     if head:
         write(0.5 * width, height - MARGIN - 0.3, head, 24.0, ink)

@@ -28,7 +28,7 @@ lower ones may exist."""
 def write(folder: Folder, entries: Sequence[Values]) -> None:
     """Write the package, file by file and as an archive."""
     rows = [_row(entry, minimum) for entry in entries for minimum in entry["minima"]]
-    package = {
+    package: dict[str, str | bytes] = {
         "atlas.csv": _csv([_short(row) for row in rows if row["number"] == 1]),
         "minima.csv": _csv(rows),
         "atlas.json": _json([entry | {"minima": list(map(_without_curve, entry["minima"]))} for entry in entries]),
