@@ -166,7 +166,7 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
 
     def write(x: float, y: float, text: str, points: float, color: str) -> None:
         shown = figure.text(x / width, y / height, text, size=points, color=color, ha="center", math_fontfamily="stix")
-        shown.set_family(["STIXGeneral", "DejaVu Sans"])
+        shown.set_fontfamily(["STIXGeneral", "DejaVu Sans"])
 
     if head:
         write(0.5 * width, height - MARGIN - 0.3, head, 24.0, ink)
