@@ -40,7 +40,7 @@ MARGIN, HEAD = 0.8, 0.6  # inches around all, and of a line above and one below
 ASPECT = 0.75  # of the page, about
 FADED = 0.34  # of a picture's side: from there shadows fade, to its end
 HOLDING = {"avoid", "pins"}  # options that Möbius images do not keep
-_ENERGY = r"$\iint\,\frac{1}{|\gamma(s)-\gamma(t)|^2}-\frac{1}{d(s,t)^2}\;\mathrm{d}s\,\mathrm{d}t$"
+_ENERGY = r"$\iint\;\left(\dfrac{1}{|\gamma(s)-\gamma(t)|^2}-\dfrac{1}{d(s,t)^2}\right)\;\mathrm{d}s\,\mathrm{d}t$"
 _INKS = (("#e7e3da", "#9a958b"), ("#1d1c1a", "#6d6a64"))  # on dark and on light ground
 _EPILOG = """\
 examples:
@@ -170,7 +170,7 @@ def _write_page(path: str, titles: Sequence[str], pictures: Sequence[Path], look
 
     if head:
         write(0.5 * width, height - MARGIN - 0.3, head, 24.0, ink)
-        write(0.5 * width, MARGIN, _ENERGY, 14.0, faint)
+        write(0.5 * width, MARGIN, _ENERGY, 12.0, faint)
     for k, (title, picture) in enumerate(zip(titles, pictures, strict=True)):
         x, y = MARGIN + CELL * (k % columns + 0.5), height - outside - CELL * 0.5 - (CELL + FOOT) * (k // columns)
         corner = (x - 0.5 * INCHES) / width, (y - 0.5 * INCHES) / height
