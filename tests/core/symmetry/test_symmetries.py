@@ -83,7 +83,7 @@ CURVES = {
     "D3": lambda: torus_knot(2, 3, 100),  # not a multiple of three
     "D9": lambda: torus_knot(2, 9),
     "S4": lambda: smooth_knot("4_1"),
-    "S10": lambda: smooth_knot("10_123"),
+    "S8": lambda: smooth_knot("8_18"),
     "D2d": lambda: smooth_knot("L2a1"),
     "Th": lambda: ellipses(50),
     "D2h": lambda: Curve(regular_polygon(40).vertices * [1.0, 0.5, 0.0]),
