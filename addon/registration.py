@@ -24,7 +24,7 @@ from .sidebar import menus, panels, relax, tool
 
 # presets go into the head of the panel; the sub-panels follow in the order they are shown
 _MODULES = (
-    *(relaxing, running, mending, pinning, shape, outputs, film, adding, families, drawing, stroke, presets),
+    *(relaxing, running, mending, pinning, shape, outputs, film, adding, drawing, stroke, presets),
     *(menus, relax, panels),
 )
 # what else there is to register

@@ -7,8 +7,7 @@ import numpy as np
 
 from ...core import MobiusFlowError
 from ...core.messages import Message
-from ..curves import sampling
-from ..curves.splines import control_points
+from ..curves.splines import control_points, questions
 from ..engine.placement import Spot, at
 from ..live import registry
 from ..live.checks import RELAXABLE
@@ -103,7 +102,7 @@ class CURVE_OT_mobius_flow_sample(Button, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         try:
-            self.questions = sampling.questions(selected_curves(context))
+            self.questions = questions(selected_curves(context))
         except MobiusFlowError as error:
             return self.fail(error)
         return set(context.window_manager.invoke_props_dialog(self, width=420))

@@ -17,7 +17,7 @@ from ...core.knots.inscribed import averaged
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..curves.exchange import read_splines
-from ..engine.turning import DrawingPlane
+from ..engine.placement import DrawingPlane
 from ..live import overlay
 from ..live.requirements import Condition
 from ..translations import iface_, rpt_

@@ -9,8 +9,7 @@ from ...core import Curve, CurveError, Mesh
 from ...core.messages import Message
 from ...core.types import FloatArray
 from ..engine.placement import Frame, Link, Placement
-from . import sampling
-from .splines import coordinates, read
+from .splines import coordinates, read, sampled, smooth_splines
 
 _FAR = 1e30  # Blender clamps infinite coordinates to the largest 32-bit number
 
@@ -35,8 +34,8 @@ def closed(data: bpy.types.Curve) -> tuple[bool, ...]:
 
 def read_splines(obj: bpy.types.Object) -> list[FloatArray]:
     """The polygons of all splines in the object's coordinates, (n, 3) each; raises as `read_link` does."""
-    smooth = sampling.smooth_splines(obj.data)
-    frames = sampling.sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
+    smooth = smooth_splines(obj.data)
+    frames = sampled(obj) if smooth else [coordinates(spline) for spline in obj.data.splines]
     for k, frame in enumerate(frames, 1):
         bad = np.flatnonzero(~(np.abs(frame) < _FAR).all(axis=1))
         if bad.size:

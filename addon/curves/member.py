@@ -17,7 +17,7 @@ from ..engine.motion import Keys
 from ..engine.placement import Frame, Placement
 from . import bake, bevel, keyframes
 from .exchange import write_points
-from .fcurves import own_action
+from .keyframes import own_action
 from .moving import what_deforms
 from .reference import Reference
 from .splines import Splines, shape

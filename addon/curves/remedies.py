@@ -4,10 +4,10 @@ import bpy
 import numpy as np
 
 from ...core import Curve
-from . import bake, sampling
+from . import bake
 from .exchange import closed, write_points
 from .moving import deforms
-from .splines import Splines
+from .splines import Splines, sampled
 
 
 def make_3d(obj: bpy.types.Object) -> None:
@@ -48,7 +48,7 @@ def to_poly(obj: bpy.types.Object) -> None:
 
     Raises CurveError if no polygon is drawn for one of them; nothing is changed then.
     """
-    frames = sampling.sampled(obj)
+    frames = sampled(obj)
     drawn = Curve.from_components([frame.astype(np.float64) for frame in frames], closed(obj.data))
     Splines.of(obj.data).polygons(drawn, drawn).fill(obj.data)
     write_points(obj.data, np.concatenate(frames))

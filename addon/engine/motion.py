@@ -14,9 +14,8 @@ from ...core import Curve, Iterate, MobiusFlowError
 from ...core.curve import Mesh
 from ...core.types import FloatArray
 from ...core.verify.transition import DifferentCurveError, common_vertices
-from .interpolation import interpolated
+from .interpolation import Markers, interpolated
 from .key_options import Course, Pace, Timing
-from .markers import Markers
 from .placement import Frame, Link
 from .size import Measure, Size
 

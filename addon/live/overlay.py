@@ -15,7 +15,7 @@ from gpu_extras.batch import batch_for_shader
 from ...core.types import FloatArray
 from ..curves import pins
 from ..engine.colours import Colour, legible
-from ..engine.plot import dashes, plot
+from ..engine.rest import dashes, plot
 from ..translations import iface_
 from . import registry
 from .requirements import curves_at_hand

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import bpy
 
-from ..curves.fcurves import all_fcurves
+from ..curves.keyframes import all_fcurves
 from . import rendering
 
 Progress = Callable[[int, int], None]
