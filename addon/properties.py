@@ -10,7 +10,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core import RelaxOptions
-from ..core.option import Option, declared
+from ..core.arguments import Option, declared
 from .engine.key_options import FRAMES_PER_ITERATE, LAST_FRAME, KeyOptions, Output, Pace, Timing
 from .engine.size import Measure
 

@@ -8,7 +8,6 @@ from . import settings, translations
 from .buttons import (
     adding,
     drawing,
-    families,
     film,
     mending,
     outputs,

@@ -26,7 +26,7 @@ from .batch.table import Row
 from .curves import check_regular
 from .figures import figure_class
 from .places import check_place, writing
-from .progress import bar
+from .streams import bar
 
 SIZE = 300  # pixels of a picture's side
 LARGEST = 4000

@@ -12,7 +12,7 @@ from .streams import emit, one_line
 COMMANDS = {  # the module of each, which has add_COMMAND(parser), and what it does
     "relax": ("relax", "relax a curve"),
     "morph": ("morph", "find a proved motion from one curve to another"),
-    "same": ("same", "tell whether two curves are the same knot or link"),
+    "same": ("morph", "tell whether two curves are the same knot or link"),
     "batch": ("batch", "relax many curves, on all cores or a cluster"),
     "atlas": ("atlas", "make pages and tables of the minima that batches found"),
     "gallery": ("gallery", "show the results of a batch"),

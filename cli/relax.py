@@ -15,9 +15,8 @@ from ..core.driver import Relaxation, finish
 from ..core.errors import counted
 from . import curves, signals
 from . import options as relax_options
-from .outputs import OUTPUTS, Output, admit, output_for
-from .places import Write, check_places, is_file, kept, writing
-from .progress import progress
+from .places import OUTPUTS, Output, Write, admit, check_places, is_file, kept, output_for, writing
+from .streams import progress
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 NAMED = 4  # meshes of a run that are listed individually

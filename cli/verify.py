@@ -15,8 +15,7 @@ from ..core.errors import reason_of
 from ..core.verify import verify
 from .curves import INPUT, STREAM
 from .places import is_file
-from .progress import leg_progress
-from .streams import emit
+from .streams import emit, leg_progress
 
 MAX_BYTES = 4 << 30  # of a stream, which is copied to a temporary file: archives are read from their ends
 _PIECE = 1 << 20

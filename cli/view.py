@@ -7,8 +7,7 @@ from types import MappingProxyType
 
 from ..core import MobiusFlowError
 from ..core.errors import wrong_suffix
-from ..core.gltf import animation
-from ..core.solids import solid
+from ..core.solids import animation, solid
 from ..core.view import FRAMES, Motion, motion, page, still
 from . import curves
 from .places import check_places, writing

@@ -10,7 +10,7 @@ from .collision.gap import thickness
 from .curve import Curve
 from .curve.measures import writhe_and_crossings
 from .driver import RelaxOptions
-from .driver.interventions.saddle import stability
+from .driver.interventions.rest import stability
 from .driver.prepare import start_problem
 from .driver.run import gradient_bound
 from .energies import ENERGIES as KNOWN

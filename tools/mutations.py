@@ -80,7 +80,7 @@ MUTANTS = (
     ),
     Mutant(
         "the metric in place of second derivatives",
-        "core/descent/directions/lbfgs.py",
+        "core/descent/directions/__init__.py",
         "if self.inverse is None else self.inverse(q)",
         "",
         f"{NEWTON}::test_second_derivatives_take_over_from_gradients",
@@ -115,7 +115,7 @@ MUTANTS = (
     ),
     Mutant(
         "the first trial is the whole way to contact",
-        "core/descent/searches/trials.py",
+        "core/descent/searches/armijo.py",
         "collision_fraction: float = number(2.0 / 3.0",
         "collision_fraction: float = number(1.0",
         f"{FIRST_TRIAL}::test_the_first_trial_is_two_thirds_of_the_first_contact",
@@ -661,7 +661,7 @@ MUTANTS = (
     ),
     Mutant(
         "bigons of opposite strands",
-        "core/diagrams/simplify.py",
+        "core/diagrams/rerouting.py",
         "(following[x] == y or following[y] == x)",
         "following[x] == y",
         "tests/core/diagrams/test_moves.py::test_bigons_are_undone_whichever_way_their_strands_run",
@@ -724,7 +724,7 @@ MUTANTS = (
     ),
     Mutant(
         "heights upside down",
-        "core/passes/heights.py",
+        "core/passes/drawing.py",
         "np.where(drawing.heights[0] > drawing.heights[1], 1.0, -1.0)",
         "np.where(drawing.heights[0] > drawing.heights[1], -1.0, 1.0)",
         f"{PASSES}/test_pieces.py::test_heights_keep_the_order_at_crossings_and_what_is_held",
@@ -766,7 +766,7 @@ MUTANTS = (
     ),
     Mutant(
         "arcs that alternate",
-        "core/diagrams/simplify.py",
+        "core/diagrams/rerouting.py",
         "alternates and ENDS not in diagram.sequence",
         "alternates",
         "tests/core/diagrams/test_moves.py::test_alternating_diagrams_have_the_least_number_of_crossings",
@@ -893,7 +893,7 @@ MUTANTS = (
     ),
     Mutant(
         "the way back leaves out the ends of inner legs",
-        "core/morphing/ways.py",
+        "core/morphing/meeting.py",
         "(*here.path[-2::-1], there.curve.vertices)",
         "(there.curve.vertices,)",
         f"{MORPHING}/test_morph.py::test_every_leg_is_run_back",
@@ -1040,7 +1040,7 @@ MUTANTS = (
     ),
     Mutant(
         "samples of long curves hide their symmetry",
-        "core/symmetry/finding.py",
+        "core/symmetry/group.py",
         "tolerance + fit.coarseness",
         "tolerance",
         f"{SYMMETRY}/test_symmetries.py::test_groups_are_found_wherever_samples_lie",

@@ -1,4 +1,9 @@
-"""Values in between: on the edges of a polygon, between keys, and at markers that follow changes of its mesh."""
+"""Values in between: on the edges of a polygon, between keys, and at markers that follow changes of its mesh.
+
+Blender's keys need the same points throughout. On each mesh every vertex is a marker, and the others have places on
+edges: so all move straight where vertices do. Where a vertex is left out, its marker stays on the edge; where one is
+put in, a marker of that edge becomes it, and only if none is left, all earlier shapes get one more.
+"""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,9 @@
-"""How thick tubes may be drawn, evenly or as there is room, without running into anything; for pictures, proves nothing."""
+"""How thick tubes may be drawn, evenly or where there is room, without contact; for pictures, proves nothing.
+
+Where the radius is local the curve's corners are rounded as far as that goes. Such a curve is not quite the one that
+was proved. So the motions between the rounded keys, and the way to the first of them, are proved too, and where that
+fails the keys stay as they were.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace

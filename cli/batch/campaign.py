@@ -11,8 +11,7 @@ from ...core.errors import OptionError, OutputError
 from .. import options as relax_options
 from .. import signals
 from ..places import check_place
-from ..progress import bar
-from ..streams import emit
+from ..streams import bar, emit
 from . import cluster
 from .folder import check_replaceable, finished, sweep
 from .job import CSV, PARQUET, Job, inputs, jobs

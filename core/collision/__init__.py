@@ -1,10 +1,9 @@
 """Conservative continuous collision detection: motions of polygons that are proved free of contact."""
 
-from .answer import Contact, FreeMotion, Limit
 from .clearance import check_clear, survives_rounding
 from .embedded import check_embedded
 from .gap import check_gap, minimal_gap
-from .motion import free_motion, is_free
+from .motion import Contact, FreeMotion, Limit, free_motion, is_free
 
 __all__ = [
     "Contact",

@@ -6,7 +6,7 @@ from .diagram import Diagram, Pass, PlanarCrossing, diagram_of
 from .invariants import QuickInvariants, linking_numbers, quick_invariants, signature
 from .projection import views
 from .realize import realized
-from .simplify import factors, is_least, shuffled_down, simplified
+from .rerouting import factors, is_least, shuffled_down, simplified
 
 __all__ = [
     "Diagram",

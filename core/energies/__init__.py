@@ -5,13 +5,13 @@ from types import MappingProxyType
 
 from ..quadrature import Rule
 from .barrier import Barrier
-from .bending import Bending
 from .densities import EDGE_ENERGY, TANGENT_POINT_ENERGY, VERTEX_ENERGY, moebius_kpoint
 from .density import Density
 from .energy import Energy, Stiff, Term, TwiceDifferentiable, is_moebius_invariant
 from .kpoint import KPointEnergy
 from .moebius import MoebiusEnergy
 from .objective import Objective, Weighted
+from .pull import Bending
 
 ENERGIES: Mapping[str, Energy] = MappingProxyType(
     {

@@ -27,8 +27,7 @@ from ..quadrature import MIDPOINT, Rule
 from ..saddle import TangentSpace
 from ..saddle.iterative import IterativeTangentSpace, IterativeWholeSpace, Tolerances
 from ..saddle.krylov import conjugate_gradients, relative
-from ..saddle.models import TwoLevel
-from ..saddle.resolvent import Resolvents
+from ..saddle.models import Resolvents, TwoLevel
 from ..saddle.symbol import Circulants
 from ..types import FloatArray
 from .blocks import BlockList

@@ -12,7 +12,7 @@ from ...curve.pins import spans
 from ...curve.refine import affordable_pieces
 from ...curve.remesh import SPLIT, graded_spacing
 from ...descent import Leg, NoStep, Point, Step
-from ...descent.searches.trials import on_target
+from ...descent.searches.armijo import on_target
 from ...descent.step import attempt
 from ...energies.components import energy_scale
 from ...types import IntArray
