@@ -22,8 +22,8 @@ from .knots.names import table_name
 from .knots.shapes import least_energies
 from .smooth.rest import at_rest
 from .symmetry import SymmetryGroup, symmetries
+from .task import centred, check_units
 from .threads import BLAS
-from .units import centred, check_units
 
 ENERGIES = ("moebius", "edge", "vertex")
 PAIRS_UP_TO = 50_000  # vertices, where all pairs of edges are summed: a minute or so, growing with the square

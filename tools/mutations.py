@@ -297,7 +297,7 @@ MUTANTS = (
     ),
     Mutant(
         "vertices rounded onto obstacles",
-        "core/collision/clearance.py",
+        "core/collision/embedded.py",
         " and clears(curve, obstacles, float(1.1 * rounding))",
         "",
         "tests/core/collision/test_clearance.py::test_rounding_must_not_reach_an_obstacle",
@@ -991,7 +991,7 @@ MUTANTS = (
     ),
     Mutant(
         "ends of goals are where Blender rounds them",
-        "addon/curves/goals.py",
+        "addon/curves/blends.py",
         "    vertices[ends] = there\n",
         "",
         "tests/addon/test_morph.py::test_ends_that_are_in_one_place_but_for_rounding_are_held_there",

@@ -13,7 +13,7 @@ from ..live.checks import FILMABLE
 from ..live.modal import clear_status
 from ..live.requirements import Condition, idle, shown_curves
 from ..pictures import staging
-from ..pictures.filming import CHOICES, Filming, is_rendering, play, target
+from ..pictures.movie import CHOICES, Filming, is_rendering, play, target
 from ..scripting import Relaxation
 from ..translations import iface_, rpt_
 from .button import Button, button

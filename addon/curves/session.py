@@ -37,8 +37,8 @@ from ..engine.size import Measure
 from ..engine.words import named
 from ..engine.worker import begun
 from . import bake, bevel
+from .blends import Goals
 from .exchange import stretch
-from .goals import Goals
 from .group import Group
 from .pins import FREE, Held
 from .surroundings import NOTHING, Surroundings

@@ -15,8 +15,8 @@ from ...core.messages import Message
 from ..engine.obstacles import Surface, obstacles
 from ..engine.placement import Placement
 from ..engine.words import named
+from .exchange import Reference
 from .moving import unsteady, unsteady_object
-from .reference import Reference
 from .splines import read
 
 STAGE = "mobius_flow_stage"  # custom property of what only surrounds curves, to be seen with them

@@ -14,7 +14,7 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import spsolve
 
 from ...core import Curve, Obstacle
-from ...core.collision.clearance import clears
+from ...core.collision.embedded import clears
 from ...core.curve import Mesh
 from ...core.curve.distances import nearest_strands, strand_gaps
 from ...core.types import FloatArray

@@ -25,8 +25,7 @@ from ..engine.rest import Target, target_of
 from ..engine.worker import Worker, WorkerError
 from ..pictures.rendering import is_rendering
 from .drag import Drag
-from .key_writer import KeyWriter
-from .viewing import Refresh, looks_back
+from .viewing import KeyWriter, Refresh, looks_back
 
 _CANCELLED = Message("Cancelled; all is as it was")
 _SLICE = 0.02  # seconds of taking in iterates at a time

@@ -1,7 +1,6 @@
 """Conservative continuous collision detection: motions of polygons that are proved free of contact."""
 
-from .clearance import check_clear, survives_rounding
-from .embedded import check_embedded
+from .embedded import check_clear, check_embedded, survives_rounding
 from .gap import check_gap, minimal_gap
 from .motion import Contact, FreeMotion, Limit, free_motion, is_free
 

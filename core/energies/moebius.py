@@ -13,11 +13,10 @@ import numpy as np
 
 from ..arguments import checked_fields
 from ..curve import Curve
-from ..curve.tiles import ROWS_TIMES_COLUMNS, EdgePairIndices, pair_tiles, row_tiles
 from ..quadrature import MIDPOINT
 from ..types import FloatArray, IntArray
-from .complex_steps import change
 from .components import ComponentShares
+from .edge_pairs import ROWS_TIMES_COLUMNS, EdgePairIndices, change, pair_tiles, row_tiles
 from .moebius_hessian import hessian
 from .moebius_pairs import Edges, Pairs, PartnerSums
 

@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..curve import Curve, Mesh
-from ..curve.tiles import EdgePairIndices, Tile, pair_tiles
 from ..types import FloatArray, IntArray
+from .edge_pairs import EdgePairIndices, Tile, pair_tiles
 from .moebius_pairs import Edges, Pairs
 
 

@@ -15,7 +15,7 @@ from scipy.linalg import blas, lapack
 from scipy.sparse.linalg import SuperLU, splu
 
 from ..constraints import ConstraintDerivative
-from ..curve.tiles import ROWS_TIMES_COLUMNS
+from ..energies.edge_pairs import ROWS_TIMES_COLUMNS
 from ..types import FloatArray
 from .tangent_space import TangentSpace, WholeSpace
 

@@ -15,8 +15,7 @@ from ..curve.alignment import Freedom, alignments
 from ..curve.smooth import at_shares
 from ..errors import CurveError
 from ..types import FloatArray, IntArray
-from .action import Symmetry
-from .isometry import Fit, Isometry
+from .action import Fit, Isometry, Symmetry
 
 TURNS = 4  # of a mean that converges quadratically
 ROUNDING = 1e-9  # of an edge, which is what images of symmetric vertices are off at most

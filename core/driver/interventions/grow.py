@@ -15,8 +15,8 @@ from ...descent import Leg, NoStep, Point, Step
 from ...descent.searches.armijo import on_target
 from ...descent.step import attempt
 from ...energies.components import energy_scale
+from ...task import Units
 from ...types import IntArray
-from ...units import Units
 from ..outcome import Outcome
 from ..run import Change, Event, Intervention, Run
 from .remesh import FinerMesh, split_edges
