@@ -3,7 +3,7 @@
 import argparse
 import json
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -144,13 +144,8 @@ def write_results(
     options: argparse.Namespace, output: Output, result: Result, iterates: list[Iterate], origin: Mapping[str, object]
 ) -> None:
     """Write every requested output, and say on standard error how the run ended, unless it is to be quiet."""
-    _write_all(_jobs(options, output, result, iterates, origin))
-    if not options.quiet:
-        print(_summary(result, falls="to" not in origin), file=sys.stderr)
-
-
-def _write_all(jobs: Iterable[_Job]) -> None:
-    """Write report, trajectory and curve or scene: the others are written all the same where one cannot be."""
+    # write report, trajectory and curve or scene: the others are written all the same where one cannot be
+    jobs = _jobs(options, output, result, iterates, origin)
     failures: list[str] = []
     interrupted = False
     for job in sorted(jobs, key=lambda job: job.slow):
@@ -165,6 +160,8 @@ def _write_all(jobs: Iterable[_Job]) -> None:
     if failures:
         raise MobiusFlowError("; ".join(failures))
     signals.allow()
+    if not options.quiet:
+        print(_summary(result, falls="to" not in origin), file=sys.stderr)
 
 
 def _jobs(

@@ -103,9 +103,6 @@ class Task:
         walls = {wall.key: wall for wall in self.obstacles}  # one that is given twice would repel twice
         object.__setattr__(self, "obstacles", tuple(walls.values()))
         object.__setattr__(self, "pins", tuple(map(int, self.pins)))
-        self._check_pins()
-
-    def _check_pins(self) -> None:
         pin, times = max(Counter(self.pins).items(), key=itemgetter(1), default=(0, 0))
         if times > 1:
             raise OptionError(f"pins names vertex {pin + 1} more than once")

@@ -74,7 +74,8 @@ class CURVE_OT_mobius_flow_draw_knot(DrawsKnot, bpy.types.Operator):
         """Lift the drawing and add it as a new object."""
         drawn = selected_curves(context)
         self.check_lengths()
-        curve = _read(drawn)
+        # the drawing in world space; open splines, such as strokes, are closed by their chords
+        curve = Curve.from_components(read_link(drawn)[0].components)
         plane = DrawingPlane.of(curve)
         drawing = Drawing.of(plane.flattened(curve))
         lifted = self._lifted(drawing)
@@ -103,11 +104,6 @@ class CURVE_OT_mobius_flow_draw_knot(DrawsKnot, bpy.types.Operator):
         for name in ("mirror", "height", "number", "hide_drawing", "color_components"):
             layout.prop(self, name)
         self.draw_tube(layout)
-
-
-def _read(objects: list[bpy.types.Object]) -> Curve:
-    """The drawing in world space; open splines, such as strokes, are closed by their chords."""
-    return Curve.from_components(read_link(objects)[0].components)
 
 
 def described(curve: Curve, crossings: int) -> tuple[str, Message]:

@@ -199,16 +199,13 @@ def _drawn(data: bpy.types.Curve) -> list[Frame]:
         copy.bevel_mode, copy.bevel_object, copy.taper_object = "ROUND", None, None
         copy.bevel_depth = copy.extrude = copy.offset = 0.0
         copy.bevel_factor_start, copy.bevel_factor_end = 0.0, 1.0
-        return _loops(bare.to_mesh())
+        # the chains of a mesh: vertices one after the other, each joined to the next
+        mesh = bare.to_mesh()
+        points, edges = read(mesh.vertices, "co", 3), read(mesh.edges, "vertices", 2, np.int32)
+        low, high = np.sort(edges, axis=1).T
+        starts = np.setdiff1d(np.arange(len(mesh.vertices)), high[high - low == 1])
+        return np.split(points, starts[1:]) if len(starts) else []
     finally:
         bare.to_mesh_clear()
         bpy.data.objects.remove(bare)
         bpy.data.curves.remove(copy)
-
-
-def _loops(mesh: bpy.types.Mesh) -> list[Frame]:
-    """The chains of a mesh: vertices one after the other, each joined to the next."""
-    points, edges = read(mesh.vertices, "co", 3), read(mesh.edges, "vertices", 2, np.int32)
-    low, high = np.sort(edges, axis=1).T
-    starts = np.setdiff1d(np.arange(len(mesh.vertices)), high[high - low == 1])
-    return np.split(points, starts[1:]) if len(starts) else []

@@ -150,7 +150,9 @@ class Turn:
         if not curve.length:
             raise CurveError("All points of the curves are the same; move them apart")
         axes = principal_axes(curve)
-        return cls(max(_rotations(axes, wanted), key=np.trace), barycenter(curve))
+        signs = (np.array(each)[:, None] for each in product((1.0, -1.0), repeat=3))
+        turned = [(sign * wanted).T @ axes for sign in signs]
+        return cls(max([each for each in turned if np.linalg.det(each) > 0.0], key=np.trace), barycenter(curve))
 
     def of(self, curve: Curve) -> Curve:
         return curve.with_vertices(self.center + (curve.vertices - self.center) @ self.rotation.T)
@@ -161,12 +163,6 @@ class Turn:
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = self.rotation, self.center - self.rotation @ self.center
         return matrix
-
-
-def _rotations(axes: FloatArray, wanted: FloatArray) -> list[FloatArray]:
-    signs = (np.array(each)[:, None] for each in product((1.0, -1.0), repeat=3))
-    turned = [(sign * wanted).T @ axes for sign in signs]
-    return [each for each in turned if np.linalg.det(each) > 0.0]
 
 
 def principal_axes(curve: Curve) -> FloatArray:

@@ -29,7 +29,10 @@ def colour_components(
     for component, spline in enumerate(data.splines, first):
         hue = hues if along is not None and made_of.gradient else component % hues
         if hue not in slots:
-            slots[hue] = _slot(data, _glaze(data, look, hue, along))
+            wanted = _glaze(data, look, hue, along)
+            if wanted.name not in data.materials:
+                data.materials.append(wanted)
+            slots[hue] = int(data.materials.find(wanted.name))
         spline.material_index = slots[hue]
 
 
@@ -120,9 +123,3 @@ def _table(name: str, rows: FloatArray) -> bpy.types.Image:
     image.pixels.foreach_set(pixels.ravel())
     image.pack()
     return image
-
-
-def _slot(data: bpy.types.Curve, wanted: bpy.types.Material) -> int:
-    if wanted.name not in data.materials:
-        data.materials.append(wanted)
-    return int(data.materials.find(wanted.name))

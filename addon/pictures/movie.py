@@ -43,7 +43,14 @@ class Reel:
         self.done, self._began = 0, 0.0  # frames that are written, and when that began
         self._part = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
         self._scene = str(scene.name)
-        _use_h264(scene)
+        # let a scene's animation be written as an MP4 that plays everywhere, without sound
+        settings, video = scene.render.image_settings, scene.render.ffmpeg
+        if hasattr(settings, "media_type"):  # Blender 5.0 and later
+            settings.media_type = "VIDEO"
+        settings.file_format = "FFMPEG"
+        video.format, video.codec = "MPEG4", "H264"
+        video.constant_rate_factor, video.ffmpeg_preset = "HIGH", "GOOD"
+        video.audio_codec = "NONE"
         scene.render.filepath, scene.render.use_file_extension = str(self._part), False
 
     def render(self) -> None:
@@ -165,26 +172,6 @@ def _spliced(scene: bpy.types.Scene, pictures: Sequence[Path]) -> bpy.types.Scen
     return reel
 
 
-def _use_h264(scene: bpy.types.Scene) -> None:
-    """Let a scene's animation be written as an MP4 that plays everywhere, without sound."""
-    settings, video = scene.render.image_settings, scene.render.ffmpeg
-    if hasattr(settings, "media_type"):  # Blender 5.0 and later
-        settings.media_type = "VIDEO"
-    settings.file_format = "FFMPEG"
-    video.format, video.codec = "MPEG4", "H264"
-    video.constant_rate_factor, video.ffmpeg_preset = "HIGH", "GOOD"
-    video.audio_codec = "NONE"
-
-
-def _set_up(scene: bpy.types.Scene, look: str) -> None:
-    if look in LOOKS:
-        rendering.look_fine(scene, LOOKS[look])
-    elif look == "QUICK":
-        rendering.look_plain(scene)
-        if direction := staging.key_direction(scene):
-            stage.light_workbench(scene, direction)
-
-
 class Filming(Reel):
     """One film of the frames that a scene plays, in the size of its renders, through its camera.
 
@@ -199,7 +186,12 @@ class Filming(Reel):
         _check(scene, place, overwrite)
         sweep()
         copy = copied(scene)
-        _set_up(copy, look)
+        if look in LOOKS:
+            rendering.look_fine(copy, LOOKS[look])
+        elif look == "QUICK":
+            rendering.look_plain(copy)
+            if direction := staging.key_direction(copy):
+                stage.light_workbench(copy, direction)
         super().__init__(copy, place)
 
     def render(self) -> None:

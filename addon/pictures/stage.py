@@ -14,7 +14,7 @@ from ...core.types import FloatArray
 from ..curves.keyframes import FCurves
 from ..engine.interpolation import interpolated
 from ..engine.placement import Frame
-from .looks import TINT, Light, Look
+from .looks import TINT, Look
 from .materials import material
 
 _WIDTH = 60.0  # of the floor: the camera sees no end of it
@@ -84,7 +84,14 @@ def facing(shapes: Sequence[Frame | FloatArray], up: FloatArray) -> tuple[FloatA
 def build(collection: bpy.types.Collection, stage: Stage, look: Look) -> bpy.types.Object:
     """Add lights and a floor to a collection; return the floor, which is at the height of the middle."""
     for k, light in enumerate(look.lights):
-        _add_light(collection, stage, "Light" if k else "Key", light)
+        # add a square light
+        name = "Light" if k else "Key"
+        data = bpy.data.lights.new(name, "AREA")
+        data.size = light.width * stage.size
+        data.energy = light.power * stage.size**2
+        data.color = light.tint
+        at = stage.middle + stage.size * (np.array(light.at) @ stage.axes)
+        place(add(collection, name, data), at, stage.middle, stage.axes[2])
     return _add_floor(collection, stage, look)
 
 
@@ -111,16 +118,6 @@ def place(obj: bpy.types.Object, at: FloatArray, towards: FloatArray, up: FloatA
     right /= np.linalg.norm(right)
     rotation = np.column_stack([right, np.cross(backward, right), backward])
     obj.matrix_world = Matrix(np.block([[rotation, at[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]).tolist())
-
-
-def _add_light(collection: bpy.types.Collection, stage: Stage, name: str, light: Light) -> None:
-    """Add a square light."""
-    data = bpy.data.lights.new(name, "AREA")
-    data.size = light.width * stage.size
-    data.energy = light.power * stage.size**2
-    data.color = light.tint
-    at = stage.middle + stage.size * (np.array(light.at) @ stage.axes)
-    place(add(collection, name, data), at, stage.middle, stage.axes[2])
 
 
 def _add_floor(collection: bpy.types.Collection, stage: Stage, look: Look) -> bpy.types.Object:
