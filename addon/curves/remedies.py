@@ -10,20 +10,10 @@ from .moving import deforms
 from .splines import Splines, sampled
 
 
-def make_3d(obj: bpy.types.Object) -> None:
-    """Let points be anywhere; a 2D curve's stay where they are."""
-    obj.data.dimensions = "3D"
-
-
 def close(obj: bpy.types.Object) -> None:
     """Join the ends of all splines that are open."""
     for spline in obj.data.splines:
         spline.use_cyclic_u = True
-
-
-def make_single_user(obj: bpy.types.Object) -> None:
-    """Give an object curve data of its own; that of others keeps its name and its keys."""
-    obj.data = obj.data.copy()
 
 
 def make_local(obj: bpy.types.Object) -> None:
