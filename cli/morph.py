@@ -54,7 +54,6 @@ exit status:
 
 
 def add_morph(parser: argparse.ArgumentParser) -> None:
-    """Describe ``morph``."""
     parser.description, parser.epilog = "Find a motion from one curve to another, free of contact with proof.", _EPILOG
     add_pair(parser)
     add_outputs(parser)
@@ -109,7 +108,6 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def add_same(parser: argparse.ArgumentParser) -> None:
-    """Describe ``same``."""
     parser.description, parser.epilog = "Tell whether two curves are the same knot or link.", _EPILOG_OF_SAME
     add_pair(parser)
     parser.set_defaults(run=_run_same)

@@ -100,7 +100,6 @@ def flag(option: Option) -> str:
 
 
 def _declaration(option: Option) -> dict[str, Any]:
-    """What argparse is told of an option."""
     common = {"dest": option.name, "help": option.help, "default": option.default}
     if option.kind is bool:
         return common | {"action": "store_true"}

@@ -49,13 +49,11 @@ class Parser(argparse.ArgumentParser):
         self.register("type", float, _read(float, "a number"))
 
     def error(self, message: str) -> NoReturn:
-        """End with one line."""
         self.exit(BAD_OPTIONS, f"{self.prog}: {message} (see {self.prog} --help)")
 
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Parse, and refuse what isn't known."""
         found, unknown = super().parse_known_args(args, namespace)
         word = unknown[0].partition("=")[0] if unknown else ""
         if word.startswith("-"):
@@ -90,7 +88,6 @@ class Command(Parser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Load, and parse."""
         add_to(self, self.prog.rpartition(" ")[2])
         return super().parse_known_args(args, namespace)
 

@@ -25,7 +25,7 @@ from ..core.errors import OptionError, OutputError, wrong_suffix
 from ..core.files import atomic_write, status_of
 from . import curves
 from .curves import DEVICE, OUTPUT, STREAM
-from .streams import show_frames
+from .progress import show_frames
 
 Identity = tuple[int | str, ...]
 Write = Callable[[str], None]

@@ -16,7 +16,7 @@ from ..core.errors import counted
 from . import curves, signals
 from . import options as relax_options
 from .places import OUTPUTS, Output, Write, admit, check_places, is_file, kept, output_for, writing
-from .streams import progress
+from .progress import progress
 
 EXIT_STATUS = dict.fromkeys(Status, 0) | {Status.STALLED: 1, Status.INTERRUPTED: 130}
 NAMED = 4  # meshes of a run that are listed individually
@@ -48,7 +48,6 @@ An output that cannot be written in the end is saved in a temporary directory, w
 
 
 def add_relax(parser: argparse.ArgumentParser) -> None:
-    """Describe ``relax``."""
     parser.description, parser.epilog = "Relax a curve: lower its energy without changing its knot type.", _EPILOG
     curves.add_input(parser, "polygons, closed or open")
     add_outputs(parser)

@@ -1,17 +1,11 @@
-"""Standard streams that are closed, full, gone, or of an encoding without our letters, and progress on them."""
+"""Standard streams that are closed, full, gone, or of an encoding that lacks our letters."""
 
 import contextlib
 import io
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import Any, Self
-
-from ..addon.engine.words import time_left
-from ..core import Iterate, RelaxOptions
-from ..core.driver import TimeLeft
 
 
 class OutputStreamError(Exception):
@@ -88,64 +82,3 @@ class Notes(logging.Handler):
         for line in self._lines:
             print(line, file=sys.stderr)
         self._lines.clear()
-
-
-@contextmanager
-def bar(shown: bool, **options: Any) -> Iterator[Any]:
-    """A bar of tqdm that vanishes in the end; None if it is not to be shown, or tqdm is not installed."""
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
-        shown = False
-    if not shown:
-        yield None
-        return
-    with tqdm(leave=False, **options) as made:
-        yield made
-
-
-class Progress:
-    """Lets a bar run from the first gradient norm down to the tolerance, on a logarithmic scale."""
-
-    def __init__(self, options: RelaxOptions) -> None:
-        self._left = TimeLeft(options)
-        self._start: float | None = None
-
-    def update(self, bar: Any, iterate: Iterate) -> None:
-        """Show an iterate, if there is a bar."""
-        if bar is None:
-            return
-        self._left.add(iterate)
-        distance, seconds = self._left.distances[-1], self._left.seconds
-        if self._start is None:
-            self._start = max(distance, 1e-9)
-        bar.n = max(bar.n, round(100 * (1 - distance / self._start)))
-        bar.set_postfix_str(
-            f"iteration {iterate.index}, objective {iterate.energy:.6g}, gradient {iterate.gradient_norm:.2g}"
-            f"{f', {time_left(seconds)}' if seconds else ''}"
-        )
-
-
-@contextmanager
-def progress(options: RelaxOptions | None = None, shown: bool = True) -> Iterator[Callable[[Iterate], None]]:
-    """Give what draws a bar when it is called with the iterates of a run, such as `minimize` does with a callback."""
-    drawn = Progress(RelaxOptions() if options is None else options)
-    with bar(shown, total=100, bar_format="{l_bar}{bar}| {elapsed} {postfix}") as made:
-        yield lambda iterate: drawn.update(made, iterate)
-
-
-@contextmanager
-def leg_progress(shown: bool) -> Iterator[Callable[[int, int], None] | None]:
-    """Give what shows the numbers of legs that are checked and of all, or None where nothing can be shown."""
-    with bar(shown, unit=" legs") as legs:
-
-        def show(done: int, total: int) -> None:
-            legs.total = total or None
-            legs.update(done - legs.n)
-
-        yield None if legs is None else show
-
-
-def show_frames(done: int, total: int) -> None:
-    """Show on one line how far a film is."""
-    print(f"\rrendering frame {done} of {total}", end="\n" if done == total else "", file=sys.stderr, flush=True)

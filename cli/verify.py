@@ -15,7 +15,8 @@ from ..core.errors import reason_of
 from ..core.verify import verify
 from .curves import INPUT, STREAM
 from .places import is_file
-from .streams import emit, leg_progress
+from .progress import leg_progress
+from .streams import emit
 
 MAX_BYTES = 4 << 30  # of a stream, which is copied to a temporary file: archives are read from their ends
 _PIECE = 1 << 20
@@ -35,7 +36,6 @@ exit status:
 
 
 def add_verify(parser: argparse.ArgumentParser) -> None:
-    """Describe ``verify``."""
     parser.description, parser.epilog = "Check a trajectory for contact, independently of the run.", _EPILOG
     parser.add_argument("trajectory", metavar="T.npz", help="as written by relax --trajectory, or - for standard input")
     parser.add_argument("--json", action="store_true", help="print the verdict as JSON")

@@ -44,7 +44,6 @@ WRITERS: Mapping[str, Write] = MappingProxyType(
 
 
 def add_view(parser: argparse.ArgumentParser) -> None:
-    """Describe ``view``."""
     parser.description, parser.epilog = "Show a curve or a trajectory, or make a solid of it.", _EPILOG
     curves.add_input(parser, "curve, or trajectory (.npz)")
     parser.add_argument("output", metavar="OUT", help=f"what to write, by suffix: {', '.join(WRITERS)}")

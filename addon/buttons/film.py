@@ -112,7 +112,6 @@ class CURVE_OT_mobius_flow_render_film(_OfFilm, Button, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for the end of the render."""
         if event.type != "TIMER" or is_rendering():
             self._show_progress(context)
             return {"PASS_THROUGH"}

@@ -75,7 +75,6 @@ class CURVE_OT_mobius_flow_recover(Listening, Button, bpy.types.Operator):
             return self.fail(error)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Write the keys."""
         try:
             run = self._recovered()
         except MobiusFlowError as error:

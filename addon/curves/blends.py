@@ -172,7 +172,6 @@ class Goals:
         self._reached: list[tuple[int, list[int]]] = []
 
     def note(self, iterate: Iterate) -> None:
-        """Note it if an iterate is the next of them."""
         left = list(self.curves.values())[len(self._reached) :]
         if left and iterate.index and (components := _components(iterate.curve, left[0])):
             self._reached.append((iterate.index, components))

@@ -11,7 +11,6 @@ from .splines import Splines, sampled
 
 
 def close(obj: bpy.types.Object) -> None:
-    """Join the ends of all splines that are open."""
     for spline in obj.data.splines:
         spline.use_cyclic_u = True
 

@@ -49,7 +49,6 @@ class Keys:
         return self.unproved == 0
 
     def part(self, vertices: slice) -> "Keys":
-        """The same keys for some of the vertices."""
         return Keys(tuple(Key(key.time, key.points[vertices]) for key in self.keys), self.unproved)
 
 

@@ -83,7 +83,6 @@ class Run:
 
     @cached_property
     def target(self) -> Target | None:
-        """The least energy that there can be."""
         return target_of(self._session.task, self._session.options)
 
     def concerns(self, obj: bpy.types.Object | None) -> bool:

@@ -71,7 +71,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them back."""
     translations.unregister(__package__)
 
 

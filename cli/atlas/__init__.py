@@ -7,7 +7,8 @@ from pathlib import Path
 from ...addon.pictures.looks import DEFAULT
 from ...core.errors import counted
 from ..options import look
-from ..streams import bar, emit
+from ..progress import bar
+from ..streams import emit
 from . import data, pages
 from .entries import entry
 from .folder import Folder

@@ -11,7 +11,8 @@ from ...core.errors import OptionError, OutputError
 from .. import options as relax_options
 from .. import signals
 from ..places import check_place
-from ..streams import bar, emit
+from ..progress import bar
+from ..streams import emit
 from . import cluster
 from .folder import check_replaceable, finished, sweep
 from .job import CSV, PARQUET, Job, inputs, jobs

@@ -96,7 +96,6 @@ class Bending:
     scale_exponent = 0.0
 
     def value(self, curve: Curve) -> float:
-        """The bending of the curve."""
         return bending(curve)
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:

@@ -22,7 +22,7 @@ ENDLESS = ["--tolerance", "1e-30", "--vertices", "120", "--method", "flow-l2", "
 TALKATIVE = """
 import sys
 from mobius_flow.cli import main
-from mobius_flow.cli.streams import Progress
+from mobius_flow.cli.progress import Progress
 Progress.update = lambda self, bar, iterate: iterate.index == 2 and print("running", flush=True)
 sys.exit(main(sys.argv[1:]))
 """

@@ -1,7 +1,7 @@
 """Bars on a terminal."""
 
 import pytest
-from mobius_flow.cli.streams import Progress, bar
+from mobius_flow.cli.progress import Progress, bar
 from mobius_flow.core import Curve, Mesh, RelaxOptions, minimize
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from mobius_flow.cli import compare as compare_command
 from mobius_flow.cli import main, places, signals
-from mobius_flow.cli.streams import Progress
+from mobius_flow.cli.progress import Progress
 from mobius_flow.core import Curve, Iterate, Result, Trajectory, read_curve, relax, write_curve
 from mobius_flow.core.deadline import termination_raises
 from mobius_flow.core.driver import finish

@@ -15,7 +15,7 @@ from curve_formats import OF_VERTICES
 from families import family
 from mobius_flow import __version__
 from mobius_flow.cli import main
-from mobius_flow.cli.streams import leg_progress
+from mobius_flow.cli.progress import leg_progress
 from mobius_flow.core import read_curve, write_curve
 from mobius_flow.core.curve.io.source import MAX_BYTES
 from mobius_flow.core.verify import verify
