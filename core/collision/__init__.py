@@ -3,16 +3,3 @@
 from .embedded import check_clear, check_embedded, survives_rounding
 from .gap import check_gap, minimal_gap
 from .motion import Contact, FreeMotion, Limit, free_motion, is_free
-
-__all__ = [
-    "Contact",
-    "FreeMotion",
-    "Limit",
-    "check_clear",
-    "check_embedded",
-    "check_gap",
-    "free_motion",
-    "is_free",
-    "minimal_gap",
-    "survives_rounding",
-]

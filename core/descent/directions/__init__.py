@@ -9,8 +9,6 @@ import numpy as np
 from ...types import FloatArray
 from ..problem import Point
 
-__all__ = ["ConjugateGradient", "Direction", "LimitedMemoryBFGS", "SteepestDescent"]
-
 
 class Direction(Protocol):
     """A rule for descent directions; what it remembers from step to step is a value passed in and out."""

@@ -4,15 +4,3 @@ from .armijo import Armijo, FirstTrial, LineSearch, TowardsTargets
 from .backward_euler import BackwardEuler
 from .trust_region import Escape, TrustRegion
 from .wolfe import Accelerated, WeakWolfe
-
-__all__ = [
-    "Accelerated",
-    "Armijo",
-    "BackwardEuler",
-    "Escape",
-    "FirstTrial",
-    "LineSearch",
-    "TowardsTargets",
-    "TrustRegion",
-    "WeakWolfe",
-]
