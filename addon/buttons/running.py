@@ -20,25 +20,20 @@ from .button import Button, button
 _PATIENCE = 0.005  # seconds between looks at whether the keys are ready
 
 
-def _is_writing(_context: bpy.types.Context) -> bool:
-    run = registry.current()
-    return run is not None and run.state is State.FINISHING
-
-
 def _has_no_trouble(context: bpy.types.Context) -> bool:
     run = registry.shown(context.active_object)
     return run is None or not run.state.over or not run.trouble
 
 
-def _is_lost(_context: bpy.types.Context) -> bool:
-    run = registry.latest()
-    return run is None or not run.recoverable
-
-
 _GOING_ON = Condition("Nothing is being relaxed", lambda _: registry.current() is None)
-_COMPUTING = Condition("The relaxation is over; its keys are being written", _is_writing)
+_COMPUTING = Condition(
+    "The relaxation is over; its keys are being written",
+    lambda _: (run := registry.current()) is not None and run.state is State.FINISHING,
+)
 _TROUBLE = Condition("This curve has no problem to show", _has_no_trouble)
-_RECOVERABLE = Condition("No relaxation was cancelled", _is_lost)
+_RECOVERABLE = Condition(
+    "No relaxation was cancelled", lambda _: (run := registry.latest()) is None or not run.recoverable
+)
 
 
 @button("Pause", _COMPUTING, _GOING_ON, bl_options=set())

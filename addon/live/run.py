@@ -137,7 +137,7 @@ class Run:
         """Pull what is held to a place in view, shape (3,)."""
         if self.drag is not None and self.group.in_view is not None and np.isfinite(target).all():
             self.drag.target = target
-            place = self._session.unsized(self.group.unmoved(self.drag.component, target))
+            place = self._session.motion.unsized(self.group.unmoved(self.drag.component, target))
             self._worker.tell("move", place.tolist())
 
     def let_go(self, pin: bool = False) -> None:
