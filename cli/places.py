@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import combinations, product
 from pathlib import Path
-from types import MappingProxyType
 
 from ..addon.engine.playing import Playing, check_dimension
 from ..addon.pictures import export
@@ -169,16 +168,11 @@ def _write_movie(path: str, iterates: Sequence[Iterate], shown: bool, playing: P
         raise
 
 
-OUTPUTS: Mapping[str, Output] = MappingProxyType(
-    {suffix: _curve_output(FORMATS[suffix]) for suffix in WRITTEN_FORMATS}
-    | {
-        ".blend": _scene_output(lambda path, iterates, _, playing: export.write_blend(path, iterates, playing), True),
-        ".mp4": _scene_output(_write_movie, True),
-        ".png": _scene_output(
-            lambda path, iterates, _, playing: export.write_still(path, iterates, playing.look), False
-        ),
-    }
-)
+OUTPUTS: Mapping[str, Output] = {suffix: _curve_output(FORMATS[suffix]) for suffix in WRITTEN_FORMATS} | {
+    ".blend": _scene_output(lambda path, iterates, _, playing: export.write_blend(path, iterates, playing), True),
+    ".mp4": _scene_output(_write_movie, True),
+    ".png": _scene_output(lambda path, iterates, _, playing: export.write_still(path, iterates, playing.look), False),
+}
 
 
 def output_for(path: str, name: str | None = None, look: str | None = None, played: bool = False) -> Output:

@@ -3,7 +3,6 @@
 import argparse
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from types import MappingProxyType
 
 from ..core import MobiusFlowError
 from ..core.errors import wrong_suffix
@@ -33,14 +32,12 @@ def _solid(kind: str) -> Write:
     return lambda shown, width, _: solid(shown.curves[-1], kind, width)
 
 
-WRITERS: Mapping[str, Write] = MappingProxyType(
-    {
-        ".html": lambda shown, width, title: page(shown, width and 0.5 * width, title).encode(),
-        ".stl": _solid("stl"),
-        ".3mf": _solid("3mf"),
-        ".glb": lambda shown, width, _: animation(shown, width and 0.5 * width),
-    }
-)
+WRITERS: Mapping[str, Write] = {
+    ".html": lambda shown, width, title: page(shown, width and 0.5 * width, title).encode(),
+    ".stl": _solid("stl"),
+    ".3mf": _solid("3mf"),
+    ".glb": lambda shown, width, _: animation(shown, width and 0.5 * width),
+}
 
 
 def add_view(parser: argparse.ArgumentParser) -> None:

@@ -1,7 +1,6 @@
 """Materials of looks, built from their descriptions, and one that shows the colours of a mesh's vertices."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import bpy
@@ -11,7 +10,7 @@ from ...core.types import FloatArray
 from ..engine.colours import flatly_lit
 from .looks import ALONG, DEFAULT, LOOKS, SHADER, STRAND, TINT, TURNS, YARN, Nodes, Tint
 
-_NONE: Mapping[str, Any] = MappingProxyType({})
+_NONE: Mapping[str, Any] = {}
 _PIXELS = 1024  # of what changes along a component
 _PITCH = 1.55  # of a rope's strands, in its radii
 

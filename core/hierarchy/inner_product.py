@@ -9,7 +9,6 @@ J_C the eigenvalues are between 0.85 and 1.2, on smooth curves and on tangles, a
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from types import MappingProxyType
 
 import numpy as np
 import scipy.sparse as sp
@@ -135,9 +134,10 @@ def fractional_inner_product(
     )
 
 
-_COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]] = MappingProxyType(
-    {MoebiusMetric: moebius_inner_product, FractionalMetric: fractional_inner_product}
-)
+_COMPRESSED: Mapping[type, Callable[[Curve, Tolerances | None, float, int], CompressedInnerProduct]] = {
+    MoebiusMetric: moebius_inner_product,
+    FractionalMetric: fractional_inner_product,
+}
 
 
 @checked_fields
