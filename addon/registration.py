@@ -5,19 +5,7 @@ from types import ModuleType
 import bpy
 
 from . import settings, translations
-from .buttons import (
-    adding,
-    drawing,
-    film,
-    mending,
-    outputs,
-    pinning,
-    presets,
-    relaxing,
-    running,
-    shape,
-    stroke,
-)
+from .buttons import adding, drawing, film, mending, outputs, pinning, presets, relaxing, running, shape, stroke
 from .live import handlers, overlay
 from .sidebar import menus, panels, relax, tool
 

@@ -12,21 +12,9 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...core import (
-    Curve,
-    CurveError,
-    Hand,
-    Iterate,
-    MobiusFlowError,
-    Obstacle,
-    OptionError,
-    Outcome,
-    RelaxOptions,
-    Status,
-    Task,
-    WithOutcome,
-)
+from ...core import Curve, Hand, Iterate, Obstacle, Outcome, RelaxOptions, Status, Task, WithOutcome
 from ...core.collision import is_free
+from ...core.errors import CurveError, MobiusFlowError, OptionError
 from ...core.messages import Message, Sentence
 from ...core.types import FloatArray
 from ..engine.key_options import KeyOptions, Output
