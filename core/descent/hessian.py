@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..deadline import check_time
-from ..energies.moebius_hessian import OwnBlocks
+from ..energies.moebius import OwnBlocks
 from ..saddle import TangentSpace
 from ..types import FloatArray
 from .problem import Point
