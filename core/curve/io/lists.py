@@ -15,10 +15,10 @@ from .source import Source
 
 _NAMES = ("name", "knot", "link", "id", "knot_name", "link_name")
 CODES: Mapping[str, str] = {
-        "pd_notation": "PD: ", "pd_notation_math": "", "pd_notation_vector": "PD: ", "pd_code": "PD: ", "pd": "PD: ",
-        "dt_notation": "DT: ", "dt_code": "DT: ", "dt": "DT: ", "gauss_notation": "Gauss: ", "gauss_code": "Gauss: ",
-        "gauss": "Gauss: ", "braid_notation": "braid", "braid_word": "braid", "braid": "braid",
-    }  # fmt: skip
+    "pd_notation": "PD: ", "pd_notation_math": "", "pd_notation_vector": "PD: ", "pd_code": "PD: ", "pd": "PD: ",
+    "dt_notation": "DT: ", "dt_code": "DT: ", "dt": "DT: ", "gauss_notation": "Gauss: ", "gauss_code": "Gauss: ",
+    "gauss": "Gauss: ", "braid_notation": "braid", "braid_word": "braid", "braid": "braid",
+}  # fmt: skip
 """Columns that are read, the first one that a list has, and what must stand before their codes."""
 _BRAID = re.compile(r"[\[({]\s*(?:(\d+)\s*,\s*[\[({])?([^\[\](){}]*)[\])}\s]*")
 _CODE = re.compile(r"[^\[({]*[\[({].*\d.*|[\d\s,;+-]+|[a-zA-Z]{4,}(\.[01]+)?", re.DOTALL)  # no title of a column
