@@ -114,6 +114,7 @@ class Objective:
         return self if all(a is b for a, b in zip(frozen.terms, self.terms, strict=True)) else frozen
 
     def value(self, curve: Curve) -> float:
+        """The objective at the curve."""
         return float(sum(weight * term.value(curve) for term, weight in self._summands(curve)))
 
     def value_and_derivative(self, curve: Curve) -> tuple[float, FloatArray]:
