@@ -117,4 +117,4 @@ class VIEW3D_PT_mobius_flow_film(SubPanel, bpy.types.Panel):
 
 class VIEW3D_PT_mobius_flow_expert(SubPanel, bpy.types.Panel):
     bl_label = "Expert"
-    rows = (settings(*(option.name for option in shown() if option.row)),)
+    rows = (lambda layout, context: settings(*(each.name for each in shown() if each.row))(layout, context),)
